@@ -71,7 +71,7 @@ for interpreter in "${interpreters[@]}"; do
   fi
   pip=("$environment/bin/python" -m pip --disable-pip-version-check --quiet --no-input)
   "${pip[@]}" install "$wheel$extra"
-  # The same version may be another build.
+  # What is installed of this version may be another build.
   "${pip[@]}" install --force-reinstall --no-deps "$wheel"
   # From another folder, so that nothing of the source tree is found.
   python="$PWD/$environment/bin/python"

@@ -45,24 +45,24 @@ static const double kSquare[] = {0, 0, 4, 0, 4, 3, 0, 4};
 
 static cl_context make_context(void) {
   cl_int code = CL_SUCCESS;
-  cl_context made = clCreateContext(NULL, 1, &device, NULL, NULL, &code);
+  cl_context result = clCreateContext(NULL, 1, &device, NULL, NULL, &code);
   REQUIRE(code == CL_SUCCESS);
-  return made;
+  return result;
 }
 
 static cl_command_queue make_queue(cl_context owner, cl_command_queue_properties properties) {
   cl_int code = CL_SUCCESS;
-  cl_command_queue made = clCreateCommandQueue(owner, device, properties, &code);
+  cl_command_queue result = clCreateCommandQueue(owner, device, properties, &code);
   REQUIRE(code == CL_SUCCESS);
-  return made;
+  return result;
 }
 
 static cl_mem make_buffer(cl_context owner, size_t bytes, const void* contents) {
   cl_int code = CL_SUCCESS;
   const cl_mem_flags copies = contents != NULL ? CL_MEM_COPY_HOST_PTR : 0;
-  cl_mem made = clCreateBuffer(owner, CL_MEM_READ_WRITE | copies, bytes, (void*)contents, &code);
+  cl_mem result = clCreateBuffer(owner, CL_MEM_READ_WRITE | copies, bytes, (void*)contents, &code);
   REQUIRE(code == CL_SUCCESS);
-  return made;
+  return result;
 }
 
 static void make_points(void) {
@@ -284,22 +284,22 @@ static void test_names_of_modes(void) {
 }
 
 static void test_mesh_in_one_struct(void) {
-  flaunay_triangulation* made =
+  flaunay_triangulation* result =
       on_host(kSets, 10, kSetOffsets, 4, FLAUNAY_PART_NEIGHBORS | FLAUNAY_PART_HALFEDGES);
-  const flaunay_mesh* mesh = flaunay_triangulation_mesh(made);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   REQUIRE(mesh != NULL);
   CHECK(mesh->point_count == 10 && mesh->set_count == 4 && mesh->triangle_count == 3);
-  CHECK(mesh->hull_count == flaunay_triangulation_hull_count(made));
-  CHECK(mesh->triangles == flaunay_triangulation_triangles(made) && mesh->triangles != NULL);
-  CHECK(mesh->neighbors == flaunay_triangulation_neighbors(made) && mesh->neighbors != NULL);
-  CHECK(mesh->halfedges == flaunay_triangulation_halfedges(made) && mesh->halfedges != NULL);
-  CHECK(mesh->hull == flaunay_triangulation_hull(made) && mesh->hull != NULL);
-  CHECK(mesh->representatives == flaunay_triangulation_representatives(made));
-  CHECK(mesh->triangle_offsets == flaunay_triangulation_triangle_offsets(made));
-  CHECK(mesh->hull_offsets == flaunay_triangulation_hull_offsets(made));
-  CHECK(mesh->statistics == flaunay_triangulation_statistics(made) && mesh->statistics->points == 10);
+  CHECK(mesh->hull_count == flaunay_triangulation_hull_count(result));
+  CHECK(mesh->triangles == flaunay_triangulation_triangles(result) && mesh->triangles != NULL);
+  CHECK(mesh->neighbors == flaunay_triangulation_neighbors(result) && mesh->neighbors != NULL);
+  CHECK(mesh->halfedges == flaunay_triangulation_halfedges(result) && mesh->halfedges != NULL);
+  CHECK(mesh->hull == flaunay_triangulation_hull(result) && mesh->hull != NULL);
+  CHECK(mesh->representatives == flaunay_triangulation_representatives(result));
+  CHECK(mesh->triangle_offsets == flaunay_triangulation_triangle_offsets(result));
+  CHECK(mesh->hull_offsets == flaunay_triangulation_hull_offsets(result));
+  CHECK(mesh->statistics == flaunay_triangulation_statistics(result) && mesh->statistics->points == 10);
   CHECK(flaunay_triangulation_mesh(NULL) == NULL);
-  flaunay_triangulation_destroy(made);
+  flaunay_triangulation_destroy(result);
 }
 
 // Triangulations that were kept as arrays.
@@ -309,18 +309,18 @@ typedef struct {
   const int32_t *triangles, *neighbors, *hull, *representatives;
 } kept_mesh;
 
-static flaunay_status create_from(kept_mesh kept, flaunay_triangulation** made) {
+static flaunay_status create_from(kept_mesh kept, flaunay_triangulation** result) {
   return flaunay_triangulation_create(kept.n, kept.triangles, kept.t, kept.neighbors, kept.hull, kept.h,
-                                      kept.representatives, made);
+                                      kept.representatives, result);
 }
 
 static void test_kept_triangulations(void) {
-  flaunay_triangulation *original = on_host(points, kPoints, NULL, 0, 0), *made = NULL;
+  flaunay_triangulation *original = on_host(points, kPoints, NULL, 0, 0), *result = NULL;
   const flaunay_mesh* mesh = flaunay_triangulation_mesh(original);
   const kept_mesh kept = {kPoints,         mesh->triangle_count, mesh->hull_count,     mesh->triangles,
                           mesh->neighbors, mesh->hull,           mesh->representatives};
-  REQUIRE(create_from(kept, &made) == FLAUNAY_SUCCESS);
-  const flaunay_mesh* copy = flaunay_triangulation_mesh(made);
+  REQUIRE(create_from(kept, &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* copy = flaunay_triangulation_mesh(result);
   CHECK(copy->point_count == kPoints && copy->set_count == 1 && copy->triangle_count == kept.t);
   CHECK(copy->triangles != kept.triangles && same(copy->triangles, kept.triangles, 3 * kept.t));
   CHECK(same(copy->neighbors, kept.neighbors, 3 * kept.t) && same(copy->hull, kept.hull, kept.h));
@@ -329,57 +329,58 @@ static void test_kept_triangulations(void) {
 
   // It serves as the original does.
   flaunay_locator* locator = NULL;
-  REQUIRE(flaunay_locator_create(triangulator, points, kPoints, NULL, 0, made, &locator) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_locator_create(triangulator, points, kPoints, NULL, 0, result, &locator) ==
+          FLAUNAY_SUCCESS);
   int32_t* found = malloc(kPoints * sizeof *found);
   REQUIRE(found != NULL);
   CHECK(flaunay_locator_nearest(locator, points, kPoints, NULL, 0, found) == FLAUNAY_SUCCESS);
   CHECK(same(found, kept.representatives, kPoints));
   free(found);
   flaunay_locator_destroy(locator);
-  flaunay_triangulation_destroy(made);
+  flaunay_triangulation_destroy(result);
   flaunay_triangulation_destroy(original);
 
   const kept_mesh none = {0};
-  REQUIRE(create_from(none, &made) == FLAUNAY_SUCCESS);
-  CHECK(flaunay_triangulation_point_count(made) == 0 && flaunay_triangulation_set_count(made) == 1);
-  flaunay_triangulation_destroy(made);
+  REQUIRE(create_from(none, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_triangulation_point_count(result) == 0 && flaunay_triangulation_set_count(result) == 1);
+  flaunay_triangulation_destroy(result);
 }
 
 static const int32_t kTriangle[] = {0, 1, 2}, kNoNeighbors[] = {-1, -1, -1};
 
 static void test_bad_kept_triangulations(void) {
   const kept_mesh good = {3, 1, 3, kTriangle, kNoNeighbors, kTriangle, kTriangle};
-  flaunay_triangulation* made = NULL;
+  flaunay_triangulation* result = NULL;
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
-  REQUIRE(create_from(good, &made) == FLAUNAY_SUCCESS);
-  flaunay_triangulation_destroy(made);
+  REQUIRE(create_from(good, &result) == FLAUNAY_SUCCESS);
+  flaunay_triangulation_destroy(result);
   const int32_t bad[][3] = {{0, 1, 3}, {-2, -1, -1}, {INT32_MIN, 1, 2}, {0, INT32_MAX, 1}};
   for (int k = 0; k < 4; ++k) {
     kept_mesh changed = good;
     changed.triangles = bad[k];
-    CHECK(fails(create_from(changed, &made), usage, "triangles: ") && made == NULL);
+    CHECK(fails(create_from(changed, &result), usage, "triangles: ") && result == NULL);
     changed = good, changed.neighbors = bad[k];
-    CHECK(fails(create_from(changed, &made), usage, "neighbors: "));
+    CHECK(fails(create_from(changed, &result), usage, "neighbors: "));
     changed = good, changed.hull = bad[k];
-    CHECK(fails(create_from(changed, &made), usage, "hull: "));
+    CHECK(fails(create_from(changed, &result), usage, "hull: "));
     changed = good, changed.representatives = bad[k];
-    CHECK(fails(create_from(changed, &made), usage, "representatives: "));
+    CHECK(fails(create_from(changed, &result), usage, "representatives: "));
   }
   kept_mesh changed = good;
   changed.neighbors = kTriangle;  // triangle 1 of one
-  CHECK(fails(create_from(changed, &made), usage, "neighbors: 1 is none of the 1 triangles"));
+  CHECK(fails(create_from(changed, &result), usage, "neighbors: 1 is none of the 1 triangles"));
   changed = good, changed.t = SIZE_MAX / 3 + 1;
-  CHECK(fails(create_from(changed, &made), usage, "32-bit"));
+  CHECK(fails(create_from(changed, &result), usage, "32-bit"));
   changed = good, changed.hull = NULL;
-  CHECK(fails(create_from(changed, &made), usage, "hull must not be NULL"));
+  CHECK(fails(create_from(changed, &result), usage, "hull must not be NULL"));
   CHECK(fails(create_from(good, NULL), usage, "handle"));
   CHECK(flaunay_last_error_status() == usage);
 }
 
 static void test_tables_of_triangles(void) {
-  flaunay_triangulation* made = NULL;
-  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, &made) == FLAUNAY_SUCCESS);
-  const flaunay_mesh* mesh = flaunay_triangulation_mesh(made);
+  flaunay_triangulation* result = NULL;
+  REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 0, NULL, &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   REQUIRE(mesh->triangle_count == 2 && mesh->hull_count == 4);
   // Point 4 is in no triangle.
   int32_t first[5], starts[6], neighbors[10];
@@ -396,7 +397,7 @@ static void test_tables_of_triangles(void) {
     // Beside it on the square; two opposite corners have an edge, too.
     CHECK(starts[i + 1] - starts[i] == 2 + (starts[i + 1] - starts[i] > 2));
   }
-  flaunay_triangulation_destroy(made);
+  flaunay_triangulation_destroy(result);
 
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   // Points on one line have a hull, but no edges.
@@ -600,13 +601,13 @@ static void check_same(const flaunay_device_triangulation* mesh, flaunay_triangu
 }
 
 static flaunay_device_triangulation* make_device_triangulation(void) {
-  flaunay_device_triangulation* made = NULL;
-  REQUIRE(flaunay_device_triangulation_create(&made) == FLAUNAY_SUCCESS);
-  CHECK(flaunay_device_triangulation_parts(made) == 0);
-  CHECK(flaunay_device_triangulation_set_count(made) == 0);
-  CHECK(flaunay_device_triangulation_triangle_count(made) == 0);
-  CHECK(strcmp(flaunay_device_triangulation_statistics(made)->device, "") == 0);
-  return made;
+  flaunay_device_triangulation* result = NULL;
+  REQUIRE(flaunay_device_triangulation_create(&result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_triangulation_parts(result) == 0);
+  CHECK(flaunay_device_triangulation_set_count(result) == 0);
+  CHECK(flaunay_device_triangulation_triangle_count(result) == 0);
+  CHECK(strcmp(flaunay_device_triangulation_statistics(result)->device, "") == 0);
+  return result;
 }
 
 // The caller's context, queue and buffers, an upload to wait for, and an event to wait for.
@@ -623,14 +624,14 @@ static void test_device_to_device(void) {
     CHECK(flaunay_device_triangulation_buffer(mesh, parts[p].part) == memory);
     clReleaseMemObject(memory);  // the handle retains it
   }
-  const flaunay_device_points given = {.memory = make_buffer(context, sizeof points, NULL), .count = kPoints};
+  const flaunay_device_points input = {.memory = make_buffer(context, sizeof points, NULL), .count = kPoints};
   cl_event uploaded = NULL, done = NULL;
-  CHECK(clEnqueueWriteBuffer(queue, given.memory, CL_FALSE, 0, sizeof points, points, 0, NULL, &uploaded) ==
+  CHECK(clEnqueueWriteBuffer(queue, input.memory, CL_FALSE, 0, sizeof points, points, 0, NULL, &uploaded) ==
         CL_SUCCESS);
   cl_command_queue other = make_queue(context, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
   const flaunay_enqueue enqueue = {
       .queue = other, .wait_for = &uploaded, .wait_for_count = 1, .event = &done};
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   REQUIRE(done != NULL);
   CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, kAllParts);
@@ -643,22 +644,22 @@ static void test_device_to_device(void) {
   clReleaseEvent(uploaded);
   clReleaseEvent(done);
   clReleaseCommandQueue(other);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
 }
 
 // Buffers of flaunay's own grow and stay.
 static void test_own_buffers(void) {
   flaunay_device_triangulation* mesh = make_device_triangulation();
-  flaunay_device_points given = {.memory = make_buffer(context, sizeof points, points), .count = 100};
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof points, points), .count = 100};
   const flaunay_enqueue enqueue = {.queue = queue};
   CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_TRIANGLES) == NULL);
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
   CHECK(flaunay_device_triangulation_parts(mesh) == FLAUNAY_PART_TRIANGLES);
   CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_TRIANGLES) != NULL);
   CHECK(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_HULL) == NULL);
-  given.count = kPoints;
+  input.count = kPoints;
   for (int k = 0; k < 2; ++k) {
-    REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+    REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
     CHECK(clFinish(queue) == CL_SUCCESS);
   }
   CHECK(flaunay_device_triangulation_statistics(mesh)->device_allocations == 0);
@@ -666,7 +667,7 @@ static void test_own_buffers(void) {
   check_same(mesh, expected);
   flaunay_triangulation_destroy(expected);
   flaunay_device_triangulation_destroy(mesh);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
 }
 
 // Sets, float, points that precede: offsets in host memory and on the device.
@@ -675,7 +676,7 @@ static void test_device_sets(void) {
   int32_t device_offsets[5];
   for (int k = 0; k < 20; ++k) narrow[6 + k] = (float)kSets[k];
   for (int s = 0; s < 5; ++s) device_offsets[s] = (int32_t)kSetOffsets[s];
-  flaunay_device_points given = {.memory = make_buffer(context, sizeof narrow, narrow),
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof narrow, narrow),
                                  .count = 10,
                                  .precision = FLAUNAY_FLOAT32,
                                  .first = 3,
@@ -684,33 +685,33 @@ static void test_device_sets(void) {
   flaunay_triangulation* expected = on_host(kSets, 10, kSetOffsets, 4, kAllParts);
   flaunay_device_triangulation* mesh = make_device_triangulation();
   const flaunay_enqueue enqueue = {.queue = queue};
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   check_same(mesh, expected);
-  given.offsets = NULL;
-  given.device_offsets = make_buffer(context, sizeof device_offsets, device_offsets);
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  input.offsets = NULL;
+  input.device_offsets = make_buffer(context, sizeof device_offsets, device_offsets);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   check_same(mesh, expected);
-  clReleaseMemObject(given.memory);
-  clReleaseMemObject(given.device_offsets);
+  clReleaseMemObject(input.memory);
+  clReleaseMemObject(input.device_offsets);
   flaunay_triangulation_destroy(expected);
   flaunay_device_triangulation_destroy(mesh);
 }
 
 static void test_no_points_on_device(void) {
   const size_t zeros[4] = {0};
-  flaunay_device_points given = {0};
+  flaunay_device_points input = {0};
   flaunay_device_triangulation* mesh = make_device_triangulation();
   cl_event done = NULL;
   const flaunay_enqueue enqueue = {.queue = queue, .event = &done};
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   REQUIRE(done != NULL);
   CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
   clReleaseEvent(done);
   CHECK(flaunay_device_triangulation_set_count(mesh) == 1);
   CHECK(flaunay_device_triangulation_triangle_count(mesh) == 0);
-  given.offsets = zeros;
-  given.sets = 3;
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, NULL, mesh) == FLAUNAY_SUCCESS);
+  input.offsets = zeros;
+  input.sets = 3;
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, NULL, mesh) == FLAUNAY_SUCCESS);
   CHECK(flaunay_device_triangulation_set_count(mesh) == 3);
   CHECK(flaunay_device_triangulation_hull_offsets(mesh)[3] == 0);
   flaunay_device_triangulation_destroy(mesh);
@@ -718,17 +719,17 @@ static void test_no_points_on_device(void) {
 
 static void test_device_profile(void) {
   cl_command_queue timed = make_queue(context, CL_QUEUE_PROFILING_ENABLE);
-  flaunay_device_points given = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
   flaunay_enqueue enqueue = {.queue = timed, .profile = 1};
   flaunay_device_triangulation* mesh = make_device_triangulation();
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, mesh) == FLAUNAY_SUCCESS);
   CHECK(flaunay_device_triangulation_statistics(mesh)->kernel_count > 0);
   enqueue.queue = queue;
-  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, mesh), FLAUNAY_ERROR_USAGE,
+  CHECK(fails(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, mesh), FLAUNAY_ERROR_USAGE,
               "CL_QUEUE_PROFILING_ENABLE"));
   flaunay_device_triangulation_destroy(mesh);
   clReleaseCommandQueue(timed);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
 }
 
 static void test_workspace(void) {
@@ -737,19 +738,19 @@ static void test_workspace(void) {
   REQUIRE(flaunay_triangulator_workspace_bytes(triangulator, kPoints, 1, &bytes) == FLAUNAY_SUCCESS);
   CHECK(bytes > kPoints);
   cl_mem small = make_buffer(context, bytes - 1, NULL), enough = make_buffer(context, bytes, NULL);
-  flaunay_device_points given = {.memory = make_buffer(context, sizeof points, points), .count = kPoints};
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof points, points), .count = kPoints};
   flaunay_device_triangulation* mesh = make_device_triangulation();
   flaunay_triangulation *expected = on_host(points, kPoints, NULL, 0, kAllParts), *result = NULL;
   const flaunay_enqueue enqueue = {.queue = queue};
 
   REQUIRE(flaunay_triangulator_use_workspace(triangulator, small) == FLAUNAY_SUCCESS);
   snprintf(text, sizeof text, "has %zu bytes", bytes - 1);
-  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, NULL, mesh), FLAUNAY_ERROR_USAGE, text));
+  CHECK(fails(flaunay_triangulate_device(triangulator, &input, 0, NULL, mesh), FLAUNAY_ERROR_USAGE, text));
   snprintf(text, sizeof text, "need %zu", bytes);
   CHECK(strstr(flaunay_last_error(), text) != NULL);
 
   REQUIRE(flaunay_triangulator_use_workspace(triangulator, enough) == FLAUNAY_SUCCESS);
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   check_same(mesh, expected);
   // What needs more memory takes it from elsewhere, also after the workspace was in use.
   const flaunay_options flattened = {.mode = FLAUNAY_MODE_FLATTENED};
@@ -757,18 +758,18 @@ static void test_workspace(void) {
   CHECK(flaunay_triangulation_triangle_count(result) == flaunay_triangulation_triangle_count(expected));
   flaunay_triangulation_destroy(result);
   CHECK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_HULL, enough) == FLAUNAY_SUCCESS);
-  CHECK(fails(flaunay_triangulate_device(triangulator, &given, kAllParts, NULL, mesh), FLAUNAY_ERROR_USAGE,
+  CHECK(fails(flaunay_triangulate_device(triangulator, &input, kAllParts, NULL, mesh), FLAUNAY_ERROR_USAGE,
               "two things"));
 
   CHECK(flaunay_triangulator_use_workspace(triangulator, NULL) == FLAUNAY_SUCCESS);
   CHECK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_HULL, NULL) == FLAUNAY_SUCCESS);
-  REQUIRE(flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh) == FLAUNAY_SUCCESS);
   check_same(mesh, expected);
   flaunay_triangulation_destroy(expected);
   flaunay_device_triangulation_destroy(mesh);
   clReleaseMemObject(small);
   clReleaseMemObject(enough);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
 }
 
 // ---- Bad use
@@ -890,30 +891,30 @@ static void test_bad_coordinates(void) {
   CHECK(
       fails(flaunay_triangulate(triangulator, bad, 5, NULL, 0, NULL, &mesh), FLAUNAY_ERROR_INPUT, "point 3"));
   flaunay_device_triangulation* device_mesh = make_device_triangulation();
-  flaunay_device_points given = {.memory = make_buffer(context, sizeof bad, bad), .count = 5};
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof bad, bad), .count = 5};
   cl_event done = (cl_event)bad;
   const flaunay_enqueue enqueue = {.queue = queue, .event = &done};
-  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
+  CHECK(fails(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
               "point 3"));
   CHECK(done == NULL);
-  given.first = 2;
-  given.count = 3;
-  CHECK(fails(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
+  input.first = 2;
+  input.count = 3;
+  CHECK(fails(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, device_mesh), FLAUNAY_ERROR_INPUT,
               "point 1"));
-  given.first = 0;  // and it goes on as before
-  CHECK(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, device_mesh) == FLAUNAY_SUCCESS);
+  input.first = 0;  // and it goes on as before
+  CHECK(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, device_mesh) == FLAUNAY_SUCCESS);
   CHECK(flaunay_device_triangulation_triangle_count(device_mesh) == 1);
   clWaitForEvents(1, &done);
   clReleaseEvent(done);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
   flaunay_device_triangulation_destroy(device_mesh);
 }
 
 // A call on the square with one thing wrong.
-static flaunay_status triangulate_square(flaunay_device_points given, unsigned parts,
+static flaunay_status triangulate_square(flaunay_device_points input, unsigned parts,
                                          const flaunay_enqueue* enqueue) {
   flaunay_device_triangulation* mesh = make_device_triangulation();
-  const flaunay_status status = flaunay_triangulate_device(triangulator, &given, parts, enqueue, mesh);
+  const flaunay_status status = flaunay_triangulate_device(triangulator, &input, parts, enqueue, mesh);
   flaunay_device_triangulation_destroy(mesh);
   return status;
 }
@@ -921,22 +922,22 @@ static flaunay_status triangulate_square(flaunay_device_points given, unsigned p
 static void test_bad_device_points(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
-  flaunay_device_points given = square;
-  CHECK(triangulate_square(given, 0, NULL) == FLAUNAY_SUCCESS);
-  given.count = 5;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "it has 64 bytes, 80 are needed"));
-  given = square;
-  given.first = SIZE_MAX;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "too many points"));
-  given = square;
-  given.memory = NULL;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "no buffer of points"));
-  given = square;
-  given.precision = 17;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "17"));
-  given = square;
-  given.reserved[3] = 1;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "flaunay_device_points"));
+  flaunay_device_points input = square;
+  CHECK(triangulate_square(input, 0, NULL) == FLAUNAY_SUCCESS);
+  input.count = 5;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "it has 64 bytes, 80 are needed"));
+  input = square;
+  input.first = SIZE_MAX;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "too many points"));
+  input = square;
+  input.memory = NULL;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "no buffer of points"));
+  input = square;
+  input.precision = 17;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "17"));
+  input = square;
+  input.reserved[3] = 1;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "flaunay_device_points"));
   CHECK(fails(triangulate_square(square, FLAUNAY_PART_NEIGHBORS, NULL), usage, "with triangles only"));
   CHECK(fails(triangulate_square(square, 64, NULL), usage, "0x40"));
   const flaunay_enqueue unknown = {.reserved = {1}};
@@ -948,30 +949,30 @@ static void test_bad_device_offsets(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   const int32_t decreasing[] = {0, 3, 2, 4}, short_by_one[] = {0, 2, 2, 3}, negative[] = {-1, 2, 2, 4};
   const size_t host_offsets[] = {0, 3, 2, 4}, host_short[] = {0, 2, 2, 3};
-  flaunay_device_points given = {
+  flaunay_device_points input = {
       .memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4, .sets = 3};
-  given.offsets = host_offsets;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "not decrease"));
-  given.offsets = host_short;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "end with 3, but there are 4"));
+  input.offsets = host_offsets;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "not decrease"));
+  input.offsets = host_short;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "end with 3, but there are 4"));
   const int32_t* const wrong[] = {decreasing, short_by_one, negative};
   const char* const texts[] = {"not decrease", "end with 3, but there are 4", "begin with 0"};
-  given.offsets = NULL;
+  input.offsets = NULL;
   for (int k = 0; k < 3; ++k) {
-    given.device_offsets = make_buffer(context, sizeof decreasing, wrong[k]);
-    CHECK(fails(triangulate_square(given, 0, NULL), usage, texts[k]));
-    clReleaseMemObject(given.device_offsets);
+    input.device_offsets = make_buffer(context, sizeof decreasing, wrong[k]);
+    CHECK(fails(triangulate_square(input, 0, NULL), usage, texts[k]));
+    clReleaseMemObject(input.device_offsets);
   }
-  given.device_offsets = make_buffer(context, sizeof decreasing, decreasing);
-  given.sets = 4;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "it has 16 bytes, 20 are needed"));
-  given.sets = SIZE_MAX;
-  CHECK(fails(triangulate_square(given, 0, NULL), usage, "too many sets"));
-  given.sets = 3;
-  given.offsets = host_short;
-  CHECK(flaunay_last_error()[0] != '\0' && triangulate_square(given, 0, NULL) == usage);
-  clReleaseMemObject(given.device_offsets);
-  clReleaseMemObject(given.memory);
+  input.device_offsets = make_buffer(context, sizeof decreasing, decreasing);
+  input.sets = 4;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "it has 16 bytes, 20 are needed"));
+  input.sets = SIZE_MAX;
+  CHECK(fails(triangulate_square(input, 0, NULL), usage, "too many sets"));
+  input.sets = 3;
+  input.offsets = host_short;
+  CHECK(flaunay_last_error()[0] != '\0' && triangulate_square(input, 0, NULL) == usage);
+  clReleaseMemObject(input.device_offsets);
+  clReleaseMemObject(input.memory);
 }
 
 static void test_bad_result_buffers(void) {
@@ -1137,17 +1138,17 @@ static void test_carried(void) {
   const int32_t segment_markers[] = {-1, 4, 5, 6}, point_markers[] = {8, 7, 6, 5, 4, 3, 2, 1};
   const double seeds[] = {0.25, 1, 6, 1, 5.5, 1.5}, attributes[] = {0.5, 1.5, 2.5};
   const size_t seed_offsets[] = {0, 1, 3};
-  const flaunay_constraints given = {.segments = kDiagonals,
-                                     .segment_count = 4,
-                                     .segment_markers = segment_markers,
-                                     .point_markers = point_markers,
-                                     .seeds = seeds,
-                                     .seed_attributes = attributes,
-                                     .seed_count = 3,
-                                     .seed_offsets = seed_offsets};
+  const flaunay_constraints constraints = {.segments = kDiagonals,
+                                           .segment_count = 4,
+                                           .segment_markers = segment_markers,
+                                           .point_markers = point_markers,
+                                           .seeds = seeds,
+                                           .seed_attributes = attributes,
+                                           .seed_count = 3,
+                                           .seed_offsets = seed_offsets};
   flaunay_constrained* result = NULL;
-  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &given, NULL, &result) ==
-          FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
+                                          &result) == FLAUNAY_SUCCESS);
   const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
   const int32_t* triangles = flaunay_constrained_mesh(result)->triangles;
   CHECK(same(arrays->edge_markers, segment_markers, 2) && same(arrays->vertex_markers, point_markers, 8));
@@ -1243,10 +1244,10 @@ static void test_polygons(void) {
   CHECK(arrays->segment_count == 12 && arrays->constraint_count == 11 && arrays->polygons == NULL);
   flaunay_constrained_destroy(result);
 
-  flaunay_polygons given = kPolygons;
-  given.map = 1;
-  given.labels = 1;
-  REQUIRE(flaunay_triangulate_polygons(triangulator, &given, NULL, &result) == FLAUNAY_SUCCESS);
+  flaunay_polygons input = kPolygons;
+  input.map = 1;
+  input.labels = 1;
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &input, NULL, &result) == FLAUNAY_SUCCESS);
   mesh = flaunay_constrained_mesh(result);
   arrays = flaunay_constrained_get_arrays(result);
   CHECK(mesh->set_count == 1 && mesh->triangle_count == 9 && arrays->constraint_count == 10);
@@ -1303,9 +1304,9 @@ static void test_polygons(void) {
   flaunay_constrained_destroy(result);
 }
 
-static flaunay_status polygons_with(flaunay_polygons given) {
+static flaunay_status polygons_with(flaunay_polygons input) {
   flaunay_constrained* result = NULL;
-  const flaunay_status status = flaunay_triangulate_polygons(triangulator, &given, NULL, &result);
+  const flaunay_status status = flaunay_triangulate_polygons(triangulator, &input, NULL, &result);
   flaunay_constrained_destroy(result);
   return status;
 }
@@ -1314,32 +1315,32 @@ static void test_bad_polygons(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   const flaunay_polygons none = {0};
   CHECK(polygons_with(none) == FLAUNAY_SUCCESS);
-  flaunay_polygons given = kPolygons;
-  given.ring_offsets = NULL;
-  CHECK(fails(polygons_with(given), usage, "rings"));
-  given = kPolygons;
-  given.coordinates = NULL;
-  CHECK(fails(polygons_with(given), usage, "null"));
-  given = kPolygons;
-  given.polygon_count = 1;
-  CHECK(polygons_with(given) == usage);
-  given = kPolygons;
-  given.overlaps = 2;
-  CHECK(fails(polygons_with(given), usage, "flaunay_overlaps"));
-  given = kPolygons;
-  given.crossings = 2;
-  CHECK(fails(polygons_with(given), usage, "flaunay_crossings"));
-  given = kPolygons;
-  given.reserved[1] = 1;
-  CHECK(fails(polygons_with(given), usage, "flaunay_polygons"));
-  given = kPolygons;
-  given.outside = given.fill_rule = 3;
-  CHECK(polygons_with(given) == FLAUNAY_SUCCESS);
-  given.has_outside = 1;
-  CHECK(fails(polygons_with(given), usage, "flaunay_outside"));
-  given.has_outside = 0;
-  given.has_fill_rule = 1;
-  CHECK(fails(polygons_with(given), usage, "flaunay_fill_rule"));
+  flaunay_polygons input = kPolygons;
+  input.ring_offsets = NULL;
+  CHECK(fails(polygons_with(input), usage, "rings"));
+  input = kPolygons;
+  input.coordinates = NULL;
+  CHECK(fails(polygons_with(input), usage, "null"));
+  input = kPolygons;
+  input.polygon_count = 1;
+  CHECK(polygons_with(input) == usage);
+  input = kPolygons;
+  input.overlaps = 2;
+  CHECK(fails(polygons_with(input), usage, "flaunay_overlaps"));
+  input = kPolygons;
+  input.crossings = 2;
+  CHECK(fails(polygons_with(input), usage, "flaunay_crossings"));
+  input = kPolygons;
+  input.reserved[1] = 1;
+  CHECK(fails(polygons_with(input), usage, "flaunay_polygons"));
+  input = kPolygons;
+  input.outside = input.fill_rule = 3;
+  CHECK(polygons_with(input) == FLAUNAY_SUCCESS);
+  input.has_outside = 1;
+  CHECK(fails(polygons_with(input), usage, "flaunay_outside"));
+  input.has_outside = 0;
+  input.has_fill_rule = 1;
+  CHECK(fails(polygons_with(input), usage, "flaunay_fill_rule"));
   const double bow[] = {0, 0, 2, 2, 2, 0, 0, 2};
   const flaunay_polygons crossing = {.coordinates = bow, .ring_offsets = kRingOffsets, .ring_count = 1};
   CHECK(fails(polygons_with(crossing), FLAUNAY_ERROR_INPUT, "cross"));
@@ -1684,9 +1685,9 @@ static void test_derived_on_device(void) {
 enum { kChunkPoints = 400 };
 
 static int32_t* make_indices(size_t count) {
-  int32_t* made = malloc(count * sizeof *made);
-  REQUIRE(made != NULL);
-  return made;
+  int32_t* result = malloc(count * sizeof *result);
+  REQUIRE(result != NULL);
+  return result;
 }
 
 static double* make_doubles(size_t count) {
@@ -2232,21 +2233,21 @@ static void test_all(void) {
 enum { kLargestBuffer = 4 << 20, kMostInBuffers = kLargestBuffer / 72 };
 
 static double* random_points(size_t n) {
-  double* made = malloc(2 * n * sizeof *made);
-  REQUIRE(made != NULL);
+  double* result = malloc(2 * n * sizeof *result);
+  REQUIRE(result != NULL);
   uint64_t state = 1;
   for (size_t k = 0; k < 2 * n; ++k) {
     state = state * 6364136223846793005U + 1442695040888963407U;
-    made[k] = (double)(state >> 32);
+    result[k] = (double)(state >> 32);
   }
-  return made;
+  return result;
 }
 
-static flaunay_triangulation* triangulation_on(const char* name, const double* given, size_t n,
+static flaunay_triangulation* triangulation_on(const char* name, const double* input, size_t n,
                                                flaunay_triangulator** used) {
   REQUIRE(flaunay_triangulator_create(name, used) == FLAUNAY_SUCCESS);
   flaunay_triangulation* mesh = NULL;
-  REQUIRE(flaunay_triangulate(*used, given, n, NULL, 0, NULL, &mesh) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_triangulate(*used, input, n, NULL, 0, NULL, &mesh) == FLAUNAY_SUCCESS);
   return mesh;
 }
 
@@ -2258,10 +2259,10 @@ static int works_or_is_too_large(flaunay_status got) {
 // As many points as fit work in every call; one more is an error that says how many fit.
 static void test_small_buffers(void) {
   const size_t n = kMostInBuffers;
-  double* const given = random_points(n + 1);
+  double* const input = random_points(n + 1);
   flaunay_triangulator *small = NULL, *on_host = NULL;
-  flaunay_triangulation* mesh = triangulation_on("#0", given, n, &small);
-  flaunay_triangulation* expected = triangulation_on("host", given, n, &on_host);
+  flaunay_triangulation* mesh = triangulation_on("#0", input, n, &small);
+  flaunay_triangulation* expected = triangulation_on("host", input, n, &on_host);
   CHECK(flaunay_triangulator_capacity(small) == n);
   const flaunay_mesh *arrays = flaunay_triangulation_mesh(mesh),
                      *right = flaunay_triangulation_mesh(expected);
@@ -2273,35 +2274,35 @@ static void test_small_buffers(void) {
   snprintf(fits, sizeof fits, "%zu points are too many: %zu would fit", n + 1, n);
   const flaunay_status device_error = FLAUNAY_ERROR_DEVICE;
   flaunay_triangulation* none = NULL;
-  CHECK(fails(flaunay_triangulate(small, given, n + 1, NULL, 0, NULL, &none), device_error, fits));
+  CHECK(fails(flaunay_triangulate(small, input, n + 1, NULL, 0, NULL, &none), device_error, fits));
   CHECK(strstr(flaunay_last_error(), "in one piece") != NULL);
   const int32_t segment[] = {0, arrays->triangles[0]};
   const flaunay_constraints constraints = {.segments = segment, .segment_count = 1};
   flaunay_constrained* constrained = NULL;
-  CHECK(flaunay_triangulate_constrained(small, given, n, NULL, 0, &constraints, NULL, &constrained) ==
+  CHECK(flaunay_triangulate_constrained(small, input, n, NULL, 0, &constraints, NULL, &constrained) ==
         FLAUNAY_SUCCESS);
   flaunay_constrained_destroy(constrained);
-  CHECK(fails(flaunay_triangulate_constrained(small, given, n + 1, NULL, 0, &constraints, NULL, &constrained),
+  CHECK(fails(flaunay_triangulate_constrained(small, input, n + 1, NULL, 0, &constraints, NULL, &constrained),
               device_error, fits));
 
   flaunay_voronoi* voronoi = NULL;
-  CHECK(flaunay_voronoi_compute(small, given, n, mesh, &voronoi) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_voronoi_compute(small, input, n, mesh, &voronoi) == FLAUNAY_SUCCESS);
   flaunay_voronoi_destroy(voronoi);
   const double box[] = {0, 0, 0x1p32, 0, 0x1p32, 0x1p32, 0, 0x1p32};
   flaunay_clipped_voronoi* cells = NULL;
-  CHECK(works_or_is_too_large(flaunay_voronoi_clip(small, given, n, mesh, box, 4, &cells)));
+  CHECK(works_or_is_too_large(flaunay_voronoi_clip(small, input, n, mesh, box, 4, &cells)));
   flaunay_clipped_voronoi_destroy(cells);
 
   // Queries at the points, and many more queries than points.
   flaunay_locator* locator = NULL;
-  REQUIRE(flaunay_locator_create(small, given, n, NULL, 0, mesh, &locator) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_locator_create(small, input, n, NULL, 0, mesh, &locator) == FLAUNAY_SUCCESS);
   int32_t* const found = malloc(n * sizeof *found);
   double* const values = malloc(n * sizeof *values);
   REQUIRE(found != NULL && values != NULL);
-  CHECK(flaunay_locator_nearest(locator, given, n, NULL, 0, found) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_nearest(locator, input, n, NULL, 0, found) == FLAUNAY_SUCCESS);
   CHECK(same(found, right->representatives, n));
-  CHECK(flaunay_locator_locate(locator, given, n, NULL, 0, found) == FLAUNAY_SUCCESS);
-  CHECK(flaunay_locator_interpolate(locator, given, given, n, NULL, 0, values) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_locate(locator, input, n, NULL, 0, found) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_locator_interpolate(locator, input, input, n, NULL, 0, values) == FLAUNAY_SUCCESS);
   const size_t many = kLargestBuffer / 16 + 1;
   double* const queries = random_points(many);
   int32_t* const of_many = malloc(many * sizeof *of_many);
@@ -2316,7 +2317,7 @@ static void test_small_buffers(void) {
   flaunay_triangulation_destroy(mesh);
   flaunay_triangulator_destroy(on_host);
   flaunay_triangulator_destroy(small);
-  free(given);
+  free(input);
 }
 
 static void test_big_endian(void) {

@@ -53,9 +53,9 @@ static void check(flaunay_status status) {
 }
 
 static flaunay_triangulator* make(void) {
-  flaunay_triangulator* made = NULL;
-  check(library.create("host", &made));
-  return made;
+  flaunay_triangulator* triangulator = NULL;
+  check(library.create("host", &triangulator));
+  return triangulator;
 }
 
 static void triangulate(flaunay_triangulator* triangulator, size_t n) {

@@ -204,8 +204,9 @@ static inline int corner_beyond(int listed, int to, global const int* open_offse
   return GHOST;
 }
 
-// The same for the outside left of the edge. If something is emitted and the points that are left are on one line, they
-// are vertices of the hull, and there are triangles on the other side of the line alone, all of them emitted.
+// Whether the outside left of the edge is missing. If something is emitted and the points that are left are on one
+// line, they are vertices of the hull, and there are triangles on the other side of the line alone, all of them
+// emitted.
 static inline int is_ghost_missing(const emission* m, int from, int to, int is_line, int exactly) {
   if (!is_line || open_count(m, from) == 0) return is_missing(m, from, to, 1, exactly);
   return corner_beyond(m->listed[from], m->vertices[to], m->open_offsets, m->open_edges) != GHOST;

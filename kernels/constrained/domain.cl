@@ -43,7 +43,7 @@ static inline int root_of(int t, global volatile int* parents) {
   return t;
 }
 
-// The same where nobody else looks.
+// The root of t in parents that no other work-item reads or writes meanwhile.
 static inline int own_root_of(int t, global int* parents) {
   int parent = parents[t];
   while (parent != t) {

@@ -226,7 +226,7 @@ static inline int count_before(double u, int with_equal, int low, int high, glob
   return low - begin;
 }
 
-// The same for a region's kept internal points, whose list may descend.
+// How many of a region's kept internal points, whose list may descend, are before u, or with it.
 static inline int count_kept_before(double u, int with_equal, int low, int high, int axis, global const int* positions,
                                     global const double2* projections) {
   int least = 0, most = high - low;
@@ -349,7 +349,7 @@ typedef struct {
   int left, left_end, right, right_end;
 } hull_pair;
 
-// The same without one of two vertices of one u that would stand side by side: the higher one.
+// The pair without the higher of two vertices of one u that would stand side by side.
 static inline hull_pair without_column(const hull_frame* frame, sequence s, hull_pair pair) {
   if (pair.left < pair.left_end && pair.right < pair.right_end &&
       s.projections[pair.left_end - 1].y == s.projections[pair.right].y) {

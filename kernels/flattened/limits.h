@@ -18,7 +18,7 @@ INTEGER_CONSTANT(COUNTED_CORNERS, 256);
 // Quickhull splits at deepest points for so many rounds, then it balances its splits. No input has been seen to take
 // more that was not made to.
 INTEGER_CONSTANT(MOST_QUICKHULL_ROUNDS, 64);
-// The same for Hull::balanced: what the paper's authors found to serve skewed input well.
+// Rounds of splits at deepest points for Hull::balanced: what the paper's authors found to serve skewed input well.
 INTEGER_CONSTANT(ROUNDS_BEFORE_BALANCE, 4);
 // Dropping vertices that are not strictly below their neighbours' segment can lay bare one vertex at a time. After so
 // many rounds quickhull sorts out what is left.

@@ -150,7 +150,7 @@ static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL 
     if (w == count) return REGION_BROKEN;
     after[v] = w;
   }
-  uchar made[3 * SMALL_REGION];
+  uchar emitted[3 * SMALL_REGION];
   uchar2 pending[SMALL_REGION];
   ulong taken = 0;
   int total = 0;
@@ -168,16 +168,16 @@ static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL 
       const uchar2 ends = pending[--depth];
       const int apex = apex_of(&g, ends.x, ends.y);
       if (apex < 0) return apex;
-      made[3 * total] = g.chain[ends.x];
-      made[3 * total + 1] = g.chain[apex];
-      made[3 * total + 2] = g.chain[ends.y];
+      emitted[3 * total] = g.chain[ends.x];
+      emitted[3 * total + 1] = g.chain[apex];
+      emitted[3 * total + 2] = g.chain[ends.y];
       ++total;
       if (apex - ends.x > 1) pending[depth++] = VECTOR(uchar2, ends.x, (uchar)apex);
       if (ends.y - apex > 1) pending[depth++] = VECTOR(uchar2, (uchar)apex, ends.y);
     }
   }
   COUNT_TALLY(ENDGAME, g);
-  for (int k = 0; k < 3 * total; ++k) triangles[k] = ids[made[k]];
+  for (int k = 0; k < 3 * total; ++k) triangles[k] = ids[emitted[k]];
   return total;
 }
 

@@ -193,12 +193,12 @@ kernel void take_gradients(int n, int columns, int sets, global const int* restr
 // scales: the other way.
 kernel void place_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
                             global const scaling* restrict scales, global const int* restrict source,
-                            global const double* restrict given, global double2* restrict gradients) {
+                            global const double* restrict input, global double2* restrict gradients) {
   const int v = get_global_id(0);
   if (v < n && v < first_vertices[sets]) {
     const scaling scale = scales[segment_of(v, sets, first_vertices)];
     for (int c = 0; c < columns; ++c) {
-      global const double* from = given + 2 * ((size_t)source[v] * columns + c);
+      global const double* from = input + 2 * ((size_t)source[v] * columns + c);
       gradients[(size_t)v * columns + c] = VECTOR(double2, scaled(from[0], scale), scaled(from[1], scale));
     }
   }

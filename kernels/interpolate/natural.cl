@@ -170,12 +170,12 @@ static inline centre centre_by(double2 by, double magnitude, double area, double
   const double inverse = 0.5 / area;
   const double slenderness = 2.0 * inverse * area_magnitude;
   const double length = fabs(by.x) + fabs(by.y);
-  centre made;
-  made.at = inverse * by;
-  made.reach = inverse * length;
-  made.error = inverse * (10.0 * magnitude + (7.0 * slenderness + 10.0) * length);
-  all->is_sound &= (made.reach < LARGEST_REACH) & (slenderness < MOST_SLENDER) & (area > 0.0);
-  return made;
+  centre result;
+  result.at = inverse * by;
+  result.reach = inverse * length;
+  result.error = inverse * (10.0 * magnitude + (7.0 * slenderness + 10.0) * length);
+  all->is_sound &= (result.reach < LARGEST_REACH) & (slenderness < MOST_SLENDER) & (area > 0.0);
+  return result;
 }
 
 static inline centre centre_of_triangle(seen_circle seen, sight a, sight b, sight c, estimate* all) {

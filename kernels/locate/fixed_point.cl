@@ -155,7 +155,8 @@ kernel void nearest_off_grid(int n, PLACED_QUERIES(), int most, global const mes
 }
 
 // n coordinates, and the bits of the doubles that they are.
-kernel void give_coordinates(int n, global const coordinate* restrict coordinates, global double_bits* restrict given) {
+kernel void give_coordinates(int n, global const coordinate* restrict coordinates,
+                             global double_bits* restrict doubles) {
   const int i = get_global_id(0);
-  if (i < n) given[i] = double_bits_of(coordinates[i]);
+  if (i < n) doubles[i] = double_bits_of(coordinates[i]);
 }

@@ -36,7 +36,7 @@ static inline int is_integer(double2 difference, double factor, long* integer) {
   return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
 }
 
-// The same for at most 53 bits, which a double has: an integer has no rounding error.
+// Whether a difference is an integer of at most 53 bits, which a double has: then it has no rounding error.
 static inline int is_short_integer(double2 difference, double factor, long* integer) {
   const double high = difference.x * factor;
   *integer = convert_long(high);
@@ -159,7 +159,7 @@ OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, doub
              : circle_sign_by_expansions(from.x, from.y);
 }
 
-// The same, sooner, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
+// circle_exact, faster, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
 // that is larger than theirs says nothing about the determinant.
 OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, double2 d, filter_bound bound) {
   if (bound > ANGLE_BOUND) return circle_exact(a, b, c, d);

@@ -72,7 +72,7 @@ OUT_OF_LINE static inline int circle_exact(coordinate2 a, coordinate2 b, coordin
 // docs/exactness.md.
 #define MIDDLE_BITS 35
 
-// The same, sooner, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
+// circle_exact, faster, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
 // that is larger than theirs says nothing about the determinant.
 OUT_OF_LINE static inline int circle_undecided(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
                                                filter_bound bound) {

@@ -144,7 +144,7 @@ OUT_OF_LINE static inline double nearness_rounded(double2 p, double2 q, double2 
   return value;
 }
 
-// The same from rounded differences, and the sum of the magnitudes of its terms in y.
+// |p - w|^2 - |q - w|^2 from rounded differences, and in y the sum of the magnitudes of its terms.
 static inline double2 nearness_with_magnitude(double2 p, double2 q, double2 w) {
   const double2 pq = p - q, wp = p - w, wq = q - w;
   return VECTOR(double2, pq.x * (wp.x + wq.x) + pq.y * (wp.y + wq.y),

@@ -36,9 +36,9 @@ bool is_in_fixed_point(host::Runtime& runtime) { return runtime.capabilities().f
 
 // The shift of points and queries together. If they do not fit, that of the points, which leaves as many
 // places as can be for queries that are finer.
-int shift_together(const Magnitudes& points, const Magnitudes& asked) {
+int shift_together(const Magnitudes& points, const Magnitudes& of_queries) {
   constexpr int kLargest = kernel::COORDINATE_BITS - 1;
-  const Magnitudes both = joined(points, asked);
+  const Magnitudes both = joined(points, of_queries);
   if (bits_of(both) == 0) return 0;
   if (bits_of(both) <= kernel::COORDINATE_BITS || bits_of(points) == 0) return kLargest - both.largest;
   return std::max(kLargest - std::min(both.largest, points.largest + kPlacesBeyondPoints), -points.lowest);
@@ -54,13 +54,13 @@ kernel::query_frame fixed_point_frame(int shift, int unit) {
 // Throws an error that names the one of the queries [first, last) whose magnitude exceeds that of the points
 // by more.
 [[noreturn]] void throw_range(host::Runtime& runtime, const Buffer<cl_double>& queries, std::size_t first,
-                              std::size_t last, const Magnitudes& points, const Magnitudes& asked,
+                              std::size_t last, const Magnitudes& points, const Magnitudes& of_queries,
                               const QueryLimits& limits) {
   std::vector<double> all(2 * (last - first));
   runtime.read(queries, 2 * first, all.size(), all.data());
-  const bool is_fine = points.lowest - asked.lowest > asked.largest - points.largest;
+  const bool is_fine = points.lowest - of_queries.lowest > of_queries.largest - points.largest;
   const auto found = std::find_if(all.begin(), all.end(), [&](double x) {
-    return x != 0 && (is_fine ? lowest_bit(x) == asked.lowest : std::ilogb(x) == asked.largest);
+    return x != 0 && (is_fine ? lowest_bit(x) == of_queries.lowest : std::ilogb(x) == of_queries.largest);
   });
   const auto i = static_cast<std::size_t>(found - all.begin());
   throw Error(
@@ -68,7 +68,7 @@ kernel::query_frame fixed_point_frame(int shift, int unit) {
       fmt::format("query {} is too {} to be exact: it has {} = {:.17g}; the bits of points and queries "
                   "together span {} binary places, {} are supported",
                   first + i / 2, is_fine ? "fine" : "far", i % 2 ? "y" : "x", *found,
-                  bits_of(joined(points, asked)), limits.most_bits()));
+                  bits_of(joined(points, of_queries)), limits.most_bits()));
 }
 
 }  // namespace
@@ -88,9 +88,10 @@ QueryScaling query_scaling(const Magnitudes& both, int point_shift, const QueryL
   return scaling;
 }
 
-Fitted<QueryScaling> fixed_point_scaling(const Magnitudes& points, const Magnitudes& asked, int point_shift) {
-  const Magnitudes both = joined(points, asked);
-  const int shift = shift_together(points, asked), bits = bits_of(both);
+Fitted<QueryScaling> fixed_point_scaling(const Magnitudes& points, const Magnitudes& of_queries,
+                                         int point_shift) {
+  const Magnitudes both = joined(points, of_queries);
+  const int shift = shift_together(points, of_queries), bits = bits_of(both);
   QueryScaling scaling;
   scaling.frames.push_back(fixed_point_frame(shift, bits_of(points) == 0 ? 0 : shift - point_shift));
   scaling.is_off_grid = bits > kernel::COORDINATE_BITS;
@@ -98,8 +99,8 @@ Fitted<QueryScaling> fixed_point_scaling(const Magnitudes& points, const Magnitu
     scaling.orient_bound = ORIENT_BOUND_FOR(SINGLE_ROUNDOFF);
     scaling.nearness_bound = NEARNESS_BOUND_FOR(SINGLE_ROUNDOFF);
   }
-  if (scaling.is_off_grid &&
-      (asked.lowest + shift < -kernel::FINER_PLACES || asked.largest + shift >= kernel::FARTHER_PLACES)) {
+  if (scaling.is_off_grid && (of_queries.lowest + shift < -kernel::FINER_PLACES ||
+                              of_queries.largest + shift >= kernel::FARTHER_PLACES)) {
     return TooWide{both};
   }
   return scaling;
@@ -109,10 +110,11 @@ Fitted<QueryScaling> query_scaling(host::Runtime& runtime, const PointRange& poi
                                    const Buffer<cl_double>& queries,
                                    const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
   const std::size_t sets = query_offsets.size() - 1, m = query_offsets.back();
-  const Magnitudes asked = inspect(runtime, queries, m);
-  if (asked.bad != kernel::NO_BAD) throw_not_finite(runtime, queries, static_cast<std::size_t>(asked.bad));
+  const Magnitudes of_queries = inspect(runtime, queries, m);
+  if (of_queries.bad != kernel::NO_BAD)
+    throw_not_finite(runtime, queries, static_cast<std::size_t>(of_queries.bad));
   const bool is_fixed = is_in_fixed_point(runtime);
-  Magnitudes both = asked;
+  Magnitudes both = of_queries;
   for (const Magnitudes& of_set : points.by_set) both = joined(both, of_set);
   if (points.shifts.size() == 1 &&
       bits_of(both) <= (is_fixed ? kernel::COORDINATE_BITS : limits.most_bits())) {

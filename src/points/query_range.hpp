@@ -52,7 +52,7 @@ geometry::Fitted<QueryScaling> query_scaling(host::Runtime& runtime, const Point
 
 /// Chooses the scaling of one set in fixed point.
 geometry::Fitted<QueryScaling> fixed_point_scaling(const geometry::Magnitudes& points,
-                                                   const geometry::Magnitudes& asked, int point_shift);
+                                                   const geometry::Magnitudes& of_queries, int point_shift);
 
 /// Chooses the scaling of one set with doubles, whose points and queries together have accepted magnitudes.
 QueryScaling query_scaling(const geometry::Magnitudes& both, int point_shift,

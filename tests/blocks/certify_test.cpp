@@ -340,10 +340,10 @@ void check_star(const Star& star, const std::vector<Direction>& more, double2 ce
   edges.push_back({1, 0, 1});
   for (const Direction d : star.neighbors) points.push_back(place(d));
   const auto ask = [&](Direction d, int vertex, bool is_last) {
-    const kernel::direction asked{centre, place(d), vertex, is_last};
+    const kernel::direction query{centre, place(d), vertex, is_last};
     const bool is_open = end == 1 || star.is_open[star.sector_of(d)];
-    const int exact = kernel::begins_open(&asked, edges.data(), 1, end, points.data(), ORIENT_BOUND, 1);
-    const int filtered = kernel::begins_open(&asked, edges.data(), 1, end, points.data(), ORIENT_BOUND, 0);
+    const int exact = kernel::begins_open(&query, edges.data(), 1, end, points.data(), ORIENT_BOUND, 1);
+    const int filtered = kernel::begins_open(&query, edges.data(), 1, end, points.data(), ORIENT_BOUND, 0);
     ASSERT_EQ(exact, is_open) << "vertex " << vertex << " of " << m
                               << (star.is_on_hull ? " on the hull" : "");
     ASSERT_TRUE(filtered == UNDECIDED || filtered == is_open);

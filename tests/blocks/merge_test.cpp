@@ -222,7 +222,8 @@ TEST(Merge, SeamsAroundASide) {
 struct WalkedSeam {
   static constexpr std::size_t kPoints = 60, kPairs = kernel::PAIRS_PER_VERTEX * kPoints;
 
-  explicit WalkedSeam(Call& given) : call(given), points(spread_points()), on_device(given, points) {
+  explicit WalkedSeam(Call& device_call)
+      : call(device_call), points(spread_points()), on_device(device_call, points) {
     Runtime& runtime = call.runtime;
     call.work.bounds = {0, 0, 0};
     halved = halve(call.work, on_device.blocks, on_device.representatives, on_device.rings);

@@ -181,11 +181,11 @@ TEST(SmallEmbedding, PointsMayBeFloatsAndBeginAnywhere) {
       const Memory wide_memory = embedder().upload(coordinates), narrow_memory = embedder().upload(narrow);
       const Triangulation expected = expected_of(points, {0, n});
       for (const Precision precision : {Precision::float64, Precision::float32}) {
-        DevicePoints given = points_in(precision == Precision::float64 ? wide_memory : narrow_memory, n);
-        given.precision = precision;
-        given.first = first;
+        DevicePoints input = points_in(precision == Precision::float64 ? wide_memory : narrow_memory, n);
+        input.precision = precision;
+        input.first = first;
         DeviceTriangulation result;
-        embedded().triangulate(given, result, kAll, on_own());
+        embedded().triangulate(input, result, kAll, on_own());
         expect_same(result, expected);
       }
     }
@@ -301,9 +301,9 @@ TEST(SmallEmbedding, ResultsInTheCallersBuffers) {
     const DeviceBuffer& buffer = result.*array.buffer;
     EXPECT_EQ(buffer.memory(), buffers[k].get());
     EXPECT_TRUE(buffer.is_callers());
-    const auto& made = expected.*array.values;
+    const auto& wanted = expected.*array.values;
     const auto values = embedder().download<std::int32_t>(buffers[k].get(), blank.size());
-    for (std::size_t i = made.size() * sizeof made[0] / 4; i < values.size(); ++i) {
+    for (std::size_t i = wanted.size() * sizeof wanted[0] / 4; i < values.size(); ++i) {
       ASSERT_EQ(values[i], -99) << array.name << " " << i;
     }
   });
@@ -819,8 +819,8 @@ void expect_answers(const Queried& q, const Triangulation& mesh, const std::vect
 TEST(SmallLocator, AnswersOfTheHostsInterface) {
   const Queried q;
   const Triangulation mesh = expected_of(q.points, q.offsets);
-  Locator made(triangulator(), q.points.data(), q.offsets, mesh);
-  Locator locator(std::move(made));
+  Locator original(triangulator(), q.points.data(), q.offsets, mesh);
+  Locator locator(std::move(original));
   expect_answers(q, mesh, locator.locate(q.queries.data(), q.query_offsets),
                  locator.nearest(q.queries.data(), q.query_offsets),
                  locator.interpolate(q.values.data(), q.queries.data(), q.query_offsets));
@@ -863,8 +863,8 @@ TEST(SmallLocator, InterpolatesInBothMemories) {
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = q.values[i / 3] * static_cast<double>(1 + i % 3);
   Locator on_host(triangulator(), q.points.data(), q.offsets, expected_of(q.points, q.offsets));
   const Memory memory = embedder().upload(q.points), values = embedder().upload(rows),
-               asked = embedder().upload(q.queries);
-  DevicePoints points = points_in(memory, n), queries = points_in(asked, m);
+               query_memory = embedder().upload(q.queries);
+  DevicePoints points = points_in(memory, n), queries = points_in(query_memory, m);
   points.offsets = q.offsets;
   queries.offsets = q.query_offsets;
   DeviceTriangulation mesh;

@@ -376,8 +376,8 @@ TEST_P(WithoutDoublesDerived, Queries) {
       there(embedded(), device_points(), on_device_);
   // Made from host memory, it answers queries in device memory, too.
   Locator both(embedded(), points_.data(), n_, mesh_);
-  const Memory asked = embedder().upload(queries), given = embedder().upload(values);
-  const DevicePoints device_queries{asked.get(), m};
+  const Memory query_memory = embedder().upload(queries), value_memory = embedder().upload(values);
+  const DevicePoints device_queries{query_memory.get(), m};
 
   EXPECT_TRUE(same(named.locate(queries.data(), m), of_host.locate(queries.data(), m)));
   EXPECT_TRUE(same(named.nearest(queries.data(), m), of_host.nearest(queries.data(), m)));
@@ -409,7 +409,7 @@ TEST_P(WithoutDoublesDerived, Queries) {
   const std::vector<double> gradients = of_host.gradients(values.data(), 2);
   expect_equal(named.gradients(values.data(), 2), gradients);
   DeviceBuffer device_gradients;
-  there.gradients(given.get(), device_gradients, 2);
+  there.gradients(value_memory.get(), device_gradients, 2);
   expect_values(device_gradients, gradients);
   for (const Interpolation method :
        {Interpolation::linear, Interpolation::nearest, Interpolation::clough_tocher, Interpolation::sibson,
@@ -419,7 +419,7 @@ TEST_P(WithoutDoublesDerived, Queries) {
     expect_equal(named.interpolate(values.data(), queries.data(), m, options), expected);
     for (Locator* locator : {&there, &both}) {
       DeviceBuffer results;
-      locator->interpolate(given.get(), device_queries, results, options);
+      locator->interpolate(value_memory.get(), device_queries, results, options);
       expect_values(results, expected);
     }
   }
@@ -427,7 +427,7 @@ TEST_P(WithoutDoublesDerived, Queries) {
   with_gradients.method = Interpolation::clough_tocher;
   with_gradients.device_gradients = device_gradients.memory();
   DeviceBuffer results;
-  there.interpolate(given.get(), device_queries, results, with_gradients);
+  there.interpolate(value_memory.get(), device_queries, results, with_gradients);
   with_gradients.device_gradients = nullptr;
   with_gradients.gradients = gradients.data();
   expect_values(results, of_host.interpolate(values.data(), queries.data(), m, with_gradients));

@@ -113,11 +113,11 @@ TEST(ChunkWriters, GiveBackWhatTheyGot) {
         ASSERT_EQ(later.edge_count(k), points.edge_count(i));
         for (std::size_t e = 0; e < later.edge_count(k); ++e) {
           const OpenEdge &found = later.edges[later.edge_offsets[k] + e],
-                         &given = points.edges[points.edge_offsets[i] + e];
-          EXPECT_EQ(found.to, given.to);
-          EXPECT_EQ(found.x, given.x);
-          EXPECT_EQ(found.corner, given.corner);
-          EXPECT_EQ(found.begins, given.begins);
+                         &expected = points.edges[points.edge_offsets[i] + e];
+          EXPECT_EQ(found.to, expected.to);
+          EXPECT_EQ(found.x, expected.x);
+          EXPECT_EQ(found.corner, expected.corner);
+          EXPECT_EQ(found.begins, expected.begins);
         }
       }
     }

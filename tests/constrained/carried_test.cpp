@@ -34,10 +34,10 @@ struct Input : SetsWithSegments {
     }
   }
   Constraints constraints() const {
-    Constraints given;
-    given.segments = segments.data();
-    given.segment_count = segments.size() / 2;
-    return given;
+    Constraints result;
+    result.segments = segments.data();
+    result.segment_count = segments.size() / 2;
+    return result;
   }
 };
 

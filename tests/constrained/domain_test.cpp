@@ -46,13 +46,13 @@ struct Case {
   std::vector<std::size_t> hole_offsets{};
 
   Constraints constraints() const {
-    Constraints given;
-    given.segments = segments.data();
-    given.segment_count = segments.size() / 2;
-    given.holes = holes.data();
-    given.hole_count = holes.size() / 2;
-    given.hole_offsets = hole_offsets;
-    return given;
+    Constraints result;
+    result.segments = segments.data();
+    result.segment_count = segments.size() / 2;
+    result.holes = holes.data();
+    result.hole_count = holes.size() / 2;
+    result.hole_offsets = hole_offsets;
+    return result;
   }
   ConstrainedTriangulation triangulate() const { return constrained_of(points, offsets, segments); }
 };
@@ -442,8 +442,8 @@ void expect_large(const Case& input, const char* name) {
 }
 
 std::size_t large() {
-  const char* given = std::getenv("FLAUNAY_TEST_POINTS");
-  return given != nullptr ? std::stoul(given) : 100000;
+  const char* count = std::getenv("FLAUNAY_TEST_POINTS");
+  return count != nullptr ? std::stoul(count) : 100000;
 }
 
 // Squares around each other, of which a third goes the other way around.

@@ -108,21 +108,21 @@ void expect_near(const std::vector<Point>& points, const std::vector<constrained
 
 // Whether what is found is what all pairs give. grids: how often a grid has found it. Returns the number of
 // crossings.
-std::size_t expect_pairs(const Pieces& given, int& grids) {
+std::size_t expect_pairs(const Pieces& input, int& grids) {
   Coordinates coordinates;
-  for (const Point p : given.points) coordinates.insert(coordinates.end(), {p.x, p.y});
+  for (const Point p : input.points) coordinates.insert(coordinates.end(), {p.x, p.y});
   Plane plane(coordinates);
   geometry::Predicates predicates;
   predicates.bounds.orient = ORIENT_BOUND;
   const auto lines =
-      constrained::cut_at_vertices(predicates, given.points.data(), given.pieces, given.vertices);
+      constrained::cut_at_vertices(predicates, input.points.data(), input.pieces, input.vertices);
   std::set<Edge> expected, found;
-  EXPECT_EQ(lines.ranges.size(), 2 * given.pieces.size());
-  for (std::size_t p = 0; p < given.pieces.size(); ++p) {
-    const Piece piece = given.pieces[p];
+  EXPECT_EQ(lines.ranges.size(), 2 * input.pieces.size());
+  for (std::size_t p = 0; p < input.pieces.size(); ++p) {
+    const Piece piece = input.pieces[p];
     std::int32_t last = piece.from;
     std::int32_t e = lines.ranges[2 * p];
-    for (const std::int32_t v : given.vertices) {
+    for (const std::int32_t v : input.vertices) {
       if (v <= piece.from || v > piece.to || !plane.on_segment(piece.from, piece.to, v)) continue;
       expected.emplace(last, v);
       if (e >= lines.ranges[2 * p + 1] || lines.edges[e].from != last || lines.edges[e].to != v) {
@@ -146,7 +146,7 @@ std::size_t expect_pairs(const Pieces& given, int& grids) {
   }
   std::sort(all.begin(), all.end());
   Pairs pairs;
-  constrained::find_crossings(predicates, given.points.data(), lines.edges,
+  constrained::find_crossings(predicates, input.points.data(), lines.edges,
                               [&pairs](std::int32_t e, std::int32_t f) {
                                 pairs.emplace_back(e, f);
                                 return true;
@@ -157,7 +157,7 @@ std::size_t expect_pairs(const Pieces& given, int& grids) {
   // A grid finds these pairs too, if it takes few comparisons.
   std::vector<constrained::Line> grid_lines;
   for (const Piece& edge : lines.edges)
-    grid_lines.push_back({given.points[edge.from], given.points[edge.to]});
+    grid_lines.push_back({input.points[edge.from], input.points[edge.to]});
   const constrained::SegmentGrid grid(grid_lines);
   Pairs by_grid;
   if (grid.find_crossings(predicates, [&by_grid](std::int32_t e, std::int32_t f) {
@@ -169,9 +169,9 @@ std::size_t expect_pairs(const Pieces& given, int& grids) {
     EXPECT_EQ(by_grid, all);
     ++grids;
   }
-  expect_near(given.points, grid_lines, grid);
+  expect_near(input.points, grid_lines, grid);
   std::size_t calls = 0;
-  constrained::find_crossings(predicates, given.points.data(), lines.edges,
+  constrained::find_crossings(predicates, input.points.data(), lines.edges,
                               [&calls](std::int32_t, std::int32_t) { return ++calls < 3; });
   EXPECT_GE(calls, std::min<std::size_t>(3, all.size()));
   EXPECT_LE(calls, 3u);

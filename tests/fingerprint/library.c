@@ -255,10 +255,10 @@ static void print_derived(const Sets* sets) {
 static cl_mem make_buffer(size_t bytes, const void* contents) {
   cl_int code = CL_SUCCESS;
   static const double nothing[2] = {0};
-  cl_mem made = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, bytes > 0 ? bytes : 1,
-                               (void*)(bytes > 0 ? contents : nothing), &code);
+  cl_mem buffer = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, bytes > 0 ? bytes : 1,
+                                 (void*)(bytes > 0 ? contents : nothing), &code);
   require(code == CL_SUCCESS, "clCreateBuffer");
-  return made;
+  return buffer;
 }
 
 static void print_buffer(const char* key, const char* what, cl_mem memory, size_t bytes) {
@@ -272,12 +272,12 @@ static void print_buffer(const char* key, const char* what, cl_mem memory, size_
   free(found);
 }
 
-static void print_device_derived(const char* key, const flaunay_device_points* given,
+static void print_device_derived(const char* key, const flaunay_device_points* input,
                                  const flaunay_device_triangulation* mesh, const Sets* sets) {
   const flaunay_enqueue enqueue = {.queue = queue};
   flaunay_device_voronoi* dual = NULL;
   require(flaunay_device_voronoi_create(&dual) == FLAUNAY_SUCCESS, "flaunay_device_voronoi_create");
-  if (succeeded(key, flaunay_voronoi_compute_device(triangulator, given, mesh, &enqueue, dual))) {
+  if (succeeded(key, flaunay_voronoi_compute_device(triangulator, input, mesh, &enqueue, dual))) {
     const size_t n = sets->count, t = flaunay_device_triangulation_triangle_count(mesh);
     size_t bytes[] = {16 * t, 4 * (n + 1), 12 * t, n};
     static const char* const names[] = {"circumcentres", "cell-offsets", "cells", "unbounded"};
@@ -289,22 +289,22 @@ static void print_device_derived(const char* key, const flaunay_device_points* g
 
   static size_t offsets[kManySets + 1];
   const size_t m = make_queries(sets, offsets);
-  const flaunay_device_points asked = {.memory = make_buffer(m * sizeof(double[2]), queries),
-                                       .count = m,
-                                       .offsets = offsets,
-                                       .sets = sets->sets};
+  const flaunay_device_points query_points = {.memory = make_buffer(m * sizeof(double[2]), queries),
+                                              .count = m,
+                                              .offsets = offsets,
+                                              .sets = sets->sets};
   cl_mem given_values = make_buffer(sizeof values, values);
   flaunay_locator* locator = NULL;
-  if (succeeded(key, flaunay_locator_create_device(triangulator, given, mesh, &enqueue, &locator))) {
+  if (succeeded(key, flaunay_locator_create_device(triangulator, input, mesh, &enqueue, &locator))) {
     cl_mem results[3] = {NULL};
-    if (succeeded(key, flaunay_locator_locate_device(locator, &asked, &enqueue, &results[0]))) {
+    if (succeeded(key, flaunay_locator_locate_device(locator, &query_points, &enqueue, &results[0]))) {
       print_buffer(key, "locate", results[0], m * sizeof(int32_t));
     }
-    if (succeeded(key, flaunay_locator_nearest_device(locator, &asked, &enqueue, &results[1]))) {
+    if (succeeded(key, flaunay_locator_nearest_device(locator, &query_points, &enqueue, &results[1]))) {
       print_buffer(key, "nearest", results[1], m * sizeof(int32_t));
     }
-    if (succeeded(key,
-                  flaunay_locator_interpolate_device(locator, given_values, &asked, &enqueue, &results[2]))) {
+    if (succeeded(key, flaunay_locator_interpolate_device(locator, given_values, &query_points, &enqueue,
+                                                          &results[2]))) {
       print_buffer(key, "interpolate", results[2], m * sizeof(double));
     }
     for (int k = 0; k < 3; ++k) {
@@ -313,7 +313,7 @@ static void print_device_derived(const char* key, const flaunay_device_points* g
   }
   flaunay_locator_destroy(locator);
   clReleaseMemObject(given_values);
-  clReleaseMemObject(asked.memory);
+  clReleaseMemObject(query_points.memory);
 }
 
 // What calls on device memory return: offsets in host memory or in device memory, points behind others in the
@@ -327,20 +327,20 @@ static void print_on_device(const Sets* sets, int offsets_on_device, size_t firs
   snprintf(key, sizeof key, "device%s%s/%s", offsets_on_device ? "-offsets" : "", first > 0 ? "-behind" : "",
            sets->name);
   cl_mem device_offsets = make_buffer((sets->sets + 1) * sizeof(int32_t), narrow_offsets);
-  flaunay_device_points given = {.memory = make_buffer((first + sets->count) * sizeof(double[2]), shifted),
+  flaunay_device_points input = {.memory = make_buffer((first + sets->count) * sizeof(double[2]), shifted),
                                  .count = sets->count,
                                  .first = first,
                                  .sets = sets->sets};
   if (offsets_on_device) {
-    given.device_offsets = device_offsets;
+    input.device_offsets = device_offsets;
   } else {
-    given.offsets = sets->offsets;
+    input.offsets = sets->offsets;
   }
   const flaunay_enqueue enqueue = {.queue = queue};
   flaunay_device_triangulation* mesh = NULL;
   require(flaunay_device_triangulation_create(&mesh) == FLAUNAY_SUCCESS,
           "flaunay_device_triangulation_create");
-  if (succeeded(key, flaunay_triangulate_device(triangulator, &given, kAllParts, &enqueue, mesh))) {
+  if (succeeded(key, flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh))) {
     static const char* const names[] = {"triangles", "neighbors", "halfedges", "hull", "representatives"};
     const size_t t = flaunay_device_triangulation_triangle_count(mesh);
     const size_t counts[] = {3 * t, 3 * t, 3 * t, flaunay_device_triangulation_hull_count(mesh), sets->count};
@@ -352,10 +352,10 @@ static void print_on_device(const Sets* sets, int offsets_on_device, size_t firs
     print_hash(key, "triangle-offsets", flaunay_device_triangulation_triangle_offsets(mesh), bytes);
     print_hash(key, "hull-offsets", flaunay_device_triangulation_hull_offsets(mesh), bytes);
     print_statistics(key, flaunay_device_triangulation_statistics(mesh));
-    if (first == 0 && !offsets_on_device) print_device_derived(key, &given, mesh, sets);
+    if (first == 0 && !offsets_on_device) print_device_derived(key, &input, mesh, sets);
   }
   flaunay_device_triangulation_destroy(mesh);
-  clReleaseMemObject(given.memory);
+  clReleaseMemObject(input.memory);
   clReleaseMemObject(device_offsets);
 }
 

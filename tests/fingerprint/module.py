@@ -48,13 +48,13 @@ def show(key, compute):
 
 def show_attributes(key, make, names):
     try:
-        made = make()
+        result = make()
     except Exception as error:
         print(key, type(error).__name__, " ".join(str(error).split()))
         return None
     for name in names.split():
-        show(f"{key}/{name}", lambda: getattr(made, name))
-    return made
+        show(f"{key}/{name}", lambda: getattr(result, name))
+    return result
 
 
 TRIANGULATION = "triangles neighbors halfedges hull representatives triangle_offsets hull_offsets"
@@ -84,14 +84,14 @@ def show_triangulations(name, points):
     for mode in MODES:
         if mode == "recursive-device" and len(points) > 300:
             continue
-        for kind, given in ("one-set", None), ("segments", segments):
+        for kind, offsets in ("one-set", None), ("segments", segments):
             key = f"triangulate/{mode}/{kind}/{name}"
-            made = show_attributes(
+            result = show_attributes(
                 key,
-                lambda: flaunay.triangulate(points, **{OFFSETS: given}, halfedges=True, mode=mode),
+                lambda: flaunay.triangulate(points, **{OFFSETS: offsets}, halfedges=True, mode=mode),
                 TRIANGULATION,
             )
-            show(f"{key}/statistics", lambda: [made.statistics.get(name) for name in STATISTICS.split()])
+            show(f"{key}/statistics", lambda: [result.statistics.get(name) for name in STATISTICS.split()])
     narrow = np.asarray(points, np.float32)
     show_attributes(f"triangulate/float32/{name}", lambda: flaunay.triangulate(narrow), TRIANGULATION)
 

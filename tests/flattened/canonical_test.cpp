@@ -40,9 +40,9 @@ std::vector<cl_int> canonical(Call& call, const std::vector<cl_double2>& places,
   const auto twins = testing::guarded<cl_int>(call.runtime, triangles.size());
   match_edges(call.work, rows, triangles.size() / 3, twins);
   canonicalize(call.work, table, rows, triangles.size() / 3, twins);
-  auto made = testing::download(call.runtime, rows, triangles.size());
-  EXPECT_TRUE(same(testing::download(call.runtime, twins, triangles.size()), testing::twins_twin(made)));
-  return made;
+  auto result = testing::download(call.runtime, rows, triangles.size());
+  EXPECT_TRUE(same(testing::download(call.runtime, twins, triangles.size()), testing::twins_twin(result)));
+  return result;
 }
 
 }  // namespace

@@ -274,13 +274,13 @@ TEST(Chains, KeptCornersAreSorted) {
         return Arrays{testing::guarded<cl_int>(runtime, count), testing::guarded<cl_int>(runtime, count),
                       testing::guarded<cl_double2>(runtime, count)};
       };
-      const Arrays given{testing::upload(runtime, ids), testing::upload(runtime, owners),
+      const Arrays input{testing::upload(runtime, ids), testing::upload(runtime, owners),
                          testing::upload(runtime, projections)};
       const Arrays compared = fresh();
       runtime.map(count, kernels::place_kept_corners{.before = testing::upload(runtime, before),
-                                                     .corners_to_join = given,
+                                                     .corners_to_join = input,
                                                      .new_corners = compared});
-      Arrays now = given, then = fresh();
+      Arrays now = input, then = fresh();
       for (std::size_t run = 1; run < count; run *= kernel::MERGED_RUNS) {
         runtime.map(count,
                     kernels::merge_corner_runs{.run = run, .corners_to_join = now, .new_corners = then});

@@ -111,9 +111,9 @@ void check_endgame(Call& call, const ExactPoints& points, const PointTable& tabl
     call.runtime.write(retired.corner_ids, 0, 3 * retired.corners, corner_ids.data());
     if (exact) call.work.bounds = kUndecided;
     const std::size_t undecided = call.undecided();
-    const std::size_t made = endgame(call.work, table, retired, triangles, kBase);
+    const std::size_t written = endgame(call.work, table, retired, triangles, kBase);
     call.work.bounds = bounds;
-    ASSERT_EQ(made, total);
+    ASSERT_EQ(written, total);
     std::vector<cl_int> rows = testing::download(call.runtime, triangles, 3 * (kBase + total));
     EXPECT_TRUE(std::equal(rows_before.begin(), rows_before.end(), rows.begin()))
         << "written before the base";

@@ -35,8 +35,8 @@ std::size_t missing_edges(Call& call, const PointTable& table, const std::vector
   }
   const RetiredRegions retired = upload_retired(call, hulls);
   const auto triangles = testing::guarded<cl_int>(call.runtime, 3 * retired.corners);
-  const std::size_t made = endgame(call.work, table, retired, triangles, 0);
-  const auto rows = call.read(triangles, 3 * made);
+  const std::size_t written = endgame(call.work, table, retired, triangles, 0);
+  const auto rows = call.read(triangles, 3 * written);
   std::size_t missing = 0;
   auto row = rows.begin();
   for (std::size_t h = 0; h < hulls.size(); ++h) {

@@ -41,7 +41,7 @@ void expect_rounded(const Coordinates& corners) {
   EXPECT_EQ(by_integers(corners), expected);
 }
 
-Coordinates made(const std::function<double()>& make) {
+Coordinates triangle_of(const std::function<double()>& make) {
   Coordinates corners;
   for (int k = 0; k < 6; ++k) corners.push_back(make());
   return corners;
@@ -55,17 +55,17 @@ TEST(SmallAreas, OfAllMagnitudes) {
     const double number = kernel::as_double(bits);
     return std::isfinite(number) ? number : 1.0;
   };
-  for (int i = 0; i < 3000; ++i) expect_rounded(made(of_bits));
+  for (int i = 0; i < 3000; ++i) expect_rounded(triangle_of(of_bits));
 }
 
 TEST(SmallAreas, OfNearMagnitudes) {
   FixtureRandom random(2);
   for (int i = 0; i < 3000; ++i) {
     const int exponent = static_cast<int>(random.unit() * 2096) - 1074;
-    expect_rounded(made([&] { return std::ldexp(random.unit() - 0.5, exponent); }));
+    expect_rounded(triangle_of([&] { return std::ldexp(random.unit() - 0.5, exponent); }));
     // With few bits, so that areas lie half-way between two doubles, or are 0.
-    expect_rounded(made([&] { return std::ldexp(std::floor(random.unit() * 64), exponent - 60); }));
-    expect_rounded(made([&] { return std::floor(random.unit() * 0x1p30); }));
+    expect_rounded(triangle_of([&] { return std::ldexp(std::floor(random.unit() * 64), exponent - 60); }));
+    expect_rounded(triangle_of([&] { return std::floor(random.unit() * 0x1p30); }));
   }
 }
 

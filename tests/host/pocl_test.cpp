@@ -53,10 +53,10 @@ TEST(SmallPocl, ANewFolderIsTheUsersAlone) {
   const mode_t before = umask(0);
   require_cache_folder(folder.path() + "/new/folder");
   umask(before);
-  for (const char* made : {"/new", "/new/folder"}) {
+  for (const char* subfolder : {"/new", "/new/folder"}) {
     struct stat status {};
-    ASSERT_EQ(stat((folder.path() + made).c_str(), &status), 0);
-    EXPECT_EQ(status.st_mode & 07777, 0700U) << made;
+    ASSERT_EQ(stat((folder.path() + subfolder).c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0700U) << subfolder;
   }
 }
 
@@ -78,7 +78,7 @@ TEST(SmallPocl, APlantedLinkIsNotFollowed) {
 
 TEST(SmallPocl, TheFolderIsThatOfTheEnvironment) {
   const ScopedEnvironment home("HOME", "/home/someone"), caches("XDG_CACHE_HOME", nullptr);
-  const ScopedEnvironment kept("POCL_KERNEL_CACHE", nullptr), given("POCL_CACHE_DIR", nullptr);
+  const ScopedEnvironment kept("POCL_KERNEL_CACHE", nullptr), other("POCL_CACHE_DIR", nullptr);
   EXPECT_EQ(pocl_cache_folder(), "/home/someone/.cache/pocl/kcache");
   const ScopedEnvironment others("XDG_CACHE_HOME", "/caches");
   EXPECT_EQ(pocl_cache_folder(), "/caches/pocl/kcache");

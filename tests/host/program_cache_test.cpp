@@ -92,13 +92,13 @@ mode_t mode_of(const fs::path& path) {
 TEST(SmallProgramCache, IsTheUsersAloneWhateverTheUmask) {
   const TemporaryFolder folder;
   for (const mode_t mask : {0, 022, 077}) {
-    const fs::path made = fs::path(folder.path()) / std::to_string(mask);
+    const fs::path parent = fs::path(folder.path()) / std::to_string(mask);
     const mode_t before = umask(mask);
-    ProgramCache(made / "cache").store("key", "program");
+    ProgramCache(parent / "cache").store("key", "program");
     umask(before);
-    EXPECT_EQ(mode_of(made), 0700U);
-    EXPECT_EQ(mode_of(made / "cache"), 0700U);
-    EXPECT_EQ(mode_of(files_in(made / "cache").at(0)), 0600U);
+    EXPECT_EQ(mode_of(parent), 0700U);
+    EXPECT_EQ(mode_of(parent / "cache"), 0700U);
+    EXPECT_EQ(mode_of(files_in(parent / "cache").at(0)), 0600U);
   }
 }
 

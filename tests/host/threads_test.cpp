@@ -75,7 +75,7 @@ TEST(SmallThreads, AreCountedByTheEnvironment) {
     EXPECT_LE(Threads().count(), std::thread::hardware_concurrency());
   }
   for (const char* const wrong : {"0", "-1", "x", "2x", "1025", "99999999999999999999"}) {
-    const testing::ScopedEnvironment given("FLAUNAY_THREADS", wrong);
+    const testing::ScopedEnvironment variable("FLAUNAY_THREADS", wrong);
     try {
       Threads();
       ADD_FAILURE() << wrong;

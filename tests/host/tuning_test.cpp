@@ -55,7 +55,7 @@ TEST(SmallTuning, DependsOnTypeAndName) {
       EXPECT_EQ(simulator.fetch_ahead, 0u);
     }
   }
-  const ScopedEnvironment given("FLAUNAY_TUNING", "block_points=7");
+  const ScopedEnvironment variable("FLAUNAY_TUNING", "block_points=7");
   EXPECT_EQ(tuning_of("Oclgrind Simulator", kCpu | kGpu).block_points, 7u);
   EXPECT_EQ(tuning_of("Oclgrind Simulator", kCpu | kGpu).chunk_group, 32u) << "the rest stays as by name";
   const ScopedEnvironment other("FLAUNAY_TUNING", "cpu");
@@ -70,7 +70,7 @@ TEST(SmallTuning, EveryValueCanBeOverridden) {
   EXPECT_EQ(tuning_named("chunk_least=77").chunk_least, 77u);
   for (const char* const wrong :
        {"gpu,block_group", "gpu,no_such_value=1", "block_group=x", "block_group=64,gpu", ","}) {
-    const ScopedEnvironment given("FLAUNAY_TUNING", wrong);
+    const ScopedEnvironment variable("FLAUNAY_TUNING", wrong);
     const std::string message = message_of([&] { settings_for(find_device("")); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, std::string("'") + wrong + "'")) << message;
   }
@@ -79,7 +79,7 @@ TEST(SmallTuning, EveryValueCanBeOverridden) {
 TEST(SmallTuning, FixedPointIsChosenByTheRateOfFp64OrByHand) {
   // Of no device, since those without fp64 have no choice.
   const auto kind_named = [](const char* name) {
-    const ScopedEnvironment given("FLAUNAY_TUNING", name);
+    const ScopedEnvironment variable("FLAUNAY_TUNING", name);
     return kind_of_device("a", CL_DEVICE_TYPE_GPU, 4);
   };
   EXPECT_FALSE(kind_named("gpu").capabilities.fixed_point);

@@ -29,8 +29,8 @@ const double kOutside = -7.25;
 
 /// A locator on a runtime, with what it needs.
 struct Located {
-  Located(const std::string& tuning, const Case& given)
-      : runtime(Runtimes::get(tuning)), own(runtime.memory()), input(given) {
+  Located(const std::string& tuning, const Case& case_of_test)
+      : runtime(Runtimes::get(tuning)), own(runtime.memory()), input(case_of_test) {
     if (runtime.sizes().separate_buffers) own.separate_buffers();
     const host::Arena::Scope scope(runtime.arena());
     locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
@@ -535,10 +535,10 @@ TEST(SmallInterpolation, Scales) {
     const std::vector<double> expected = gradients_of("own", small, values, 1);
     for (double& g : found) g = g == kOutside ? g : std::ldexp(g, shift);
     EXPECT_EQ(bytes_of(found), bytes_of(expected));
-    Located given("own", large);
+    Located located("own", large);
     std::vector<double> slopes = expected;
     for (double& g : slopes) g = std::ldexp(g, -shift);
-    EXPECT_EQ(bytes_of(clough_tocher(given, values, 1, &slopes)), bytes_of(clough_tocher(one, values, 1)));
+    EXPECT_EQ(bytes_of(clough_tocher(located, values, 1, &slopes)), bytes_of(clough_tocher(one, values, 1)));
   }
 }
 

@@ -335,13 +335,13 @@ Coordinates queries_close_by(const Coordinates& points, std::size_t m, std::uint
 }
 
 Case natural_case(const Coordinates& points, std::size_t m, std::uint64_t seed) {
-  Case made;
+  Case result;
   Coordinates queries = locate::make_queries(points, m, seed);
   const Coordinates close = queries_close_by(points, m, seed + 1);
   queries.insert(queries.end(), close.begin(), close.end());
-  made.add(points, queries);
-  made.triangulate();
-  return made;
+  result.add(points, queries);
+  result.triangulate();
+  return result;
 }
 
 TEST(SmallNatural, NestedSets) { check_natural(locate::nested_case(9, 2)); }

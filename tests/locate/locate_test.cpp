@@ -53,9 +53,9 @@ Fitted<Answers> ask_if_it_fits(Runtime& runtime, const Case& input, const std::v
   Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
-  Fitted<Locator> made = make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
-  if (!made) return made.too_wide();
-  Locator locator = *std::move(made);
+  Fitted<Locator> fitted = make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
+  if (!fitted) return fitted.too_wide();
+  Locator locator = *std::move(fitted);
   const std::size_t m = input.query_count();
   const auto queries = upload(runtime, input.queries);
   const auto triangles = guarded<cl_int>(runtime, m), points = guarded<cl_int>(runtime, m);
@@ -128,10 +128,11 @@ double value_twin(const Case& input, cl_int triangle, const std::vector<double>&
 bool is_too_wide(const Case& input, std::size_t set) {
   const Magnitudes points =
       geometry::inspect(input.points.data(), input.offsets[set], input.offsets[set + 1]);
-  const Magnitudes asked =
+  const Magnitudes of_queries =
       geometry::inspect(input.queries.data(), input.query_offsets[set], input.query_offsets[set + 1]);
-  return bits_of(points) > kernel::COORDINATE_BITS || points.lowest - asked.lowest > kernel::FINER_PLACES ||
-         asked.largest - points.largest > kernel::FINER_PLACES - 2;
+  return bits_of(points) > kernel::COORDINATE_BITS ||
+         points.lowest - of_queries.lowest > kernel::FINER_PLACES ||
+         of_queries.largest - points.largest > kernel::FINER_PLACES - 2;
 }
 
 /// Answers; in fixed point none if these refuse what is too wide.
@@ -300,12 +301,12 @@ double radius_of(const Coordinates& points) { return points.empty() ? 1 : std::h
 /// Sets in which some vertices have very many neighbours, or walks lead past very many points, with queries
 /// for which that matters. `n` points each, or a few.
 Case case_of_hubs(std::size_t n, std::size_t m) {
-  Case made;
+  Case result;
   const auto add = [&](const Coordinates& points) {
-    Coordinates queries = make_queries(points, m, made.sets());
-    const Coordinates more = circle_queries(radius_of(points), m, made.sets());
+    Coordinates queries = make_queries(points, m, result.sets());
+    const Coordinates more = circle_queries(radius_of(points), m, result.sets());
     queries.insert(queries.end(), more.begin(), more.end());
-    made.add(points, queries);
+    result.add(points, queries);
   };
   add(make_fixture("integer-circle", n, 1));
   add({});
@@ -325,8 +326,8 @@ Case case_of_hubs(std::size_t n, std::size_t m) {
   Coordinates near_centre = make_fixture("star", n, 9);
   near_centre.insert(near_centre.end(), {0x1p-10, 0});
   add(near_centre);
-  made.triangulate();
-  return made;
+  result.triangulate();
+  return result;
 }
 
 TEST(SmallLocate, Hubs) {
@@ -543,7 +544,7 @@ TEST(Levels, BoxesAreLeftOutByACertainMargin) {
     const kernel::double2 q{any(), any()};
     const double nearest[2] = {std::clamp(q.x, box.low.x, box.high.x),
                                std::clamp(q.y, box.low.y, box.high.y)};
-    const double asked[2] = {q.x, q.y};
+    const double query[2] = {q.x, q.y};
     // A point as near as the box but for a few units in the last place, or any.
     kernel::double2 best{nearest[0], nearest[1]};
     if (i % 2 == 0) {
@@ -552,7 +553,7 @@ TEST(Levels, BoxesAreLeftOutByACertainMargin) {
       best = {any(), any()};
     }
     const double of_best[2] = {best.x, best.y};
-    const mpq_class box_distance = distance(nearest, asked), best_distance = distance(of_best, asked);
+    const mpq_class box_distance = distance(nearest, query), best_distance = distance(of_best, query);
     const bool is_left_out = kernel::is_beyond(box, kernel::squared_distance(best, q), q, 1);
     if (is_left_out) {
       ASSERT_GT(box_distance, best_distance) << i;
@@ -868,7 +869,7 @@ TEST(Locate, AMillionQueries) {
     double least = HUGE_VAL;
     std::size_t nearest_point = 0;
     for (std::size_t p = 0; p < n; ++p) {
-      const double d = std::hypot(points[2 * p] - q[0], points[2 * p + 1] - q[1]);
+      const double x = points[2 * p] - q[0], y = points[2 * p + 1] - q[1], d = x * x + y * y;
       if (d < least) least = d, nearest_point = p;
     }
     EXPECT_EQ(answers.nearest[i], static_cast<cl_int>(nearest_point));

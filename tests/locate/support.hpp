@@ -68,10 +68,10 @@ struct Case {
     return mesh.triangles[3 * t + static_cast<std::size_t>(k)];
   }
 
-  void add(const Coordinates& set, const Coordinates& asked) {
+  void add(const Coordinates& set, const Coordinates& queries_of_set) {
     points.insert(points.end(), set.begin(), set.end());
     offsets.push_back(points.size() / 2);
-    queries.insert(queries.end(), asked.begin(), asked.end());
+    queries.insert(queries.end(), queries_of_set.begin(), queries_of_set.end());
     query_offsets.push_back(queries.size() / 2);
   }
   void triangulate() { mesh = testing::triangulator().triangulate(points.data(), offsets); }
@@ -119,19 +119,21 @@ inline Coordinates make_queries(const Coordinates& points, std::size_t m, std::u
 }
 
 inline Case make_case(const Coordinates& points, std::size_t m, std::uint64_t seed) {
-  Case made;
-  made.add(points, make_queries(points, m, seed));
-  made.triangulate();
-  return made;
+  Case result;
+  result.add(points, make_queries(points, m, seed));
+  result.triangulate();
+  return result;
 }
 
 inline Case nested_case(std::size_t n, std::size_t m) {
-  Case made;
-  const auto add = [&](const Coordinates& points) { made.add(points, make_queries(points, m, made.sets())); };
+  Case result;
+  const auto add = [&](const Coordinates& points) {
+    result.add(points, make_queries(points, m, result.sets()));
+  };
   add({});
   add(make_fixture("uniform", n, 1));
   add({2, 3});
-  made.add(make_fixture("grid", n, 2), {});
+  result.add(make_fixture("grid", n, 2), {});
   add({});
   add({0, 0, 4, 0, 1, 3});
   add(make_fixture("collinear", n, 3));
@@ -140,8 +142,8 @@ inline Case nested_case(std::size_t n, std::size_t m) {
   add(make_fixture("kuzmin", 3 * n, 5));
   add({5, 5, 6, 7});
   add({});
-  made.triangulate();
-  return made;
+  result.triangulate();
+  return result;
 }
 
 inline std::vector<double> values_for(std::size_t n) {
@@ -166,21 +168,23 @@ inline DeviceMesh upload_mesh(Runtime& runtime, const Case& input) {
 
 /// Sets with and without trees take turns, with empty ones; only some have queries.
 inline Case case_of_trees(std::size_t n, std::size_t m) {
-  Case made;
-  const auto add = [&](const Coordinates& points) { made.add(points, make_queries(points, m, made.sets())); };
+  Case result;
+  const auto add = [&](const Coordinates& points) {
+    result.add(points, make_queries(points, m, result.sets()));
+  };
   add({});
   add({2, 3});
   add(make_fixture("uniform", n, 23));
   add({0, 0, 4, 0, 1, 3});
   add({});
   add(make_fixture("collinear", n, 24));
-  made.add(make_fixture("uniform", n, 25), {});
+  result.add(make_fixture("uniform", n, 25), {});
   add(make_fixture("kuzmin", n, 26));
   add(make_fixture("grid", n, 27));
   add({1, 1, 1, 1});
   add({});
-  made.triangulate();
-  return made;
+  result.triangulate();
+  return result;
 }
 
 /// The Voronoi diagram that the device makes; see voronoi_test.cpp.

@@ -39,12 +39,12 @@ TEST(SmallInspect, FloatsAreTheSameNumbersAsDoubles) {
 
 // Coordinates whose bits are from 2^least to 2^most, and zeros.
 Coordinates make_coordinates(std::size_t n, int least, int most, FixtureRandom& random) {
-  Coordinates made;
+  Coordinates result;
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const auto mantissa = static_cast<double>(random.integer(-9, 9));
-    made.push_back(std::ldexp(mantissa, static_cast<int>(random.integer(least, most - 3))));
+    result.push_back(std::ldexp(mantissa, static_cast<int>(random.integer(least, most - 3))));
   }
-  return made;
+  return result;
 }
 
 Magnitudes magnitudes_twin(const Coordinates& points, std::size_t first, std::size_t last) {
@@ -135,9 +135,9 @@ TEST(SmallInspect, PointsOfOneScaleAreNotCopied) {
   Runtime& runtime = Runtimes::get("own");
   host::Arena::Scope scope(runtime.arena());
   const Coordinates points = testing::scaled(make_fixture("uniform", 40, 1), 0x1p-500);
-  const auto given = testing::upload(runtime, points);
-  const UniformPoints uniform = *make_uniform(runtime, given, {0, 10, 40});
-  EXPECT_EQ(uniform.coordinates.memory(), given.memory());
+  const auto on_device = testing::upload(runtime, points);
+  const UniformPoints uniform = *make_uniform(runtime, on_device, {0, 10, 40});
+  EXPECT_EQ(uniform.coordinates.memory(), on_device.memory());
   EXPECT_EQ(uniform.scaling.shift, scaling_for(points.data(), 0, 40, magnitudes_twin(points, 0, 40)).shift);
 }
 

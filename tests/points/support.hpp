@@ -183,7 +183,7 @@ inline std::vector<std::pair<std::string, Coordinates>> awkward(std::size_t n, s
   const auto add = [&](const std::string& name, Coordinates points) {
     all.emplace_back(name, std::move(points));
   };
-  const auto made = [&](const std::string& name, const std::function<cl_double2(double)>& point) {
+  const auto add_along = [&](const std::string& name, const std::function<cl_double2(double)>& point) {
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
     random.shuffle(order);
@@ -194,23 +194,23 @@ inline std::vector<std::pair<std::string, Coordinates>> awkward(std::size_t n, s
     }
     add(name, points);
   };
-  made("one place", [](double) { return cl_double2{{3, -0.1}}; });
-  made("column", [](double i) { return cl_double2{{0.3, i}}; });
-  made("row", [](double i) { return cl_double2{{i, 0.3}}; });
-  made("oblique line", [](double i) { return cl_double2{{3 * i, 1 - 2 * i}}; });
-  made("zeros of both signs", [&](double i) {
+  add_along("one place", [](double) { return cl_double2{{3, -0.1}}; });
+  add_along("column", [](double i) { return cl_double2{{0.3, i}}; });
+  add_along("row", [](double i) { return cl_double2{{i, 0.3}}; });
+  add_along("oblique line", [](double i) { return cl_double2{{3 * i, 1 - 2 * i}}; });
+  add_along("zeros of both signs", [&](double i) {
     return cl_double2{{random.integer(0, 1) ? 0.0 : -0.0, random.integer(0, 1) ? std::floor(i / 4) : -0.0}};
   });
-  made("neighbouring doubles", [&](double i) {
+  add_along("neighbouring doubles", [&](double i) {
     if (i == 0) return cl_double2{{1e9, -1e9}};
     return cl_double2{{1 + static_cast<double>(random.integer(0, 40)) * 0x1p-52,
                        1 + static_cast<double>(random.integer(0, 40)) * 0x1p-52}};
   });
-  made("a heap and few others", [&](double i) {
+  add_along("a heap and few others", [&](double i) {
     return i < 4 * static_cast<double>(n) / 5 ? cl_double2{{0.5, 0.5}}
                                               : cl_double2{{random.unit(), random.unit()}};
   });
-  made("heaps", [&](double i) {
+  add_along("heaps", [&](double i) {
     const double heap = std::fmod(i, 3);
     return cl_double2{{heap * heap, heap}};
   });

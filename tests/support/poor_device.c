@@ -31,8 +31,8 @@ static size_t least(size_t a, size_t b) { return b < a ? b : a; }
 
 __attribute__((constructor)) static void read_limits(void) {
   limits.local = limits.group = limits.buffer = SIZE_MAX;
-  const char* given = getenv("POOR_DEVICE");
-  limits.words = given != NULL ? given : "no-fp64";
+  const char* text = getenv("POOR_DEVICE");
+  limits.words = text != NULL ? text : "no-fp64";
   char* save = NULL;
   for (char* word = strtok_r(strdup(limits.words), " ", &save); word != NULL;
        word = strtok_r(NULL, " ", &save)) {

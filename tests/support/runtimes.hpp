@@ -56,9 +56,9 @@ class SharedRuntimes : public ::testing::Environment {
   void TearDown() override { all().clear(); }
 
   static auto& get(const std::string& name) {
-    Made& made = all()[name];
-    if (!made) made = make(name);
-    return *made;
+    Made& entry = all()[name];
+    if (!entry) entry = make(name);
+    return *entry;
   }
 
  private:

@@ -16,7 +16,7 @@ namespace flaunay::testing {
 /// The name of the device that tests use. It is a device of OpenCL unless FLAUNAY_TEST_DEVICE names another
 /// one, which can be "host", or "" for the triangulator's own choice.
 inline std::string device_under_test() {
-  if (const char* given = std::getenv("FLAUNAY_TEST_DEVICE")) return given;
+  if (const char* device = std::getenv("FLAUNAY_TEST_DEVICE")) return device;
   const char* const named = std::getenv("FLAUNAY_DEVICE");
   return named != nullptr && *named != '\0' ? named : "#0";
 }

@@ -40,9 +40,9 @@ ClippedVoronoi clip(Runtime& runtime, const Case& input, const Coordinates& corn
   constexpr std::size_t kRoom = 64;
   voronoi::compute_clipped(
       runtime, upload_mesh(runtime, input), checked_polygon(corners.data(), corners.size() / 2), result,
-      [&](std::size_t made) {
-        count = made;
-        const std::size_t room = 2 * made + kRoom;
+      [&](std::size_t vertex_count) {
+        count = vertex_count;
+        const std::size_t room = 2 * vertex_count + kRoom;
         vertices = {host::allocate_memory(runtime.memory(), room * sizeof(double)), room};
         runtime.fill(vertices, room, 7.0);
         return vertices;

@@ -142,7 +142,7 @@ Buffer<cl_double2> at_vertices_of(host::Runtime& runtime, const Locator& locator
                                           .first_vertices = locator.first_vertices,
                                           .scales = slope_scales(runtime, locator, -1),
                                           .source = locator.source,
-                                          .given = gradients.given,
+                                          .input = gradients.given,
                                           .gradients = placed});
   return placed;
 }

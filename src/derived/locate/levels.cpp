@@ -118,7 +118,7 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
   if (runtime.capabilities().fixed_point) {
     given = results.allocate<cl_double>(2 * samples);
     runtime.map(2 * samples,
-                kernels::give_coordinates{.coordinates = coordinates, .given = given.as<cl_ulong>()});
+                kernels::give_coordinates{.coordinates = coordinates, .doubles = given.as<cl_ulong>()});
   }
   DeviceMesh mesh = locator.triangulate(runtime, persistent, sizes.offsets, given, results);
   mesh.coordinates = coordinates;
