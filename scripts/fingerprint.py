@@ -76,6 +76,7 @@ class Fingerprint:
         text = re.sub(r"\b\d+ points per second", "S points per second", text)
         # Some devices report their free memory, which varies.
         text = re.sub(r"\d+ would fit on", "N would fit on", text)
+        text = re.sub(r"\d+ MiB of memory by the free memory", "M MiB of memory by the free memory", text)
         text = re.sub(r"\d+ bytes of memory, \d+ in one piece", "B bytes of memory, B in one piece", text)
         text = re.sub(r"\bhybrid\b", "blocks", text)
         text = re.sub(r"\bHYBRID\b", "BLOCKS", text)
