@@ -125,6 +125,43 @@ static inline void expansion_multiply(expansion* e, const double* factor, int co
   for (int i = 0; i < result.size; ++i) e->part[i] = result.part[i];
 }
 
+// e += f * g, of pairs as two_sum gives them.
+static inline void expansion_add_product(expansion* e, double2 f, double2 g) {
+  for (int k = 0; k < 4; ++k) {
+    const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
+    if (p.y != 0.0) expansion_add(e, p.y);
+    if (p.x != 0.0) expansion_add(e, p.x);
+  }
+}
+
+// e += f * g[0] * g[1] ..., compressed, of pairs as two_sum gives them.
+static inline void expansion_add_products(expansion* e, double2 f, const double2* g, int count) {
+  expansion product;
+  product.size = 0;
+  expansion_add(&product, f.y);
+  expansion_add(&product, f.x);
+  for (int k = 0; k < count; ++k) {
+    const double factor[2] = {g[k].x, g[k].y};
+    expansion_multiply(&product, factor, 2);
+  }
+  for (int i = 0; i < product.size; ++i) expansion_add(e, product.part[i]);
+  expansion_compress(e);
+}
+
+// e = the cross product of two vectors, whose coordinates are pairs as two_sum gives them.
+static inline void expansion_cross(double2 ax, double2 ay, double2 bx, double2 by, expansion* e) {
+  e->size = 0;
+  expansion_add_product(e, ax, by);
+  expansion_add_product(e, -ay, bx);
+}
+
+// Of a compressed expansion, with all bits right except the last.
+static inline double expansion_value(const expansion* e) {
+  double value = 0.0;
+  for (int k = 0; k < e->size; ++k) value += e->part[k];
+  return value;
+}
+
 END_SHARED
 
 #endif

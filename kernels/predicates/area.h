@@ -3,17 +3,9 @@
 #define FLAUNAY_AREA_H
 
 #include "arithmetic/language.h"
-#include "predicates/nearness.h"
 #include "predicates/planar.h"
 
 BEGIN_SHARED
-
-// Of a compressed expansion, with all bits right except the last.
-static inline double expansion_value(const expansion* e) {
-  double value = 0.0;
-  for (int k = 0; k < e->size; ++k) value += e->part[k];
-  return value;
-}
 
 // Twice the area of q, a and b, with the sum of magnitudes that bounds its error.
 static inline double2 area_filtered(double2 a, double2 b, double2 q) {
@@ -27,9 +19,7 @@ static inline double area_exact(double2 a, double2 b, double2 q) {
   const double2 ax = two_sum(a.x, -q.x), ay = two_sum(a.y, -q.y);
   const double2 bx = two_sum(b.x, -q.x), by = two_sum(b.y, -q.y);
   expansion sum;
-  sum.size = 0;
-  expansion_add_product(&sum, ax, by);
-  expansion_add_product(&sum, -ay, bx);
+  expansion_cross(ax, ay, bx, by, &sum);
   expansion_compress(&sum);
   return expansion_value(&sum);
 }

@@ -48,16 +48,7 @@ static inline double larger_magnitude(double a, double b) { return fabs(a) > fab
 // Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
 OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double2 cx, double2 cy) {
   expansion sum;
-  sum.size = 0;
-  for (int term = 0; term < 2; ++term) {
-    const double2 f = term == 0 ? bx : -by;
-    const double2 g = term == 0 ? cy : cx;
-    for (int k = 0; k < 4; ++k) {
-      const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
-      if (p.y != 0.0) expansion_add(&sum, p.y);
-      if (p.x != 0.0) expansion_add(&sum, p.x);
-    }
-  }
+  expansion_cross(bx, by, cx, cy, &sum);
   return expansion_sign(&sum);
 }
 
@@ -95,18 +86,8 @@ static inline void circle_by_expansions(const double2* dx, const double2* dy, ex
     const int crossed = term & 1;
     const double2 lift = term & 2 ? dy[k] : dx[k];
     const double2 f = crossed ? -dx[j] : dx[i];
-    const double2 g = crossed ? dy[i] : dy[j];
-    expansion product;
-    product.size = 0;
-    expansion_add(&product, f.y);
-    expansion_add(&product, f.x);
-    for (int s = 0; s < 3; ++s) {
-      const double2 by = s == 0 ? g : lift;
-      const double factor[2] = {by.x, by.y};
-      expansion_multiply(&product, factor, 2);
-    }
-    for (int s = 0; s < product.size; ++s) expansion_add(sum, product.part[s]);
-    expansion_compress(sum);
+    const double2 factors[3] = {crossed ? dy[i] : dy[j], lift, lift};
+    expansion_add_products(sum, f, factors, 3);
   }
 }
 

@@ -35,15 +35,6 @@ OUT_OF_LINE static inline int nearness_exact(coordinate2 a, coordinate2 b, coord
 
 #else
 
-// e += f * g, differences as two_sum gives them.
-static inline void expansion_add_product(expansion* e, double2 f, double2 g) {
-  for (int k = 0; k < 4; ++k) {
-    const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
-    if (p.y != 0.0) expansion_add(e, p.y);
-    if (p.x != 0.0) expansion_add(e, p.x);
-  }
-}
-
 // The dot product, of differences as two_sum gives them.
 static inline void nearness_expansion(double2 abx, double2 aby, double2 qax, double2 qay, double2 qbx, double2 qby,
                                       expansion* sum) {

@@ -66,21 +66,10 @@ OUT_OF_LINE static inline int centre_side_by_expansions(const double2* b, const 
     const double2* const lifted = part == 1 ? c : b;
     const double2* const dotted = part == 1 ? b : c;
     const double2 f0 = part == 0 ? b[first] : lifted[first];
-    const double2 f1 = part == 0 ? c[1 - first] : lifted[first];
-    const double2 f2 = e[second];
-    const double2 f3 = part == 0 ? f[1 - second] : dotted[second];
-    const double factor = part == 0 ? (first == second ? 2.0 : -2.0) : part == 1 ? 1.0 : -1.0;
-    expansion product;
-    product.size = 0;
-    expansion_add(&product, factor * f0.y);
-    expansion_add(&product, factor * f0.x);
-    for (int s = 0; s < 3; ++s) {
-      const double2 by = s == 0 ? f1 : s == 1 ? f2 : f3;
-      const double factors[2] = {by.x, by.y};
-      expansion_multiply(&product, factors, 2);
-    }
-    for (int s = 0; s < product.size; ++s) expansion_add(&sum, product.part[s]);
-    expansion_compress(&sum);
+    const double2 factors[3] = {part == 0 ? c[1 - first] : lifted[first], e[second],
+                                part == 0 ? f[1 - second] : dotted[second]};
+    const double sign = part == 0 ? (first == second ? 2.0 : -2.0) : part == 1 ? 1.0 : -1.0;
+    expansion_add_products(&sum, sign * f0, factors, 3);
   }
   return expansion_sign(&sum);
 }
@@ -139,9 +128,7 @@ OUT_OF_LINE static inline double nearness_rounded(double2 p, double2 q, double2 
   expansion sum;
   nearness_expansion(two_sum(p.x, -q.x), two_sum(p.y, -q.y), two_sum(p.x, -w.x), two_sum(p.y, -w.y), two_sum(q.x, -w.x),
                      two_sum(q.y, -w.y), &sum);
-  double value = 0.0;
-  for (int i = 0; i < sum.size; ++i) value += sum.part[i];
-  return value;
+  return expansion_value(&sum);
 }
 
 // |p - w|^2 - |q - w|^2 from rounded differences, and in y the sum of the magnitudes of its terms.

@@ -55,26 +55,13 @@ static inline double2 shifted(double2 p, int shift) {
   return VECTOR(double2, scaled(p.x, scale), scaled(p.y, scale));
 }
 
-// sum += sign * f * (gx^2 + gy^2), differences as two_sum gives them.
-static inline void add_lifted(expansion* sum, double sign, double2 f, double2 gx, double2 gy) {
+// sum += f * (gx^2 + gy^2), differences as two_sum gives them.
+static inline void add_lifted(expansion* sum, double2 f, double2 gx, double2 gy) {
   for (int k = 0; k < 2; ++k) {
     const double2 g = k == 0 ? gx : gy;
-    const double factor[2] = {g.y, g.x};
-    expansion product;
-    product.size = 0;
-    expansion_add(&product, sign * f.y);
-    expansion_add(&product, sign * f.x);
-    expansion_multiply(&product, factor, 2);
-    expansion_multiply(&product, factor, 2);
-    for (int i = 0; i < product.size; ++i) expansion_add(sum, product.part[i]);
-    expansion_compress(sum);
+    const double2 factors[2] = {g, g};
+    expansion_add_products(sum, f, factors, 2);
   }
-}
-
-static inline double rounded(const expansion* e) {
-  double sum = 0.0;
-  for (int i = 0; i < e->size; ++i) sum += e->part[i];
-  return sum;
 }
 
 // The centre relative to a, by determinants that are exact until they are rounded.
@@ -82,23 +69,17 @@ OUT_OF_LINE static inline double2 centre_exact(double2 a, double2 b, double2 c) 
   const double2 bx = two_sum(b.x, -a.x), by = two_sum(b.y, -a.y);
   const double2 cx = two_sum(c.x, -a.x), cy = two_sum(c.y, -a.y);
   expansion sum;
-  sum.size = 0;
-  for (int k = 0; k < 8; ++k) {
-    const double2 f = k < 4 ? bx : -by, g = k < 4 ? cy : cx;
-    const double2 p = two_product(k & 1 ? f.x : f.y, k & 2 ? g.x : g.y);
-    expansion_add(&sum, p.y);
-    expansion_add(&sum, p.x);
-  }
+  expansion_cross(bx, by, cx, cy, &sum);
   expansion_compress(&sum);
-  const double whole = 2.0 * rounded(&sum);
+  const double whole = 2.0 * expansion_value(&sum);
   sum.size = 0;
-  add_lifted(&sum, 1.0, cy, bx, by);
-  add_lifted(&sum, -1.0, by, cx, cy);
-  const double x = rounded(&sum);
+  add_lifted(&sum, cy, bx, by);
+  add_lifted(&sum, -by, cx, cy);
+  const double x = expansion_value(&sum);
   sum.size = 0;
-  add_lifted(&sum, 1.0, bx, cx, cy);
-  add_lifted(&sum, -1.0, cx, bx, by);
-  return VECTOR(double2, x / whole, rounded(&sum) / whole);
+  add_lifted(&sum, bx, cx, cy);
+  add_lifted(&sum, -cx, bx, by);
+  return VECTOR(double2, x / whole, expansion_value(&sum) / whole);
 }
 
 // Where a determinant is smaller than its terms by more than this factor, as in slender triangles, all are computed

@@ -20,9 +20,7 @@ double2 difference(double a, double b) { return two_sum(a, -b); }
 // first x second, of differences.
 expansion cross(double2 first_x, double2 first_y, double2 second_x, double2 second_y) {
   expansion product;
-  product.size = 0;
-  kernel::expansion_add_product(&product, first_x, second_y);
-  kernel::expansion_add_product(&product, -first_y, second_x);
+  kernel::expansion_cross(first_x, first_y, second_x, second_y, &product);
   kernel::expansion_compress(&product);
   return product;
 }
