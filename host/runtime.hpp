@@ -203,7 +203,7 @@ class Runtime {
   Buffer<T> view(const T* values, std::size_t count) {
     return view_by(values, count, &Runtime::write<T>);
   }
-  /// The same without waiting for the copy.
+  /// As view, but does not wait for the copy.
   template <typename T>
   Buffer<T> view_later(const T* values, std::size_t count) {
     return view_by(values, count, &Runtime::write_later<T>);

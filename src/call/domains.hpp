@@ -32,8 +32,8 @@ DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
 void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const DomainRequest& request,
                    ConstrainedTriangulation& result);
-/// The same on an engine. with_doubles: finds holes and seeds; another one if the first one computes in fixed
-/// point.
+/// Applies the domains on an engine. with_doubles: finds holes and seeds; another engine if the first one
+/// computes in fixed point.
 void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
                       const DomainRequest& request, ConstrainedTriangulation& result);
