@@ -1,7 +1,12 @@
-// flaunay-bench primitives: the vector operations beside a plain copy.
+// flaunay-bench primitives: the vector operations beside a plain copy and Boost.Compute's.
 #include <algorithm>
+#include <boost/compute/algorithm/exclusive_scan.hpp>
+#include <boost/compute/algorithm/sort_by_key.hpp>
+#include <boost/compute/iterator/buffer_iterator.hpp>
 #include <memory>
+#include <numeric>
 #include <random>
+#include <stdexcept>
 
 #include "bench/measuring/jobs.hpp"
 #include "host/error.hpp"
@@ -15,6 +20,20 @@ namespace {
 
 using host::Buffer;
 using host::Runtime;
+
+// Boost.Compute's iterators.
+template <typename T>
+auto begin(const Buffer<T>& buffer) {
+  return boost::compute::make_buffer_iterator<T>(boost::compute::buffer(buffer.memory()));
+}
+template <typename T>
+auto end(const Buffer<T>& buffer, std::size_t n) {
+  return begin(buffer) + static_cast<std::ptrdiff_t>(n);
+}
+
+void expect_right(bool is_right) {
+  if (!is_right) throw std::runtime_error("wrong result");
+}
 
 /// `total` elements in segments of `length`; the last may be shorter.
 void append_segments(std::vector<std::size_t>& lengths, std::size_t total, std::size_t length) {
@@ -31,7 +50,8 @@ class Operations {
     add_scan<cl_uint>("uint");
     add_scan<cl_uint2>("uint2");
     add_scan<cl_uint8>("uint8");
-    add_packs_and_sort();
+    add_boost_scan();
+    add_packs_and_sorts();
     add_segmented();
   }
 
@@ -46,6 +66,12 @@ class Operations {
     std::vector<decltype(make())> values(n_);
     std::generate(values.begin(), values.end(), make);
     return runtime_.upload(runtime_.arena(), values);
+  }
+  template <typename T>
+  std::vector<T> download(const Buffer<T>& buffer) {
+    std::vector<T> values(n_);
+    runtime_.read(buffer, 0, n_, values.data());
+    return values;
   }
 
   /// bytes: in all. prepare: not timed, before each run.
@@ -62,6 +88,25 @@ class Operations {
                          runtime.finish();
                        });
                      }});
+  }
+
+  /// Checked before it is measured: another library's operation may not work on this device.
+  template <typename BoostWork>
+  void add_boost(
+      const std::string& name, std::size_t bytes, const Work& check, const BoostWork& boost_work,
+      const Work& prepare = [] {}) {
+    const Work work = [&runtime = runtime_, boost_work] {
+      boost::compute::command_queue commands(runtime.queue());
+      boost_work(commands);
+    };
+    add(name, bytes, work, prepare);
+    Job& job = jobs_.back();
+    try {
+      job.run();
+      check();
+    } catch (const std::exception& error) {
+      job.skipped = error.what();
+    }
   }
 
   std::shared_ptr<_cl_mem> plain_buffer(std::size_t bytes) {
@@ -91,7 +136,20 @@ class Operations {
         [&runtime = runtime_, values, n = n_] { host::exclusive_scan(runtime, values, n, values); });
   }
 
-  void add_packs_and_sort() {
+  void add_boost_scan() {
+    const auto counts = upload([&] { return static_cast<cl_uint>(random_() % 4); });
+    const auto sums = allocate<cl_uint>(n_);
+    const auto check = [this, counts, sums] {
+      std::vector<cl_uint> expected = download(counts);
+      std::exclusive_scan(expected.begin(), expected.end(), expected.begin(), cl_uint{0});
+      expect_right(download(sums) == expected);
+    };
+    add_boost("Boost exclusive_scan uint", 8 * n_, check, [counts, sums, n = n_](auto& commands) {
+      boost::compute::exclusive_scan(begin(counts), end(counts, n), begin(sums), commands);
+    });
+  }
+
+  void add_packs_and_sorts() {
     const std::size_t n = n_;
     Runtime& runtime = runtime_;
     const auto flags = upload([&] { return static_cast<cl_uchar>(random_() % 2); });
@@ -103,12 +161,22 @@ class Operations {
     const auto unsorted_keys = upload([&]() -> cl_ulong { return random_(); });
     const auto unsorted_payloads = upload([k = cl_int{0}]() mutable { return k++; });
     const auto keys = allocate<cl_ulong>(n);
+    const auto unsort = [=, &runtime] {
+      runtime.copy(unsorted_keys, 0, keys, 0, n);
+      runtime.copy(unsorted_payloads, 0, payloads, 0, n);
+    };
     add(
-        "sort_by_key", 24 * n, [=, &runtime] { host::sort_by_key(runtime, keys, payloads, n); },
-        [=, &runtime] {
-          runtime.copy(unsorted_keys, 0, keys, 0, n);
-          runtime.copy(unsorted_payloads, 0, payloads, 0, n);
-        });
+        "sort_by_key", 24 * n, [=, &runtime] { host::sort_by_key(runtime, keys, payloads, n); }, unsort);
+    const auto check = [this, keys] {
+      const std::vector<cl_ulong> sorted = download(keys);
+      expect_right(std::is_sorted(sorted.begin(), sorted.end()));
+    };
+    add_boost(
+        "Boost sort_by_key", 24 * n, check,
+        [=](auto& commands) {
+          boost::compute::sort_by_key(begin(keys), end(keys, n), begin(payloads), commands);
+        },
+        unsort);
   }
 
   /// Random points, of which quickhull's balanced rounds choose a pair of each segment.
@@ -160,6 +228,7 @@ Result measure_primitives(const Request& request) {
   // Each size begins with its plain copy, beside which all others are set.
   double copy = 0;
   for (Job& job : jobs) {
+    if (!job.skipped.empty()) continue;
     const double bytes_per_second = job.row["bytes"].get<double>() / job.median();
     if (job.row["operation"] == "plain copy") copy = bytes_per_second;
     job.details = {{"elements_per_second", job.row["n"].get<double>() / job.median()},
@@ -172,7 +241,7 @@ Result measure_primitives(const Request& request) {
 }
 
 const Subcommand kSubcommand(
-    "primitives", "the vector operations beside a plain copy",
+    "primitives", "the vector operations beside a plain copy and Boost.Compute's",
     R"(Bytes are the least that an operation must read and write, whatever it does in between: every input and output
 once. Per element (s: per segment):
   copy                       16: 8 in, 8 out
