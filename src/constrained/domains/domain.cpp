@@ -344,8 +344,8 @@ std::vector<std::int32_t> find_places(host::Runtime& runtime, const DomainMesh& 
   Arena::Scope scope(runtime.arena());
   const auto found = filled(runtime, count, kNone);
   const auto barred = filled(runtime, count, cl_uchar{0});
-  const auto offsets_of = [&](const std::vector<std::size_t>& offsets) {
-    return runtime.upload(runtime.arena(), points::integers(offsets));
+  const auto offsets_of = [&](const std::vector<std::size_t>& begins) {
+    return runtime.upload(runtime.arena(), points::integers(begins));
   };
   runtime.map(mesh.triangle_count(),
               kernels::find_seeds{.sets = mesh.triangle_offsets.size() - 1,
