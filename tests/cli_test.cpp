@@ -1637,7 +1637,9 @@ TEST_F(CommandConstraintsTest, TrianglesHaveTheAttributesOfTheirRegionsAndMarker
   EXPECT_NE(doubles.find("'<f8', 'fortran_order': False, 'shape': (6,)"), std::string::npos) << doubles;
   const Array edges = read_array(path("c.npy")), edge_marks = read_array(path("e.npy"));
   for (std::size_t e = 0; e < edge_marks.values.size(); ++e) {
-    if (edges.values.at(2 * e) == 0 && edges.values.at(2 * e + 1) == 1) EXPECT_EQ(edge_marks.values[e], 1);
+    if (edges.values.at(2 * e) == 0 && edges.values.at(2 * e + 1) == 1) {
+      EXPECT_EQ(edge_marks.values[e], 1);
+    }
   }
   const std::string star = data("star.poly");
   for (const auto& [option, what] : {std::pair("--edge-markers", "markers of segments"),

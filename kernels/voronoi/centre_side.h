@@ -69,7 +69,7 @@ OUT_OF_LINE static inline int centre_side_by_expansions(const double2* b, const 
     const double2 factors[3] = {part == 0 ? c[1 - first] : lifted[first], e[second],
                                 part == 0 ? f[1 - second] : dotted[second]};
     const double sign = part == 0 ? (first == second ? 2.0 : -2.0) : part == 1 ? 1.0 : -1.0;
-    expansion_add_products(&sum, sign * f0, factors, 3);
+    expansion_add_products(&sum, VECTOR(double2, sign * f0.x, sign * f0.y), factors, 3);
   }
   return expansion_sign(&sum);
 }
