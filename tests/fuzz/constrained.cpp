@@ -300,10 +300,20 @@ class Devices {
     ConstrainedOptions options;
     options.labels = true;
     options.outside = Outside::hull;
+    const Flat square{{0, 0, 4, 0, 4, 4, 0, 4, 1, 2}, {0, 5}, {0, 1, 1, 2, 2, 3, 3, 0}, {}};
+    const double hole[] = {2, 1};
+    Constraints with_hole = constraints_of(square);
+    with_hole.holes = hole;
+    with_hole.hole_count = 1;
     for (const Tuned& tuned : all_) {
       compare(flat_any, *tuned.triangulator);
+      options.fill_rule = FillRule::nesting;
       tuned.triangulator->constrained(flat_any.points.data(), flat_any.offsets, constraints_of(flat_any),
                                       options);
+      for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+        options.fill_rule = rule;
+        tuned.triangulator->constrained(square.points.data(), square.offsets, with_hole, options);
+      }
     }
   }
 
