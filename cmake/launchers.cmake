@@ -6,7 +6,7 @@
 # file that is built: the file itself, or the one that includes it.
 #
 # It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
-# COUNTERS (operations/counting.h), which Runtime sets, and the lists of arguments of headers named arguments.h, which
+# COUNTERS (operations/counters.h), which Runtime sets, and the lists of arguments of headers named arguments.h, which
 # become structs; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
 #
 # With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp).

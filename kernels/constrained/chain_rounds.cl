@@ -20,7 +20,7 @@
 #include "constrained/arguments.h"
 #include "constrained/chains.h"
 #include "constrained/records.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "operations/search.h"
 
 // Of the vertices in a list: before and after it. A vertex that is removed has NOT_LISTED.

@@ -9,7 +9,7 @@
 #include "flattened/arguments.h"
 #include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "operations/search.h"
 
 // Elements [2 * offsets[s], 2 * offsets[s + 1]) of the doubled list: the set's ids up, then down.

@@ -7,7 +7,7 @@
 
 #include "flattened/arguments.h"
 #include "flattened/hull_height.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "operations/limits.h"
 
 kernel void cut_regions(int n, int alternate_axis, int level, global const int* restrict point_offsets, LISTS(),

@@ -4,7 +4,7 @@
 
 #include "arithmetic/language.h"
 #include "flattened/axes.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "predicates/planar.h"
 
 BEGIN_SHARED

@@ -8,7 +8,7 @@
 #include "flattened/arguments.h"
 #include "flattened/axes.h"
 #include "flattened/codes.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 // broken[0] gets BROKEN_PATH if a point on the cut line is not on the path, which would be a bug.
 kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions, CUTS(),

@@ -2,7 +2,7 @@
 
 #include "flattened/arguments.h"
 #include "flattened/hull_height.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 // The internal points' projections, in the places of the list that is sorted along their region's cut line.
 kernel void project_points(int n, global const int* restrict regions, LISTS(), CUTS(),

@@ -17,7 +17,7 @@
 #include "flattened/codes.h"
 #include "flattened/hull_height.h"
 #include "flattened/limits.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "operations/search.h"
 
 kernel void candidate_flags(int n, int elements, global const int* restrict regions,

@@ -24,7 +24,7 @@
 #include "flattened/arguments.h"
 #include "flattened/codes.h"
 #include "flattened/hull_height.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "operations/segmented_arg_reduce.h"
 
 // projections[i]: of point i, as path_projections. flags: 1 strictly below the chord, 0 not, or FLAG_UNDECIDED.

@@ -5,7 +5,7 @@
 
 #include "arithmetic/language.h"
 #include "flattened/limits.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "predicates/planar.h"
 #include "predicates/records.h"
 

@@ -6,7 +6,7 @@
 
 #include "arithmetic/language.h"
 #include "mesh/records.h"
-#include "operations/counting.h"
+#include "operations/counters.h"
 #include "predicates/order.h"
 #include "predicates/planar.h"
 #include "predicates/records.h"

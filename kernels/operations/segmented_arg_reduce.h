@@ -2,7 +2,7 @@
 #ifndef FLAUNAY_SEGMENTED_ARG_REDUCE_H
 #define FLAUNAY_SEGMENTED_ARG_REDUCE_H
 
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 // Elements 0..n-1 belong to segments, numbered without descent in segment[]. Element i stands for the candidate
 // candidate[i], or for CANDIDATE(i) in the first pass; a negative candidate stands for nothing. Each work-item walks a

@@ -10,7 +10,7 @@
 #include "modes/dwyer/dwyer.hpp"
 #include "modes/partition/regions.hpp"
 #include "modes/recursive/run.hpp"
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 namespace flaunay {
 namespace call {

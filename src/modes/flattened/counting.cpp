@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/sort.hpp"
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 namespace flaunay::flattened {
 using namespace statistics;

@@ -8,7 +8,7 @@
 #include "modes/recursive/endgame.hpp"
 #include "modes/recursive/first_border.hpp"
 #include "modes/recursive/lower_hull.hpp"
-#include "operations/counting.h"
+#include "operations/counters.h"
 
 namespace flaunay::recursive {
 using namespace geometry;

@@ -1,7 +1,7 @@
 // Counters of operations, in a build of the kernels with FLAUNAY_COUNT; nothing otherwise. docs/counting.md says what
 // counts.
-#ifndef FLAUNAY_COUNTING_H
-#define FLAUNAY_COUNTING_H
+#ifndef FLAUNAY_COUNTERS_H
+#define FLAUNAY_COUNTERS_H
 
 #include "arithmetic/language.h"
 #include "operations/costs.h"
