@@ -74,8 +74,9 @@ Result measure_device(const DeviceRequest& request) {
   const auto steps = static_cast<cl_int>(request.steps);
   for (const std::size_t bytes : request.working_sets) {
     const auto next = runtime.upload(runtime.arena(), random_cycle(bytes));
-    add(fmt::format("load that waits for a load, of {} KiB", bytes >> 10), "s", request.steps,
-        [&] { runtime.launch(1, 1, 1, kernels::follow_chain{.steps = steps, .next = next, .ends = ends}); });
+    add(fmt::format("load that waits for a load, of {} KiB", bytes >> 10), "s", request.steps, [&, next] {
+      runtime.launch(1, 1, 1, kernels::follow_chain{.steps = steps, .next = next, .ends = ends});
+    });
   }
 
   constexpr std::size_t kOperationsPerStep = 2, kStepsOfMany = 2000;
