@@ -1,7 +1,8 @@
 # flaunay_add_launchers(TARGET DIRECTORY OUTPUT FILES files... [NATIVE files... NATIVE_OUTPUT folder]) adds a target that
 # generates a C++ header with launchers for each kernel file of the directory: OUTPUT/flattened/cut.cl.hpp for
 # flattened/cut.cl. If another kernel file includes the file, that one is its program. For those of NATIVE, it also
-# generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp. Kernels of one name in
+# generates C++ files that compile the kernels for the host, such as NATIVE_OUTPUT/blocks/mesh.cpp, and such as
+# NATIVE_OUTPUT/counting/blocks/mesh.cpp if there are kernels that count. Kernels of one name in
 # two files are an error: their launchers would be structs of one name, which the linker mixes up without a word. So are
 # lists of arguments of one name in two headers named arguments.h.
 function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
@@ -52,6 +53,12 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
     if(FILE IN_LIST GIVEN_NATIVE)
       string(REGEX REPLACE "\\.cl$" ".cpp" NATIVE_FILE ${GIVEN_NATIVE_OUTPUT}/${FILE})
       set(NATIVE_ARGUMENT -DNATIVE_OUTPUT=${NATIVE_FILE})
+      file(READ ${DIRECTORY}/${FILE} TEXT)
+      if(TEXT MATCHES "COUNTERS|SEGMENTED_ARG_REDUCE")
+        string(REGEX REPLACE "\\.cl$" ".cpp" COUNTING_FILE ${GIVEN_NATIVE_OUTPUT}/counting/${FILE})
+        list(APPEND NATIVE_ARGUMENT -DCOUNTING_OUTPUT=${COUNTING_FILE})
+        list(APPEND NATIVE_FILE ${COUNTING_FILE})
+      endif()
       list(APPEND NATIVE_SOURCES ${NATIVE_FILE})
     endif()
     add_custom_command(

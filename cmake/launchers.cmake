@@ -1,5 +1,6 @@
 # cmake -DDIRECTORY=kernels -DFILE=flattened/cut.cl -DPROGRAM=flattened/cut -DOUTPUT=launchers/flattened/cut.cl.hpp
-#       [-DNATIVE_OUTPUT=native/flattened/cut.cpp] -P launchers.cmake
+#       [-DNATIVE_OUTPUT=native/flattened/cut.cpp [-DCOUNTING_OUTPUT=native/counting/flattened/cut.cpp]]
+#       -P launchers.cmake
 #
 # Writes a C++ header with a struct per kernel of the file: a member per argument, of the argument's type and name. Runtime
 # (host/runtime.hpp) launches these structs, so that a wrong, missing or unknown argument does not compile. PROGRAM is the
@@ -9,7 +10,8 @@
 # COUNTERS (operations/counters.h), which Runtime sets, and the lists of arguments of headers named arguments.h, which
 # become structs; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
 #
-# With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp).
+# With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp), and with
+# COUNTING_OUTPUT another one, of those that count (operations/counters.h).
 cmake_policy(VERSION 3.25)
 
 # The launch sets the number of elements and the size of a chunk; Runtime::arg_reduce sets the reduction's others.
@@ -106,6 +108,10 @@ endfunction()
 
 # Appends the launcher of a kernel to CODE. ARGUMENTS: the text of the arguments, separated by commas.
 function(append_launcher NAME FORM ARGUMENTS)
+  set(COUNTS FALSE)
+  if(FORM STREQUAL "ArgReduce" OR ARGUMENTS MATCHES "COUNTERS")
+    set(COUNTS TRUE)
+  endif()
   read_arguments(${NAME} "${ARGUMENTS}")
   if(FORM STREQUAL "")
     set(FORM Plain)
@@ -132,19 +138,23 @@ function(append_launcher NAME FORM ARGUMENTS)
     endif()
   endforeach()
   set(NATIVE_DECLARATION "")
-  set(NATIVE_FUNCTION nullptr)
+  set(NATIVE_FUNCTIONS "")
   if(NATIVE_OUTPUT)
-    set(NATIVE_FUNCTION native::${NAME})
+    set(NATIVE_FUNCTIONS ", native::${NAME}")
     set(NATIVE_SIGNATURE "void ${NAME}(host::WorkItems items, void* const* arguments)")
     set(NATIVE_DECLARATION "namespace native {\n${NATIVE_SIGNATURE};\n}\n")
-    set(NATIVE_CODE
-        "${NATIVE_CODE}${NATIVE_SIGNATURE} {\n  kernel::run_work_items<kernel::${NAME}>(items, arguments);\n}\n"
-        PARENT_SCOPE)
+    set(FUNCTION "${NATIVE_SIGNATURE} {\n  kernel::run_work_items<kernel::${NAME}>(items, arguments);\n}\n")
+    set(NATIVE_CODE "${NATIVE_CODE}${FUNCTION}" PARENT_SCOPE)
+    if(COUNTS)
+      string(APPEND NATIVE_FUNCTIONS ", counting::${NAME}")
+      string(APPEND NATIVE_DECLARATION "namespace counting {\n${NATIVE_SIGNATURE};\n}\n")
+      set(COUNTING_CODE "${COUNTING_CODE}${FUNCTION}" PARENT_SCOPE)
+    endif()
   endif()
   string(CONCAT LAUNCHER
     "\n${NATIVE_DECLARATION}/// See kernel ${NAME} in kernels/${FILE}.\n"
     "struct ${NAME} {\n"
-    "  static constexpr host::KernelName kernel_name{\"${PROGRAM}\", \"${NAME}\", ${NATIVE_FUNCTION}};\n"
+    "  static constexpr host::KernelName kernel_name{\"${PROGRAM}\", \"${NAME}\"${NATIVE_FUNCTIONS}};\n"
     "  static constexpr host::Form form = host::Form::${FORM};\n"
     "${MEMBERS}\n"
     "  template <typename Visit>\n"
@@ -179,6 +189,7 @@ endforeach()
 string(REGEX MATCHALL "(kernel void [a-z_0-9]+|\nSEGMENTED_ARG_REDUCE)\\([^)]*\\)" SIGNATURES "${TEXT}")
 set(CODE "")
 set(NATIVE_CODE "")
+set(COUNTING_CODE "")
 foreach(SIGNATURE IN LISTS SIGNATURES)
   if(SIGNATURE MATCHES "kernel void ([a-z_0-9]+)\\(([^)]*)\\)")
     append_launcher(${CMAKE_MATCH_1} "" "${CMAKE_MATCH_2}")
@@ -199,7 +210,13 @@ string(CONCAT HEADER
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "${HEADER}" @ONLY)
 
 if(NATIVE_OUTPUT)
-  # The shared headers come first, as they have namespaces of their own.
+  # The shared headers come first, as they have namespaces of their own, and before them what the file defines for them.
+  string(FIND "${TEXT}" "\n#include" LENGTH)
+  set(HEAD "")
+  if(LENGTH GREATER 0)
+    string(SUBSTRING "${TEXT}" 0 ${LENGTH} HEAD)
+  endif()
+  string(REGEX REPLACE "\n+" "\n" HEAD "${HEAD}\n")
   set(HEADERS "")
   set(FILES ${FILE})
   while(FILES)
@@ -216,14 +233,18 @@ if(NATIVE_OUTPUT)
   endwhile()
   list(TRANSFORM HEADERS REPLACE "(.+)" "#include \"\\1\"\n")
   string(CONCAT HEADERS ${HEADERS} "")
+  set(MADE_FROM "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n")
   string(CONCAT NATIVE
-    "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n"
     "#include \"launchers/${FILE}.hpp\"\n"
     "#include \"host/native/opencl.hpp\"\n"
-    "${HEADERS}\n"
+    "${HEAD}${HEADERS}\n"
     "namespace flaunay::kernel {\n"
     "#include \"host/native/words.h\"\n#include \"${FILE}\"\n#include \"host/native/end_of_words.h\"\n"
     "}\n\n"
-    "namespace flaunay::kernels::native {\n${NATIVE_CODE}}\n")
-  file(CONFIGURE OUTPUT ${NATIVE_OUTPUT} CONTENT "${NATIVE}" @ONLY)
+    "namespace flaunay::kernels::")
+  file(CONFIGURE OUTPUT ${NATIVE_OUTPUT} CONTENT "${MADE_FROM}${NATIVE}native {\n${NATIVE_CODE}}\n" @ONLY)
+  if(COUNTING_OUTPUT)
+    string(CONCAT COUNTING "${MADE_FROM}#define FLAUNAY_COUNT\n${NATIVE}counting {\n${COUNTING_CODE}}\n")
+    file(CONFIGURE OUTPUT ${COUNTING_OUTPUT} CONTENT "${COUNTING}" @ONLY)
+  endif()
 endif()

@@ -30,9 +30,9 @@ class Kernel {
   const std::string& name() const { return name_; }
   /// Sets an argument to these bytes. The value of an array is its cl_mem.
   virtual void set_argument(cl_uint index, const void* value, std::size_t bytes) = 0;
-  /// The number of its arguments, and the largest size of a work-group: 0 if it needs more local memory than
-  /// the device has.
-  cl_uint arguments = 0;
+  /// Whether it takes counters behind so many arguments.
+  virtual bool takes_counters(cl_uint arguments) const = 0;
+  /// The largest size of a work-group: 0 if it needs more local memory than the device has.
   std::size_t largest_group = 1;
 
  private:
@@ -55,8 +55,9 @@ class Backend {
   /// complete when its call returns, and there are no queues and events.
   virtual std::size_t threads() const { return 0; }
 
-  /// options: those of the compiler.
-  virtual std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options) = 0;
+  /// options: those of the compiler, but for counting: whether the kernel is to count, if it can.
+  virtual std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options,
+                                              bool counting) = 0;
   /// Forgets compiled programs. No kernel that was made of them must be used later.
   virtual void forget_programs() {}
   /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.

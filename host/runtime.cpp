@@ -111,9 +111,7 @@ Kernel& Runtime::find_kernel(const KernelName& name) {
   auto& kernels = kernels_[counting_];
   const auto found = kernels.find(&name);
   if (found != kernels.end()) return *found->second;
-  const std::string options =
-      fmt::format("-cl-std=CL1.2 {}{}", build_options(), counting_ ? " -DFLAUNAY_COUNT" : "");
-  return *kernels.emplace(&name, backend_->make_kernel(name, options)).first->second;
+  return *kernels.emplace(&name, backend_->make_kernel(name, build_options(), counting_)).first->second;
 }
 
 void Runtime::touch_new(void* begin, std::size_t bytes) {

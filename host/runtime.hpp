@@ -341,7 +341,7 @@ class Runtime {
   }
   /// arguments: the number of arguments that are set. If the kernel has one more, that is the counters.
   void finish_launch(Kernel& kernel, cl_uint arguments, std::size_t work_items, std::size_t group) {
-    const bool counts = counting_ && arguments < kernel.arguments;
+    const bool counts = counting_ && kernel.takes_counters(arguments);
     if (counts) set_argument(kernel, arguments, counters_);
     backend_->launch(kernel, work_items, group);
     if (counts && accounts_.log != nullptr) record_counted();

@@ -129,7 +129,6 @@ TEST_F(BenchTest, Usage) {
   EXPECT_EQ(run("threads --counts 0"), 2);
   EXPECT_EQ(run("targets --modes nothing"), 2);
   EXPECT_EQ(run("launches --modes nothing"), 2);
-  EXPECT_EQ(run("launches --sizes 100 --device host"), 2);
   EXPECT_EQ(run("device --steps 0"), 2);
   EXPECT_EQ(run("paper --smallest 9 --largest 8"), 2);
   EXPECT_EQ(run("paper --smallest 6 --largest 6 --json " + path("no/such/folder.json")), 3);

@@ -143,8 +143,8 @@ of kernels and predicts times. longest_chain is the most steps of a block, of a 
 counted in a build of the kernels of its own (docs/counting.md); elements is the most that a work-item of another
 kernel goes through. merge_chain is the sum of the longest chains of merges, one launch after the other: from the
 leaves to the result, and from solved blocks. Launches of at least work_items_of_most_work work-items do 90 % of the
-work, by time and busy cores. Times are those of calls that do not count, the least of each launch. Kernels count on
-OpenCL devices only, so --device host is refused.)",
+work, by time and busy cores. Times are those of calls that do not count, the least of each launch. With --device host
+the counts are those of the host's kernels, which have no work-groups.)",
     measure_launches, [](Options& options, LaunchesRequest& request) {
       options.sizes({1000000})
           .distributions({"uniform", "kuzmin", "line"})

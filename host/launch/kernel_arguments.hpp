@@ -23,7 +23,8 @@ constexpr std::size_t kLargestArgument = 256;
 struct KernelName {
   const char* program;
   const char* name;
-  NativeFunction native = nullptr;  ///< the kernel compiled for the host; null if it is not
+  NativeFunction native = nullptr;    ///< the kernel compiled for the host; null if it is not
+  NativeFunction counting = nullptr;  ///< the same with counters; null if it counts nothing
 };
 
 /// The first arguments of a kernel, which the launch sets and the launcher does not have.

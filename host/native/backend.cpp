@@ -13,12 +13,14 @@ namespace {
 
 class NativeKernel : public Kernel {
  public:
-  NativeKernel(const char* name, NativeFunction made) : Kernel(name), function(made) {}
+  NativeKernel(const char* name, NativeFunction made, bool counts)
+      : Kernel(name), function(made), counts_(counts) {}
 
   void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
     if (values_.size() <= index) add_values(index + 1);
     std::memcpy(values_[index].bytes, value, bytes);
   }
+  bool takes_counters(cl_uint) const override { return counts_; }
   void** values() { return places_.data(); }
 
   const NativeFunction function;
@@ -33,17 +35,20 @@ class NativeKernel : public Kernel {
     for (std::size_t k = 0; k < count; ++k) places_[k] = values_[k].bytes;
   }
 
+  const bool counts_;
   std::vector<Value> values_;
   std::vector<void*> places_;  // of the values
 };
 
 }  // namespace
 
-std::unique_ptr<Kernel> NativeBackend::make_kernel(const KernelName& wanted, const std::string&) {
+std::unique_ptr<Kernel> NativeBackend::make_kernel(const KernelName& wanted, const std::string&,
+                                                   bool counting) {
   if (wanted.native == nullptr) {
     throw DeviceError(fmt::format("kernel {} needs an OpenCL device", wanted.name));
   }
-  return std::make_unique<NativeKernel>(wanted.name, wanted.native);
+  const bool counts = counting && wanted.counting != nullptr;
+  return std::make_unique<NativeKernel>(wanted.name, counts ? wanted.counting : wanted.native, counts);
 }
 
 // Parts of a launch are several groups, but not so many that threads would wait for the last one for long.

@@ -16,7 +16,8 @@ class NativeBackend : public Backend {
   std::size_t threads() const override { return threads_.count(); }
 
   /// Throws DeviceError if the kernel is not compiled for the host.
-  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options) override;
+  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options,
+                                      bool counting) override;
   void launch(Kernel& kernel, std::size_t work_items, std::size_t group) override;
   void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) override;
   void write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) override;

@@ -18,7 +18,7 @@
 namespace flaunay::kernel {
 
 struct uint8 {
-  uint s[8];
+  uint s0, s1, s2, s3, s4, s5, s6, s7;
 };
 
 inline double2 operator+(double2 a, double2 b) { return {a.x + b.x, a.y + b.y}; }
@@ -31,8 +31,11 @@ inline uint2& operator+=(uint2& a, uint2 b) {
   a.y += b.y;
   return a;
 }
+inline uint2& operator+=(uint2& a, uint b) { return a += uint2{b, b}; }
+inline uint2 operator-(uint2 a, uint2 b) { return {a.x - b.x, a.y - b.y}; }
 inline uint8& operator+=(uint8& a, uint8 b) {
-  for (int k = 0; k < 8; ++k) a.s[k] += b.s[k];
+  a = {a.s0 + b.s0, a.s1 + b.s1, a.s2 + b.s2, a.s3 + b.s3,
+       a.s4 + b.s4, a.s5 + b.s5, a.s6 + b.s6, a.s7 + b.s7};
   return a;
 }
 
@@ -55,6 +58,7 @@ inline uint atomic_add(volatile uint* at, uint value) {
 inline uint atomic_or(volatile uint* at, uint value) {
   return __atomic_fetch_or(at, value, __ATOMIC_RELAXED);
 }
+inline int atomic_or(volatile int* at, int value) { return __atomic_fetch_or(at, value, __ATOMIC_RELAXED); }
 inline int atomic_cmpxchg(volatile int* at, int expected, int value) {
   __atomic_compare_exchange_n(at, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
   return expected;
@@ -82,6 +86,9 @@ inline uint atomic_min(volatile uint* at, uint value) {
 inline int atomic_max(volatile int* at, int value) {
   return atomic_improve(at, value, [](int a, int b) { return a > b; });
 }
+inline uint atomic_max(volatile uint* at, uint value) {
+  return atomic_improve(at, value, [](uint a, uint b) { return a > b; });
+}
 
 /// The work-item that this thread runs, and how many there are.
 struct WorkItem {
@@ -89,8 +96,10 @@ struct WorkItem {
 };
 inline thread_local WorkItem work_item [[gnu::tls_model("initial-exec")]];
 inline std::size_t get_global_id(int) { return work_item.number; }
+inline std::size_t get_global_size(int) { return work_item.total; }
 // Every work-group has one work-item.
 inline std::size_t get_local_id(int) { return 0; }
+inline std::size_t get_local_size(int) { return 1; }
 inline std::size_t get_group_id(int) { return work_item.number; }
 inline std::size_t get_num_groups(int) { return work_item.total; }
 

@@ -18,7 +18,6 @@ class OpenClKernel : public Kernel {
  public:
   OpenClKernel(const char* name, boost::compute::kernel made, const boost::compute::device& device)
       : Kernel(name), kernel_(std::move(made)) {
-    arguments = static_cast<cl_uint>(kernel_.arity());
     std::size_t required[3] = {};
     cl_ulong local_memory = 0;
     const auto query = [&](cl_kernel_work_group_info what, std::size_t size, void* value) {
@@ -34,6 +33,7 @@ class OpenClKernel : public Kernel {
   void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
     FLAUNAY_CL_KERNEL(clSetKernelArg(kernel_.get(), index, bytes, value), name());
   }
+  bool takes_counters(cl_uint arguments) const override { return arguments < kernel_.arity(); }
   cl_kernel get() const { return kernel_.get(); }
 
   bool requires_group = false;  ///< whether it has the attribute reqd_work_group_size
@@ -127,7 +127,9 @@ void OpenClBackend::keep_order() {
   if (is_unordered_) FLAUNAY_CL(clEnqueueBarrierWithWaitList(queue_.get(), 0, nullptr, nullptr));
 }
 
-std::unique_ptr<Kernel> OpenClBackend::make_kernel(const KernelName& wanted, const std::string& options) {
+std::unique_ptr<Kernel> OpenClBackend::make_kernel(const KernelName& wanted, const std::string& settings,
+                                                   bool counting) {
+  const std::string options = fmt::format("-cl-std=CL1.2 {}{}", settings, counting ? " -DFLAUNAY_COUNT" : "");
   const boost::compute::program* program = programs_.find(wanted.program, options);
   if (program == nullptr) {
     const double begin = now();

@@ -16,7 +16,8 @@ class OpenClBackend : public Backend {
 
   std::string name() const override { return device_.name(); }
   MemorySource memory() const override { return memory_of(context_, device_); }
-  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options) override;
+  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options,
+                                      bool counting) override;
   void forget_programs() override { programs_.clear(); }
   void launch(Kernel& kernel, std::size_t work_items, std::size_t group) override;
   void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) override;

@@ -146,14 +146,6 @@ std::optional<boost::compute::device> find_gpu() {
   return {};
 }
 
-std::optional<boost::compute::device> find_device_with_fp64() {
-  std::vector<boost::compute::device> devices = all_devices();
-  devices.erase(std::remove_if(devices.begin(), devices.end(), [](const auto& d) { return !has_fp64(d); }),
-                devices.end());
-  if (devices.empty()) return {};
-  return preferred(devices);
-}
-
 boost::compute::device best_device() { return preferred(some_devices()); }
 
 boost::compute::device find_device(const std::string& requested) {

@@ -41,9 +41,6 @@ boost::compute::device find_device(const std::string& wanted);
 
 bool has_fp64(const boost::compute::device& device);
 
-/// Finds the first GPU with fp64, or if there is none, the first device with it; nothing if there is none.
-std::optional<boost::compute::device> find_device_with_fp64();
-
 /// Whether the memory of the device is that of the host: a CPU, or a GPU without memory of its own.
 bool shares_host_memory(const boost::compute::device& device);
 

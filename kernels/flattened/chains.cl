@@ -27,7 +27,6 @@
 #include "flattened/limits.h"
 #include "operations/limits.h"
 #include "operations/search.h"
-#include "operations/work_group.h"
 
 // Where the list of region r begins that is made of lists with these offsets: a place for each BUCKET points and one
 // for the rest, so that no list is empty.
@@ -65,7 +64,7 @@ kernel void thin_lists(int n, int regions, global const int* restrict offsets, L
     const int begin = low + (int)((long)count * (i - place) / places);
     const int end = low + (int)((long)count * (i - place + 1) / places);
     int id = first_end[r];
-    double2 lowest = (double2)(0.0);
+    double2 lowest = VECTOR(double2, 0.0, 0.0);
     if (count > 0) {
       int best = min(begin, low + count - 1);
       lowest = projections[best];
@@ -112,7 +111,7 @@ kernel void sequence_of_lists(int n, global const int* restrict offsets, global 
         const int place = side ? high + 2 * r + 1 : begin;
         ids[place] = id;
         projections[place] =
-            id < 0 ? (double2)(0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
+            id < 0 ? VECTOR(double2, 0.0, 0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
       }
     }
     if (i == n - 1) begins[r + 1] = high + 2 * r + 2;
@@ -135,7 +134,7 @@ kernel void keep_bounds(int n, int points_count, global const uint* restrict kep
     const int has_corners = all_points < kept;
     const int corner_count =
         has_corners ? positions_below(points_count + corner_offsets[r], kept, positions) - all_points : 0;
-    before[r] = (int2)(point_count, corner_count);
+    before[r] = VECTOR(int2, point_count, corner_count);
     begins[r] = path_offsets[r] + point_count + corner_count;
     if (r == n) {
       facts[KEPT_ALL] = path_offsets[r] + point_count + corner_count;

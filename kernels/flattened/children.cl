@@ -5,8 +5,16 @@
 // the regions of the next level, those without retire to the end game. Each kernel is one pass, with one work-item per
 // region, set or child.
 
-// sizes[2r + side]: (1, corners, points, 0, 0) for a child with internal points, (0, 0, 0, 1, corners) for one that
-// retires, 0 for one that is empty; to be scanned.
+#include "arithmetic/language.h"
+
+// (1, corners, points, 0, 0) for a child with internal points, (0, 0, 0, 1, corners) for one that retires, 0 for one
+// that is empty; to be scanned.
+static inline uint8 child_size(uint points, uint corners) {
+  const uint goes_on = points > 0, retires = points == 0 && corners > 0;
+  return VECTOR(uint8, goes_on, goes_on ? corners : 0, points, retires, retires ? corners : 0, 0, 0, 0);
+}
+
+// sizes[2r + side]: of a child.
 kernel void child_sizes(int n, global const int* restrict corner_offsets, global const int* restrict path_offsets,
                         global const uint2* restrict points_before, global const uint2* restrict corner_sides,
                         global const uint* restrict internal, global uint8* restrict sizes) {
@@ -18,9 +26,7 @@ kernel void child_sizes(int n, global const int* restrict corner_offsets, global
     for (int side = 0; side < 2; ++side) {
       const uint p = side ? points.y : points.x;
       const uint c = side ? corners.y : corners.x;
-      sizes[2 * r + side] = p > 0   ? (uint8)(1, c, p, 0, 0, 0, 0, 0)
-                            : c > 0 ? (uint8)(0, 0, 0, 1, c, 0, 0, 0)
-                                    : (uint8)(0);
+      sizes[2 * r + side] = child_size(p, c);
     }
   }
 }
@@ -32,7 +38,7 @@ kernel void set_sizes(int n, global const int* restrict child_points, global con
   if (s < n) {
     const uint p = child_points[s];
     const uint c = child_corners[s];
-    sizes[s] = p > 0 ? (uint8)(1, c, p, 0, 0, 0, 0, 0) : c > 0 ? (uint8)(0, 0, 0, 1, c, 0, 0, 0) : (uint8)(0);
+    sizes[s] = child_size(p, c);
   }
 }
 

@@ -69,7 +69,7 @@ kernel void distinct_write(int n, global const double2* restrict input, scaling 
     const int from = order[i];
     const double2 p = input[from];
     const uint id = ids[i];
-    points[id] = (double2)(scaled(p.x, scale) + 0.0, scaled(p.y, scale) + 0.0);
+    points[id] = VECTOR(double2, scaled(p.x, scale) + 0.0, scaled(p.y, scale) + 0.0);
     source[id] = from;
     y_keys[id] = y_rank[from];
   }

@@ -40,7 +40,7 @@ kernel void list_counts(int n, int chunk, global const int* restrict list, globa
       left += s == SIDE_LEFT;
       right += s == SIDE_RIGHT;
     }
-    counts[c] = (uint2)(left, right);
+    counts[c] = VECTOR(uint2, left, right);
   }
 }
 
@@ -59,7 +59,7 @@ kernel void list_bounds(int n, int chunk, int regions_count, global const int* r
       if (r != previous) before[r] = count;
       previous = r;
       const int s = side[list[i]];
-      count += (uint2)(s == SIDE_LEFT, s == SIDE_RIGHT);
+      count += VECTOR(uint2, s == SIDE_LEFT, s == SIDE_RIGHT);
     }
     if (high == n) before[regions_count] = count;
   }

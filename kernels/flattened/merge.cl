@@ -40,8 +40,8 @@ static inline path_vertex path_vertex_at(int place, int first, int last, int a, 
   v.m = to_frame(points[path[place]], a);
   v.previous_id = place > first ? path[place - 1] : -1;
   v.next_id = place < last ? path[place + 1] : -1;
-  v.previous = place > first ? to_frame(points[v.previous_id], a) : (double2)(0.0, -INFINITY);
-  v.next = place < last ? to_frame(points[v.next_id], a) : (double2)(0.0, INFINITY);
+  v.previous = place > first ? to_frame(points[v.previous_id], a) : VECTOR(double2, 0.0, -INFINITY);
+  v.next = place < last ? to_frame(points[v.next_id], a) : VECTOR(double2, 0.0, INFINITY);
   CLEAR_TALLY(v);
   return v;
 }
@@ -165,18 +165,18 @@ kernel void corner_codes_exact(global const uint* restrict count, global const i
 // none, one or two corners, as (before, after) pairs.
 static inline int wedge_parts(int start_is_after, int end_is_after, int start_in, int end_in, int start_first,
                               int before, int after, int start, int end, int4* parts) {
-  const int2 to_end = (int2)(end_in ? end : before, after);
+  const int2 to_end = VECTOR(int2, end_in ? end : before, after);
   if (start_first) {
     if (!start_in) return 0;
-    *parts = (int4)(to_end.x, start_is_after ? after : start, 0, 0);
+    *parts = VECTOR(int4, to_end.x, start_is_after ? after : start, 0, 0);
     return 1;
   }
   int count = 0;
   if (start_in) {
-    *parts = (int4)(before, start, to_end.x, to_end.y);
+    *parts = VECTOR(int4, before, start, to_end.x, to_end.y);
     count = 1;
   } else {
-    *parts = (int4)(to_end.x, to_end.y, 0, 0);
+    *parts = VECTOR(int4, to_end.x, to_end.y, 0, 0);
   }
   return count + !end_is_after;
 }
@@ -198,7 +198,7 @@ kernel void corner_counts(int n, global const uchar* restrict codes, global uint
   const int i = get_global_id(0);
   if (i < n) {
     const int code = codes[i];
-    uint2 count = (uint2)(code == SIDE_LEFT, code == SIDE_RIGHT);
+    uint2 count = VECTOR(uint2, code == SIDE_LEFT, code == SIDE_RIGHT);
     if (code & CODE_ON_PATH) {
       int4 parts;
       count.x = left_parts(code, 0, 0, 0, 0, &parts);

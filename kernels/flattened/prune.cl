@@ -181,7 +181,7 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
     // Without kept corners there is nothing to look for.
     const int corner_count =
         all_points == kept ? 0 : positions_below(points_count + corner_offsets[r], kept, positions) - all_points;
-    before[r] = (int2)(point_count, corner_count);
+    before[r] = VECTOR(int2, point_count, corner_count);
     first[2 * r] = point_count + corner_count;
     if (r > 0) first[2 * r - 1] = point_count + corner_count;
     if (r < n) {
@@ -190,7 +190,7 @@ kernel void begin_paths(int n, int points_count, int kept, global const int* res
         new_path[2 * r + side] = id;
         // Sets without points have no ends.
         new_projections[2 * r + side] =
-            id < 0 ? (double2)(0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
+            id < 0 ? VECTOR(double2, 0.0, 0.0) : project(to_frame(points[id], axis[r]), cut[r], is_planar(axis[r]));
         new_region[2 * r + side] = r;
       }
     }

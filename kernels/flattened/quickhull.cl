@@ -135,11 +135,11 @@ kernel void side_flags(int n, HULL_POINTS(), global const uchar* restrict flags,
                        global uint2* restrict sides COUNTERS) {
   const int i = get_global_id(0);
   if (i < n) {
-    uint2 side = (uint2)(0, 0);
+    uint2 side = VECTOR(uint2, 0, 0);
     if (flags[i] == 1) {
       const double u = projections[i].y;
       const double middle = projections[deepest[segment[i]]].y;
-      side = (uint2)(u<middle, u> middle);
+      side = VECTOR(uint2, u<middle, u> middle);
       COUNT(HULL, ARITHMETIC, 2);
     }
     sides[i] = side;

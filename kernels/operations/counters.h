@@ -44,26 +44,26 @@ typedef struct {
 // of flattened/hull_height.h count each of their calls. COUNTERS stands behind the last parameter of each kernel and
 // each function that counts, and WITH_COUNTERS behind the last argument of such a function; the host sets the kernels'.
 #ifdef FLAUNAY_COUNT
-#define COUNTERS , global volatile uint* counters
+#define COUNTERS , GLOBAL volatile uint* counters
 #define WITH_COUNTERS , counters
 #define COUNT(component, kind, amount) count_up(counters + 2 * (KINDS * COMPONENT_##component + KIND_##kind), amount)
 #define COUNT_SIZE(corners) atomic_inc(counters + COUNTER_SIZES + min(corners, MOST_COUNTED_SIZE))
 #define COUNT_STEPS(amount) count_steps(counters, amount)
 #define COUNT_TALLY(component, of) count_tally(counters, COMPONENT_##component, (of).counted)
 
-static inline void count_up(global volatile uint* counter, uint amount) {
+static inline void count_up(GLOBAL volatile uint* counter, uint amount) {
   if (amount == 0) return;
   const uint old = atomic_add(counter, amount);
   if (old + amount < old) atomic_inc(counter + 1);
 }
 
-static inline void count_steps(global volatile uint* counters, uint steps) {
+static inline void count_steps(GLOBAL volatile uint* counters, uint steps) {
   atomic_max(counters + COUNTER_STEPS, steps);
   count_up(counters + COUNTER_STEPS + 1, steps);
 }
 
-static inline void count_tally(global volatile uint* counters, int component, tally counted) {
-  global volatile uint* const kinds = counters + 2 * KINDS * component;
+static inline void count_tally(GLOBAL volatile uint* counters, int component, tally counted) {
+  GLOBAL volatile uint* const kinds = counters + 2 * KINDS * component;
   count_up(kinds + 2 * KIND_ARITHMETIC, counted.arithmetic);
   count_up(kinds + 2 * KIND_ORIENTATION, counted.orientations);
   count_up(kinds + 2 * KIND_CIRCLE, counted.circles);

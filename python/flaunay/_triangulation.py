@@ -84,7 +84,7 @@ def arrays_of_mesh(
             raise UsageError(f"mode {mode} runs on the host and takes no device")
         doubles = np.asarray(coordinates, dtype=np.float64)
         return _calls.triangulate(None, doubles, offsets, mode, wanted)
-    triangulator = _triangulators.of_device(device, may_be_host=mode == "blocks")
+    triangulator = _triangulators.of_device(device)
     return _calls.triangulate(triangulator, coordinates, offsets, mode, wanted)
 
 

@@ -64,10 +64,10 @@ def check_process() -> None:
     _drivers.add_drivers()
 
 
-def of_device(device: Optional[str], may_be_host: bool = True) -> _calls.Triangulator:
+def of_device(device: Optional[str]) -> _calls.Triangulator:
     """The triangulator of a device; in a forked child the host's, if flaunay may choose."""
     name = _name_of(device)
-    if _forked and not name and may_be_host:
+    if _forked and not name:
         name = _HOST
     if name != _HOST:
         check_process()

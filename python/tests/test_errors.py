@@ -166,12 +166,8 @@ def test_a_device_without_fp64():
         assert mesh.statistics["device"] == "host"
         assert "fp64" in mesh.statistics["note"]
         assert len(flaunay.Voronoi(points, device="#0").vertices) == 1
-        try:
-            flaunay.triangulate(points, device="#0", mode="flattened")
-        except flaunay.DeviceError as error:
-            assert "fp64" in str(error), error
-        else:
-            raise AssertionError("no error")
+        mesh = flaunay.triangulate(points, device="#0", mode="flattened")
+        assert "fp64" in mesh.statistics["note"]
         """,
         # Python loads the module, and with it the loader of OpenCL, where a preloaded library does not look for it.
         LD_PRELOAD=f"{library} libOpenCL.so.1",

@@ -124,7 +124,7 @@ for name, call in calls.items():
         os._exit(ending)
     print(name, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), sep=":")
 """
-ON_DEVICES = {"named", "flattened", "chunks named", "devices"}
+ON_DEVICES = {"named", "chunks named", "devices"}
 
 
 @pytest.mark.parametrize(

@@ -43,9 +43,9 @@ Engine& Triangulator::Implementation::on_device() {
   const std::lock_guard lock(making_);
   if (device_ == nullptr) {
     if (is_host_named_) {
-      throw Error(ErrorKind::usage,
-                  "the device \"host\" has no OpenCL: it runs mode blocks, Voronoi diagrams and queries on "
-                  "points in host memory; name another device");
+      throw Error(
+          ErrorKind::usage,
+          "the device \"host\" has no OpenCL: it works on points in host memory; name another device");
     }
     device_ = std::make_unique<Engine>(boost::compute::context(), host::best_device(), tuning_);
   }
@@ -80,31 +80,15 @@ Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
   return device_with_doubles_ != nullptr ? *device_with_doubles_ : native();
 }
 
-Engine& Triangulator::Implementation::on_any_device_with_doubles(const std::string& what) {
-  const std::lock_guard lock(making_);
-  Engine& engine = with_doubles(on_device());
-  if (!engine.runtime.is_native()) return engine;
-  if (other_device_ == nullptr && !is_named_) {
-    if (const auto device = host::find_device_with_fp64()) {
-      other_device_ = std::make_unique<Engine>(boost::compute::context(), *device, tuning_);
-    }
-  }
-  if (other_device_ != nullptr && other_device_->has_doubles()) return *other_device_;
-  throw Error(ErrorKind::device,
-              fmt::format("{} needs double precision (fp64), which {} lacks; take mode blocks, recursive or "
-                          "dwyer, or another device",
-                          what, device_->runtime.name()));
-}
-
 void Triangulator::Implementation::settle() {
-  for (const auto* engine : {&device_, &device_with_doubles_, &other_device_}) {
+  for (const auto* engine : {&device_, &device_with_doubles_}) {
     if (*engine != nullptr) (*engine)->runtime.settle();
   }
 }
 
 void Triangulator::Implementation::note_held_bytes() {
   const std::lock_guard lock(making_);
-  for (const auto* engine : {&device_, &native_, &device_with_doubles_, &other_device_}) {
+  for (const auto* engine : {&device_, &native_, &device_with_doubles_}) {
     if (*engine != nullptr) (*engine)->held_at_rest = (*engine)->held_bytes();
   }
 }

@@ -22,8 +22,8 @@ struct Triangulator::Implementation {
   explicit Implementation(const std::string& wanted);
   Implementation(const boost::compute::context& context, const boost::compute::device& device);
 
-  /// The engine of calls on device memory and of modes that need a device: the named device, or the one that
-  /// OpenCL offers first. Throws DeviceError or Error(device) if there is none that can be used.
+  /// The engine of calls on device memory: the named device, or the one that OpenCL offers first. Throws
+  /// DeviceError or Error(device) if there is none that can be used.
   call::Engine& on_device();
   /// The engine of calls on host memory. Throws as on_device if it is a device that cannot be used.
   call::Engine& for_host_memory();
@@ -32,9 +32,6 @@ struct Triangulator::Implementation {
   /// The engine that has doubles in place of this one, which is on_device() or for_host_memory(): itself, or
   /// another one on the same device and in its context, or native() if that device has no doubles.
   call::Engine& with_doubles(call::Engine& engine);
-  /// The engine for what needs a device and doubles. Throws Error(device), which names `what`, if the device
-  /// lacks them. If no device is named, it may be another one.
-  call::Engine& on_any_device_with_doubles(const std::string& what);
   /// Whether a device was named, on which all work is to be done.
   bool is_named() const { return is_named_; }
   /// The sizes that hold without a device.
@@ -57,8 +54,8 @@ struct Triangulator::Implementation {
   // Held while an engine is made or looked for.
   std::recursive_mutex making_;
   std::unique_ptr<call::Engine> device_, native_;
-  // For calls that need doubles, if device_ computes in fixed point: on the same device, or on another one.
-  std::unique_ptr<call::Engine> device_with_doubles_, other_device_;
+  // On the same device, for calls that need doubles, if device_ computes in fixed point.
+  std::unique_ptr<call::Engine> device_with_doubles_;
   bool has_looked_for_doubles_ = false;
   std::optional<bool> uses_gpu_;  ///< for host memory, if no device is named; empty until it is looked for
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "blocks/pipeline.hpp"
+#include "call/frame.hpp"
 #include "call/host_modes.hpp"
 #include "modes/dwyer/dwyer.hpp"
 #include "modes/partition/regions.hpp"
@@ -23,9 +24,6 @@ class Recording {
  public:
   Recording(Engine& engine, research::Record wanted) : runtime_(engine.runtime) {
     if (wanted == research::Record::nothing) return;
-    if (wanted == research::Record::steps && runtime_.is_native()) {
-      throw Error(ErrorKind::usage, "kernels count their steps on OpenCL devices only; name one");
-    }
     const host::CountedWords steps{kernel::COUNTERS_LENGTH, kernel::COUNTER_STEPS, kernel::STEP_COUNTERS};
     runtime_.record_launches(wanted == research::Record::steps ? steps : host::CountedWords{});
   }
@@ -66,12 +64,12 @@ research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, con
   return result;
 }
 
-// Runs the modes that go level by level on the device.
+// Runs the modes that go level by level.
 research::Triangulation run_levels(TriangulatorAccess::Implementation& self, const Request& request,
                                    const flattened::Solvers& solvers) {
   const std::size_t n = request.offsets.back();
-  Engine& engine =
-      self.on_any_device_with_doubles(fmt::format("mode {}", research::to_string(request.options.mode)));
+  Engine& asked = self.for_host_memory();
+  Engine& engine = self.with_doubles(asked);
   engine.check_size(n);
   research::Triangulation result;
   static_cast<Triangulation&>(result) = empty_result(engine, request.offsets.size() - 1);
@@ -83,6 +81,8 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
   flattened::run(engine.runtime, {engine.persistent, engine.even, engine.odd}, coordinates, request.offsets,
                  request.options, solvers, result);
   engine.write_accounts(result.statistics);
+  add_note(asked, engine, fmt::format("mode {}", research::to_string(request.options.mode)), "computed",
+           result.statistics);
   result.launches = recording.launches();
   return result;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "call/areas.hpp"
+#include "call/frame.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"
 #include "call/with_errors.hpp"
@@ -97,7 +98,8 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     check_options(uncounted);
     call::Implementation& owner = TriangulatorAccess::implementation(triangulator);
     const call::Turn turn(owner);
-    call::Engine& self = owner.on_any_device_with_doubles("a partition");
+    call::Engine& asked = owner.for_host_memory();
+    call::Engine& self = owner.with_doubles(asked);
     self.check_size(n);
     geometry::check_coordinates(coordinates, n);
     Partition result;
@@ -107,6 +109,7 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     flattened::partition(self.runtime, {self.persistent, self.even, self.odd}, coordinates, n, levels,
                          uncounted, result);
     self.write_accounts(result.statistics);
+    call::add_note(asked, self, "a partition", "computed", result.statistics);
     return result;
   });
 }

@@ -221,15 +221,6 @@ TEST(Launches, ElementsAreThoseOfChunks) {
   }
 }
 
-TEST(Launches, OfTheHostHaveNoSteps) {
-  Triangulator on_host("host");
-  const Coordinates points = make_fixture("uniform", 10000, 1);
-  const Triangulation mesh = run(on_host, points, Record::launches);
-  EXPECT_EQ(only(mesh.launches, "solve_blocks").longest_chain, 0u);
-  EXPECT_EQ(run(on_host, points, Record::nothing).launches.size(), 0u);
-  EXPECT_THROW(run(on_host, points, Record::steps), Error);
-}
-
 TEST(Launches, AreRecordedOrOperationsCounted) {
   Options options;
   options.mode = Mode::flattened;

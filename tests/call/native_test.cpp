@@ -274,11 +274,6 @@ TEST_F(SmallNative, IsNamedHostAndHasNoOpenCL) {
     DeviceTriangulation result;
     on_host().triangulate(DevicePoints{}, result);
   });
-  expect_refused("mode flattened", [&] {
-    research::Options options;
-    options.mode = research::Mode::flattened;
-    research::triangulate(on_host(), points.data(), 5000, options);
-  });
 }
 
 TEST_F(SmallNative, KernelsCanBeTimed) {

@@ -18,13 +18,13 @@
 #include <utility>
 #include <vector>
 
-#include "host/opencl/device.hpp"
 #include "modes/flattened/stages.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/exact_points.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/regions.hpp"
+#include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
 #include "tuning/tuning.hpp"
 
@@ -55,8 +55,7 @@ class Runtimes : public ::testing::Environment {
     std::unique_ptr<Runtime>& runtime = all()[small];
     if (!runtime) {
       const char* const before = std::getenv("FLAUNAY_TUNING");
-      const testing::ScopedEnvironment kind("FLAUNAY_TUNING", small ? "small" : before);
-      runtime = std::make_unique<Runtime>(host::find_device(""), settings_for(host::find_device("")));
+      runtime = testing::make_tuned_runtime(small ? "small" : "own");
       if (small || (before != nullptr && std::string(before) == "small")) {
         // Small regions so small that many others count as large.
         Tuning tuning = tuning_of(*runtime);

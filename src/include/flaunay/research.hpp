@@ -112,7 +112,7 @@ struct LevelStatistics {
 enum class Record {
   nothing,   ///< the default, which costs nothing
   launches,  ///< every launch: its kernel and work-items, and with Options::profile its time
-  steps,     ///< kernels count their steps, too; slow, and on an OpenCL device only
+  steps,     ///< kernels count their steps, too, which is slow
 };
 
 /// One launch of a call, which the calls' order says when.
@@ -162,9 +162,8 @@ struct ModeInfo {
 FLAUNAY_API const std::vector<ModeInfo>& list_modes();
 
 /// Triangulates one set of points in host memory in any mode. coordinates: 2 n values, x0 y0 x1 y1 ... Throws
-/// Error(usage) for options that the mode does not support, Error(device) for a mode that needs double
-/// precision on a device without it (Mode::flattened, Mode::recursive_device, Mode::partition), and what
-/// Triangulator::triangulate throws. O(n log n) work.
+/// Error(usage) for options that the mode does not support, and what Triangulator::triangulate throws.
+/// O(n log n) work.
 FLAUNAY_API Triangulation triangulate(Triangulator& triangulator, const double* coordinates, std::size_t n,
                                       const Options& options);
 /// Triangulates several sets: set s has points [offsets[s], offsets[s + 1]); see Triangulator::triangulate.
