@@ -38,7 +38,7 @@ set(CPP_filter_bound cl_float)
 set(CPP_double_bits cl_ulong)
 set(CPP_float_bits cl_uint)
 # The vector types of kernels.
-set(CPP_keyed cl_uint2)
+set(CPP_keyed cl_ulong)
 
 # Sets ${RESULT} to the C++ type of a kernel's type. Types that are not listed are structs of the headers named records.h
 # that the file includes.

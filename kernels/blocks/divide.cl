@@ -34,13 +34,14 @@ typedef struct {
 static inline int distinct_by_x(int count, global const coordinate2* points, global const int* source,
                                 const block_scratch* s, global int* representatives) {
   fetch_bytes(points, count * sizeof(coordinate2));
+  fetch_bytes(source, count * sizeof(int));
   global keyed* elements = (global keyed*)s->by_x;
-  for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)i);
+  for (int i = 0; i < count; ++i) elements[i] = keyed_place(0, i);
   elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
   int distinct = 0;
   coordinate2 last = VECTOR(coordinate2, 0, 0);
   for (int i = 0; i < count; ++i) {
-    const int from = elements[i].y;
+    const int from = place_of_keyed(elements[i]);
     const coordinate2 p = points[from];
     if (distinct > 0 && p.x == last.x && p.y == last.y) {
       representatives[source[from]] = s->source[distinct - 1];
@@ -55,34 +56,37 @@ static inline int distinct_by_x(int count, global const coordinate2* points, glo
 static inline void rank(int count, block_scratch* s) {
   global keyed* elements = (global keyed*)s->by_y;
   // Of equal y, the larger x comes first.
-  for (int i = 0; i < count; ++i) elements[i] = VECTOR(keyed, 0, (uint)(count - 1 - i));
+  for (int i = 0; i < count; ++i) elements[i] = keyed_place(0, count - 1 - i);
   elements = sort_along(elements, (global keyed*)s->spare, count, s->points, 1);
   if (elements != (global keyed*)s->by_y) {
     s->spare = s->by_y;
     s->by_y = (global ranks*)elements;
   }
   for (int r = 0; r < count; ++r) {
-    const ranks both = VECTOR(ranks, (int)elements[r].y, r);
-    s->by_y[r] = both;
-    s->by_x[both.x] = both;
+    const int point = place_of_keyed(elements[r]);
+    s->by_y[r] = ranks_of(r, point);
+    s->by_x[point] = ranks_of(point, r);
   }
 }
 
-// Cuts a part at its middle. The order along the axis is split by position, the other one by comparison, stably.
+// Splits an order stably: what is below the threshold comes first.
+static inline void split_order(int count, ranks threshold, global ranks* restrict order, global ranks* restrict spare) {
+  long low = 0;
+  for (long i = 0; i < count; ++i) {
+    const ranks both = order[i];
+    order[low] = both;  // low <= i
+    spare[i - low] = both;
+    low += both < threshold;
+  }
+  for (long i = 0; i < count - low; ++i) order[low + i] = spare[i];
+}
+
+// Cuts a part at its middle. The order along the axis is split by position, the other one by comparison.
 static inline int cut_part(int begin, int middle, int end, const block_scratch* s) {
   const int axis = axis_of(begin, end, s->points, s->by_x, s->by_y);
-  global ranks* const order = axis ? s->by_x : s->by_y;
-  const int threshold = axis ? s->by_y[middle].y : s->by_x[middle].x;
-  int low = begin, high = 0;
-  for (int i = begin; i < end; ++i) {
-    const ranks both = order[i];
-    const int is_low = (axis ? both.y : both.x) < threshold;
-    order[low] = both;  // low <= i
-    s->spare[high] = both;
-    low += is_low;
-    high += !is_low;
-  }
-  for (int i = 0; i < high; ++i) order[low + i] = s->spare[i];
+  global const ranks* const along = axis ? s->by_y : s->by_x;
+  global ranks* const other = axis ? s->by_x : s->by_y;
+  split_order(end - begin, ranks_of(0, own_rank(along[middle])), other + begin, s->spare);
   return axis;
 }
 
@@ -97,7 +101,7 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
     }
   }
   for (int k = 0; k < count; ++k) {
-    const int r = s->by_x[k].x;
+    const int r = own_rank(s->by_x[k]);
     points[first + k] = s->points[r];
     source[first + k] = s->source[r];
   }

@@ -145,16 +145,17 @@ WITH_BARRIERS void rank(int count, const block_arrays* s) {
   global int* const space = (global int*)s->spare;
   global const int* const elements = sort_group(space, space + count, count, s->points, 1);
   for (int r = get_local_id(0); r < count; r += get_local_size(0)) {
-    const ranks both = VECTOR(ranks, elements[r], r);
-    s->by_y[r] = both;
-    s->by_x[both.x] = both;
+    const int point = elements[r];
+    s->by_y[r] = ranks_of(r, point);
+    s->by_x[point] = ranks_of(point, r);
   }
   barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
 // A part that is cut, and what of it comes low: vertices whose place along the axis is below a threshold.
 typedef struct {
-  int number, begin, middle, end, axis, threshold;
+  int number, begin, middle, end, axis;
+  ranks threshold;
 } part_to_cut;
 
 static inline part_to_cut part_with(int number, int count, int depth, const block_arrays* s) {
@@ -164,11 +165,11 @@ static inline part_to_cut part_with(int number, int count, int depth, const bloc
   part.middle = part_begin(count, depth + 1, 2 * number + 1);
   part.end = part_begin(count, depth, number + 1);
   part.axis = s->axes[(1 << depth) + number];
-  part.threshold = part.axis ? s->by_y[part.middle].y : s->by_x[part.middle].x;
+  part.threshold = ranks_of(0, own_rank((part.axis ? s->by_y : s->by_x)[part.middle]));
   return part;
 }
 
-static inline int is_low(ranks both, part_to_cut part) { return (part.axis ? both.y : both.x) < part.threshold; }
+static inline int is_low(ranks both, part_to_cut part) { return both < part.threshold; }
 
 static inline global ranks* order_to_split(part_to_cut part, const block_arrays* s) {
   return part.axis ? s->by_x : s->by_y;
@@ -415,7 +416,7 @@ kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict
   const int depth = halving_depth(distinct);
   for (int d = 0; d < depth; ++d) cut_parts(distinct, d, &s, sums);
   for (int k = me; k < distinct; k += lanes) {
-    const int r = s.by_x[k].x;
+    const int r = own_rank(s.by_x[k]);
     points[first + k] = s.points[r];
     source[first + k] = s.source[r];
   }

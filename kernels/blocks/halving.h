@@ -9,8 +9,12 @@
 
 BEGIN_SHARED
 
-// Where a point stands in either order.
-typedef int2 ranks;
+// A point in the order of one axis: its rank in the other order, in the upper half, and in this one, in the lower half.
+// So one comparison tells on which side of a cut across the other axis it lies. Rank in x is the number of the point.
+typedef ulong ranks;
+static inline ranks ranks_of(int own, int other) { return (ulong)other << 32 | (uint)own; }
+static inline int own_rank(ranks both) { return (int)(uint)both; }
+static inline int other_rank(ranks both) { return (int)(both >> 32); }
 
 // The least depth of which all parts are leaves.
 static inline int halving_depth(int count) {
@@ -27,8 +31,8 @@ static inline int part_from(int count, int depth, int k) { return (int)((((long)
 static inline int axis_of(int begin, int end, GLOBAL const coordinate2* points, GLOBAL const ranks* by_x,
                           GLOBAL const ranks* by_y) {
   const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
-  const coordinate width = rounded_difference(points[by_x[high].x].x, points[by_x[low].x].x);
-  const coordinate height = rounded_difference(points[by_y[high].x].y, points[by_y[low].x].y);
+  const coordinate width = rounded_difference(points[own_rank(by_x[high])].x, points[own_rank(by_x[low])].x);
+  const coordinate height = rounded_difference(points[other_rank(by_y[high])].y, points[other_rank(by_y[low])].y);
   return height > width;
 }
 

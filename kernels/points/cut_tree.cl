@@ -59,9 +59,9 @@ kernel void sort_chunks(int n, SAMPLED_CHUNKS(), global keyed* elements, global 
     const sampled_tree own = chunk.own;
     const int first = chunk.first;
     const int place = axis * all_samples + first;
-    for (int i = 0; i < own.chunk; ++i) elements[place + i] = VECTOR(keyed, 0, (uint)i);
+    for (int i = 0; i < own.chunk; ++i) elements[place + i] = keyed_place(0, i);
     global const keyed* const sorted = sort_along(elements + place, spare + place, own.chunk, samples + first, axis);
-    for (int i = 0; i < own.chunk; ++i) order[place + i] = first + (int)sorted[i].y;
+    for (int i = 0; i < own.chunk; ++i) order[place + i] = first + place_of_keyed(sorted[i]);
   }
 }
 

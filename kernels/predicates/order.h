@@ -13,47 +13,65 @@ static inline int precedes(coordinate2 p, coordinate2 q, int axis) {
   return axis ? comes_before(VECTOR(coordinate2, p.y, -p.x), VECTOR(coordinate2, q.y, -q.x)) : comes_before(p, q);
 }
 
-// Elements to sort: a coarse key and the place of the point.
-typedef uint2 keyed;
-#define COARSE_BITS 24
+// The coordinate by which an axis sorts has its number; the one that breaks ties has the next number.
+static inline coordinate sorted_coordinate(coordinate2 p, int number) {
+  return number == 0 ? p.x : number == 1 ? p.y : -p.x;
+}
+
+// An element to sort: a coarse key in the upper half, the place of the point in the lower one. One number is moved
+// faster than a vector of two.
+typedef ulong keyed;
+static inline keyed keyed_place(uint key, int place) { return (keyed)key << 32 | (uint)place; }
+static inline uint coarse_key(keyed element) { return (uint)(element >> 32); }
+static inline int place_of_keyed(keyed element) { return (int)(uint)element; }
+
 #define COARSE_DIGIT 8
 #define COARSE_DIGITS (1 << COARSE_DIGIT)
+#define MOST_COARSE_DIGITS 3
+static inline uint coarse_digit(uint key, int digit) { return key >> digit * COARSE_DIGIT & (COARSE_DIGITS - 1); }
+// Up to so many points, keys of one digit tell most of them apart.
+#define ONE_DIGIT_POINTS 64
 
-static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* RESTRICT to, int n, int shift) {
-  uint place[COARSE_DIGITS];
-  for (int d = 0; d < COARSE_DIGITS; ++d) place[d] = 0;
-  for (int i = 0; i < n; ++i) ++place[from[i].x >> shift & (COARSE_DIGITS - 1)];
+// Sorts stably by a digit, of whose values these are the counts.
+static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* RESTRICT to, int n, int digit,
+                               uint* counts) {
   uint sum = 0;
   for (int d = 0; d < COARSE_DIGITS; ++d) {
-    const uint count = place[d];
-    place[d] = sum;
+    const uint count = counts[d];
+    counts[d] = sum;
     sum += count;
   }
   for (int i = 0; i < n; ++i) {
     const keyed element = from[i];
-    to[place[element.x >> shift & (COARSE_DIGITS - 1)]++] = element;
+    to[counts[coarse_digit(coarse_key(element), digit)]++] = element;
   }
 }
 
-// Sorts elements stably by the leading bits of a coordinate, as many as tell points of this block apart. Returns
-// elements or spare, whichever holds the result.
+// Sorts elements stably by the leading bits of a coordinate, so many digits of those that tell points of this block
+// apart. Returns elements or spare, whichever holds the result.
 static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
-                                          GLOBAL const coordinate2* points, int axis) {
-  ulong least = ~0UL, most = 0;
-  for (int i = 0; i < n; ++i) {
-    const coordinate2 p = points[i];
-    const ulong key = orderable(axis ? p.y : p.x);
-    least = min(least, key);
-    most = max(most, key);
+                                          GLOBAL const coordinate2* points, int number, int digits) {
+  if (n == 0) return elements;
+  coordinate least = sorted_coordinate(points[0], number), most = least;
+  for (int i = 1; i < n; ++i) {
+    const coordinate at = sorted_coordinate(points[i], number);
+    least = at < least ? at : least;
+    most = at > most ? at : most;
   }
-  const int bits = 64 - (int)clz(most - least);
-  const int dropped = max(0, bits - COARSE_BITS);
-  for (int i = 0; i < n; ++i) {
-    const coordinate2 p = points[elements[i].y];
-    elements[i].x = (uint)((orderable(axis ? p.y : p.x) - least) >> dropped);
+  uint counts[MOST_COARSE_DIGITS][COARSE_DIGITS];
+  for (int digit = 0; digit < digits; ++digit) {
+    for (int d = 0; d < COARSE_DIGITS; ++d) counts[digit][d] = 0;
   }
-  for (int shift = 0; shift < bits - dropped; shift += COARSE_DIGIT) {
-    stable_pass(elements, spare, n, shift);
+  const ulong first = orderable(least);
+  const int dropped = max(0, 64 - (int)clz(orderable(most) - first) - digits * COARSE_DIGIT);
+  for (int i = 0; i < n; ++i) {
+    const int place = place_of_keyed(elements[i]);
+    const uint key = (uint)((orderable(sorted_coordinate(points[place], number)) - first) >> dropped);
+    elements[i] = keyed_place(key, place);
+    for (int digit = 0; digit < digits; ++digit) ++counts[digit][coarse_digit(key, digit)];
+  }
+  for (int digit = 0; digit < digits; ++digit) {
+    stable_pass(elements, spare, n, digit, counts[digit]);
     GLOBAL keyed* const sorted = spare;
     spare = elements;
     elements = sorted;
@@ -68,9 +86,10 @@ static inline int sort_ties(GLOBAL keyed* elements, int n, GLOBAL const coordina
   for (int i = 1; i < n; ++i) {
     const keyed element = elements[i];
     int j = i;
-    if (elements[j - 1].x == element.x) {
-      const coordinate2 p = points[element.y];
-      while (j > 0 && elements[j - 1].x == element.x && precedes(p, points[elements[j - 1].y], axis)) {
+    if (coarse_key(elements[j - 1]) == coarse_key(element)) {
+      const coordinate2 p = points[place_of_keyed(element)];
+      while (j > 0 && coarse_key(elements[j - 1]) == coarse_key(element) &&
+             precedes(p, points[place_of_keyed(elements[j - 1])], axis)) {
         elements[j] = elements[j - 1];
         --j;
         if (--left < 0) {
@@ -92,8 +111,8 @@ static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed
       const int middle = min(n, begin + width), end = min(n, begin + 2 * width);
       int low = begin, high = middle;
       for (int to = begin; to < end; ++to) {
-        const int take_high =
-            low == middle || (high < end && precedes(points[elements[high].y], points[elements[low].y], axis));
+        const int take_high = low == middle || (high < end && precedes(points[place_of_keyed(elements[high])],
+                                                                       points[place_of_keyed(elements[low])], axis));
         spare[to] = take_high ? elements[high++] : elements[low++];
       }
     }
@@ -108,7 +127,15 @@ static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed
 // Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at worst.
 static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
                                        GLOBAL const coordinate2* points, int axis) {
-  GLOBAL keyed* sorted = sort_coarsely(elements, spare, n, points, axis);
+  GLOBAL keyed* sorted = n > ONE_DIGIT_POINTS ? sort_coarsely(elements, spare, n, points, axis, 2)
+                                              : sort_coarsely(elements, spare, n, points, axis, 1);
+  if (sort_ties(sorted, n, points, axis)) return sorted;
+  // Where many have the same coordinate, or a few are far away.
+  for (int number = axis + 1; number >= axis; --number) {
+    spare = sorted == elements ? spare : elements;
+    elements = sorted;
+    sorted = sort_coarsely(elements, spare, n, points, number, MOST_COARSE_DIGITS);
+  }
   if (sort_ties(sorted, n, points, axis)) return sorted;
   return sort_by_merging(sorted, sorted == elements ? spare : elements, n, points, axis);
 }

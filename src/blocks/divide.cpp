@@ -30,7 +30,7 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
   const auto next = scratch.allocate<cl_int>(1);
   const auto points = scratch.allocate<cl_double2>(places);
   const auto source = scratch.allocate<cl_int>(places);
-  const auto ranks = scratch.allocate<cl_int2>(3 * places);
+  const auto ranks = scratch.allocate<cl_ulong>(3 * places);
   const auto axes = scratch.allocate<cl_uchar>(places);
   const bool is_watched = milestones != nullptr && milestones->are_wanted();
   const std::size_t per_launch =

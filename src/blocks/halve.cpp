@@ -150,7 +150,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                             .axes = halved.axes,
                             .block_scratch = {.scratch_points = sorted.points,
                                               .scratch_source = sorted.source,
-                                              .scratch_ranks = scratch.allocate<cl_int2>(3 * blocks.points)},
+                                              .scratch_ranks = scratch.allocate<cl_ulong>(3 * blocks.points)},
                             .scratch_lows = scratch.allocate<cl_int>(blocks.points)});
   return halved;
 }

@@ -35,7 +35,7 @@ struct Scratch {
   // Of the largest block.
   std::vector<cl_double2> points;
   std::vector<cl_int> point_source;
-  std::vector<cl_int2> ranks;
+  std::vector<cl_ulong> ranks;
   std::vector<cl_uchar> axes;
   std::vector<cl_uchar> inside, found;
   std::vector<cl_uint> first_rows;

@@ -73,8 +73,8 @@ CutTrees::Samples CutTrees::draw(const Buffer<cl_double>& input) const {
 // Sorts the samples of each chunk along both axes, into `order`.
 void CutTrees::sort_chunks(const Buffer<cl_double2>& samples, const Buffer<cl_int>& order) const {
   Arena::Scope scope(runtime_.arena());
-  const auto elements = runtime_.arena().allocate<cl_uint2>(2 * samples_);
-  const auto spare = runtime_.arena().allocate<cl_uint2>(2 * samples_);
+  const auto elements = runtime_.arena().allocate<cl_ulong>(2 * samples_);
+  const auto spare = runtime_.arena().allocate<cl_ulong>(2 * samples_);
   launch(2, kernels::sort_chunks{
                 .sampled_chunks = chunks_of(samples), .elements = elements, .spare = spare, .order = order});
 }

@@ -45,7 +45,7 @@ std::vector<SortCase> sort_cases(const std::vector<std::size_t>& sizes, FixtureR
   return cases;
 }
 
-/// The leading 24 of the bits in which the coordinates of the points differ.
+/// The leading 16 of the bits in which the coordinates of the points differ.
 std::vector<cl_uint> coarse_keys(const std::vector<cl_double2>& points, int axis) {
   std::vector<cl_ulong> keys;
   for (const cl_double2& p : points) {
@@ -60,14 +60,18 @@ std::vector<cl_uint> coarse_keys(const std::vector<cl_double2>& points, int axis
   if (keys.empty()) return coarse;
   const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
   int dropped = 0;
-  while ((*most - *least) >> dropped >= cl_ulong{1} << 24) ++dropped;
+  while ((*most - *least) >> dropped >= cl_ulong{1} << 16) ++dropped;
   for (const cl_ulong key : keys) coarse.push_back(static_cast<cl_uint>((key - *least) >> dropped));
   return coarse;
 }
 
-std::vector<cl_uint> places_of(const std::vector<cl_uint2>& elements, std::size_t first, std::size_t count) {
+cl_ulong element_of(cl_uint key, cl_uint place) { return cl_ulong{key} << 32 | place; }
+cl_uint key_of(cl_ulong element) { return static_cast<cl_uint>(element >> 32); }
+cl_uint place_of(cl_ulong element) { return static_cast<cl_uint>(element); }
+
+std::vector<cl_uint> places_of(const std::vector<cl_ulong>& elements, std::size_t first, std::size_t count) {
   std::vector<cl_uint> places;
-  for (std::size_t i = first; i < first + count; ++i) places.push_back(elements[i].s[1]);
+  for (std::size_t i = first; i < first + count; ++i) places.push_back(place_of(elements[i]));
   return places;
 }
 
@@ -81,21 +85,21 @@ void check_sorting(Runtime& runtime, const std::vector<SortCase>& cases, int axi
   const Arena::Scope scope(runtime.arena());
   std::vector<cl_int> offsets{0};
   std::vector<cl_double2> points;
-  std::vector<cl_uint2> elements;
+  std::vector<cl_ulong> elements;
   for (const SortCase& one : cases) {
     points.insert(points.end(), one.points.begin(), one.points.end());
-    for (const cl_uint place : one.places) elements.push_back({{0xdeadbeef, place}});
+    for (const cl_uint place : one.places) elements.push_back(element_of(0xdeadbeef, place));
     offsets.push_back(static_cast<cl_int>(points.size()));
   }
   const std::size_t n = points.size();
   const auto device_offsets = testing::upload(runtime, offsets);
   const auto device_points = testing::upload(runtime, points);
-  const auto spare = testing::guarded<cl_uint2>(runtime, n);
-  const auto sorted = testing::guarded<cl_uint2>(runtime, n);
-  const auto coarse = testing::guarded<cl_uint2>(runtime, n);
+  const auto spare = testing::guarded<cl_ulong>(runtime, n);
+  const auto sorted = testing::guarded<cl_ulong>(runtime, n);
+  const auto coarse = testing::guarded<cl_ulong>(runtime, n);
   const auto finished = testing::guarded<cl_int>(runtime, cases.size());
-  const auto ties = testing::guarded<cl_uint2>(runtime, n);
-  const auto merged = testing::guarded<cl_uint2>(runtime, n);
+  const auto ties = testing::guarded<cl_ulong>(runtime, n);
+  const auto merged = testing::guarded<cl_ulong>(runtime, n);
   const auto uploaded = testing::upload(runtime, elements);
   const auto again = testing::upload(runtime, elements);
   testing::map_unchecked(runtime, "order", "sort_cases", cases.size(), cl_int{axis}, device_offsets,
@@ -122,18 +126,18 @@ void check_sorting(Runtime& runtime, const std::vector<SortCase>& cases, int axi
     EXPECT_TRUE(same(places_of(host_merged, first, size), expected));
 
     const std::vector<cl_uint> keys = coarse_keys(one.points, axis);
-    std::vector<cl_uint2> by_key;
-    for (const cl_uint place : one.places) by_key.push_back({{keys[place], place}});
+    std::vector<cl_ulong> by_key;
+    for (const cl_uint place : one.places) by_key.push_back(element_of(keys[place], place));
     std::stable_sort(by_key.begin(), by_key.end(),
-                     [](const cl_uint2& a, const cl_uint2& b) { return a.s[0] < b.s[0]; });
+                     [](cl_ulong a, cl_ulong b) { return key_of(a) < key_of(b); });
     const auto begin = host_coarse.begin() + static_cast<std::ptrdiff_t>(first);
-    EXPECT_TRUE(same(std::vector<cl_uint2>(begin, begin + static_cast<std::ptrdiff_t>(size)), by_key));
+    EXPECT_TRUE(same(std::vector<cl_ulong>(begin, begin + static_cast<std::ptrdiff_t>(size)), by_key));
 
     // Insertion moves an element past those of its key that it precedes; given up beyond four a point.
     std::size_t moves = 0;
     for (std::size_t i = 0; i < size; ++i) {
-      for (std::size_t j = i; j > 0 && by_key[j - 1].s[0] == by_key[i].s[0] && moves <= 4 * size; --j) {
-        moves += comes_first(one.points[by_key[i].s[1]], one.points[by_key[j - 1].s[1]], axis);
+      for (std::size_t j = i; j > 0 && key_of(by_key[j - 1]) == key_of(by_key[i]) && moves <= 4 * size; --j) {
+        moves += comes_first(one.points[place_of(by_key[i])], one.points[place_of(by_key[j - 1])], axis);
       }
     }
     EXPECT_EQ(host_finished[c], moves <= 4 * size ? 1 : 0);

@@ -21,8 +21,8 @@ kernel void sort_cases(int n, int axis, global const int* restrict offsets,
   }
 }
 
-// What each step of a sort leaves: the coarse keys, their ties, which are finished or given up, and the merge
-// of these.
+// What each step of a sort leaves: the coarse keys, here of two digits, their ties, which are finished or
+// given up, and the merge of these.
 kernel void sort_steps(int n, int axis, global const int* restrict offsets,
                        global const double2* restrict points, global keyed* elements, global keyed* spare,
                        global keyed* restrict coarse, global int* restrict finished,
@@ -30,7 +30,8 @@ kernel void sort_steps(int n, int axis, global const int* restrict offsets,
   const int c = get_global_id(0);
   if (c < n) {
     const int first = offsets[c], size = offsets[c + 1] - first;
-    global keyed* const in_order = sort_coarsely(elements + first, spare + first, size, points + first, axis);
+    global keyed* const in_order =
+        sort_coarsely(elements + first, spare + first, size, points + first, axis, 2);
     global keyed* const other = in_order == elements + first ? spare + first : elements + first;
     copy_elements(in_order, coarse + first, size);
     finished[c] = sort_ties(in_order, size, points + first, axis);
