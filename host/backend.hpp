@@ -19,7 +19,7 @@
 
 namespace flaunay::host {
 
-/// A kernel of a back end, with the arguments of its next launch.
+/// A kernel of a device, with the arguments of its next launch.
 class Kernel {
  public:
   explicit Kernel(std::string name) : name_(std::move(name)) {}
@@ -55,14 +55,6 @@ class Backend {
   /// complete when its call returns, and there are no queues and events.
   virtual std::size_t threads() const { return 0; }
 
-  /// options: those of the compiler, but for counting: whether the kernel is to count, if it can.
-  virtual std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options,
-                                              bool counting) = 0;
-  /// Forgets compiled programs. No kernel that was made of them must be used later.
-  virtual void forget_programs() {}
-  /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.
-  virtual void launch(Kernel& kernel, std::size_t work_items, std::size_t group) = 0;
-
   virtual void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) = 0;
   virtual void write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) = 0;
   virtual void fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
@@ -76,8 +68,25 @@ class Backend {
   /// See Runtime::use_queue.
   virtual void use_queue(cl_command_queue wanted, bool profiling) = 0;
 
+  // What follows is for threads of the host.
+
+  /// Launches a function that a kernel is compiled to. arguments: see NativeFunction.
+  virtual void launch(const KernelName&, NativeFunction, void* const* /*arguments*/,
+                      std::size_t /*work_items*/, std::size_t /*group*/) {}
+  /// Calls work(k) for each k below n, on all threads.
+  virtual void share(std::size_t /*n*/, const std::function<void(std::size_t)>& /*work*/) {}
+
   // What follows is for a device with queues. Without them, there is nothing to wait for.
 
+  /// options: those of the compiler, but for counting: whether the kernel is to count, if it can.
+  virtual std::unique_ptr<Kernel> make_kernel(const KernelName&, const std::string& /*options*/,
+                                              bool /*counting*/) {
+    return nullptr;
+  }
+  /// Forgets compiled programs. No kernel that was made of them must be used later.
+  virtual void forget_programs() {}
+  /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.
+  virtual void launch(Kernel&, std::size_t /*work_items*/, std::size_t /*group*/) {}
   /// After the next wait, host memory that was wrapped has what kernels have written.
   virtual void hand_over(cl_mem, std::size_t) {}
   /// See the functions of these names in Runtime.

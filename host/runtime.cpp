@@ -37,6 +37,7 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
     : sizes_(std::move(settings.sizes)),
       capabilities_(settings.capabilities),
       backend_(make(accounts_)),
+      is_native_(backend_->threads() > 0),
       arena_(backend_->memory()) {
   if (sizes_->separate_buffers != 0) arena_.separate_buffers();
 }

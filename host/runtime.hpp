@@ -22,6 +22,7 @@
 #include "host/launch/kernel_arguments.hpp"
 #include "host/launch/sizes.hpp"
 #include "host/memory/arena.hpp"
+#include "host/native/launch.hpp"
 
 namespace flaunay::host {
 
@@ -49,7 +50,7 @@ class Runtime {
   }
 
   /// Whether kernels run on threads of the host; each command is complete when its call returns.
-  bool is_native() const { return threads() > 0; }
+  bool is_native() const { return is_native_; }
   /// Null if kernels run natively.
   boost::compute::device device() const { return backend_->device(); }
   /// Null if kernels run natively.
@@ -61,6 +62,8 @@ class Runtime {
   std::string identity() const { return backend_->identity(); }
   /// The number of threads that run native kernels; 0 on a device.
   std::size_t threads() const { return backend_->threads(); }
+  /// Calls work(k) for each k below n, on the threads that run native kernels. It must not use this runtime.
+  void share(std::size_t n, const std::function<void(std::size_t)>& work) { backend_->share(n, work); }
   /// Where arenas and buffers get their memory from.
   MemorySource memory() const { return backend_->memory(); }
   /// What the device can do; the host can do everything.
@@ -141,14 +144,13 @@ class Runtime {
   template <typename... Arguments>
   void launch_unchecked(const KernelName& name, std::size_t work_items, std::size_t group,
                         const Arguments&... arguments) {
-    Kernel& kernel = find_kernel(name);
-    cl_uint index = 0;
-    (set_argument(kernel, index++, arguments), ...);
-    finish_launch(kernel, index, work_items, group);
+    launch_by(name, work_items, group, [&](auto&& visit) { (visit(arguments), ...); });
   }
 
   /// The largest work-group size of this kernel; 0 if it needs more local memory than the device has.
-  std::size_t largest_group(const KernelName& name) { return find_kernel(name).largest_group; }
+  std::size_t largest_group(const KernelName& name) {
+    return is_native() ? 1 : find_kernel(name).largest_group;
+  }
 
   /// Copies from the device to the host, and waits for it.
   template <typename T>
@@ -333,10 +335,27 @@ class Runtime {
   void launch_with(std::size_t work_items, std::size_t group, const Launcher& launcher,
                    const Leading&... leading) {
     if (work_items == 0 || counts_only_) return;
-    Kernel& kernel = find_kernel(Launcher::kernel_name);
+    launch_by(Launcher::kernel_name, work_items, group, [&](auto&& visit) {
+      (visit(leading), ...);
+      launcher.for_each_argument(visit);
+    });
+  }
+  /// for_each_argument: calls a function with each argument.
+  template <typename ForEachArgument>
+  void launch_by(const KernelName& name, std::size_t work_items, std::size_t group,
+                 const ForEachArgument& for_each_argument) {
+    if (is_native_) {
+      NativeArguments arguments;
+      for_each_argument([&](const auto& argument) { arguments(argument); });
+      const bool counts = counting_ && name.counting != nullptr;
+      if (counts) arguments(counters_);
+      backend_->launch(name, counts ? name.counting : name.native, arguments.get(), work_items, group);
+      if (counts && accounts_.log != nullptr) record_counted();
+      return;
+    }
+    Kernel& kernel = find_kernel(name);
     cl_uint index = 0;
-    (set_argument(kernel, index++, leading), ...);
-    launcher.for_each_argument([&](const auto& argument) { set_argument(kernel, index++, argument); });
+    for_each_argument([&](const auto& argument) { set_argument(kernel, index++, argument); });
     finish_launch(kernel, index, work_items, group);
   }
   /// arguments: the number of arguments that are set. If the kernel has one more, that is the counters.
@@ -357,11 +376,11 @@ class Runtime {
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const In<T>& array) {
-    set_bytes(kernel, index, array.memory.get());
+    set_bytes(kernel, index, array.memory);
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Out<T>& array) {
-    set_bytes(kernel, index, array.memory.get());
+    set_bytes(kernel, index, array.memory);
   }
   template <typename T>
   void set_argument(Kernel& kernel, cl_uint index, const Value<T>& value) {
@@ -390,6 +409,7 @@ class Runtime {
   std::shared_ptr<const Sizes> sizes_;
   Capabilities capabilities_;
   std::unique_ptr<Backend> backend_;
+  bool is_native_;
   std::vector<std::shared_ptr<void>> kept_;  // values of write_kept
   Arena arena_;
   // Two of each: without counting, and with it.

@@ -38,7 +38,7 @@ struct Accounts {
   };
   Next next{};
 
-  void add_launch(const std::string& kernel, std::size_t work_items, std::size_t group) {
+  void add_launch(const char* kernel, std::size_t work_items, std::size_t group) {
     ++launches;
     const Next noted = std::exchange(next, {});
     if (log == nullptr) return;

@@ -7,7 +7,6 @@
 
 #include <cassert>
 #include <cstddef>
-#include <memory>
 #include <type_traits>
 
 #include "host/memory/arena.hpp"
@@ -36,26 +35,27 @@ enum class Form {
 };
 
 /// An array of the host itself, for native kernels that are launched without a runtime
-/// (host/native/launch.hpp). It must outlive the launch.
+/// (host/native/launch.hpp).
 template <typename T>
 struct Here {
   T* values;
 };
 
-/// An array that a kernel reads. The launcher keeps it alive.
+/// An array that a kernel reads. It must outlive the launch: a launcher that is named must not be made of
+/// buffers that are not.
 template <typename T>
 struct In {
-  In(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
-  In(Here<T> here) : memory(std::shared_ptr<void>(), handle_of(here.values)) {}
-  std::shared_ptr<_cl_mem> memory;
+  In(const Buffer<T>& buffer) : memory(buffer.memory()) {}
+  In(Here<T> here) : memory(handle_of(here.values)) {}
+  cl_mem memory;
 };
 
-/// An array that a kernel writes, or reads and writes. The launcher keeps it alive.
+/// An array that a kernel writes, or reads and writes. It must outlive the launch.
 template <typename T>
 struct Out {
-  Out(const Buffer<T>& buffer) : memory(buffer.kept_memory()) {}
-  Out(Here<T> here) : memory(std::shared_ptr<void>(), handle_of(here.values)) {}
-  std::shared_ptr<_cl_mem> memory;
+  Out(const Buffer<T>& buffer) : memory(buffer.memory()) {}
+  Out(Here<T> here) : memory(handle_of(here.values)) {}
+  cl_mem memory;
 };
 
 /// A number or a struct. Numbers of elements fit into the kernels' 32-bit integers: callers have checked

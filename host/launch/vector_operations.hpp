@@ -47,6 +47,7 @@ void segmented_arg_reduce(Runtime& runtime, std::size_t n, const Kernel& kernel)
   Arena::Scope scope(runtime.arena());
   In<cl_int> segments = kernel.segment;
   In<cl_int> candidates = kernel.segment;  // any buffer: the first pass does not read it
+  Buffer<cl_int> read_segments, read_candidates;
   for (bool first = true;; first = false) {
     const std::size_t chunk = runtime.sizes().chunk(n);
     const std::size_t chunk_count = (n + chunk - 1) / chunk;
@@ -54,8 +55,8 @@ void segmented_arg_reduce(Runtime& runtime, std::size_t n, const Kernel& kernel)
     const auto partial_candidates = runtime.arena().allocate<cl_int>(2 * chunk_count);
     runtime.arg_reduce(n, chunk, first, segments, candidates, partial_segments, partial_candidates, kernel);
     if (chunk_count == 1) return;
-    segments = partial_segments;
-    candidates = partial_candidates;
+    segments = read_segments = partial_segments;
+    candidates = read_candidates = partial_candidates;
     n = 2 * chunk_count;
   }
 }

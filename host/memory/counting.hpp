@@ -17,10 +17,6 @@ class CountingBackend : public Backend {
 
   std::string name() const override { return "counting"; }
   MemorySource memory() const override { return {{}, true, alignment_, std::size_t{1} << 62}; }
-  std::unique_ptr<Kernel> make_kernel(const KernelName&, const std::string&, bool) override {
-    return nullptr;
-  }
-  void launch(Kernel&, std::size_t, std::size_t) override {}
   void read(cl_mem, std::size_t, std::size_t, void*, bool) override {}
   void write(cl_mem, std::size_t, std::size_t, const void*, bool) override {}
   void fill(cl_mem, std::size_t, std::size_t, const void*, std::size_t) override {}

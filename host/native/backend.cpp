@@ -9,60 +9,24 @@
 #include "host/error.hpp"
 
 namespace flaunay::host {
-namespace {
-
-class NativeKernel : public Kernel {
- public:
-  NativeKernel(const char* name, NativeFunction made, bool counts)
-      : Kernel(name), function(made), counts_(counts) {}
-
-  void set_argument(cl_uint index, const void* value, std::size_t bytes) override {
-    if (values_.size() <= index) add_values(index + 1);
-    std::memcpy(values_[index].bytes, value, bytes);
-  }
-  bool takes_counters(cl_uint) const override { return counts_; }
-  void** values() { return places_.data(); }
-
-  const NativeFunction function;
-
- private:
-  struct Value {
-    alignas(8) unsigned char bytes[kLargestArgument];
-  };
-  void add_values(std::size_t count) {
-    places_.resize(count);
-    values_.resize(count);
-    for (std::size_t k = 0; k < count; ++k) places_[k] = values_[k].bytes;
-  }
-
-  const bool counts_;
-  std::vector<Value> values_;
-  std::vector<void*> places_;  // of the values
-};
-
-}  // namespace
-
-std::unique_ptr<Kernel> NativeBackend::make_kernel(const KernelName& wanted, const std::string&,
-                                                   bool counting) {
-  if (wanted.native == nullptr) {
-    throw DeviceError(fmt::format("kernel {} needs an OpenCL device", wanted.name));
-  }
-  const bool counts = counting && wanted.counting != nullptr;
-  return std::make_unique<NativeKernel>(wanted.name, counts ? wanted.counting : wanted.native, counts);
-}
 
 // Parts of a launch are several groups, but not so many that threads would wait for the last one for long.
 constexpr std::size_t kPartsPerThread = 8;
 
-void NativeBackend::launch(Kernel& kernel, std::size_t work_items, std::size_t group) {
-  auto& native = static_cast<NativeKernel&>(kernel);
-  accounts().add_launch(kernel.name(), work_items, group);
+void NativeBackend::launch(const KernelName& name, NativeFunction function, void* const* arguments,
+                           std::size_t work_items, std::size_t group) {
+  if (function == nullptr) throw DeviceError(fmt::format("kernel {} needs an OpenCL device", name.name));
+  accounts().add_launch(name.name, work_items, group);
   const double begin = profiling_ ? now() : 0;
-  threads_.share(work_items, std::max(group, work_items / (kPartsPerThread * threads_.count())),
-                 [&](std::size_t first, std::size_t last) {
-                   native.function({first, last, work_items}, native.values());
-                 });
-  if (profiling_) accounts().add_time(kernel.name(), accounts().last_launch(), now() - begin);
+  const std::size_t part = std::max(group, work_items / (kPartsPerThread * threads_.count()));
+  if (work_items <= part || threads_.count() == 1) {
+    function({0, work_items, work_items}, arguments);
+  } else {
+    threads_.share(work_items, part, [&](std::size_t first, std::size_t last) {
+      function({first, last, work_items}, arguments);
+    });
+  }
+  if (profiling_) accounts().add_time(name.name, accounts().last_launch(), now() - begin);
 }
 
 void NativeBackend::read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool) {

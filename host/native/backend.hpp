@@ -16,9 +16,11 @@ class NativeBackend : public Backend {
   std::size_t threads() const override { return threads_.count(); }
 
   /// Throws DeviceError if the kernel is not compiled for the host.
-  std::unique_ptr<Kernel> make_kernel(const KernelName& name, const std::string& options,
-                                      bool counting) override;
-  void launch(Kernel& kernel, std::size_t work_items, std::size_t group) override;
+  void launch(const KernelName& name, NativeFunction function, void* const* arguments, std::size_t work_items,
+              std::size_t group) override;
+  void share(std::size_t n, const std::function<void(std::size_t)>& work) override {
+    threads_.share_each(n, work);
+  }
   void read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) override;
   void write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) override;
   void fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,

@@ -1,9 +1,9 @@
-// Launches of native kernels on the calling thread, without a runtime, for calls that take microseconds.
+// The arguments of native kernels; and launches on the calling thread, without a runtime, for calls that take
+// microseconds.
 #pragma once
 
 #include <cassert>
 #include <cstddef>
-#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -27,18 +27,26 @@ class NativeArguments {
   void operator()(const Value<T>& value) {
     add(&value.value);
   }
+  template <typename T, typename = std::enable_if_t<std::is_arithmetic_v<T>>>
+  void operator()(const T& value) {
+    add(&value);
+  }
+  template <typename T>
+  void operator()(const Buffer<T>& array) {
+    add_array(array.memory());
+  }
   template <typename T>
   void operator()(const In<T>& array) {
-    add_array(array.memory.get());
+    add_array(array.memory);
   }
   template <typename T>
   void operator()(const Out<T>& array) {
-    add_array(array.memory.get());
+    add_array(array.memory);
   }
   void* const* get() const { return values_; }
 
  private:
-  static constexpr std::size_t kMost = 40;  // those of any kernel
+  static constexpr std::size_t kMost = 64;  // more than any kernel has
 
   void add(const void* value) {
     assert(count_ < kMost);

@@ -148,7 +148,7 @@ std::unique_ptr<Kernel> OpenClBackend::make_kernel(const KernelName& wanted, con
 void OpenClBackend::launch(Kernel& launched, std::size_t work_items, std::size_t group) {
   auto& kernel = static_cast<OpenClKernel&>(launched);
   if (!kernel.requires_group) group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
-  accounts().add_launch(kernel.name(), work_items, group);
+  accounts().add_launch(kernel.name().c_str(), work_items, group);
   cl_event event = nullptr;
   for (;;) {
     const std::size_t global = (work_items + group - 1) / group * group;
