@@ -124,7 +124,7 @@ class Insertion {
     if (!overlaps && status(kernel::INSERTION_STOPPED) != 0) {
       overlaps = !insert_in_stages(segments, limits.pieces);
       if (!overlaps) {
-        start_again();
+        clear_claims();
         unique = unique_pairs(segments);
         walks = walk(unique, {.pieces = limits.pieces});
         overlaps = status(kernel::INSERTION_PIECES) > limits.pieces;
@@ -161,7 +161,7 @@ class Insertion {
       Arena::Scope scope(arena_);
       const std::size_t count = stage.size() / 2;
       if (count == 0) continue;
-      start_again();
+      clear_claims();
       const UniquePairs unique = unique_pairs({runtime_.upload(arena_, std::move(stage)), count});
       const Walks walks = walk(unique, {.pieces = most_pieces});
       if (status(kernel::INSERTION_PIECES) > most_pieces) return false;
@@ -211,6 +211,11 @@ class Insertion {
     return pieces;
   }
 
+  // For others of the segments. Insertion keeps the places of all ends.
+  void clear_claims() {
+    clear_status();
+    runtime_.fill(claims_, rows_, cl_uint{UNCLAIMED});
+  }
   // For other segments, in the triangulation as it is now.
   void start_again() {
     clear_status();
