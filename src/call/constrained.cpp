@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "call/areas.hpp"
 #include "call/domains.hpp"
+#include "call/groups.hpp"
 #include "call/insert_segments.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/crossings/lines.hpp"
@@ -45,13 +47,19 @@ void end_phase(const char* name, double begin, Statistics& statistics) {
   statistics.phases.push_back({name, seconds});
 }
 
+// What is asked for of the triangulation into which segments are inserted.
+Options plain_options(const ConstrainedOptions& options) {
+  Options plain = options;
+  plain.neighbors = true;
+  plain.halfedges = plain.areas = false;
+  return plain;
+}
+
 // Triangulates sets with segments. All triangles are kept, without labels; there are neighbours.
 ConstrainedTriangulation constrain(call::Implementation& self, const double* coordinates,
                                    const std::vector<std::size_t>& offsets, const Constraints& constraints,
                                    const ConstrainedOptions& options) {
-  Options plain = options;
-  plain.neighbors = true;
-  plain.halfedges = plain.areas = false;
+  const Options plain = plain_options(options);
   ConstrainedTriangulation result;
   static_cast<Triangulation&>(result) =
       call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
@@ -148,6 +156,73 @@ void finish(call::Implementation& self, const double* coordinates, const Options
   result.statistics.triangles = result.triangles.size() / 3;
 }
 
+// Where the segments of each group begin, and their end. Empty if they are not in the order of the groups.
+std::vector<std::size_t> group_segments(const std::vector<call::Group>& groups,
+                                        const Constraints& constraints) {
+  std::vector<std::size_t> first(1, 0);
+  for (std::size_t s = 0; s < constraints.segment_count; ++s) {
+    const auto v = static_cast<std::size_t>(constraints.segments[2 * s]);
+    while (first.size() < groups.size() && v >= groups[first.size()].first_point) first.push_back(s);
+    if (v < groups[first.size() - 1].first_point) return {};
+  }
+  first.resize(groups.size() + 1, constraints.segment_count);
+  return first;
+}
+
+// All stages of a group of sets on the calling thread, for segments [first, end).
+ConstrainedTriangulation constrain_group(call::Implementation& self, const double* coordinates,
+                                         const call::Group& group, const Constraints& constraints,
+                                         std::size_t first, std::size_t end,
+                                         const ConstrainedOptions& options,
+                                         const call::DomainRequest& request) {
+  const double* const points = coordinates + 2 * group.first_point;
+  const std::size_t n = group.offsets.back();
+  Ids segments(constraints.segments + 2 * first, constraints.segments + 2 * end);
+  for (std::int32_t& v : segments) v -= static_cast<std::int32_t>(group.first_point);
+  Constraints own;
+  own.segments = segments.data();
+  own.segment_count = end - first;
+  if (constraints.segment_markers != nullptr) own.segment_markers = constraints.segment_markers + first;
+  if (constraints.point_markers != nullptr) own.point_markers = constraints.point_markers + group.first_point;
+  constrained::Curves curves;
+  call::DomainRequest of_group = request;
+  if (request.curves != nullptr) {
+    curves = constrained::part_of(*request.curves, first, end);
+    of_group.curves = &curves;
+  }
+  call::Engine& engine = call::Engine::of_thread();
+  ConstrainedTriangulation result;
+  static_cast<Triangulation&>(result) =
+      call::triangulate_small({points, nullptr, n}, group.offsets, plain_options(options));
+  *call::insert_segments_on(engine, points, group.offsets, own, options, result);
+  carry_markers(own, n, result);
+  if (request.needs_depths())
+    call::apply_domains_on(engine, engine, points, group.offsets, own, of_group, result);
+  finish(self, points, options, result);
+  return result;
+}
+
+// Nothing if there are no groups, or if there is an error.
+std::optional<ConstrainedTriangulation> constrain_by_groups(
+    call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
+    const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
+  const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
+  if (has_places || options.profile || options.crossings == Crossings::split) return {};
+  if (!self.is_named() && offsets.back() <= self.host_tuning().host_points) return {};
+  call::Engine& engine = self.for_host_memory();
+  const std::vector<call::Group> groups = call::groups_of(engine, offsets);
+  if (groups.empty()) return {};
+  engine.check_size(offsets.back());
+  const std::vector<std::size_t> first = group_segments(groups, constraints);
+  if (first.empty()) return {};
+  ConstrainedOptions of_group = options;
+  of_group.progress = nullptr;
+  return call::by_groups<ConstrainedTriangulation>(engine, groups, options, [&](std::size_t k) {
+    return constrain_group(self, coordinates, groups[k], constraints, first[k], first[k + 1], of_group,
+                           request);
+  });
+}
+
 }  // namespace
 
 ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
@@ -158,6 +233,9 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
   check(constraints);
+  if (auto joined = constrain_by_groups(self, coordinates, offsets, constraints, options, request)) {
+    return *std::move(joined);
+  }
   ConstrainedTriangulation result = options.crossings == Crossings::split
                                         ? constrain_split(self, coordinates, offsets, constraints, options)
                                         : constrain(self, coordinates, offsets, constraints, options);

@@ -1,10 +1,12 @@
 #include "call/triangulate.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "blocks/run.hpp"
 #include "blocks/small.hpp"
 #include "call/areas.hpp"
+#include "call/groups.hpp"
 #include "host/clock.hpp"
 #include "host/opencl/device.hpp"
 #include "launchers/call/areas.cl.hpp"
@@ -90,6 +92,12 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
   return geometry::Done();
 }
 
+HostPoints part_of(const HostPoints& points, const Group& group) {
+  const std::size_t first = 2 * group.first_point;
+  return {points.wide == nullptr ? nullptr : points.wide + first,
+          points.narrow == nullptr ? nullptr : points.narrow + first, group.offsets.back()};
+}
+
 // Whether the sets are triangulated on the calling thread.
 bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
   if (offsets.back() > tuning.host_points) return false;
@@ -97,22 +105,6 @@ bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
     if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
   }
   return true;
-}
-
-Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
-                                const Options& options) {
-  Triangulation result;
-  const statistics::Phases phases(options);
-  phases.progress("triangulate", 0);
-  const double begin = host::now();
-  const std::vector<double> doubles = widened(points);
-  blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
-  if (options.areas) write_areas(points, result);
-  result.statistics.device = host::kHostName;
-  result.statistics.seconds = host::now() - begin;
-  result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
-  phases.progress("output", 1);
-  return result;
 }
 
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
@@ -210,6 +202,22 @@ Triangulation empty_result(Engine& self, std::size_t sets) {
   return result;
 }
 
+Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
+                                const Options& options) {
+  Triangulation result;
+  const statistics::Phases phases(options);
+  phases.progress("triangulate", 0);
+  const double begin = host::now();
+  const std::vector<double> doubles = widened(points);
+  blocks::run_small(points.wide != nullptr ? points.wide : doubles.data(), offsets, options, result);
+  if (options.areas) write_areas(points, result);
+  result.statistics.device = host::kHostName;
+  result.statistics.seconds = host::now() - begin;
+  result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
+  phases.progress("output", 1);
+  return result;
+}
+
 Triangulation triangulate(Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options) {
   const bool may_be_small = !self.is_named() && !options.profile;
@@ -220,6 +228,16 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
   engine.check_size(points.count);
   if (may_be_small && are_small(tuning_of(engine.runtime), offsets)) {
     return triangulate_small(points, offsets, options);
+  }
+  const std::vector<Group> groups = options.profile ? std::vector<Group>() : groups_of(engine, offsets);
+  if (!groups.empty()) {
+    Options of_group = options;
+    of_group.progress = nullptr;
+    std::optional<Triangulation> joined =
+        by_groups<Triangulation>(engine, groups, options, [&](std::size_t k) {
+          return triangulate_small(part_of(points, groups[k]), groups[k].offsets, of_group);
+        });
+    if (joined) return *std::move(joined);
   }
   const double begin = engine.runtime.working_clock();
   return in_fixed_point_or(

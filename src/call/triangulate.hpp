@@ -20,6 +20,10 @@ std::vector<double> widened(const HostPoints& points);
 Triangulation triangulate(Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
 
+/// Triangulates sets of at most a block's points each on the calling thread.
+Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
+                                const Options& options);
+
 /// Implements Triangulator::triangulate for device memory. What the device cannot compute in fixed point is
 /// computed with its doubles, or if it has none, on the host.
 void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,

@@ -77,6 +77,10 @@ struct Tuning : host::Sizes {
   /// calling thread if no device is named; 0: none.
   std::size_t host_points = 0;
 
+  /// Of more sets, natively, each thread computes groups that have so many points, or a set; 0: there are no
+  /// groups.
+  std::size_t group_points = 0;
+
   /// The largest number of points of a chunk, of those that do not fit memory, as a rule.
   std::size_t chunk_points = 1;
 

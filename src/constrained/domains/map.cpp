@@ -276,6 +276,29 @@ Curves curves_of(const Rings& rings) {
   return curves;
 }
 
+Curves part_of(const Curves& curves, std::size_t first, std::size_t end) {
+  Curves part;
+  const auto cut = [](const auto& values, std::size_t from, std::size_t to) {
+    const auto begin = values.begin();
+    return std::remove_cvref_t<decltype(values)>(begin + static_cast<std::ptrdiff_t>(from),
+                                                 begin + static_cast<std::ptrdiff_t>(to));
+  };
+  first = std::min(first, curves.of_segments.size());
+  end = std::min(end, curves.of_segments.size());
+  if (first == end) return part;
+  const auto first_curve = static_cast<std::size_t>(curves.of_segments[first]),
+             end_curve = static_cast<std::size_t>(curves.of_segments[end - 1]) + 1;
+  const auto first_part = static_cast<std::size_t>(curves.parts[first_curve]),
+             end_part = static_cast<std::size_t>(curves.parts[end_curve - 1]) + 1;
+  part.of_segments = cut(curves.of_segments, first, end);
+  part.parts = cut(curves.parts, first_curve, end_curve);
+  part.are_holes = cut(curves.are_holes, first_curve, end_curve);
+  part.polygons = cut(curves.polygons, first_part, end_part);
+  for (std::int32_t& curve : part.of_segments) curve -= static_cast<std::int32_t>(first_curve);
+  for (std::int32_t& of : part.parts) of -= static_cast<std::int32_t>(first_part);
+  return part;
+}
+
 Curves curves_of_polygons(const std::vector<std::size_t>& offsets) {
   Curves curves;
   curves.of_segments = rows_of(offsets);

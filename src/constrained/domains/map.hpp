@@ -27,6 +27,8 @@ struct Curves {
 void check_rings(const Rings& rings, std::size_t segments, FillRule rule);
 /// A curve for each ring.
 Curves curves_of(const Rings& rings);
+/// Those of the segments [first, end), if curves follow each other as segments do.
+Curves part_of(const Curves& curves, std::size_t first, std::size_t end);
 /// For each polygon one curve that has all of its segments. offsets: those of polygons.
 Curves curves_of_polygons(const std::vector<std::size_t>& offsets);
 

@@ -1,0 +1,159 @@
+#include "call/groups.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "tuning/tuning.hpp"
+
+namespace flaunay::call {
+namespace {
+
+// Joins arrays of parts, all threads one part each.
+template <typename Result>
+class Joining {
+ public:
+  Joining(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Result>& parts)
+      : runtime_(runtime), groups_(groups), parts_(parts) {}
+
+  // How many rows the parts before each one have.
+  template <typename Count>
+  std::vector<std::size_t> before(const Count& count) const {
+    std::vector<std::size_t> sums(parts_.size() + 1, 0);
+    for (std::size_t k = 0; k < parts_.size(); ++k) sums[k + 1] = sums[k] + count(parts_[k]);
+    return sums;
+  }
+  template <typename T, typename Base>
+  std::vector<std::size_t> before(std::vector<T> Base::*array, std::size_t columns) const {
+    return before([&](const Result& part) { return (part.*array).size() / columns; });
+  }
+
+  // change(values, i, k): what becomes of value i of part k.
+  template <typename T, typename Base, typename Change>
+  void array(std::vector<T> Base::*array, const Change& change) {
+    const std::vector<std::size_t> first = before([&](const Base& part) { return (part.*array).size(); });
+    if (first.back() == 0) return;
+    std::vector<T>& all = result.*array;
+    runtime_.resize(all, first.back());
+    runtime_.share(parts_.size(), [&](std::size_t k) {
+      std::vector<T> from = std::move(parts_[k].*array);
+      T* const to = all.data() + first[k];
+      for (std::size_t i = 0; i < from.size(); ++i) to[i] = change(from, i, k);
+    });
+  }
+  template <typename T, typename Base>
+  void array(std::vector<T> Base::*values) {
+    array(values, [](const std::vector<T>& from, std::size_t i, std::size_t) { return from[i]; });
+  }
+  // Numbers of rows of other arrays, or -1. base: how many rows the parts before have.
+  template <typename Base>
+  void indices(std::vector<std::int32_t> Base::*values, const std::vector<std::size_t>& base) {
+    array(values, [&](const std::vector<std::int32_t>& from, std::size_t i, std::size_t k) {
+      return from[i] < 0 ? from[i] : from[i] + static_cast<std::int32_t>(base[k]);
+    });
+  }
+  // Offsets of rows: each part has one more than sets.
+  template <typename T, typename Base>
+  void offsets(std::vector<T> Base::*values) {
+    std::vector<T>& all = result.*values;
+    all.assign(1, 0);
+    for (const Result& part : parts_) {
+      const std::vector<T>& own = part.*values;
+      const T base = all.back();
+      for (std::size_t i = 1; i < own.size(); ++i) all.push_back(base + own[i]);
+    }
+  }
+
+  // Of triangulations; returns how many triangles the parts before have.
+  std::vector<std::size_t> triangulation() {
+    const std::vector<std::size_t> triangles = before(&Triangulation::triangles, 3);
+    std::vector<std::size_t> points, corners;
+    for (const Group& group : groups_) points.push_back(group.first_point);
+    for (const std::size_t t : triangles) corners.push_back(3 * t);
+    indices(&Triangulation::triangles, points);
+    indices(&Triangulation::neighbors, triangles);
+    indices(&Triangulation::halfedges, corners);
+    indices(&Triangulation::hull, points);
+    indices(&Triangulation::representatives, points);
+    array(&Triangulation::areas);
+    offsets(&Triangulation::triangle_offsets);
+    offsets(&Triangulation::hull_offsets);
+    statistics();
+    return triangles;
+  }
+
+  Result result;
+
+ private:
+  void statistics() {
+    Statistics& all = result.statistics;
+    all.device = parts_[0].statistics.device;
+    for (const Result& part : parts_) {
+      const Statistics& own = part.statistics;
+      all.points += own.points;
+      all.duplicates += own.duplicates;
+      all.triangles += own.triangles;
+      all.hull_vertices += own.hull_vertices;
+      all.undecided += own.undecided;
+      all.device_bytes_peak = std::max(all.device_bytes_peak, own.device_bytes_peak);
+    }
+    all.device_bytes_peak *= std::min(runtime_.threads(), parts_.size());
+  }
+
+  host::Runtime& runtime_;
+  const std::vector<Group>& groups_;
+  std::vector<Result>& parts_;
+};
+
+}  // namespace
+
+std::vector<Group> groups_of(const Engine& engine, const std::vector<std::size_t>& offsets) {
+  const Tuning& tuning = tuning_of(engine.runtime);
+  // What threads launch on their own is not recorded.
+  if (!engine.runtime.is_native() || engine.runtime.accounts().log != nullptr) return {};
+  if (offsets.back() <= tuning.group_points || tuning.group_points == 0) return {};
+  std::vector<Group> groups;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    if (offsets[s + 1] - offsets[s] > tuning.block_points) return {};
+    if (s == 0 || offsets[s + 1] - groups.back().first_point > tuning.group_points)
+      groups.push_back({{0}, offsets[s]});
+    groups.back().offsets.push_back(offsets[s + 1] - groups.back().first_point);
+  }
+  return groups.size() > 1 ? groups : std::vector<Group>();
+}
+
+Triangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
+                   std::vector<Triangulation>& parts) {
+  Joining<Triangulation> joining(runtime, groups, parts);
+  joining.triangulation();
+  return std::move(joining.result);
+}
+
+ConstrainedTriangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
+                              std::vector<ConstrainedTriangulation>& parts) {
+  using Part = ConstrainedTriangulation;
+  Joining<Part> joining(runtime, groups, parts);
+  const std::vector<std::size_t> segments = joining.before(&Part::piece_edges, 2),
+                                 edges = joining.before(&Part::constraint_edges, 2);
+  const auto regions = joining.before([](const Part& part) {
+    return part.regions.empty() ? 0 : *std::max_element(part.regions.begin(), part.regions.end()) + 1;
+  });
+  joining.triangulation();
+  std::vector<std::size_t> points;
+  for (const Group& group : groups) points.push_back(group.first_point);
+  joining.indices(&Part::constraint_edges, points);
+  joining.indices(&Part::edge_segments, segments);
+  joining.array(&Part::constrained);
+  joining.array(&Part::depths);
+  joining.indices(&Part::regions, regions);
+  joining.array(&Part::edge_markers);
+  joining.array(&Part::vertex_markers);
+  // Pieces without edges have the range from 0 to 0.
+  joining.array(&Part::piece_edges, [&](const std::vector<std::int32_t>& from, std::size_t i, std::size_t k) {
+    return from[i | 1] == 0 ? 0 : from[i] + static_cast<std::int32_t>(edges[k]);
+  });
+  joining.offsets(&Part::piece_offsets);
+  joining.offsets(&Part::added_offsets);
+  return std::move(joining.result);
+}
+
+}  // namespace flaunay::call
