@@ -117,8 +117,7 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
     for (int node = ((1 << depth) + i); node & 1 && node > 1; node >>= 1) {
       const int axis = s->axes[node >> 1];
       const hull_ends low = stack[--height];
-      merge_triangulations(g, last_along(low, axis), first_along(whole, axis));
-      whole = joined_ends(g, low, whole, axis);
+      whole = merge_triangulations(g, low, whole, axis);
     }
     stack[height++] = whole;
   }
@@ -172,10 +171,11 @@ kernel void merge_blocks(int n, int first_merge, global const block_merge* restr
     const int axis = cut_axis(nodes[merge.node]);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     join_free_lists(&g, solved[merge.low].unused, solved[merge.high].unused);
+    const hull_ends both = joined_ends(&g, low, high, axis);
     if (low.first_x != NO_VERTEX && high.first_x != NO_VERTEX) {
-      merge_triangulations(&g, last_along(low, axis), first_along(high, axis));
+      continue_merge(&g, MERGE_IS_NEW, low, high, both, axis);
     }
-    solved[merge.low].ends = joined_ends(&g, low, high, axis);
+    solved[merge.low].ends = both;
     solved[merge.low].unused = free_list(&g);
     add_to_account(&g, account);
     COUNT_STEPS(g.counted.steps);

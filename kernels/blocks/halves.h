@@ -106,8 +106,8 @@ static inline int make_leaves_of_cell(rings* g, const halved_blocks* blocks, int
   return state;
 }
 
-// Merges two sides, or continues to merge them. Returns how far it is.
-static inline int merge_sides(rings* g, int state, solved_block low, solved_block high, int axis) {
+// Merges two sides, or continues to merge them. Returns how far it is. both: the ends of the two.
+static inline int merge_sides(rings* g, int state, solved_block low, solved_block high, hull_ends both, int axis) {
   if (state == MERGE_IS_NEW) {
     join_free_lists(g, low.unused, high.unused);
   } else {
@@ -115,7 +115,7 @@ static inline int merge_sides(rings* g, int state, solved_block low, solved_bloc
     g->free_last = low.unused.last;
   }
   if (low.ends.first_x == NO_VERTEX || high.ends.first_x == NO_VERTEX) return MERGE_IS_DONE;
-  return continue_merge(g, state, last_along(low.ends, axis), first_along(high.ends, axis));
+  return continue_merge(g, state, low.ends, high.ends, both, axis);
 }
 
 // The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,
@@ -148,9 +148,10 @@ static inline int merge_halves_of_cell(rings* g, const halved_blocks* blocks, in
   const part_halves halves = halves_of_cell(blocks, height, cell);
   if (halves.part.block < 0) return MERGE_IS_DONE;
   const solved_block low = blocks->parts[halves.low_at], high = blocks->parts[halves.high_at];
-  state = merge_sides(g, state, low, high, halves.axis);
+  const hull_ends both = joined_ends(g, low.ends, high.ends, halves.axis);
+  state = merge_sides(g, state, low, high, both, halves.axis);
   if (state == MERGE_IS_DONE) {
-    finish_part(g, blocks, halves.part, joined_ends(g, low.ends, high.ends, halves.axis));
+    finish_part(g, blocks, halves.part, both);
   } else {
     blocks->parts[halves.low_at].unused = free_list(g);
   }
@@ -165,8 +166,9 @@ static inline int do_cell(rings* g, const halved_blocks* blocks, int height, int
 // Merges two blocks, or what has been merged to them. Returns how far it is.
 static inline int merge_two_blocks(rings* g, GLOBAL solved_block* solved, block_merge merge, int axis, int state) {
   const solved_block low = solved[merge.low], high = solved[merge.high];
-  state = merge_sides(g, state, low, high, axis);
-  if (state == MERGE_IS_DONE) solved[merge.low].ends = joined_ends(g, low.ends, high.ends, axis);
+  const hull_ends both = joined_ends(g, low.ends, high.ends, axis);
+  state = merge_sides(g, state, low, high, both, axis);
+  if (state == MERGE_IS_DONE) solved[merge.low].ends = both;
   solved[merge.low].unused = free_list(g);
   return state;
 }

@@ -46,7 +46,7 @@ typedef struct {
 typedef struct {
   int vertex, from, edge, to;
   coordinate_pair at, apex;
-  angle seen;
+  real_pair seen;
   int rises;
 } seam_side;
 
@@ -129,18 +129,18 @@ static inline seam_side side_from(const rings* g, const seam* s, int vertex, int
 }
 
 static inline void look_at_apex(rings* g, seam_side* side, coordinate_pair left, coordinate_pair right) {
-  side->seen = angle_of(side->apex, left, right);
+  side->seen = angle_products(side->apex, left, right);
   side->rises = is_above(g, left, right, side->apex, side->seen);
 }
 
 // Marks the candidates that the circle through the base and the next one rules out.
 static inline void drop_ruled_out(rings* g, const seam* s, seam_side* side, coordinate_pair left, coordinate_pair right,
-                                  filter_bound bound, int is_right) {
+                                  int is_right) {
   while (side->rises && side->edge != side->from) {
     const int then = kept_beyond(g, s, side->edge, is_right), beyond_to = g->edges[then].to;
     const coordinate_pair beyond = point_at(g, beyond_to);
-    const angle seen = angle_of(beyond, left, right);
-    if (!rules_out(g, left, right, side->apex, side->seen, beyond, seen, bound)) break;
+    const real_pair seen = angle_products(beyond, left, right);
+    if (!rules_out(g, left, right, side->apex, side->seen, beyond, seen)) break;
     TALLY(*g, steps, 1);
     s->removed[side->edge / 2] = 1;
     side->edge = then;
@@ -187,10 +187,10 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
     const int left_side = side_of(g, r, l, l_inner), right_side = side_of(g, l, r_inner, r);
     const int left_is_nearer = s->is_downward ? precedes(l_inner, l, axis) : precedes(l, l_inner, axis);
     const int right_is_nearer = s->is_downward ? precedes(r, r_inner, axis) : precedes(r_inner, r, axis);
-    if (turns_left(g, r, l, l_outer)) {
+    if (turns_left_in_merge(g, r, l, l_outer)) {
       walk->left = edges[walk->left_edge].to;
       walk->left_edge = edges[walk->left_edge ^ 1].previous;
-    } else if (turns_left(g, l, r_outer, r)) {
+    } else if (turns_left_in_merge(g, l, r_outer, r)) {
       walk->right = edges[walk->right_edge].to;
       walk->right_edge = edges[walk->right_edge ^ 1].next;
     } else if (left_side > 0 || (left_side == 0 && left_is_nearer)) {
@@ -211,7 +211,6 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
 static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
   seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
   if (!find_seam_tangent(g, s, &walk)) return walk;
-  const filter_bound bound = angle_bound(g->bounds.circle);
   seam_side l = side_from(g, s, walk.left, walk.left_edge, 0), r = side_from(g, s, walk.right, walk.right_edge, 1);
   for (;;) {
     const coordinate2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
@@ -222,9 +221,9 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
     look_at_apex(g, &r, l.at, r.at);
     walk.outcome = WALK_IS_WHOLE;
     if (!HAS_STOPPED(g) && !l.rises && !r.rises) return walk;
-    drop_ruled_out(g, s, &l, l.at, r.at, bound, 0);
-    drop_ruled_out(g, s, &r, l.at, r.at, bound, 1);
-    const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen, bound));
+    drop_ruled_out(g, s, &l, l.at, r.at, 0);
+    drop_ruled_out(g, s, &r, l.at, r.at, 1);
+    const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen));
     walk.outcome = WALK_HAS_STOPPED;
     if (HAS_STOPPED(g) || walk.crossings == s->most) return walk;
     s->crossings[walk.crossings] = takes_right ? VECTOR(int2, r.edge, l.vertex) : VECTOR(int2, l.edge, r.vertex);
@@ -246,6 +245,7 @@ static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int 
   if (halves.part.block < 0) return nothing;
   const hull_ends low = blocks->parts[halves.low_at].ends, high = blocks->parts[halves.high_at].ends;
   const int is_downward = w & 1;
+  g->errors = errors_between(g, joined_ends(g, low, high, halves.axis));
   const seam s = {seam_line_of(g, blocks, &halves, low, high), is_downward,
                   CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
                   removed + is_downward * PAIRS_PER_VERTEX * blocks->places,

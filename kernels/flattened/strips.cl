@@ -94,7 +94,7 @@ kernel void merge_strips(int n, int depth, filter_bounds bounds, global const in
     if (size > LEAF_VERTICES) {
       const int middle = base + block_begin(count, depth + 1, 2 * j + 1);
       join_free_lists(&g, free_lists[v], free_lists[middle]);
-      merge_triangulations(&g, middle - 1, middle);
+      merge_in_order(&g, middle - 1);
       free_lists[v] = free_list(&g);
     } else if (size > 0 && parent > LEAF_VERTICES) {
       for (int w = v; w < v + size; ++w) places[w] = points[vertices[w]];

@@ -33,6 +33,20 @@ static inline int has_coarse_points(filter_bounds bounds) {
 #endif
 }
 
+// What orientations and angle_difference err by at most, of points whose coordinates differ by at most `extent`: the
+// bounds of their filters with the largest magnitudes that their terms can have, and a little more for the rounding of
+// these numbers. Larger than what the filters allow for, but computed once.
+typedef struct {
+  real side, angle;
+} largest_errors;
+
+static inline largest_errors errors_within(real extent, filter_bounds bounds) {
+  const real magnitude = 2 * (extent * extent);
+  const largest_errors errors = {REAL(1.0001) * error_within(bounds.orient, magnitude),
+                                 REAL(1.0001) * error_within(angle_bound(bounds.circle), 2 * (magnitude * magnitude))};
+  return errors;
+}
+
 // What one work-item works on: its own edges, all free at first.
 typedef struct {
   GLOBAL ring_edge* edges;
@@ -40,25 +54,13 @@ typedef struct {
   // An edge out of each vertex: of a hull's strict corner the counter-clockwise hull edge; NO_EDGE if there is none.
   GLOBAL int* vertex_edge;
   filter_bounds bounds;
+  largest_errors errors;      // of the triangulations that are being merged
   int free_first, free_last;  // of the list of free edges
   int unused;                 // the first that was never used
   uint undecided;             // predicates that floating point could not decide
   uint ties;                  // how many of these found cocircular points
   TALLY_MEMBER
 } rings;
-
-static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* points, GLOBAL int* vertex_edge,
-                             filter_bounds bounds) {
-  rings g;
-  g.edges = edges;
-  g.points = points;
-  g.vertex_edge = vertex_edge;
-  g.bounds = bounds;
-  g.free_first = g.free_last = g.unused = NO_EDGE;
-  g.undecided = g.ties = 0;
-  CLEAR_TALLY(g);
-  return g;
-}
 
 static inline hull_ends ends_of(int first_x, int last_x, int first_y, int last_y) {
   const hull_ends ends = {first_x, last_x, first_y, last_y};
@@ -78,6 +80,33 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
   const int least = precedes(g->points[other_first], g->points[first], along) ? other_first : first;
   const int most = precedes(g->points[last], g->points[other_last], along) ? other_last : last;
   return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
+}
+
+// By which nothing is decided.
+static inline largest_errors unknown_errors(void) {
+  const largest_errors errors = {INFINITY, INFINITY};
+  return errors;
+}
+
+// The errors between points within the ends of a hull.
+static inline largest_errors errors_between(const rings* g, hull_ends ends) {
+  const real width = difference(g->points[ends.last_x].x, g->points[ends.first_x].x);
+  const real height = difference(g->points[ends.last_y].y, g->points[ends.first_y].y);
+  return errors_within(fmax(width, height), g->bounds);
+}
+
+static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* points, GLOBAL int* vertex_edge,
+                             filter_bounds bounds) {
+  rings g;
+  g.edges = edges;
+  g.points = points;
+  g.vertex_edge = vertex_edge;
+  g.bounds = bounds;
+  g.errors = unknown_errors();
+  g.free_first = g.free_last = g.unused = NO_EDGE;
+  g.undecided = g.ties = 0;
+  CLEAR_TALLY(g);
+  return g;
 }
 
 #ifdef RINGS_STOP
@@ -112,12 +141,28 @@ OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coord
   return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds);
 }
 
-static inline int side_of(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
-  TALLY(*g, orientations, 1);
+static inline int side_filtered(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
   const int sign = orient_filtered(a, b, c, g->bounds.orient);
   return sign != UNDECIDED ? sign : side_undecided(g, a, b, c);
 }
+static inline int side_of(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
+  TALLY(*g, orientations, 1);
+  return side_filtered(g, a, b, c);
+}
+
 static inline int turns_left(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) { return side_of(g, a, b, c) > 0; }
+
+// Decisions of a merge compare with the largest errors between its points, and nearly always that is all. The others
+// are made as elsewhere, out of line.
+OUT_OF_LINE static inline int turns_left_filtered(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
+  return side_filtered(g, a, b, c) > 0;
+}
+static inline int turns_left_in_merge(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
+  TALLY(*g, orientations, 1);
+  const real2 ca = difference2(a, c), cb = difference2(b, c);
+  const real det = ca.x * cb.y - ca.y * cb.x;
+  return det > g->errors.side ? 1 : det < -g->errors.side ? 0 : turns_left_filtered(g, a, b, c);
+}
 
 // Is d inside of the circle through a, b, c (counter-clockwise)?
 static inline int in_circle(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
@@ -190,7 +235,9 @@ static inline void unlink(rings* g, int e) {
 }
 
 static inline void take_out(rings* g, int e, int origin) {
-  if (g->vertex_edge[origin] == e) g->vertex_edge[origin] = g->edges[e].next;
+  // Without a branch, since it could not be predicted.
+  const int present = g->vertex_edge[origin], next = g->edges[e].next;
+  g->vertex_edge[origin] = present == e ? next : present;
   unlink(g, e);
 }
 
@@ -279,10 +326,10 @@ static inline int lower_tangent(rings* g, int left, int right) {
   for (int moves = 1; moves;) {
     TALLY(*g, steps, 1);
     const coordinate2 l = g->points[left], r = g->points[right];
-    if (left_edge != NO_EDGE && turns_left(g, r, l, g->points[edges[left_edge].to])) {
+    if (left_edge != NO_EDGE && turns_left_in_merge(g, r, l, g->points[edges[left_edge].to])) {
       left = edges[left_edge].to;
       left_edge = edges[left_edge ^ 1].previous;
-    } else if (right_edge != NO_EDGE && turns_left(g, l, g->points[edges[right_edge].to], r)) {
+    } else if (right_edge != NO_EDGE && turns_left_in_merge(g, l, g->points[edges[right_edge].to], r)) {
       right = edges[right_edge].to;
       right_edge = edges[right_edge ^ 1].next;
     } else {
@@ -298,20 +345,29 @@ static inline int lower_tangent(rings* g, int left, int right) {
 }
 
 // Whether an apex that sees the base so lies above it.
-static inline int is_above(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex, angle seen) {
+static inline int is_above(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex,
+                           real_pair seen) {
   TALLY(*g, orientations, 1);
-  const int sign = angle_side(seen, g->bounds.orient);
-  return (sign != UNDECIDED ? sign : side_undecided(g, as_point(left), as_point(right), as_point(apex))) > 0;
+  const real across = high(seen);
+  return across > g->errors.side    ? 1
+         : across < -g->errors.side ? 0
+                                    : turns_left_filtered(g, as_point(left), as_point(right), as_point(apex));
 }
 
 // Whether a point that sees the base so is inside of the circle through the base and an apex above it.
-static inline int rules_out(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex,
-                            angle apex_seen, coordinate_pair point, angle seen, filter_bound bound) {
-  TALLY(*g, circles, 1);
-  const int sign = angle_compared(seen, apex_seen, bound);
+OUT_OF_LINE static inline int rules_out_filtered(rings* g, coordinate_pair left, coordinate_pair right,
+                                                 coordinate_pair apex, coordinate_pair point) {
+  const filter_bound bound = angle_bound(g->bounds.circle);
+  const int sign = angle_compared(angle_of(point, left, right), angle_of(apex, left, right), bound);
   return sign == 1 || sign == -1
              ? sign > 0
              : in_circle_undecided(g, as_point(left), as_point(right), as_point(apex), as_point(point), bound);
+}
+static inline int rules_out(rings* g, coordinate_pair left, coordinate_pair right, coordinate_pair apex,
+                            real_pair apex_seen, coordinate_pair point, real_pair seen) {
+  TALLY(*g, circles, 1);
+  const real wider = angle_difference(seen, apex_seen);
+  return wider > g->errors.angle ? 1 : wider < -g->errors.angle ? 0 : rules_out_filtered(g, left, right, apex, point);
 }
 
 static inline coordinate_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
@@ -324,7 +380,6 @@ static inline coordinate_pair point_at(const rings* g, int vertex) { return load
 // side whose vertex stays keeps its candidate in registers.
 static inline int merge_above(rings* g, int base) {
   GLOBAL const ring_edge* edges = g->edges;
-  const filter_bound bound = angle_bound(g->bounds.circle);
   int left = edges[base].to, right = edges[base ^ 1].to;
   coordinate_pair left_point = point_at(g, left), right_point = point_at(g, right);
   int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;
@@ -333,8 +388,8 @@ static inline int merge_above(rings* g, int base) {
   for (;;) {
     TALLY(*g, steps, 1);
     // Each side's candidate: the next edge that rises above the base, after removal of those that its circle rules out.
-    angle left_seen = angle_of(left_apex, left_point, right_point);
-    angle right_seen = angle_of(right_apex, left_point, right_point);
+    real_pair left_seen = angle_products(left_apex, left_point, right_point);
+    real_pair right_seen = angle_products(right_apex, left_point, right_point);
     const int left_rises = is_above(g, left_point, right_point, left_apex, left_seen);
     const int right_rises = is_above(g, left_point, right_point, right_apex, right_seen);
     if (HAS_STOPPED(g)) return base;
@@ -343,8 +398,8 @@ static inline int merge_above(rings* g, int base) {
       for (int then = edges[left_edge].next; then != (base ^ 1); then = edges[left_edge].next) {
         const int beyond_to = edges[then].to;
         const coordinate_pair beyond = point_at(g, beyond_to);
-        const angle seen = angle_of(beyond, left_point, right_point);
-        if (!rules_out(g, left_point, right_point, left_apex, left_seen, beyond, seen, bound)) break;
+        const real_pair seen = angle_products(beyond, left_point, right_point);
+        if (!rules_out(g, left_point, right_point, left_apex, left_seen, beyond, seen)) break;
         TALLY(*g, steps, 1);
         remove_edge(g, left_edge);
         left_edge = then;
@@ -357,8 +412,8 @@ static inline int merge_above(rings* g, int base) {
       for (int then = edges[right_edge].previous; then != base; then = edges[right_edge].previous) {
         const int beyond_to = edges[then].to;
         const coordinate_pair beyond = point_at(g, beyond_to);
-        const angle seen = angle_of(beyond, left_point, right_point);
-        if (!rules_out(g, left_point, right_point, right_apex, right_seen, beyond, seen, bound)) break;
+        const real_pair seen = angle_products(beyond, left_point, right_point);
+        if (!rules_out(g, left_point, right_point, right_apex, right_seen, beyond, seen)) break;
         TALLY(*g, steps, 1);
         remove_edge(g, right_edge);
         right_edge = then;
@@ -368,7 +423,7 @@ static inline int merge_above(rings* g, int base) {
       }
     }
     const int takes_right = !left_rises || (right_rises && rules_out(g, left_point, right_point, left_apex, left_seen,
-                                                                     right_apex, right_seen, bound));
+                                                                     right_apex, right_seen));
     if (HAS_STOPPED(g)) return base;
     if (takes_right) {
       const int from_apex = right_edge ^ 1, above_right = edges[from_apex].previous;
@@ -398,13 +453,24 @@ static inline int merge_above(rings* g, int base) {
   return MERGE_IS_DONE;
 }
 
-// Merges two triangulations that a cut separates, named as if it were vertical. left: the left one's last vertex along
-// the axis; right: the right one's first. state: how far the merge is, which is also the result.
-static inline int continue_merge(rings* g, int state, int left, int right) {
-  const int base = state < 0 ? lower_tangent(g, left, right) : state;
+// Merges two triangulations that a cut across the axis separates. state: how far the merge is, which is also the
+// result. both: the ends of the two.
+static inline int continue_merge(rings* g, int state, hull_ends low, hull_ends high, hull_ends both, int axis) {
+  g->errors = errors_between(g, both);
+  const int base = state < 0 ? lower_tangent(g, last_along(low, axis), first_along(high, axis)) : state;
   return HAS_STOPPED(g) ? base : merge_above(g, base);
 }
-static inline void merge_triangulations(rings* g, int left, int right) { continue_merge(g, MERGE_IS_NEW, left, right); }
+static inline hull_ends merge_triangulations(rings* g, hull_ends low, hull_ends high, int axis) {
+  const hull_ends both = joined_ends(g, low, high, axis);
+  continue_merge(g, MERGE_IS_NEW, low, high, both, axis);
+  return both;
+}
+// The same of vertices in the order of axis 0 that meet between left and left + 1, whose ends are not known.
+static inline void merge_in_order(rings* g, int left) {
+  g->errors = unknown_errors();
+  const int base = lower_tangent(g, left, left + 1);
+  if (!HAS_STOPPED(g)) merge_above(g, base);
+}
 
 // Four vertices from v on, in the order of axis 0.
 static inline void make_four(rings* g, int v) {
@@ -431,7 +497,7 @@ static inline void make_four(rings* g, int v) {
   if (straight) {
     make_pair(g, v);
     make_pair(g, v + 2);
-    merge_triangulations(g, v + 1, v + 2);
+    merge_in_order(g, v + 1);
   } else if (star) {
     make_star(g, q);
   } else {

@@ -68,16 +68,26 @@ typedef struct {
   real_pair products, magnitudes;
 } angle;
 
-static inline angle angle_of(coordinate_pair p, coordinate_pair a, coordinate_pair b) {
+// The terms of both products.
+typedef struct {
+  real_pair first, second;
+} angle_terms;
+
+static inline angle_terms angle_terms_of(coordinate_pair p, coordinate_pair a, coordinate_pair b) {
   const real_pair pa = pair_difference(a, p);
   const real_pair pb = pair_difference(b, p);
   const real_pair along = pa * pb;
   const real_pair across = pa * swapped(pb);
-  const real_pair first = lows(along, across);
-  const real_pair second = highs(along, across);
-  angle seen;
-  seen.products = first + high_negated(second);
-  seen.magnitudes = magnitudes(first) + magnitudes(second);
+  const angle_terms terms = {lows(along, across), highs(along, across)};
+  return terms;
+}
+static inline real_pair angle_products(coordinate_pair p, coordinate_pair a, coordinate_pair b) {
+  const angle_terms terms = angle_terms_of(p, a, b);
+  return terms.first + high_negated(terms.second);
+}
+static inline angle angle_of(coordinate_pair p, coordinate_pair a, coordinate_pair b) {
+  const angle_terms terms = angle_terms_of(p, a, b);
+  const angle seen = {terms.first + high_negated(terms.second), magnitudes(terms.first) + magnitudes(terms.second)};
   return seen;
 }
 static inline angle angle_at(coordinate2 p, coordinate2 a, coordinate2 b) {
@@ -93,10 +103,13 @@ static inline int angle_side(angle seen, filter_bound bound) {
 // edge and that one; -1 if narrower, 0 if it lies on the circle, UNDECIDED. The error of a cross or dot product is
 // below 4.02 e times its magnitude, that of the products below 9.1 e times theirs, that of the difference below 10.2 e
 // of the sum, with e = ROUNDOFF: see docs/exactness.md.
+static inline real angle_difference(real_pair seen, real_pair other) {
+  const real_pair products = other * swapped(seen);
+  return low(products) - high(products);
+}
 static inline int angle_compared(angle seen, angle other, filter_bound bound) {
-  const real_pair products = other.products * swapped(seen.products);
   const real_pair terms = other.magnitudes * swapped(seen.magnitudes);
-  return filtered_sign(low(products) - high(products), low(terms) + high(terms), bound);
+  return filtered_sign(angle_difference(seen.products, other.products), low(terms) + high(terms), bound);
 }
 
 // The bound of angle_compared where the in-circle test has the given one.

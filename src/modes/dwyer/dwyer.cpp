@@ -33,12 +33,6 @@ struct Ranks {
   std::int32_t along[2];
 };
 
-// The first and last vertices of a node along each axis. They are strictly convex corners of its hull.
-struct Extremes {
-  std::int32_t first[2];
-  std::int32_t last[2];
-};
-
 class Builder {
  public:
   /// work: if not null, the work is added to it.
@@ -58,8 +52,7 @@ class Builder {
   Mesh run() {
     if (n_ < 3) return {};
     sort();
-    const Extremes extremes = solve(0, n_, kX, 0);
-    return extract(extremes.first[kX]);
+    return extract(solve(0, n_, kX, 0).first_x);
   }
 
  private:
@@ -85,16 +78,16 @@ class Builder {
 
   // Computes the Delaunay triangulation of vertices begin..end-1, cut across the axis if there are more than
   // three. orders_[axis][begin..end) has their ranks in the order of the axis, for both axes.
-  Extremes solve(std::int32_t begin, std::int32_t end, Axis axis, std::size_t depth) {
+  kernel::hull_ends solve(std::int32_t begin, std::int32_t end, Axis axis, std::size_t depth) {
     if (end - begin <= 3) return leaf(begin, end, depth);
     const std::int32_t middle = begin + (end - begin) / 2;
     cut(begin, middle, end, axis, depth);
-    const Extremes low = solve(begin, middle, other(axis), depth + 1);
-    const Extremes high = solve(middle, end, other(axis), depth + 1);
+    const kernel::hull_ends low = solve(begin, middle, other(axis), depth + 1);
+    const kernel::hull_ends high = solve(middle, end, other(axis), depth + 1);
     CLEAR_TALLY(rings_);
-    kernel::merge_triangulations(&rings_, low.last[axis], high.first[axis]);
-    record_node(2, depth);
-    return joined(low, high, axis);
+    const kernel::hull_ends ends = kernel::merge_triangulations(&rings_, low, high, axis);
+    record_node(2, depth);  // two comparisons for the ends
+    return ends;
   }
 
   // Records comparisons, and the operations that the rings have counted since their counters were 0.
@@ -136,28 +129,14 @@ class Builder {
     }
   }
 
-  // The extremes of two merged nodes; takes two comparisons.
-  Extremes joined(const Extremes& low, const Extremes& high, Axis axis) const {
-    const Axis along = other(axis);
-    const auto rank = [&](std::int32_t vertex) { return orders_[kX][vertex].along[along]; };
-    Extremes extremes;
-    extremes.first[axis] = low.first[axis];
-    extremes.last[axis] = high.last[axis];
-    extremes.first[along] =
-        rank(low.first[along]) < rank(high.first[along]) ? low.first[along] : high.first[along];
-    extremes.last[along] =
-        rank(low.last[along]) > rank(high.last[along]) ? low.last[along] : high.last[along];
-    return extremes;
-  }
-
   // Triangulates two or three vertices, which are in the order of x.
-  Extremes leaf(std::int32_t begin, std::int32_t end, std::size_t depth) {
-    Extremes extremes{{begin, begin}, {end - 1, begin}};
+  kernel::hull_ends leaf(std::int32_t begin, std::int32_t end, std::size_t depth) {
+    std::int32_t first_y = begin, last_y = begin;
     for (std::int32_t v = begin; v < end; ++v) {
       const Ranks ranks = orders_[kX][v];
       vertices_[v] = points_[ranks.along[kX]];
-      if (ranks.along[kY] < orders_[kX][extremes.first[kY]].along[kY]) extremes.first[kY] = v;
-      if (ranks.along[kY] > orders_[kX][extremes.last[kY]].along[kY]) extremes.last[kY] = v;
+      if (ranks.along[kY] < orders_[kX][first_y].along[kY]) first_y = v;
+      if (ranks.along[kY] > orders_[kX][last_y].along[kY]) last_y = v;
     }
     CLEAR_TALLY(rings_);
     const std::int32_t a = kernel::make_edge(&rings_, begin, begin + 1);
@@ -165,7 +144,7 @@ class Builder {
     vertex_edge_[begin + 1] = a ^ 1;
     if (end - begin == 3) triangle(a, begin);
     record_node(end - begin == 2 ? 1 : 3, depth);
-    return extremes;
+    return kernel::ends_of(begin, end - 1, first_y, last_y);
   }
 
   // Adds the third vertex of a leaf, whose first two vertices are joined by edge a.
