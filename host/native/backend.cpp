@@ -39,9 +39,14 @@ void NativeBackend::write(cl_mem to, std::size_t offset, std::size_t bytes, cons
 
 void NativeBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
                          std::size_t value_bytes) {
-  for (std::size_t at = 0; at < bytes; at += value_bytes) {
-    std::memcpy(address_of(to) + offset + at, value, value_bytes);
+  char* const begin = address_of(to) + offset;
+  if (value_bytes == sizeof(cl_uint)) {
+    cl_uint word;
+    std::memcpy(&word, value, sizeof word);
+    std::fill_n(reinterpret_cast<cl_uint*>(begin), bytes / sizeof word, word);
+    return;
   }
+  for (std::size_t at = 0; at < bytes; at += value_bytes) std::memcpy(begin + at, value, value_bytes);
 }
 
 void NativeBackend::copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,

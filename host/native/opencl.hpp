@@ -49,19 +49,41 @@ using std::ilogb;
 using std::sqrt;
 inline bool isfinite(double x) { return std::isfinite(x); }
 
-// Atomic operations; as in OpenCL C 1.2, they order nothing else.
-inline int atomic_inc(volatile int* at) { return __atomic_fetch_add(at, 1, __ATOMIC_RELAXED); }
-inline uint atomic_inc(volatile uint* at) { return __atomic_fetch_add(at, 1u, __ATOMIC_RELAXED); }
+// Whether this thread runs all work-items of the launch: then nobody else changes memory meanwhile.
+inline thread_local bool is_alone [[gnu::tls_model("initial-exec")]] = false;
+
+// Atomic operations; as in OpenCL C 1.2, they order nothing else. What a thread does alone takes a fraction
+// of the time.
+template <typename T, typename Change, typename Atomically>
+T atomic_change(volatile T* at, const Change& change, Atomically atomically) {
+  if (!is_alone) return atomically();
+  const T old = *at;
+  *at = change(old);
+  return old;
+}
+inline int atomic_inc(volatile int* at) {
+  return atomic_change(
+      at, [](int old) { return old + 1; }, [at] { return __atomic_fetch_add(at, 1, __ATOMIC_RELAXED); });
+}
 inline uint atomic_add(volatile uint* at, uint value) {
-  return __atomic_fetch_add(at, value, __ATOMIC_RELAXED);
+  return atomic_change(
+      at, [value](uint old) { return old + value; },
+      [at, value] { return __atomic_fetch_add(at, value, __ATOMIC_RELAXED); });
 }
-inline uint atomic_or(volatile uint* at, uint value) {
-  return __atomic_fetch_or(at, value, __ATOMIC_RELAXED);
+inline uint atomic_inc(volatile uint* at) { return atomic_add(at, 1u); }
+template <typename T>
+T atomic_or(volatile T* at, T value) {
+  return atomic_change(
+      at, [value](T old) { return old | value; },
+      [at, value] { return __atomic_fetch_or(at, value, __ATOMIC_RELAXED); });
 }
-inline int atomic_or(volatile int* at, int value) { return __atomic_fetch_or(at, value, __ATOMIC_RELAXED); }
 inline int atomic_cmpxchg(volatile int* at, int expected, int value) {
-  __atomic_compare_exchange_n(at, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
-  return expected;
+  return atomic_change(
+      at, [expected, value](int old) { return old == expected ? value : old; },
+      [at, expected, value]() mutable {
+        __atomic_compare_exchange_n(at, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+        return expected;
+      });
 }
 // Of what other work-items change meanwhile; see constrained/meanwhile.h.
 inline int read_shared(const volatile int* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
@@ -72,6 +94,11 @@ inline void write_shared(volatile uint* at, uint value) { __atomic_store_n(at, v
 template <typename T, typename IsBetter>
 T atomic_improve(volatile T* at, T value, const IsBetter& is_better) {
   T old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  if (is_alone) {
+    // Without a branch, which could often not be predicted.
+    *at = is_better(value, old) ? value : old;
+    return old;
+  }
   while (is_better(value, old) &&
          !__atomic_compare_exchange_n(at, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
@@ -110,6 +137,7 @@ void run_work_items(host::WorkItems items, void* const* arguments) {
                                                                  std::index_sequence<I...>) {
     std::tuple<std::remove_const_t<Parameters>...> values;
     (std::memcpy(&std::get<I>(values), arguments[I], sizeof(Parameters)), ...);
+    is_alone = items.begin == 0 && items.end == items.total;
     for (std::size_t item = items.begin; item < items.end; ++item) {
       work_item = {item, items.total};
       Kernel(std::get<I>(values)...);
