@@ -210,7 +210,8 @@ static inline int crossed(int v, int w, int mask, global const double_bits* inpu
 static inline int is_border(int t, int k, global const int* neighbors, global const uchar* constrained,
                             global const int* regions) {
   const int u = neighbors[k];
-  return constrained[k] && (u < 0 || (t < u && regions[t] != regions[u]));
+  // Without branches, since they could not be predicted.
+  return (constrained[k] != 0) & ((u < 0) | ((t < u) & (regions[t] != regions[max(u, 0)])));
 }
 
 // levels: UNREACHED throughout; 0 for regions that are connected with the outside.
@@ -220,10 +221,12 @@ kernel void count_borders(int n, global const int* restrict neighbors, global co
   const int t = get_global_id(0);
   if (t < n) {
     uint count = 0;
+    int is_open = 0;
     for (int k = 3 * t; k < 3 * t + 3; ++k) {
       count += is_border(t, k, neighbors, constrained, regions);
-      if (neighbors[k] < 0 && !constrained[k]) levels[regions[t]] = 0;
+      is_open |= (neighbors[k] < 0) & !constrained[k];
     }
+    if (is_open) levels[regions[t]] = 0;
     counts[t] = count;
   }
 }

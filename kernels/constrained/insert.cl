@@ -107,6 +107,17 @@ static inline uint2 size_of_walk(int rows) {
 // find_departure. walk: of the piece; rows is 0 if it is an edge already.
 static inline int next_piece(const walked_mesh* mesh, int* first, int* second, int last, uint rank,
                              global volatile uint* claims, constraint_walk* walk) {
+  // As a rule the segment is an edge, which is found without arithmetic.
+  const int edge = corner_at_edge(mesh, *first, mesh->triangles[*second]);
+  if (edge >= 0) {
+    walk->origin = mesh->triangles[*first];
+    walk->goal = mesh->triangles[*second];
+    walk->corner = edge;
+    walk->rows = 0;
+    walk->turns = 0;
+    *first = *second;
+    return LEAVES_FIRST;
+  }
   departure found;
   const int is_turned = last == LEAVES_SECOND;
   int end = find_departure(mesh, is_turned ? *second : *first, is_turned ? *first : *second, &found);
@@ -150,8 +161,11 @@ FETCHING void fetch_points(int row, const walked_mesh* mesh) {
 #define ROWS_AHEAD 24
 #define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
+// Few segments have all in the cache.
+#define FETCHED_SEGMENTS 4096
 FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
+  if (n < FETCHED_SEGMENTS) return;
   const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
               near = keys[min(n - 1, s + POINTS_AHEAD)];
   // Those of points on a line do not come before others.

@@ -75,6 +75,21 @@ static inline int is_ahead(const walked_mesh* mesh, const star_search* star, int
   return comes_before(star->at, vload2(v, mesh->points)) == comes_before(star->at, star->goal_at);
 }
 
+// The corner opposite to the edge between the vertex at a corner and another vertex, if it is one of the first edges
+// counter-clockwise from there; otherwise -1.
+static inline int corner_at_edge(const walked_mesh* mesh, int corner, int goal) {
+  const int origin = mesh->triangles[corner];
+  if (mesh->triangles[next_halfedge(corner)] == goal) return previous_halfedge(corner);
+  for (int k = 0; k < STAR_PATIENCE; ++k) {
+    const int next = next_halfedge(corner);
+    if (mesh->triangles[previous_halfedge(corner)] == goal) return next;
+    const int beyond = mesh->neighbors[next];
+    if (beyond < 0) return -1;
+    corner = corner_with(beyond, origin, mesh->triangles);
+  }
+  return -1;
+}
+
 // Outcomes of a step.
 #define STAR_GOES_ON 0
 #define STAR_FOUND 1

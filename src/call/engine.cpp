@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "call/arithmetic.hpp"
@@ -61,7 +63,14 @@ Engine::Engine(const std::string& tuning) : Engine(native_tuning(tuning)) { chec
 
 Engine& Engine::of_thread() {
   struct Own {
-    Engine engine{native_tuning(), 1};
+    static std::shared_ptr<const Tuning> tuning() {
+      const auto own = std::make_shared<Tuning>(*native_tuning());
+      // There is nobody to share chunks with.
+      own->chunks_most = 1;
+      own->chunk_least = std::numeric_limits<std::int32_t>::max();
+      return own;
+    }
+    Engine engine{tuning(), 1};
   };
   return host::of_thread<Own>().engine;
 }

@@ -15,6 +15,9 @@
 namespace flaunay::call {
 namespace {
 
+// So many are inserted in less time than it takes to look for an early error.
+constexpr std::size_t kFewSegments = 500;
+
 // Adds what one step of a call did to what others did.
 void add(const Statistics& step, Statistics& all) {
   all.build_seconds += step.build_seconds;
@@ -119,7 +122,9 @@ geometry::Fitted<geometry::Done> insert_segments_on(Engine& engine, const double
 void insert_segments(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
                      const Constraints& constraints, const Options& options,
                      ConstrainedTriangulation& result) {
-  constrained::check_first_segments(coordinates, offsets, constraints.segments, constraints.segment_count);
+  if (constraints.segment_count > kFewSegments) {
+    constrained::check_first_segments(coordinates, offsets, constraints.segments, constraints.segment_count);
+  }
   const bool may_stay = !self.is_named() && !options.profile;
   const std::size_t size = offsets.back() + constraints.segment_count;
   if (may_stay && size <= self.host_tuning().host_points) {

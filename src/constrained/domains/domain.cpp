@@ -299,10 +299,12 @@ Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
     runtime.chunks(triangles, chunk,
                    kernels::start_regions{
                        .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
-    runtime.map(triangles, kernels::join_regions{.length = chunk,
-                                                 .neighbors = mesh.neighbors,
-                                                 .constrained = mesh.constrained,
-                                                 .parents = parents});
+    if (triangles > chunk) {
+      runtime.map(triangles, kernels::join_regions{.length = chunk,
+                                                   .neighbors = mesh.neighbors,
+                                                   .constrained = mesh.constrained,
+                                                   .parents = parents});
+    }
     runtime.map(triangles,
                 kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
     host::exclusive_scan(runtime, numbers, triangles, numbers);
