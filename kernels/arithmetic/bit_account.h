@@ -37,9 +37,10 @@ static inline ulong mantissa_of(ulong magnitude) {
 
 static inline void account_for(ulong magnitude, bit_account* account) {
   account->most = max(account->most, magnitude);
-  if (magnitude != 0) {
+  const int unit = unit_of(magnitude);
+  if (unit < account->lowest && magnitude != 0) {
     const ulong mantissa = mantissa_of(magnitude);
-    account->lowest = min(account->lowest, unit_of(magnitude) + 63 - (int)clz(mantissa & (~mantissa + 1)));
+    account->lowest = min(account->lowest, unit + 63 - (int)clz(mantissa & (~mantissa + 1)));
   }
 }
 

@@ -290,13 +290,9 @@ static inline void approach(int first, int last, filter_bound bound, coordinate 
 // The leaves of queries [first, last), DESCENTS at most.
 static inline void leaves_of_queries(int first, int last, global const coordinate* queries, query_frame frame,
                                      global const cut_node* tree, int depth, int* leaves) {
-  ulong x[DESCENTS], y[DESCENTS];
-  for (int k = 0; k < DESCENTS; ++k) {
-    const coordinate2 q = query_in_tree(min(first + k, last - 1), queries, frame);
-    x[k] = orderable(q.x);
-    y[k] = orderable(q.y);
-  }
-  descend(x, y, tree, depth, leaves);
+  point_keys keys[DESCENTS];
+  for (int k = 0; k < DESCENTS; ++k) keys[k] = keys_of(query_in_tree(min(first + k, last - 1), queries, frame));
+  descend(keys, tree, depth, leaves);
 }
 
 // n queries; of set s [query_offsets[s], query_offsets[s + 1]), which is not looked at if there is one set. keys: each

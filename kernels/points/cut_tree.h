@@ -11,12 +11,20 @@ BEGIN_SHARED
 
 static inline int cut_axis(cut_node cut) { return cut.turn != 0; }
 
-// Whether a point goes high, by its coordinates as orderable numbers. Without branches, since they could not be
-// predicted.
-static inline int goes_high(ulong x, ulong y, cut_node cut) {
-  const ulong swapped = (x ^ y) & cut.turn;
-  const ulong major = x ^ swapped, minor = y ^ swapped ^ cut.turn;
-  return is_at_least(major, minor, cut.major, cut.minor);
+// A point as cuts of either axis compare it.
+typedef struct {
+  ulong major[2], minor[2];
+} point_keys;
+static inline point_keys keys_of(coordinate2 p) {
+  const ulong x = orderable(p.x), y = orderable(p.y);
+  const point_keys keys = {{x, y}, {y, ~x}};
+  return keys;
+}
+
+// Whether a point goes high. Without branches, since they could not be predicted.
+static inline int goes_high(const point_keys* keys, GLOBAL const cut_node* cut) {
+  const int axis = cut->turn & 1;
+  return is_at_least(keys->major[axis], keys->minor[axis], cut->major, cut->minor);
 }
 
 // What is left of a rectangle on the one side of a cut.
@@ -32,36 +40,36 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
   return rectangle;
 }
 
-// Points that go down a tree at the same time: each step waits for the one before.
+// Points that go down a tree at the same time, since each step waits for the one before: of so many, those that
+// compilers keep in registers.
 #define DESCENTS 16
+#define DESCENTS_AT_ONCE 8
 
-// The leaves of DESCENTS points by their coordinates as orderable numbers, counted from 0.
-static inline void descend(const ulong* x, const ulong* y, GLOBAL const cut_node* tree, int depth, int* leaves) {
-  int node[DESCENTS];
-  for (int k = 0; k < DESCENTS; ++k) node[k] = 1;
-  for (int d = 0; d < depth; ++d) {
-    for (int k = 0; k < DESCENTS; ++k) node[k] = 2 * node[k] + goes_high(x[k], y[k], tree[node[k]]);
+// The leaves of DESCENTS points, counted from 0.
+static inline void descend(const point_keys* keys, GLOBAL const cut_node* tree, int depth, int* leaves) {
+  for (int first = 0; first < DESCENTS; first += DESCENTS_AT_ONCE) {
+    long node[DESCENTS_AT_ONCE];
+    for (int k = 0; k < DESCENTS_AT_ONCE; ++k) node[k] = 1;
+    for (int d = 0; d < depth; ++d) {
+      for (int k = 0; k < DESCENTS_AT_ONCE; ++k) node[k] = 2 * node[k] + goes_high(&keys[first + k], &tree[node[k]]);
+    }
+    for (int k = 0; k < DESCENTS_AT_ONCE; ++k) leaves[first + k] = (int)node[k] - (1 << depth);
   }
-  for (int k = 0; k < DESCENTS; ++k) leaves[k] = node[k] - (1 << depth);
 }
 
 // The leaves of points [first, last) of the input, DESCENTS at most.
 static inline void find_leaves(int first, int last, GLOBAL const coordinate* input, GLOBAL const cut_node* tree,
                                int depth, int* leaves) {
-  ulong x[DESCENTS], y[DESCENTS];
-  for (int k = 0; k < DESCENTS; ++k) {
-    const coordinate2 p = vload2(min(first + k, last - 1), input);
-    x[k] = orderable(p.x);
-    y[k] = orderable(p.y);
-  }
-  descend(x, y, tree, depth, leaves);
+  point_keys keys[DESCENTS];
+  for (int k = 0; k < DESCENTS; ++k) keys[k] = keys_of(vload2(min(first + k, last - 1), input));
+  descend(keys, tree, depth, leaves);
 }
 
 // The leaf of a point, counted from 0.
 static inline int leaf_of(coordinate2 p, GLOBAL const cut_node* tree, int depth) {
-  const ulong x = orderable(p.x), y = orderable(p.y);
+  const point_keys keys = keys_of(p);
   int node = 1;
-  for (int d = 0; d < depth; ++d) node = 2 * node + goes_high(x, y, tree[node]);
+  for (int d = 0; d < depth; ++d) node = 2 * node + goes_high(&keys, &tree[node]);
   return node - (1 << depth);
 }
 

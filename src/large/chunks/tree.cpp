@@ -29,7 +29,8 @@ LowShare low_share(std::size_t leaves) { return {leaves / 2, leaves}; }
 double along(double2 p, int axis) { return axis == 1 ? p.y : p.x; }
 
 bool goes_high(double2 p, const cut_node& cut) {
-  return kernel::goes_high(kernel::orderable(p.x), kernel::orderable(p.y), cut) != 0;
+  const kernel::point_keys keys = kernel::keys_of(p);
+  return kernel::goes_high(&keys, &cut) != 0;
 }
 
 // Before all but one of the samples in the order of the node's axis, which is (x, y) or (y, -x).
