@@ -18,7 +18,7 @@ using namespace geometry;
 namespace {
 
 // The first segments are compared with each other in so many pairs per segment of all.
-constexpr double kPairsPerSegment = 4;
+constexpr double kPairsPerSegment = 1;
 
 constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
 

@@ -33,7 +33,7 @@ using points::download;
 constexpr std::size_t kMostPieces = std::size_t{1} << 30, kMostRows = 0xffffffff;
 
 // Of segments that are inserted in stages, each stage has so many times as many as those before it together.
-constexpr std::size_t kStageGrowth = 4, kSmallestStage = 16;
+constexpr std::size_t kStageGrowth = 2, kSmallestStage = 16;
 
 // Points as predicates need them.
 struct ScaledPoints {
