@@ -77,8 +77,9 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
   const int along = !axis;
   const int first = first_along(low, along), other_first = first_along(high, along);
   const int last = last_along(low, along), other_last = last_along(high, along);
-  const int least = precedes(g->points[other_first], g->points[first], along) ? other_first : first;
-  const int most = precedes(g->points[last], g->points[other_last], along) ? other_last : last;
+  // Without branches, since they could not be predicted.
+  const int least = first ^ ((first ^ other_first) & -precedes(g->points[other_first], g->points[first], along));
+  const int most = last ^ ((last ^ other_last) & -precedes(g->points[last], g->points[other_last], along));
   return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
 }
 
