@@ -10,6 +10,7 @@
 
 #include "flattened/codes.h"
 #include "mesh/halfedges.h"
+#include "operations/prefetch.h"
 #include "predicates/planar.h"
 
 // The in-circle test of the apexes beside half-edge h and its twin: 0 if they are cocircular, 1 if the edge is not
@@ -21,6 +22,9 @@ static inline int circle_beside(int h, int twin, global const int* triangles, gl
   return exact ? circle_undecided(apex, from, to, beyond, bound) : circle_filtered(apex, from, to, beyond, bound);
 }
 
+// How many half-edges ahead of its use an apex is fetched.
+#define APEXES_AHEAD 16
+
 // flags[h], for the smaller half-edge of each interior edge: 1 cocircular, 0 not, or FLAG_UNDECIDED; 0 for all others.
 // broken[0] gets BROKEN_CIRCLE if an edge is not Delaunay.
 kernel void cocircular_flags(int n, filter_bound bound, global const int* restrict triangles,
@@ -30,6 +34,8 @@ kernel void cocircular_flags(int n, filter_bound bound, global const int* restri
   if (h < n) {
     const int twin = twins[h];
     int flag = 0;
+    const int ahead = h + APEXES_AHEAD;
+    if (ahead < n && twins[ahead] > ahead) fetch(points + triangles[opposite_corner(twins[ahead])]);
     if (twin > h) {
       const int sign = circle_beside(h, twin, triangles, points, bound, 0);
       flag = sign == UNDECIDED ? FLAG_UNDECIDED : sign == 0;

@@ -17,6 +17,8 @@
 //    binary search for the right one; the work-items of both hulls take a probe each, and one of them goes on alone.
 // 3. A scan (scan.cl) of the hulls' sizes tells where paths begin, and write_paths writes them.
 //
+// Where regions are small, hulls_alone does the first two alone, from all of a region's points.
+//
 // The kernels but hull_chains and write_paths have one work-item per element, or share elements whose number only the
 // device knows.
 
@@ -26,6 +28,7 @@
 #include "flattened/hull_height.h"
 #include "flattened/limits.h"
 #include "operations/limits.h"
+#include "operations/prefetch.h"
 #include "operations/search.h"
 
 // Where the list of region r begins that is made of lists with these offsets: a place for each BUCKET points and one
@@ -464,6 +467,104 @@ kernel void hull_chains(int regions, filter_bound bound, global const int* restr
   if (me == 0 && r < regions) sizes[r] = hull_size[0];
   if (frame.undecided > 0) atomic_add(undecided, frame.undecided);
   COUNT_STEPS(frame.counted.steps);
+}
+
+// So many corners are put in order of u one by one, before such runs are merged.
+#define CORNERS_RUN 12
+
+// Sorts the corners s by u into `spare`, which has as much room; s is lost.
+static inline void sort_corners(sequence s, sequence spare, int count) {
+  for (int low = 0; low < count; low += CORNERS_RUN) {
+    const int high = min(count, low + CORNERS_RUN);
+    for (int i = low + 1; i < high; ++i) {
+      const int id = s.ids[i];
+      const double2 p = s.projections[i];
+      int to = i;
+      for (; to > low && s.projections[to - 1].y > p.y; --to) {
+        s.ids[to] = s.ids[to - 1];
+        s.projections[to] = s.projections[to - 1];
+      }
+      s.ids[to] = id;
+      s.projections[to] = p;
+    }
+  }
+  int in_spare = 0;
+  for (long run = CORNERS_RUN; run < count || !in_spare; run *= 2) {
+    const sequence from = in_spare ? spare : s, to = in_spare ? s : spare;
+    for (long low = 0; low < count; low += 2 * run) {
+      const int middle = (int)min((long)count, low + run), high = (int)min((long)count, low + 2 * run);
+      int a = (int)low, b = middle;
+      for (int k = (int)low; k < high; ++k) {
+        const int i = b == high || (a < middle && from.projections[a].y <= from.projections[b].y) ? a++ : b++;
+        to.ids[k] = from.ids[i];
+        to.projections[k] = from.projections[i];
+      }
+    }
+    in_spare = !in_spare;
+  }
+}
+
+// The hulls of regions so small that nothing need be pruned: a work-item takes a region with all its points and
+// corners. The region's elements begin at begins[r]. sorted_corners and sorted_projections have room for all corners.
+// flags: of corners, whether their vertices are on the hull.
+kernel void hulls_alone(int n, filter_bound bound, global const int* restrict point_offsets,
+                        global const int* restrict corner_offsets, LISTS(), global const int* restrict corners, CUTS(),
+                        global int* restrict begins, global int* ids, global double2* projections,
+                        global int* sorted_corners, global double2* sorted_projections, global uint* restrict sizes,
+                        global uchar* restrict flags, global volatile uint* restrict undecided COUNTERS) {
+  const int r = get_global_id(0);
+  if (r < n) {
+    const int low = point_offsets[r], high = point_offsets[r + 1];
+    const int corners_low = corner_offsets[r], corners_high = corner_offsets[r + 1];
+    const int begin = low + corners_low;
+    const int a = axis[r], planar = is_planar(a);
+    const double q = cut[r];
+    global const int* const list = a == AXIS_Y ? x_list : y_list;
+    // The points of a region are not neighbours in memory.
+    for (int k = low; k < high; ++k) fetch(points + list[k]);
+    for (int c = corners_high; c < corner_offsets[min(r + 2, n)]; ++c) fetch(points + corners[3 * c + 1]);
+    hull_frame frame;
+    frame.axis = a;
+    frame.cut = q;
+    frame.bound = bound;
+    frame.points = points;
+    frame.undecided = 0;
+    CLEAR_TALLY(frame);
+    const sequence now = {ids, projections};
+    // The corners by u, as their numbers.
+    const int count = corners_high - corners_low;
+    const sequence unsorted = {ids + begin, projections + begin};
+    const sequence sorted = {sorted_corners + corners_low, sorted_projections + corners_low};
+    for (int c = 0; c < count; ++c) {
+      unsorted.ids[c] = corners_low + c;
+      unsorted.projections[c] = project(to_frame(points[corners[3 * (corners_low + c) + 1]], a), q, planar);
+    }
+    sort_corners(unsorted, sorted, count);
+    int c = 0, end = begin;
+    for (int k = 0; k <= high - low; ++k) {
+      const int is_point = k < high - low;
+      const int id = is_point ? list[a == AXIS_Y ? high - 1 - k : low + k] : 0;
+      const double2 p = is_point ? project(to_frame(points[id], a), q, planar) : VECTOR(double2, 0.0, INFINITY);
+      for (; c < count && sorted.projections[c].y < p.y; ++c) {
+        now.ids[end] = corners[3 * sorted.ids[c] + 1];
+        now.projections[end++] = sorted.projections[c];
+      }
+      if (is_point) {
+        now.ids[end] = id;
+        now.projections[end++] = p;
+      }
+    }
+    const int size = chain_of(&frame, now, begin, end WITH_COUNTERS);
+    int v = begin;
+    for (c = 0; c < count; ++c) {
+      while (now.projections[v].y < sorted.projections[c].y) ++v;
+      flags[sorted.ids[c]] = now.ids[v] == corners[3 * sorted.ids[c] + 1];
+    }
+    begins[r] = begin;
+    sizes[r] = size;
+    if (frame.undecided > 0) atomic_add(undecided, frame.undecided);
+    COUNT_STEPS(frame.counted.steps);
+  }
 }
 
 // A work-group takes a region. band: see chord_bands in prune.cl.

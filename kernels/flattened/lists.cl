@@ -9,6 +9,10 @@
 #include "flattened/axes.h"
 #include "flattened/codes.h"
 #include "operations/counters.h"
+#include "operations/prefetch.h"
+
+// How many elements ahead of its use a point is fetched.
+#define POINTS_AHEAD 24
 
 // broken[0] gets BROKEN_PATH if a point on the cut line is not on the path, which would be a bug.
 kernel void point_sides(int n, global const int* restrict list, global const int* restrict regions, CUTS(),
@@ -16,6 +20,7 @@ kernel void point_sides(int n, global const int* restrict list, global const int
   const int i = get_global_id(0);
   if (i < n) {
     const int id = list[i];
+    if (i + POINTS_AHEAD < n) fetch(points + list[i + POINTS_AHEAD]);
     if (side[id] != SIDE_BORDER) {
       COUNT(SPLIT, ARITHMETIC, 1);
       const int r = regions[i];

@@ -10,6 +10,7 @@
 #include "flattened/axes.h"
 #include "flattened/codes.h"
 #include "operations/counters.h"
+#include "operations/prefetch.h"
 #include "operations/search.h"
 #include "predicates/planar.h"
 
@@ -45,6 +46,9 @@ static inline path_vertex path_vertex_at(int place, int first, int last, int a, 
   CLEAR_TALLY(v);
   return v;
 }
+
+// How many corners ahead of its use a vertex is fetched.
+#define CORNERS_AHEAD 24
 
 // Where a corner's edge leaves the path's vertex.
 #define EDGE_LEFT 0
@@ -111,7 +115,7 @@ static inline int code_on_path(path_vertex* v, int before_id, double2 before, in
 }
 
 // place: the corner's vertex on its region's path, or -1.
-// kept[points_count + i]: 0 if prune found that corner i's vertex is not on the path.
+// kept[points_count + i]: 0 if it is known that corner i's vertex is not on the path.
 kernel void corner_codes(int n, int points_count, filter_bound bound, global const uchar* restrict kept,
                          global const int* restrict corners, global const int* restrict regions, CUTS(), PATHS(),
                          global int* restrict places, global uchar* restrict codes COUNTERS) {
@@ -121,6 +125,7 @@ kernel void corner_codes(int n, int points_count, filter_bound bound, global con
     const int a = axis[r];
     const int vertex = corners[3 * i + 1];
     const double2 m = to_frame(points[vertex], a);
+    if (i + CORNERS_AHEAD < n) fetch(points + corners[3 * (i + CORNERS_AHEAD) + 1]);
     const int first = path_offsets[r];
     const int last = path_offsets[r + 1] - 1;
     const int maybe_on_path = kept[points_count + i];

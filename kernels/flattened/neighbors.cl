@@ -8,6 +8,7 @@
 // loose_edges flags half-edges that have no twin yet; insert_loose and match_loose do the same for a list of them.
 
 #include "mesh/halfedges.h"
+#include "operations/prefetch.h"
 
 static inline uint edge_hash(int low, int high) {
   ulong z = ((ulong)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;
@@ -53,17 +54,35 @@ static inline void match_edge(int h, uint mask, global const int* restrict trian
   }
 }
 
+// How many half-edges ahead of its use a slot is fetched.
+#define SLOTS_AHEAD 32
+
+static inline void fetch_slot(int h, int n, uint mask, global const int* restrict triangles,
+                              global const volatile int* table) {
+  const int ahead = h + SLOTS_AHEAD;
+  if (ahead < n) {
+    const int low = min(halfedge_from(triangles, ahead), halfedge_to(triangles, ahead));
+    fetch((global const int*)table + (edge_slot(low, low, 0) & mask));
+  }
+}
+
 // table: mask + 1 slots (a power of two, more than there are edges), -1 throughout.
 kernel void insert_edges(int n, uint mask, global const int* restrict triangles, global volatile int* restrict table) {
   const int h = get_global_id(0);
-  if (h < n) insert_edge(h, mask, triangles, table);
+  if (h < n) {
+    fetch_slot(h, n, mask, triangles, table);
+    insert_edge(h, mask, triangles, table);
+  }
 }
 
 // twins: -1 throughout.
 kernel void match_edges(int n, uint mask, global const int* restrict triangles, global const int* restrict table,
                         global int* restrict twins) {
   const int h = get_global_id(0);
-  if (h < n) match_edge(h, mask, triangles, table, twins);
+  if (h < n) {
+    fetch_slot(h, n, mask, triangles, table);
+    match_edge(h, mask, triangles, table, twins);
+  }
 }
 
 kernel void loose_edges(int n, global const int* restrict twins, global uchar* restrict flags) {

@@ -129,6 +129,13 @@ constexpr Row kTable[] = {
      {32},
      {1},
      "A warp takes a region, however small; on a CPU a work-item does."},
+    {"hull_alone_most",
+     &Tuning::hull_alone_most,
+     {128},
+     {0},
+     {4},
+     "To prune so few points takes longer than a chain of all. Work-items of a GPU would wait for the "
+     "longest."},
     {"point_tile",
      &Tuning::point_tile,
      {2048},

@@ -41,6 +41,9 @@ struct Tuning : host::Sizes {
   /// size.
   std::size_t chain_points = 1;
   std::size_t chain_group_least = 1;
+  /// Mode flattened makes paths with a work-item per region where regions have at most so many internal
+  /// points and, on average, corners.
+  std::size_t hull_alone_most = 0;
   /// If work-groups take tiles (tile_group): the points and samples per tile, at most what local_bytes holds,
   /// and the bits of a block's number per pass over the points, at most kernel::MOST_BLOCK_BITS.
   std::size_t point_tile = 1;

@@ -135,6 +135,21 @@ void check_levels(Runtime& runtime, const Coordinates& coordinates, const std::v
       }
     }
 
+    {
+      Arena::Scope lone_scope(work.scratch());
+      LevelStatistics ignored;
+      const auto flags = testing::guarded<cl_uchar>(runtime, level.corners);
+      expect_paths(call, lone_paths(work, table, level, flags, ignored),
+                   HostPaths(points, frames, expected_paths));
+      const auto on_path = testing::download(runtime, flags, level.corners);
+      const auto corner_ids = call.read(level.corner_ids, 3 * level.corners);
+      const auto corner_regions = call.read(level.corner_regions, level.corners);
+      for (std::size_t c = 0; c < level.corners; ++c) {
+        const std::vector<int>& path = expected_paths[static_cast<std::size_t>(corner_regions[c])];
+        ASSERT_EQ(on_path[c], std::count(path.begin(), path.end(), corner_ids[3 * c + 1])) << "corner " << c;
+      }
+    }
+
     const std::size_t undecided = call.undecided();
     LevelStatistics statistics;
     project(work, table, level);

@@ -156,29 +156,35 @@ void join(Workspace& work, const Level& level, const Paths& paths, const Kept& k
                                          .projections = joined.projections});
 }
 
+// The hulls that sequences have become, at most `size` vertices in all, as paths in arena.
+ChordPaths paths_of(Workspace& work, const Level& level, const Sequences& sequences,
+                    const Buffer<cl_int>& offsets, std::size_t size, std::size_t group, Arena& arena) {
+  ChordPaths made;
+  made.paths = allocate_paths(arena, size);
+  made.paths.offsets = offsets;
+  made.band = arena.allocate<cl_double>(size);
+  work.runtime.launch(level.regions * group, group,
+                      kernels::write_paths{.regions = level.regions,
+                                           .begins = sequences.begins,
+                                           .offsets = offsets,
+                                           .axis = level.axis,
+                                           .ids = sequences.ids,
+                                           .projections = sequences.projections,
+                                           .new_path_vertices = made.paths,
+                                           .band = made.band});
+  return made;
+}
+
 // The hulls of sequences, which are lost. paths: receives them, in arena.
 ChordPaths hulls_of(Workspace& work, const PointTable& table, const Level& level, const Sequences& sequences,
                     Arena& arena) {
   host::Runtime& runtime = work.runtime;
   const std::size_t regions = level.regions;
   const std::size_t group = region_group(work, sequences.room / regions);
-  ChordPaths made;
-  Paths& paths = made.paths;
-  paths = allocate_paths(arena, sequences.room);
-  paths.offsets = arena.allocate<cl_int>(regions + 1);
-  made.band = arena.allocate<cl_double>(paths.size);
-  chain_hulls(work, table, level, sequences, group, paths.offsets.as<cl_uint>());
-  host::exclusive_scan(runtime, paths.offsets.as<cl_uint>(), regions, paths.offsets.as<cl_uint>());
-  runtime.launch(regions * group, group,
-                 kernels::write_paths{.regions = regions,
-                                      .begins = sequences.begins,
-                                      .offsets = paths.offsets,
-                                      .axis = level.axis,
-                                      .ids = sequences.ids,
-                                      .projections = sequences.projections,
-                                      .new_path_vertices = paths,
-                                      .band = made.band});
-  return made;
+  const auto offsets = arena.allocate<cl_int>(regions + 1);
+  chain_hulls(work, table, level, sequences, group, offsets.as<cl_uint>());
+  host::exclusive_scan(runtime, offsets.as<cl_uint>(), regions, offsets.as<cl_uint>());
+  return paths_of(work, level, sequences, offsets, sequences.room, group, arena);
 }
 
 }  // namespace
@@ -207,6 +213,40 @@ void chain_hulls(Workspace& work, const PointTable& table, const Level& level, c
                            .other_projections = work.scratch().allocate<cl_double2>(sequences.room),
                            .sizes = sizes,
                            .undecided = work.undecided});
+}
+
+Paths lone_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
+                 LevelStatistics& statistics) {
+  host::Runtime& runtime = work.runtime;
+  Arena& scratch = work.scratch();
+  Arena& waiting = *work.children;
+  Arena::Scope waiting_scope(waiting);
+  const std::size_t room = level.points + level.corners;
+  statistics.survivors = room;
+  const Sequences sequences = allocate_sequences(waiting, level.regions, room);
+  const auto offsets = scratch.allocate<cl_int>(level.regions + 1);
+  {
+    Arena::Scope scope(scratch);
+    const KeptCorners sorted = allocate_corners(scratch, level.corners);
+    runtime.map(level.regions, kernels::hulls_alone{.bound = work.bounds.hull,
+                                                    .point_offsets = level.point_offsets,
+                                                    .corner_offsets = level.corner_offsets,
+                                                    .lists = level,
+                                                    .corners = level.corner_ids,
+                                                    .cuts = level.cuts(table),
+                                                    .begins = sequences.begins,
+                                                    .ids = sequences.ids,
+                                                    .projections = sequences.projections,
+                                                    .sorted_corners = sorted.ids,
+                                                    .sorted_projections = sorted.projections,
+                                                    .sizes = offsets.as<cl_uint>(),
+                                                    .flags = flags,
+                                                    .undecided = work.undecided});
+  }
+  host::exclusive_scan(runtime, offsets.as<cl_uint>(), level.regions, offsets.as<cl_uint>());
+  return paths_of(work, level, sequences, offsets,
+                  static_cast<std::size_t>(runtime.read_one(offsets, level.regions)), 1, scratch)
+      .paths;
 }
 
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,

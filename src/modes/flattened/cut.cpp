@@ -18,6 +18,7 @@ void cut(Workspace& work, const PointTable& table, Level& level, int depth, int 
                                                        .axis = level.axis,
                                                        .cut = level.cut,
                                                        .largest = work.largest});
+  if (level.is_small) return;
   work.add_depth(Component::cut, alternate_axis < 0 ? 3 : 0);
   work.add_depth(Component::hull, log2_ceiling(level.corners));
   const std::size_t group = region_group(work, level.corners / level.regions);

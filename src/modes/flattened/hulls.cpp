@@ -62,6 +62,12 @@ Paths plain_hull(Workspace& work, const PointTable& table, const Level& level, c
 }  // namespace
 
 Paths hulls(Workspace& work, const PointTable& table, const Level& level, LevelStatistics& statistics) {
+  if (level.is_small) {
+    const auto flags = work.scratch().allocate<cl_uchar>(level.corners);
+    Paths paths = lone_paths(work, table, level, flags, statistics);
+    paths.flags = flags;
+    return paths;
+  }
   const auto flags = work.scratch().allocate<cl_uchar>(level.points + level.corners);
   Paths paths = work.hull == Hull::monotone_chain ? chain_paths(work, table, level, flags, statistics)
                 : work.hull == Hull::prune

@@ -25,6 +25,13 @@ Borders Recursion::begin() {
   return borders;
 }
 
+// Without bounds for their corners, there may not be many on average.
+bool Recursion::is_small(const Level& level, int depth) const {
+  const std::size_t most = tuning_of(work_.runtime).hull_alone_most;
+  return work_.hull == Hull::monotone_chain && largest_ >> depth <= most &&
+         level.corners <= most * level.regions;
+}
+
 Level Recursion::step(const Level& level, int depth) {
   const double begin = work_.runtime.working_clock();
   Arena::Scope scope(work_.scratch());
@@ -33,6 +40,7 @@ Level Recursion::step(const Level& level, int depth) {
   statistics.internal_points = level.points;
   statistics.corners = level.corners;
   Level cut_level = level;
+  cut_level.is_small = is_small(level, depth);
   cut(work_, table_, cut_level, depth, options_.cut == Cut::alternate ? depth % 2 : -1);
   project(work_, table_, cut_level);
   const Paths paths = hulls(work_, table_, cut_level, statistics);

@@ -51,6 +51,7 @@ class Recursion {
   /// Cuts the regions of a level. Returns the level of their children, and triangulates children without
   /// internal points.
   Level step(const Level& level, int depth);
+  bool is_small(const Level& level, int depth) const;
   void recurse(const Level& region, int depth);
   void recurse_each(const Level& level, int depth);
   /// share: that of the recursion which is done.

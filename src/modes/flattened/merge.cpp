@@ -17,7 +17,7 @@ void merge(Workspace& work, PointTable& table, const Level& level, const Paths& 
   work.add_depth(Component::split, 1 + scan_depth(level.points));
   const auto places = scratch.allocate<cl_int>(level.corners);
   const auto codes = scratch.allocate<cl_uchar>(level.corners);
-  runtime.map(level.corners, kernels::corner_codes{.points_count = level.points,
+  runtime.map(level.corners, kernels::corner_codes{.points_count = level.is_small ? 0 : level.points,
                                                    .bound = work.bounds.orient,
                                                    .kept = paths.flags,
                                                    .corners = level.corner_ids,

@@ -5,6 +5,7 @@ namespace flaunay::flattened {
 using namespace statistics;
 
 void project(Workspace& work, const PointTable& table, Level& level) {
+  if (level.is_small) return;
   level.projections = work.scratch().allocate<cl_double2>(level.points);
   work.runtime.map(level.points, kernels::project_points{.regions = level.point_regions,
                                                          .lists = level,

@@ -74,6 +74,9 @@ struct Level {
   Buffer<cl_int> corner_ids{};        ///< 3 per corner: before, vertex, after
   Buffer<cl_int> corner_regions{};
   Buffer<cl_int> corner_offsets{};  ///< regions + 1
+  /// Regions are so small that a work-item makes a region's path from all of its points: without ends and
+  /// projections.
+  bool is_small = false;
   Buffer<cl_int> axis{};
   Buffer<cl_double> cut{};
   /// The projections of internal points, in the order of the list that is sorted along the region's cut line.
@@ -103,7 +106,8 @@ struct Paths {
   Buffer<cl_double2> projections{};  ///< (h, u); see kernels/flattened/hull_height.h
   Buffer<cl_int> regions{};
   Buffer<cl_int> offsets{};  ///< regions + 1
-  /// The flags that prune gave to internal points and corners; points with flag 0 are not on the path.
+  /// The flags that prune gave to internal points and corners, in small regions to corners alone; those with
+  /// flag 0 are not on the path.
   Buffer<cl_uchar> flags{};
 
   operator kernels::paths() const {
@@ -200,6 +204,11 @@ void chain_hulls(Workspace& work, const PointTable& table, const Level& level, c
 /// about all points and corners. Waits once.
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                   statistics::LevelStatistics& statistics);
+
+/// Computes the strict hulls of a level's regions, a work-item each, without ends and projections. Waits
+/// once.
+Paths lone_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
+                 statistics::LevelStatistics& statistics);
 
 /// Decides exactly those of `count` elements whose flag is FLAG_UNDECIDED. Element i is point ids[i], which
 /// is compared with the chord that begins at path vertex chord[i]. keep_on: also keeps points on the chord.
