@@ -7,24 +7,22 @@
 
 #include "mesh/halfedges.h"
 
-kernel void finish_rows(int n, int with_neighbors, global const int* restrict triangles,
-                        global const int* restrict twins, global const int* restrict source, global int* restrict rows,
-                        global int* restrict neighbors) {
+// rows may be triangles, and neighbors twins.
+kernel void finish_rows(int n, int with_neighbors, global const int* triangles, global const int* twins,
+                        global const int* restrict source, global int* rows, global int* neighbors) {
   const int t = get_global_id(0);
   if (t < n) {
-    int v[3];
+    int v[3], beyond[3] = {-1, -1, -1};
     int first = 0;
     for (int j = 0; j < 3; ++j) {
       v[j] = source[triangles[3 * t + j]];
       if (v[j] < v[first]) first = j;
+      if (with_neighbors) beyond[j] = twins[opposite_halfedge(3 * t + j)];
     }
     for (int j = 0; j < 3; ++j) {
       const int from = (first + j) % 3;
       rows[3 * t + j] = v[from];
-      if (with_neighbors) {
-        const int twin = twins[opposite_halfedge(3 * t + from)];
-        neighbors[3 * t + j] = twin < 0 ? -1 : twin / 3;
-      }
+      if (with_neighbors) neighbors[3 * t + j] = beyond[from] < 0 ? -1 : beyond[from] / 3;
     }
   }
 }

@@ -88,7 +88,8 @@ kernel void chord_bands(int n, int regions, PATHS(), global const int* restrict 
 // Internal points, by buckets. The points of one region in a bucket are neighbours along the line, often under one
 // chord: so the chord of the first of them in u is searched, and the last is tested for the same chord. For each point
 // that is not dropped, chord is the path vertex whose chord it is held against, and depth is its depth below that
-// chord. ids is written for undecided points only. rough: keeps undecided points, and writes nothing but flags.
+// chord, without keep_on. ids is written for undecided points only. rough: keeps undecided points, and writes nothing
+// but flags.
 kernel void prune_points(int n, int elements, int keep_on, int rough, filter_bound bound,
                          global const int* restrict regions, LISTS(), global const double2* restrict projections,
                          CUTS(), global const double* restrict band, PATHS(), CANDIDATES() COUNTERS) {
@@ -129,7 +130,7 @@ kernel void prune_points(int n, int elements, int keep_on, int rough, filter_bou
         if (rough) continue;
         if (keep == 1 || keep == FLAG_UNDECIDED) {
           chord[i] = above;
-          depth[i] = below;
+          if (!keep_on) depth[i] = below;
         }
         if (keep == FLAG_UNDECIDED) ids[i] = id;
       }

@@ -58,7 +58,8 @@ void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels,
   }
   const research::Options options;
   Recursion recursion(work, table, options, {&even, &odd}, 1);
-  const Borders borders = recursion.begin();
+  std::vector<std::int32_t> in_host_memory;
+  const Borders borders = recursion.begin(in_host_memory);
   recursion.flattened(levels);
   const RegionArrays regions = recursion.read_regions();
   const PointSets sets = to_host(work, table, representatives);

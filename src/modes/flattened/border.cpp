@@ -45,7 +45,8 @@ Borders initial_borders(Workspace& work, PointTable& table, Level& level, Retire
   project(work, table, planar);
   const Paths paths = hulls(work, table, planar, ignored);
 
-  const Pruned on = allocate_pruned(work, planar, scratch.allocate<cl_uchar>(2 * n));
+  const Pruned on{2 * n, scratch.allocate<cl_uchar>(2 * n), scratch.allocate<cl_int>(2 * n),
+                  scratch.allocate<cl_double>(0)};
   prune(work, table, planar, paths, true, on);
   const auto counts = scratch.allocate<cl_uint>(2 * n + 1);
   host::count_flags(runtime, on.flags, 2 * n, 1, counts);

@@ -16,8 +16,7 @@ PointTable ingest(Workspace& work, const double* coordinates, const std::vector<
   Arena::Scope scope(work.scratch());
   Arena& scratch = work.scratch();
 
-  const auto given = scratch.allocate<cl_double>(2 * n);
-  runtime.write(given, 0, 2 * n, coordinates);
+  const auto given = runtime.view(coordinates, 2 * n);
   const auto device_offsets = runtime.upload(scratch, std::vector<cl_int>(offsets.begin(), offsets.end()));
 
   const points::UniformPoints input = *points::make_uniform(runtime, given, offsets);

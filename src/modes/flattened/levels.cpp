@@ -11,7 +11,7 @@ Recursion::Recursion(Workspace& work, PointTable& table, const research::Options
                      std::array<Arena*, 2> arenas, double levels_end)
     : work_(work), table_(table), options_(options), arenas_(arenas), levels_end_(levels_end) {}
 
-Borders Recursion::begin() {
+Borders Recursion::begin(std::vector<std::int32_t>& triangles) {
   work_.children = arenas_[0];
   scope_ = std::make_unique<Arena::Scope>(*work_.children);
   RetiredRegions retired;
@@ -19,7 +19,7 @@ Borders Recursion::begin() {
   internal_points_ = level_.points;
   // A median goes to the border, so that a region's children have at most half of its points each.
   largest_ = std::min(borders.largest_set, level_.points);
-  triangles_ = work_.persistent.allocate<cl_int>(3 * borders.triangles);
+  triangles_ = result_memory(work_, work_.persistent, triangles, 3 * borders.triangles);
   done_ = endgame(work_, table_, retired, triangles_, 0);
   if (work_.counting != nullptr) work_.counting->end_step(-1);
   return borders;

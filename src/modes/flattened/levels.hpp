@@ -24,8 +24,8 @@ class Recursion {
   Recursion(Workspace& work, PointTable& table, const research::Options& options,
             std::array<Arena*, 2> arenas, double levels_end);
 
-  /// Computes the first borders and regions, and allocates memory for the triangles.
-  Borders begin();
+  /// Computes the first borders and regions, and allocates memory for the triangles; see result_memory.
+  Borders begin(std::vector<std::int32_t>& triangles);
 
   /// Cuts all regions of a level at once, until no region has internal points or `levels` levels are done.
   void flattened(int levels = kMostLevels);

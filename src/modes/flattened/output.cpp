@@ -36,6 +36,13 @@ std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
   return offsets;
 }
 
+Buffer<cl_int> result_memory(Workspace& work, Arena& arena, std::vector<std::int32_t>& values,
+                             std::size_t size) {
+  if (work.runtime.sizes().in_host_memory == 0) return arena.allocate<cl_int>(size);
+  work.runtime.resize(values, size);
+  return work.runtime.output(values);
+}
+
 void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                const Buffer<cl_int>& twins, std::size_t count, const Options& options,
                Triangulation& result) {
@@ -43,10 +50,14 @@ void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& t
   const host::Runtime::Settled settled(runtime);
   Arena::Scope scope(work.scratch());
   const bool with_neighbors = options.neighbors || options.halfedges;
-  runtime.resize(result.triangles, 3 * count);
-  runtime.resize(result.neighbors, with_neighbors ? 3 * count : 0);
-  const auto output = runtime.output(result.triangles);
-  const auto neighbors = runtime.output(result.neighbors);
+  const auto target = [&](std::vector<std::int32_t>& values, const Buffer<cl_int>& in_place,
+                          std::size_t size) {
+    if (!values.empty()) return in_place;
+    runtime.resize(values, size);
+    return runtime.output(values);
+  };
+  const auto output = target(result.triangles, triangles, 3 * count);
+  const auto neighbors = target(result.neighbors, twins, with_neighbors ? 3 * count : 0);
   runtime.map(count, kernels::finish_rows{.with_neighbors = with_neighbors,
                                           .triangles = triangles,
                                           .twins = twins,

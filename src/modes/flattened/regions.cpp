@@ -79,16 +79,16 @@ Buffer<cl_int> find_borders(Workspace& work, const PointTable& table, const Leve
   return border_edge;
 }
 
-// Marks what lies outside of the borders. Returns where the rows of each vertex begin, closed by their
-// number.
+// Marks what lies outside of the borders. The arena of the level has room, after its largest levels. Returns
+// where the rows of each vertex begin, closed by their number.
 Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& level,
                         const RegionBlocks& made, const points::Rings& rings) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
   const points::Blocks& blocks = made.blocks;
-  const auto rows = scratch.allocate<cl_uint>(blocks.points + 1);
-  Arena::Scope scope(scratch);
-  const auto vertex_of = scratch.allocate<cl_int>(blocks.points);
+  const auto rows = work.children->allocate<cl_uint>(blocks.points + 1);
+  Arena::Scope scope(scratch), children_scope(*work.children);
+  const auto vertex_of = work.children->allocate<cl_int>(blocks.points);
   const auto corner_vertex = scratch.allocate<cl_int>(level.corners);
   runtime.map(blocks.points, kernels::name_vertices{.vertex_edge = rings.vertex_edge,
                                                     .ids = made.ids,
@@ -129,7 +129,7 @@ SolvedRegions solve_regions(Workspace& work, const PointTable& table, const Leve
   if (level.regions == 0) return solved;
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  Arena::Scope scope(scratch), arena_scope(arena);
+  Arena::Scope scope(scratch), arena_scope(arena), children_scope(*work.children);
   const RegionBlocks made = make_blocks(work, table, level, arena);
   points::Workspace solver_work{runtime, scratch, work.bounds};
   const points::Rings rings = solver.solve(solver_work, made.blocks, made.owners);

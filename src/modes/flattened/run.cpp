@@ -19,10 +19,12 @@ namespace {
 
 // Bytes per input point that the arenas reserve, which are enough for points in general position
 // (docs/performance-history.md). If an input needs more, the arenas allocate further blocks.
-constexpr std::size_t kPersistentBytesPerPoint = 54;
-constexpr std::size_t kStateBytesPerPoint = 37;  // needed twice: for the current level and for the next one
-constexpr std::size_t kScratchBytesPerPoint = 118;
-constexpr std::size_t kScratchBytesPerPointOfBlocks = 142;
+constexpr std::size_t kPersistentBytesPerPoint = 30;
+// Needed twice: for the current level and for the next one.
+constexpr std::size_t kStateBytesPerPoint = 44, kStateBytesPerPointOfBlocks = 31;
+constexpr std::size_t kScratchBytesPerPoint = 82, kScratchBytesPerPointOfBlocks = 108;
+// The triangles and twins of all points, which can be in memory of the host.
+constexpr std::size_t kMeshBytesPerPoint = 24;
 
 // The share of the time that is over when a stage ends, for progress.
 constexpr double kSorted = 0.05;
@@ -72,11 +74,13 @@ Call::Call(host::Runtime& runtime, const Memory& memory, const double* coordinat
       work{runtime, memory.persistent, made.levels} {
   const std::size_t n = offsets.back();
   Arena& persistent = memory.persistent;
-  persistent.reserve(n * kPersistentBytesPerPoint);
-  memory.even.reserve(n * kStateBytesPerPoint);
-  memory.odd.reserve(n * kStateBytesPerPoint);
-  runtime.arena().reserve(n *
-                          (ends_in_blocks(wanted) ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint));
+  const std::size_t mesh = runtime.sizes().in_host_memory != 0 ? 0 : kMeshBytesPerPoint;
+  const bool in_blocks = ends_in_blocks(wanted);
+  persistent.reserve(n * (kPersistentBytesPerPoint + mesh));
+  for (Arena* const state : {&memory.even, &memory.odd}) {
+    state->reserve(n * (in_blocks ? kStateBytesPerPointOfBlocks : kStateBytesPerPoint));
+  }
+  runtime.arena().reserve(n * (mesh + (in_blocks ? kScratchBytesPerPointOfBlocks : kScratchBytesPerPoint)));
   // Operations are counted by the paper's quickhull.
   const bool in_rounds = options.count || options.hull != Hull::prune;
   work.hull = in_rounds ? options.hull : Hull::monotone_chain;
@@ -143,6 +147,13 @@ void write_result(Call& call, const Buffer<cl_int>& triangles, const Buffer<cl_i
   call.phases.end("output");
 }
 
+// They become the neighbours, if those are asked for.
+Buffer<cl_int> memory_for_twins(Call& call, std::size_t count) {
+  Arena& scratch = call.work.scratch();
+  if (!call.options.neighbors && !call.options.halfedges) return scratch.allocate<cl_int>(3 * count);
+  return result_memory(call.work, scratch, call.result.neighbors, 3 * count);
+}
+
 // Runs the levels to the bottom. Then makes the triangles canonical and finds neighbours.
 void finish_levels(Call& call, Recursion& recursion, const Borders& borders) {
   if (call.options.mode == research::Mode::flattened) {
@@ -158,7 +169,7 @@ void finish_levels(Call& call, Recursion& recursion, const Borders& borders) {
   const std::size_t count = borders.triangles;
   const Buffer<cl_int>& triangles = recursion.triangles();
   Arena::Scope scope(work.scratch());
-  const auto twins = work.scratch().allocate<cl_int>(3 * count);
+  const auto twins = memory_for_twins(call, count);
   call.result.triangle_offsets = order_by_sets(work, table, triangles, {}, count);
   match_edges(work, triangles, count, twins);
   canonicalize(work, table, triangles, count, twins);
@@ -177,7 +188,7 @@ void finish_blocks(Call& call, Recursion& recursion, const Borders& borders, con
   const std::size_t count = borders.triangles;
   const Buffer<cl_int>& triangles = recursion.triangles();
   Arena::Scope scope(work.scratch());
-  const auto twins = work.scratch().allocate<cl_int>(3 * count);
+  const auto twins = memory_for_twins(call, count);
   work.runtime.fill(twins, 3 * count, cl_int{-1});
   const SolvedRegions solved = solve_regions(work, table, recursion.level(), recursion.other_arena(), solver,
                                              triangles, recursion.done(), twins);
@@ -230,7 +241,7 @@ void run(host::Runtime& runtime, const Memory& memory, const double* coordinates
   const bool ends_early = ends_in_blocks(options) || options.mode == research::Mode::partition;
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd},
                       ends_early ? kPartitioned : kTriangulated);
-  const Borders borders = recursion.begin();
+  const Borders borders = recursion.begin(result.triangles);
   call.phases.end("borders");
   if (options.mode == research::Mode::partition) {
     finish_partition(call, recursion, borders, solvers.partition_levels, solvers.regions);
@@ -248,7 +259,7 @@ void partition(host::Runtime& runtime, const Memory& memory, const double* coord
   research::Triangulation made;
   Call call(runtime, memory, coordinates, {0, n}, options, made);
   Recursion recursion(call.work, call.table, options, {&memory.even, &memory.odd}, kTriangulated);
-  const Borders borders = recursion.begin();
+  const Borders borders = recursion.begin(made.triangles);
   call.phases.end("borders");
   recursion.flattened(std::min<int>(levels, kMostLevels));
   check_invariants(call.work);

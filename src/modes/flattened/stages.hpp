@@ -174,7 +174,7 @@ struct Pruned {
   std::size_t elements = 0;
   Buffer<cl_uchar> flags{};
   /// For elements that are kept: the path vertex at which the chord above them begins, and their
-  /// depth below that chord.
+  /// depth below that chord, which is not written if points on the paths are kept.
   Buffer<cl_int> chord{};
   Buffer<cl_double> depth{};
 };
@@ -324,7 +324,12 @@ void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
                                        const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
                                        std::size_t count);
-/// Copies triangles and, if the options ask for them, neighbours and half-edges to the result.
+/// Memory for what becomes an array of the result. On a device that works in host memory it is that array,
+/// otherwise it comes from the arena.
+Buffer<cl_int> result_memory(Workspace& work, Arena& arena, std::vector<std::int32_t>& values,
+                             std::size_t size);
+/// Copies triangles and, if the options ask for them, neighbours and half-edges to the result; or changes
+/// them in place if they are in its arrays.
 void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& triangles,
                const Buffer<cl_int>& twins, std::size_t count, const Options& options, Triangulation& result);
 /// Converts ids to indices of input points and copies them to the host.
