@@ -5,7 +5,7 @@
 //    join_regions what is connected between them: to a forest in which every parent has a smaller number, so that roots
 //    are the first triangles of their regions, whatever the order of joins (Jaiganesh and Burtscher, "A
 //    high-performance connected components implementation for GPUs", 2018). find_roots and, after a scan over roots,
-//    number_regions give each triangle its region's number.
+//    number_regions give each triangle its region's number. Few triangles are visited by one work-item (visit_regions).
 // 2. Weights of constraint edges, if the fill rule needs them: cover_edges writes where segments begin and end to
 //    cover edges; a scan of this gives each edge's sum. count_ends and find_unbalanced find points where segments are
 //    no closed curves. list_edges puts the edges into a hash table, by which triangles find them.
@@ -70,6 +70,34 @@ kernel void start_regions(int n, int chunk, global const int* restrict neighbors
       parents[max(root, other)] = min(root, other);
       root = min(root, other);
     }
+  }
+}
+
+// Where all triangles are one chunk: a work-item alone visits the regions one after the other, and numbers them.
+// regions: each triangle's number. visited: n + 3. count: that of the regions.
+kernel void visit_regions(int n, global const int* restrict neighbors, global const uchar* restrict constrained,
+                          global int* restrict regions, global int* restrict visited, global uint* restrict count) {
+  if (get_global_id(0) == 0) {
+    for (int t = 0; t < n; ++t) regions[t] = -1;
+    int region = 0;
+    for (int first = 0; first < n; ++first) {
+      if (regions[first] >= 0) continue;
+      regions[first] = region;
+      visited[0] = first;
+      for (int top = 1; top > 0;) {
+        const int t = visited[--top];
+        for (int k = 3 * t; k < 3 * t + 3; ++k) {
+          // Without a branch, since it could not be predicted.
+          const int u = max(neighbors[k], 0), known = regions[u];
+          const int is_new = (neighbors[k] >= 0) & (known < 0) & !constrained[k];
+          regions[u] = is_new ? region : known;
+          visited[top] = u;
+          top += is_new;
+        }
+      }
+      ++region;
+    }
+    count[0] = (uint)region;
   }
 }
 

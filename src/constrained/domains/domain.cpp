@@ -285,6 +285,39 @@ Seeds make_seeds(const Places& places, const double* coordinates, const std::vec
   return seeds;
 }
 
+// Finds the region of each triangle; returns the number of regions.
+std::size_t join_regions(host::Runtime& runtime, const DomainMesh& mesh, std::size_t chunk,
+                         const Buffer<cl_int>& regions) {
+  const std::size_t triangles = mesh.triangle_count();
+  const auto parents = runtime.arena().allocate<cl_int>(triangles);
+  const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
+  runtime.chunks(triangles, chunk,
+                 kernels::start_regions{
+                     .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+  runtime.map(
+      triangles,
+      kernels::join_regions{
+          .length = chunk, .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
+  runtime.map(triangles, kernels::find_roots{.parents = parents, .regions = regions, .counts = numbers});
+  host::exclusive_scan(runtime, numbers, triangles, numbers);
+  runtime.map(triangles, kernels::number_regions{.numbers = numbers, .regions = regions});
+  return runtime.read_one(numbers, triangles);
+}
+
+// As join_regions, for triangles that are one chunk.
+std::size_t visit_regions(host::Runtime& runtime, const DomainMesh& mesh, const Buffer<cl_int>& regions) {
+  const std::size_t triangles = mesh.triangle_count();
+  if (triangles == 0) return 0;
+  const auto count = runtime.arena().allocate<cl_uint>(1);
+  runtime.launch(1, 1, triangles,
+                 kernels::visit_regions{.neighbors = mesh.neighbors,
+                                        .constrained = mesh.constrained,
+                                        .regions = regions,
+                                        .visited = runtime.arena().allocate<cl_int>(triangles + 3),
+                                        .count = count});
+  return runtime.read_one(count, 0);
+}
+
 }  // namespace
 
 Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
@@ -293,23 +326,9 @@ Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh) {
   regions.of_triangles = runtime.arena().allocate<cl_int>(triangles);
   {
     Arena::Scope scope(runtime.arena());
-    const auto parents = runtime.arena().allocate<cl_int>(triangles);
-    const auto numbers = runtime.arena().allocate<cl_uint>(triangles + 1);
     const std::size_t chunk = runtime.sizes().chunk(triangles);
-    runtime.chunks(triangles, chunk,
-                   kernels::start_regions{
-                       .neighbors = mesh.neighbors, .constrained = mesh.constrained, .parents = parents});
-    if (triangles > chunk) {
-      runtime.map(triangles, kernels::join_regions{.length = chunk,
-                                                   .neighbors = mesh.neighbors,
-                                                   .constrained = mesh.constrained,
-                                                   .parents = parents});
-    }
-    runtime.map(triangles,
-                kernels::find_roots{.parents = parents, .regions = regions.of_triangles, .counts = numbers});
-    host::exclusive_scan(runtime, numbers, triangles, numbers);
-    runtime.map(triangles, kernels::number_regions{.numbers = numbers, .regions = regions.of_triangles});
-    regions.count = runtime.read_one(numbers, triangles);
+    regions.count = triangles <= chunk ? visit_regions(runtime, mesh, regions.of_triangles)
+                                       : join_regions(runtime, mesh, chunk, regions.of_triangles);
   }
   regions.left = filled(runtime, regions.count, cl_uchar{1});
   return regions;
