@@ -9,8 +9,9 @@ BEGIN_SHARED
 // The account of divide: the places of its numbers.
 INTEGER_CONSTANT(RINGS_UNDECIDED, 0);  // predicates that were evaluated exactly
 INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular points
-INTEGER_CONSTANT(RINGS_BROKEN, 2);     // seams that could not be sewn, which is an error of the program
-INTEGER_CONSTANT(RINGS_NUMBERS, 3);
+INTEGER_CONSTANT(RINGS_TIES_LEFT, 2);  // how many of these left edges as they were
+INTEGER_CONSTANT(RINGS_BROKEN, 3);     // seams that could not be sewn, which is an error of the program
+INTEGER_CONSTANT(RINGS_NUMBERS, 4);
 
 END_SHARED
 

@@ -18,6 +18,7 @@
 #include "predicates/records.h"
 
 #define MOST_DEPTH 32
+#define MOST_TIES 2
 #define FETCHED_VERTICES_AHEAD 256
 
 // A work-item's own arrays, with room for one block.
@@ -147,6 +148,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
       rank(distinct, &s);
       rings g = rings_on(edges, points, vertex_edge, bounds);
       g.unused = EDGES_PER_VERTEX * first;
+      g.most_ties = MOST_TIES;
       const hull_ends ends = distinct == 0 ? no_ends() : solve_block(&g, first, distinct, &s, points, source);
       for (int v = first + distinct; v < first + count; ++v) vertex_edge[v] = NO_EDGE;
       free_unused(&g, EDGES_PER_VERTEX * (first + count));
@@ -170,6 +172,7 @@ kernel void merge_blocks(int n, int first_merge, global const block_merge* restr
     const hull_ends low = solved[merge.low].ends, high = solved[merge.high].ends;
     const int axis = cut_axis(nodes[merge.node]);
     rings g = rings_on(edges, points, vertex_edge, bounds);
+    g.most_ties = MOST_TIES;
     join_free_lists(&g, solved[merge.low].unused, solved[merge.high].unused);
     const hull_ends both = joined_ends(&g, low, high, axis);
     if (low.first_x != NO_VERTEX && high.first_x != NO_VERTEX) {

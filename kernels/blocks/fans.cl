@@ -1,9 +1,9 @@
 // Makes the edge rings of cocircular points canonical: their polygons become fans from their first vertices along x.
 //
-// Merges leave such polygons as they meet them (mesh/rings.h): a merge of two fans would rebuild one of them. These
-// passes follow the last merge. They do nothing if there were no ties, by the account of the merges:
-// 1. find_inside, with one work-item per pair of edges, marks the edges inside of polygons; find_inside_exactly decides
-//    what floating point could not.
+// Merges leave such polygons as they meet them (mesh/rings.h), all or the large ones: a merge of two fans would rebuild
+// one of them. These passes follow the last merge. They do nothing if no ties were left, by the account of the merges:
+// 1. find_inside, with one work-item per pair of edges, marks the edges that may be inside of polygons, by floating
+//    point; find_inside_exactly decides exactly.
 // 2. leave_inside, with one work-item per vertex, makes the vertices' own edges ones that stay.
 // 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
 //    comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the first one at
@@ -35,7 +35,6 @@ static inline void fetch_points(int pair, int pairs, global const coordinate2* p
 
 #define NOT_INSIDE 0
 #define INSIDE 1
-#define UNSURE_INSIDE 2
 
 // Whether the ends of pair k and the third corners of the triangles on either side are cocircular. Where there is a
 // triangle on either side, these are the vertices behind the next edges; whether there is, is seldom worth asking.
@@ -49,28 +48,35 @@ static inline int inside_of(int k, filter_bound bound, int exactly, global const
       exactly ? circle_undecided(a, b, c, d, bound) : angle_compared(angle_at(d, a, b), angle_at(c, a, b), bound);
   if (sign == 1 || sign == -1) return NOT_INSIDE;
   if (apex_left_of(2 * k, edges) == NO_VERTEX || apex_left_of(2 * k + 1, edges) == NO_VERTEX) return NOT_INSIDE;
-  return sign == 0 ? INSIDE : UNSURE_INSIDE;
+  return INSIDE;
 }
 
 // n pairs of edges; account: of the merges.
 kernel void find_inside(int n, filter_bound bound, global const uint* restrict account,
                         global const coordinate2* restrict points, global const ring_edge* restrict edges,
-                        global uchar* restrict inside) {
+                        global uchar* restrict unsure) {
   const int k = get_global_id(0);
-  if (k < n && account[RINGS_TIES] > 0) {
+  if (k < n && account[RINGS_TIES_LEFT] > 0) {
     fetch_edges(k, n, edges);
     fetch_points(k, n, points);
-    inside[k] = edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);
+    unsure[k] = edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);
   }
 }
 
-// n pairs of edges.
-kernel void find_inside_exactly(int n, filter_bound bound, global const uint* restrict account,
+// Whether a side of the triangles beside pair k may be inside of a polygon, too: of a quadrilateral, none is.
+static inline int has_unsure_sides(int k, global const ring_edge* edges, global const uchar* unsure) {
+  const ring_edge there = edges[2 * k], back = edges[2 * k + 1];
+  return unsure[there.next >> 1] | unsure[there.previous >> 1] | unsure[back.next >> 1] | unsure[back.previous >> 1];
+}
+
+// n pairs of edges. with_quadrilaterals: whether these are not yet canonical.
+kernel void find_inside_exactly(int n, int with_quadrilaterals, filter_bound bound, global const uint* restrict account,
                                 global const coordinate2* restrict points, global const ring_edge* restrict edges,
-                                global uchar* restrict inside) {
+                                global const uchar* restrict unsure, global uchar* restrict inside) {
   const int k = get_global_id(0);
-  if (k < n && account[RINGS_TIES] > 0 && inside[k] == UNSURE_INSIDE) {
-    inside[k] = inside_of(k, angle_bound(bound), 1, points, edges);
+  if (k < n && account[RINGS_TIES_LEFT] > 0) {
+    const int may_be = unsure[k] && (with_quadrilaterals || has_unsure_sides(k, edges, unsure));
+    inside[k] = may_be ? inside_of(k, angle_bound(bound), 1, points, edges) : NOT_INSIDE;
   }
 }
 
@@ -80,7 +86,7 @@ static inline int is_inside(int e, global const uchar* inside) { return inside[e
 kernel void leave_inside(int n, global const uint* restrict account, global const ring_edge* restrict edges,
                          global const uchar* restrict inside, global int* restrict vertex_edge) {
   const int v = get_global_id(0);
-  if (v < n && account[RINGS_TIES] > 0) {
+  if (v < n && account[RINGS_TIES_LEFT] > 0) {
     int e = vertex_edge[v];
     if (e != NO_EDGE && is_inside(e, inside)) {
       while (is_inside(e, inside)) e = edges[e].next;
@@ -118,8 +124,7 @@ kernel void find_fans(int n, global const uint* restrict account, global const c
                       global const ring_edge* restrict edges, global const uchar* restrict inside,
                       global uchar* restrict found) {
   const int k = get_global_id(0);
-  if (k < n && account[RINGS_TIES] > 0) {
-    fetch_edges(k, n, edges);
+  if (k < n && account[RINGS_TIES_LEFT] > 0) {
     int where = NOT_HERE;
     for (int odd = 0; inside[k] && odd < 2; ++odd) {
       if (is_first_of_fan(2 * k + odd, points, edges, inside)) where = AT_ORIGIN + odd;
@@ -147,8 +152,7 @@ static inline void flip_towards(rings* g, int e, int opposite) {
 kernel void build_fans(int n, global const uint* restrict account, global const uchar* restrict inside,
                        global const uchar* restrict found, global ring_edge* edges) {
   const int k = get_global_id(0);
-  if (k < n && account[RINGS_TIES] > 0) fetch_edges(k, n, edges);
-  if (k < n && account[RINGS_TIES] > 0 && found[k] != NOT_HERE) {
+  if (k < n && account[RINGS_TIES_LEFT] > 0 && found[k] != NOT_HERE) {
     const filter_bounds no_bounds = {0, 0, 0, 0};
     rings g = rings_on(edges, 0, 0, no_bounds);
     const int seen_from = 2 * k + (found[k] & 1);

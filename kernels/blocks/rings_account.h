@@ -10,6 +10,7 @@ BEGIN_SHARED
 static inline void add_to_account(const rings* g, GLOBAL volatile uint* account) {
   if (g->undecided > 0) atomic_add(&account[RINGS_UNDECIDED], g->undecided);
   if (g->ties > 0) atomic_add(&account[RINGS_TIES], g->ties);
+  if (g->ties_left > 0) atomic_add(&account[RINGS_TIES_LEFT], g->ties_left);
 }
 
 END_SHARED

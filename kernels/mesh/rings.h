@@ -19,11 +19,11 @@ INTEGER_CONSTANT(NO_EDGE, -1);
 INTEGER_CONSTANT(MERGE_IS_DONE, -1);
 INTEGER_CONSTANT(MERGE_HAS_NO_BASE, -2);
 INTEGER_CONSTANT(MERGE_IS_NEW, -3);
-// Whether d counts as inside of the circle of a, b, c if it is on it; if not, edges stay as they are. Where coordinates
-// are so coarse that ties cost nothing, polygons are small, and merges make them canonical. Otherwise they are left to
-// blocks/fans.cl, since merges that make fans of large polygons would make most of their edges again and again.
+// Whether d counts as inside of the circle of a, b, c if it is on it. So merges make polygons of cocircular points
+// canonical if they are small, as all are where coordinates are coarse. Fans of large ones would be made again by each
+// merge, edge by edge, and are left to blocks/fans.cl.
 #ifndef RINGS_TIE
-#define RINGS_TIE(a, b, c, d, bounds) (has_coarse_points(bounds) && canonical_tie(a, b, c, d, (bounds).circle) > 0)
+#define RINGS_TIE(a, b, c, d, bounds) (canonical_tie(a, b, c, d, (bounds).circle) > 0)
 #endif
 static inline int has_coarse_points(filter_bounds bounds) {
 #ifdef FIXED_POINT
@@ -59,6 +59,10 @@ typedef struct {
   int unused;                 // the first that was never used
   uint undecided;             // predicates that floating point could not decide
   uint ties;                  // how many of these found cocircular points
+  uint ties_left;             // how many of these left edges as they were
+  // Polygons with so many ties in a row are left; 0 for all polygons, otherwise at least 2.
+  uint most_ties, ties_in_row;
+  coordinate2 tied[4];  // the points of the last tie
   TALLY_MEMBER
 } rings;
 
@@ -105,7 +109,9 @@ static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* 
   g.bounds = bounds;
   g.errors = unknown_errors();
   g.free_first = g.free_last = g.unused = NO_EDGE;
-  g.undecided = g.ties = 0;
+  g.undecided = g.ties = g.ties_left = 0;
+  g.most_ties = g.ties_in_row = 0;
+  g.tied[0] = g.tied[1] = g.tied[2] = g.tied[3] = VECTOR(coordinate2, 0, 0);
   CLEAR_TALLY(g);
   return g;
 }
@@ -129,19 +135,6 @@ OUT_OF_LINE static inline int side_undecided(rings* g, coordinate2 a, coordinate
 #endif
 }
 
-OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
-                                                  filter_bound bound) {
-  int sign = 0;
-  if (has_coarse_points(g->bounds)) {
-    sign = circle_coarse(a, b, c, d);
-  } else {
-    ++g->undecided;
-    sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
-    g->ties += sign == 0;
-  }
-  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds);
-}
-
 static inline int side_filtered(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
   const int sign = orient_filtered(a, b, c, g->bounds.orient);
   return sign != UNDECIDED ? sign : side_undecided(g, a, b, c);
@@ -163,6 +156,55 @@ static inline int turns_left_in_merge(rings* g, coordinate2 a, coordinate2 b, co
   const real2 ca = difference2(a, c), cb = difference2(b, c);
   const real det = ca.x * cb.y - ca.y * cb.x;
   return det > g->errors.side ? 1 : det < -g->errors.side ? 0 : turns_left_filtered(g, a, b, c);
+}
+
+static inline int is_same(coordinate2 p, coordinate2 q) {
+  return ((as_ulong(p.x) ^ as_ulong(q.x)) | (as_ulong(p.y) ^ as_ulong(q.y))) == 0;
+}
+static inline int is_tied(const rings* g, coordinate2 p) {
+  return is_same(p, g->tied[0]) | is_same(p, g->tied[1]) | is_same(p, g->tied[2]) | is_same(p, g->tied[3]);
+}
+
+// Counts the ties in a row that are known to be those of one polygon, each of which brings another point.
+static inline void count_tie(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
+  int is_again = 0;
+  if (is_tied(g, a) & is_tied(g, b)) {
+    const int others = is_tied(g, c) + is_tied(g, d);
+    is_again = others == 1;
+    if (others == 0) {
+      // Two of the last four points are a and b.
+      int k = is_same(g->tied[0], a) | is_same(g->tied[0], b);
+      if (k == 1 && (is_same(g->tied[1], a) | is_same(g->tied[1], b))) k = 2;
+      is_again = circle_sign(a, b, c, g->tied[k], g->bounds.circle) == 0;
+    }
+  }
+  g->ties_in_row = is_again ? g->ties_in_row + 1 : 1;
+  g->tied[0] = a;
+  g->tied[1] = b;
+  g->tied[2] = c;
+  g->tied[3] = d;
+}
+
+OUT_OF_LINE static inline int in_circle_exactly(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
+                                                filter_bound bound) {
+  ++g->undecided;
+  const int sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
+  if (sign != 0) return sign > 0;
+  if (HAS_STOPPED(g)) return 0;
+  // Below a base, nothing is inside of a circle over it.
+  if (!turns_left(g, a, b, d)) return 0;
+  ++g->ties;
+  if (g->most_ties > 0) count_tie(g, a, b, c, d);
+  if (g->ties_in_row < g->most_ties) return RINGS_TIE(a, b, c, d, g->bounds);
+  ++g->ties_left;
+  return 0;
+}
+
+OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
+                                                  filter_bound bound) {
+  if (!has_coarse_points(g->bounds)) return in_circle_exactly(g, a, b, c, d, bound);
+  const int sign = circle_coarse(a, b, c, d);
+  return sign != 0 ? sign > 0 : RINGS_TIE(a, b, c, d, g->bounds);
 }
 
 // Is d inside of the circle through a, b, c (counter-clockwise)?

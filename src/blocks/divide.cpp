@@ -170,6 +170,7 @@ void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {
   check_account(account);
   rings.undecided = account[kernel::RINGS_UNDECIDED];
   rings.ties = account[kernel::RINGS_TIES];
+  rings.ties_left = account[kernel::RINGS_TIES_LEFT];
 }
 
 }  // namespace flaunay::blocks

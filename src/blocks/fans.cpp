@@ -11,16 +11,20 @@ void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
   const auto inside = work.scratch().allocate<cl_uchar>(pairs);
   const auto found = work.scratch().allocate<cl_uchar>(pairs);
   const auto& account = rings.device_account;
+  const auto& unsure = found;
   runtime.map(pairs, kernels::find_inside{.bound = work.bounds.circle,
                                           .account = account,
                                           .points = blocks.vertices,
                                           .edges = rings.edges,
-                                          .inside = inside});
-  runtime.map(pairs, kernels::find_inside_exactly{.bound = work.bounds.circle,
-                                                  .account = account,
-                                                  .points = blocks.vertices,
-                                                  .edges = rings.edges,
-                                                  .inside = inside});
+                                          .unsure = unsure});
+  runtime.map(pairs,
+              kernels::find_inside_exactly{.with_quadrilaterals = tuning_of(runtime).blocks_in_parallel != 0,
+                                           .bound = work.bounds.circle,
+                                           .account = account,
+                                           .points = blocks.vertices,
+                                           .edges = rings.edges,
+                                           .unsure = unsure,
+                                           .inside = inside});
   runtime.map(
       blocks.points,
       kernels::leave_inside{

@@ -43,7 +43,7 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
   exchange.while_device_computes();
   milestones.report();
   await_rings(work, blocks, rings);
-  if (runtime.at_most(rings.ties > 0, true)) make_fans(work, blocks, rings);
+  if (runtime.at_most(rings.ties_left > 0, true)) make_fans(work, blocks, rings);
   phases.end("triangulate");
 
   phases.progress("output", kBlocksMerged);

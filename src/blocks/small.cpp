@@ -122,15 +122,19 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                                            .scratch_axes = sized(s.axes, largest)});
 
   const std::size_t pairs = kernel::PAIRS_PER_VERTEX * n;
-  if (counts[kernel::RINGS_TIES] > 0) {
+  if (counts[kernel::RINGS_TIES_LEFT] > 0) {
     const auto inside = sized(s.inside, pairs), found = sized(s.found, pairs);
     const float bound = scalings.bounds.circle;
     map_natively(
         pairs, kernels::find_inside{
-                   .bound = bound, .account = account, .points = vertices, .edges = edges, .inside = inside});
-    map_natively(
-        pairs, kernels::find_inside_exactly{
-                   .bound = bound, .account = account, .points = vertices, .edges = edges, .inside = inside});
+                   .bound = bound, .account = account, .points = vertices, .edges = edges, .unsure = found});
+    map_natively(pairs, kernels::find_inside_exactly{.with_quadrilaterals = 0,
+                                                     .bound = bound,
+                                                     .account = account,
+                                                     .points = vertices,
+                                                     .edges = edges,
+                                                     .unsure = found,
+                                                     .inside = inside});
     map_natively(n, kernels::leave_inside{
                         .account = account, .edges = edges, .inside = inside, .vertex_edge = vertex_edge});
     map_natively(

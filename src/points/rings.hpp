@@ -19,6 +19,7 @@ struct Rings {
   std::vector<cl_int> distinct;  ///< number of vertices of each block
   std::size_t undecided = 0;     ///< predicates that were evaluated exactly
   std::size_t ties = 0;          ///< how many of them found cocircular points
+  std::size_t ties_left = 0;     ///< how many of these left edges as they were
 };
 
 }  // namespace flaunay::points

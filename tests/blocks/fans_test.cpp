@@ -70,18 +70,43 @@ TEST(Fans, OfPolygons) {
   });
 }
 
+/// A set that is divided, but has no fans yet.
+struct Divided {
+  Call call;
+  Triangulation result;
+  Blocks blocks;
+  Rings rings;
+
+  Divided(Runtime& runtime, const Coordinates& coordinates) : call(runtime) {
+    const std::size_t n = coordinates.size() / 2;
+    result.representatives.resize(n);
+    const auto representatives = runtime.output(result.representatives);
+    const auto input = runtime.view(coordinates.data(), coordinates.size());
+    blocks = *make_blocks(call.work, input, {0, n}, representatives);
+    rings = divide(call.work, blocks, representatives);
+    await_rings(call.work, blocks, rings);
+  }
+};
+
+/// Merges by single work-items leave ties only in polygons of five points and more, others all.
+TEST(SmallFans, ThatMergesLeave) {
+  under_each_tuning([](Runtime& runtime) {
+    const bool leaves_all = tuning_of(runtime).blocks_in_parallel != 0;
+    Coordinates lattice, circle;
+    for (int k = 0; k < 36; ++k) add_point(5 * (k / 6) - 3 * (k % 6), 3 * (k / 6) + 5 * (k % 6), lattice);
+    add_circle(65, 0, 0, circle);
+    const Divided quadrilaterals(runtime, lattice), polygon(runtime, circle);
+    EXPECT_GT(quadrilaterals.rings.ties, 5u);
+    EXPECT_EQ(quadrilaterals.rings.ties_left, leaves_all ? quadrilaterals.rings.ties : 0);
+    EXPECT_GT(polygon.rings.ties_left, 0u);
+  });
+}
+
 /// Nothing changes where no points are cocircular.
 TEST(SmallFans, OfNoPolygons) {
   Runtime& runtime = Runtimes::get("own");
-  const Coordinates coordinates = make_fixture("uniform", 40, 2);
-  Call call(runtime);
-  Triangulation result;
-  result.representatives.resize(40);
-  const auto representatives = runtime.output(result.representatives);
-  const Blocks blocks =
-      *make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()), {0, 40}, representatives);
-  Rings rings = divide(call.work, blocks, representatives);
-  await_rings(call.work, blocks, rings);
+  Divided divided(runtime, make_fixture("uniform", 40, 2));
+  auto& [call, result, blocks, rings] = divided;
   EXPECT_EQ(rings.ties, 0u);
   const auto before = call.read(rings.edges, rings.edges.size());
   make_fans(call.work, blocks, rings);

@@ -38,7 +38,7 @@ Triangulation check_stages(Runtime& runtime, const Coordinates& coordinates, con
   if (exact) call.work.bounds = {2, 2, 2};
   Rings rings = divide(call.work, blocks, representatives);
   await_rings(call.work, blocks, rings);
-  if (rings.ties > 0) make_fans(call.work, blocks, rings);
+  if (rings.ties_left > 0) make_fans(call.work, blocks, rings);
   met.ties += rings.ties;
   runtime.fetch_later(representatives, result.representatives);
   runtime.finish();
