@@ -58,8 +58,10 @@ def clang_with(name, target, architecture):
     names = [*(f"clang-{version}" for version in range(NEWEST, OLDEST, -1)), "clang"]
     for clang in filter(None, map(shutil.which, names)):
         version = re.search(r"version (\d+)", run([clang, "--version"], clang))[1]
-        builtins = [path for folder in (f"/usr/lib/llvm-{version}", "/usr/lib/clc", "/usr/local/share/clc")
-                    for path in glob.glob(f"{folder}/**/{name}.bc", recursive=True)]
+        # Links are not followed: some packages' lead back to their folder.
+        builtins = [os.path.join(folder, f"{name}.bc")
+                    for top in (f"/usr/lib/llvm-{version}", "/usr/lib/clc", "/usr/local/share/clc")
+                    for folder, _, files in os.walk(top) if f"{name}.bc" in files]
         check = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
                  "-S", "-o", os.devnull, os.devnull]
         if builtins and subprocess.run(check, capture_output=True, check=False).returncode == 0:
