@@ -6,6 +6,10 @@
 // pass over the vertices. mark_outside, with one work-item per set, walks the hull, marks the edges whose left side is
 // outside and subtracts the rows that hull vertices do not have. After a scan, write_triangles, write_neighbors and
 // write_halfedges are one pass each over pairs of edges. write_hulls walks the hulls again.
+//
+// Rings are not walked clockwise any more. write_triangles puts in the place of an edge's `previous` the place of the
+// corner opposite of it, in the triangle on its left, for the passes behind it: there it is in a cache line that they
+// need anyway, and takes no memory of its own.
 
 #include "blocks/rows.h"
 #include "mesh/halfedges.h"
@@ -49,20 +53,19 @@ kernel void mark_outside(int n, global const int* restrict set_blocks, global co
 
 // Whether the triangle left of edge e, which leaves v and goes right or not, belongs to v. Without branches, since they
 // could not be predicted.
-static inline int owns(coordinate2 v, int right, ring_edge e, global const ring_edge* edges,
+static inline int owns(coordinate2 v, int right, int to, int next, global const ring_edge* edges,
                        global const coordinate2* points) {
-  const int other = is_outside(e.next) ? e.to : edges[e.next].to;
-  return !is_outside(e.next) & (precedes(v, points[other], 0) != right);
+  const int other = is_outside(next) ? to : edges[next].to;
+  return !is_outside(next) & (precedes(v, points[other], 0) != right);
 }
 
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
-// vertex'. The row starts with the smallest index. corner_of_edge, if there is one, gets the place of the corner
-// opposite of each edge.
+// vertex'. The row starts with the smallest index. With corners, each of its edges gets the place of the corner
+// opposite of it. Other work-items do so meanwhile: what they write is not read here.
 static inline void write_triangle(int e, int with_corners, global const coordinate2* points, global const int* source,
-                                  global const ring_edge* edges, global const uint* first_rows, global int* triangles,
-                                  global int* corner_of_edge) {
-  const ring_edge there = edges[e], back = edges[e ^ 1];
-  const int v = back.to, a = there.to, b = edges[there.next].to;
+                                  global ring_edge* edges, global const uint* first_rows, global int* triangles) {
+  const int from_b = edges[e].next ^ 1;
+  const int v = edges[e ^ 1].to, a = edges[e].to, b = edges[from_b ^ 1].to;
   const uint first = first_rows[v];
   const int is_second = (first_rows[v + 1] - first == 2) & precedes(points[v], points[a], 0);
   const int row = 3 * (int)(first + is_second);
@@ -72,9 +75,9 @@ static inline void write_triangle(int e, int with_corners, global const coordina
   triangles[row + to.a] = at_a;
   triangles[row + to.b] = at_b;
   if (with_corners) {
-    corner_of_edge[e] = row + to.b;
-    corner_of_edge[back.previous] = row + to.v;
-    corner_of_edge[there.next ^ 1] = row + to.a;
+    edges[e].previous = row + to.b;
+    edges[edges[from_b].next ^ 1].previous = row + to.v;
+    edges[from_b].previous = row + to.a;
   }
 }
 
@@ -92,14 +95,10 @@ static inline void fetch_ahead(int pair, int last, global const ring_edge* edges
 #endif
 }
 
-// An edge without a triangle on its left has no corner.
-#define NO_CORNER -1
-
 // n pairs of edges.
 kernel void write_triangles(int n, int chunk, int with_corners, global const coordinate2* restrict points,
-                            global const int* restrict source, global const ring_edge* restrict edges,
-                            global const uint* restrict first_rows, global int* restrict triangles,
-                            global int* restrict corner_of_edge) {
+                            global const int* restrict source, global ring_edge* edges,
+                            global const uint* restrict first_rows, global int* restrict triangles) {
   const int c = get_global_id(0);
   if ((long)c * chunk < n) {
     const int last = (int)min((long)n, (c + 1L) * chunk);
@@ -108,43 +107,54 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const coo
       int owned[2 * PAIRS_AT_ONCE + 1];
       int count = 0;
       for (int k = begin; k < min(last, begin + PAIRS_AT_ONCE); ++k) {
-        const ring_edge there = edges[2 * k], back = edges[2 * k + 1];
-        if (with_corners && (there.to == NO_VERTEX || is_outside(there.next))) corner_of_edge[2 * k] = NO_CORNER;
-        if (with_corners && (there.to == NO_VERTEX || is_outside(back.next))) corner_of_edge[2 * k + 1] = NO_CORNER;
-        if (there.to == NO_VERTEX) continue;
-        const coordinate2 from = points[back.to], to = points[there.to];
+        const int a = edges[2 * k + 1].to, b = edges[2 * k].to;
+        if (b == NO_VERTEX) continue;
+        const coordinate2 from = points[a], to = points[b];
         const int right = precedes(from, to, 0);
         owned[count] = 2 * k;
-        count += owns(from, right, there, edges, points);
+        count += owns(from, right, b, edges[2 * k].next, edges, points);
         owned[count] = 2 * k + 1;
-        count += owns(to, !right, back, edges, points);
+        count += owns(to, !right, a, edges[2 * k + 1].next, edges, points);
       }
       for (int k = 0; k < count; ++k) {
-        write_triangle(owned[k], with_corners, points, source, edges, first_rows, triangles, corner_of_edge);
+        write_triangle(owned[k], with_corners, points, source, edges, first_rows, triangles);
       }
     }
   }
 }
 
+// The places of the corners opposite of a pair of edges, which have triangles on their left, or of one of them. An edge
+// without one has NO_CORNER, and so has a free edge.
+#define NO_CORNER -1
+typedef struct {
+  int left, right;
+} corner_pair;
+static inline corner_pair corners_of_pair(int k, int n, global const ring_edge* edges) {
+  fetch(&edges[2 * min(n - 1, k + STREAM_AHEAD)]);
+  const ring_edge there = edges[2 * k], back = edges[2 * k + 1];
+  const int is_free = there.to == NO_VERTEX;
+  const corner_pair corners = {is_free || is_outside(there.next) ? NO_CORNER : there.previous,
+                               is_free || is_outside(back.next) ? NO_CORNER : back.previous};
+  return corners;
+}
+
 // n pairs of edges.
-kernel void write_neighbors(int n, global const int* restrict corner_of_edge, global int* restrict neighbors) {
+kernel void write_neighbors(int n, global const ring_edge* restrict edges, global int* restrict neighbors) {
   const int k = get_global_id(0);
   if (k < n) {
-    fetch(&corner_of_edge[2 * min(n - 1, k + STREAM_AHEAD)]);
-    const int left = corner_of_edge[2 * k], right = corner_of_edge[2 * k + 1];
-    if (left != NO_CORNER) neighbors[left] = right == NO_CORNER ? -1 : right / 3;
-    if (right != NO_CORNER) neighbors[right] = left == NO_CORNER ? -1 : left / 3;
+    const corner_pair of = corners_of_pair(k, n, edges);
+    if (of.left != NO_CORNER) neighbors[of.left] = of.right == NO_CORNER ? -1 : of.right / 3;
+    if (of.right != NO_CORNER) neighbors[of.right] = of.left == NO_CORNER ? -1 : of.left / 3;
   }
 }
 
 // n pairs of edges.
-kernel void write_halfedges(int n, global const int* restrict corner_of_edge, global int* restrict halfedges) {
+kernel void write_halfedges(int n, global const ring_edge* restrict edges, global int* restrict halfedges) {
   const int k = get_global_id(0);
   if (k < n) {
-    fetch(&corner_of_edge[2 * min(n - 1, k + STREAM_AHEAD)]);
-    const int left = corner_of_edge[2 * k], right = corner_of_edge[2 * k + 1];
-    const int from_left = left == NO_CORNER ? -1 : opposite_halfedge(left);
-    const int from_right = right == NO_CORNER ? -1 : opposite_halfedge(right);
+    const corner_pair of = corners_of_pair(k, n, edges);
+    const int from_left = of.left == NO_CORNER ? -1 : opposite_halfedge(of.left);
+    const int from_right = of.right == NO_CORNER ? -1 : opposite_halfedge(of.right);
     if (from_left >= 0) halfedges[from_left] = from_right;
     if (from_right >= 0) halfedges[from_right] = from_left;
   }

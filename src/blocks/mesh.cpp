@@ -84,23 +84,19 @@ void write_mesh(Workspace& work, const Blocks& blocks, const Rings& rings, const
   const bool with_halfedges = mesh.halfedges.memory() != nullptr;
   const bool with_corners = with_neighbors || with_halfedges;
   if (mesh.triangles.memory() != nullptr) {
-    const auto corner_of_edge = work.scratch().allocate<cl_int>(with_corners ? rings.edges.size() : 0);
     runtime.chunks(pairs, runtime.sizes().chunk(pairs),
                    kernels::write_triangles{.with_corners = with_corners,
                                             .points = blocks.vertices,
                                             .source = blocks.source,
                                             .edges = rings.edges,
                                             .first_rows = sizes.first_rows,
-                                            .triangles = mesh.triangles,
-                                            .corner_of_edge = corner_of_edge});
+                                            .triangles = mesh.triangles});
     if (milestones != nullptr) milestones->set("output", kTrianglesWritten);
     if (with_neighbors) {
-      runtime.map(pairs,
-                  kernels::write_neighbors{.corner_of_edge = corner_of_edge, .neighbors = mesh.neighbors});
+      runtime.map(pairs, kernels::write_neighbors{.edges = rings.edges, .neighbors = mesh.neighbors});
     }
     if (with_halfedges) {
-      runtime.map(pairs,
-                  kernels::write_halfedges{.corner_of_edge = corner_of_edge, .halfedges = mesh.halfedges});
+      runtime.map(pairs, kernels::write_halfedges{.edges = rings.edges, .halfedges = mesh.halfedges});
     }
   }
   if (mesh.hull.memory() != nullptr) write_hulls(work, blocks, rings, sizes, mesh.hull);

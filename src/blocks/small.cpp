@@ -39,14 +39,14 @@ struct Scratch {
   std::vector<cl_uchar> axes;
   std::vector<cl_uchar> inside, found;
   std::vector<cl_uint> first_rows;
-  std::vector<cl_int> walked, hull_offsets, corner_of_edge;
+  std::vector<cl_int> walked, hull_offsets;
 
   std::size_t bytes() const {
     const auto sum = [](const auto&... arrays) {
       return (... + (arrays.capacity() * sizeof(*arrays.data())));
     };
     return sum(offsets, set_blocks, vertices, source, edges, vertex_edge, solved, distinct, points,
-               point_source, ranks, axes, inside, found, first_rows, walked, hull_offsets, corner_of_edge);
+               point_source, ranks, axes, inside, found, first_rows, walked, hull_offsets);
   }
 };
 
@@ -158,22 +158,20 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, s.first_rows[n]);
 
   const bool with_corners = options.neighbors || options.halfedges;
-  const auto corner_of_edge = sized(s.corner_of_edge, with_corners ? kernel::EDGES_PER_VERTEX * n : 0);
   const std::size_t rows = 3 * sizes.triangles();
   host::run_chunk_natively(pairs, kernels::write_triangles{.with_corners = with_corners,
                                                            .points = vertices,
                                                            .source = source,
                                                            .edges = edges,
                                                            .first_rows = first_rows,
-                                                           .triangles = result_of(result.triangles, rows),
-                                                           .corner_of_edge = corner_of_edge});
+                                                           .triangles = result_of(result.triangles, rows)});
   if (options.neighbors) {
-    map_natively(pairs, kernels::write_neighbors{.corner_of_edge = corner_of_edge,
-                                                 .neighbors = result_of(result.neighbors, rows)});
+    map_natively(pairs,
+                 kernels::write_neighbors{.edges = edges, .neighbors = result_of(result.neighbors, rows)});
   }
   if (options.halfedges) {
-    map_natively(pairs, kernels::write_halfedges{.corner_of_edge = corner_of_edge,
-                                                 .halfedges = result_of(result.halfedges, rows)});
+    map_natively(pairs,
+                 kernels::write_halfedges{.edges = edges, .halfedges = result_of(result.halfedges, rows)});
   }
   s.hull_offsets.assign(sizes.hull_offsets.begin(), sizes.hull_offsets.end());
   map_natively(sets, kernels::write_hulls{.set_blocks = set_blocks,

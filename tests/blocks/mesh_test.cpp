@@ -54,14 +54,26 @@ void check_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neigh
   EXPECT_TRUE(same(result.halfedges,
                    neighbors ? testing::reference_halfedges(twin.triangles) : std::vector<std::int32_t>()));
   EXPECT_EQ(result.statistics.duplicates, blocks.points - twin.vertices);
-  // The rings stay as they are, but for what says that the outside is on an edge's left.
+  // The rings stay as they are, but for what says that the outside is on an edge's left and, with neighbours,
+  // the places of opposite corners.
   const auto edges = call.read(rings.edges, g.edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
     ASSERT_EQ(edges[e].to, g.edges[e].to) << "edge " << e;
     if (edges[e].to == testing::kNone) continue;
     const cl_int next = g.edges[e].next;
-    ASSERT_EQ(edges[e].next, twin.outside.count(static_cast<cl_int>(e)) ? ~next : next) << "edge " << e;
-    ASSERT_EQ(edges[e].previous, g.edges[e].previous) << "edge " << e;
+    const bool is_outside = twin.outside.count(static_cast<cl_int>(e)) > 0;
+    ASSERT_EQ(edges[e].next, is_outside ? ~next : next) << "edge " << e;
+    const cl_int place = edges[e].previous;
+    if (!neighbors || is_outside) {
+      ASSERT_EQ(place, g.edges[e].previous) << "edge " << e;
+      continue;
+    }
+    ASSERT_TRUE(place >= 0 && place < static_cast<cl_int>(result.triangles.size())) << "edge " << e;
+    const auto id = [&](cl_int edge) { return g.source[g.edges[edge].to]; };
+    const cl_int *const row = &result.triangles[place / 3 * 3], corner = place % 3;
+    ASSERT_EQ(row[corner], id(next)) << "edge " << e;
+    ASSERT_EQ(row[(corner + 1) % 3], id(static_cast<cl_int>(e) ^ 1)) << "edge " << e;
+    ASSERT_EQ(row[(corner + 2) % 3], id(static_cast<cl_int>(e))) << "edge " << e;
   }
   met.triangles += twin.triangles.size() / 3;
 }
