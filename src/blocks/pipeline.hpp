@@ -23,8 +23,6 @@ using host::Buffer;
 
 /// Bytes of the persistent arena per point: vertices, their sources and edges, and the arrays of blocks.
 constexpr std::size_t kPersistentBytesPerPoint = 97;
-/// Bytes of the scratch arena per point when neighbours or halfedges are written: first rows and corners.
-constexpr std::size_t kScratchBytesPerPoint = 29;
 
 /// The share of a call's time that is over when a stage ends, for progress.
 constexpr double kBlocksMade = 0.15;

@@ -121,10 +121,6 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
   engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
   const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
                       result);
-  // In one piece; what earlier stages had would be too small, and stay unused.
-  if (arrays.have_links() && tuning_of(engine.runtime).round_points == 0) {
-    engine.runtime.arena().reserve(n * blocks::kScratchBytesPerPoint);
-  }
   const auto done = compute(call, points, offsets, arrays, phases, result);
   if (!done) return done.too_wide();
   phases.end("output");
