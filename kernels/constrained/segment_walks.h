@@ -142,22 +142,31 @@ static inline int star_search_step(const walked_mesh* mesh, star_search* star, d
 #define LEAVES_SECOND 1
 #define LEAVES_NONE 2
 
+// Looks around both ends of a segment in turns, of which the search around the first end has begun. Out of line and
+// with both searches in memory, as this is rare, and kernels have more registers without.
+OUT_OF_LINE static inline int find_departure_in_turns(walked_mesh mesh, star_search begun, int second,
+                                                      departure* found) {
+  star_search stars[2];
+  stars[LEAVES_FIRST] = begun;
+  stars[LEAVES_SECOND] = star_search_at(&mesh, second, begun.origin);
+  for (int end = LEAVES_SECOND;; end ^= LEAVES_FIRST ^ LEAVES_SECOND) {
+    const int outcome = star_search_step(&mesh, &stars[end], found);
+    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? end : LEAVES_NONE;
+  }
+}
+
 // Finds how the segment between the vertices at two corners leaves one of them. If that takes long, looks around both
 // in turns, so it takes O(the smaller of their numbers of edges).
 static inline int find_departure(const walked_mesh* mesh, int first, int second, departure* found) {
-  star_search star = star_search_at(mesh, first, mesh->triangles[second]), other = star;
-  int end = LEAVES_FIRST;
-  for (int k = 0;; ++k) {
-    // One call, as it is long.
+  star_search star = star_search_at(mesh, first, mesh->triangles[second]);
+  for (int k = 0; k <= STAR_PATIENCE; ++k) {
     const int outcome = star_search_step(mesh, &star, found);
-    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? end : LEAVES_NONE;
-    if (k >= STAR_PATIENCE) {
-      const star_search swapped = star;
-      star = k == STAR_PATIENCE ? star_search_at(mesh, second, mesh->triangles[first]) : other;
-      other = swapped;
-      end = end == LEAVES_FIRST ? LEAVES_SECOND : LEAVES_FIRST;
-    }
+    if (outcome != STAR_GOES_ON) return outcome == STAR_FOUND ? LEAVES_FIRST : LEAVES_NONE;
   }
+  departure late;
+  const int end = find_departure_in_turns(*mesh, star, second, &late);
+  *found = late;
+  return end;
 }
 
 END_SHARED
