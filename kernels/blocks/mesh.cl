@@ -62,12 +62,13 @@ static inline int owns(coordinate2 v, int right, int to, int next, global const 
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
 // vertex'. The row starts with the smallest index. With corners, each of its edges gets the place of the corner
 // opposite of it. Other work-items do so meanwhile: what they write is not read here.
-static inline void write_triangle(int e, int with_corners, global const coordinate2* points, global const int* source,
-                                  global ring_edge* edges, global const uint* first_rows, global int* triangles) {
+static inline void write_triangle(int e, int right, int with_corners, global const coordinate2* points,
+                                  global const int* source, global ring_edge* edges, global const uint* first_rows,
+                                  global int* triangles) {
   const int from_b = edges[e].next ^ 1;
   const int v = edges[e ^ 1].to, a = edges[e].to, b = edges[from_b ^ 1].to;
   const uint first = first_rows[v];
-  const int is_second = (first_rows[v + 1] - first == 2) & precedes(points[v], points[a], 0);
+  const int is_second = (first_rows[v + 1] - first == 2) & right;
   const int row = 3 * (int)(first + is_second);
   const int at_v = source[v], at_a = source[a], at_b = source[b];
   const row_places to = places_in_row(at_v, at_a, at_b);
@@ -80,6 +81,9 @@ static inline void write_triangle(int e, int with_corners, global const coordina
     edges[from_b].previous = row + to.a;
   }
 }
+
+// Beside the number of an edge: its destination comes behind its origin along x.
+#define GOES_RIGHT INT_MIN
 
 // Pairs of edges that are tested before the triangles found among them are written.
 #define PAIRS_AT_ONCE 64
@@ -111,13 +115,14 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const coo
         if (b == NO_VERTEX) continue;
         const coordinate2 from = points[a], to = points[b];
         const int right = precedes(from, to, 0);
-        owned[count] = 2 * k;
+        owned[count] = 2 * k | (right ? GOES_RIGHT : 0);
         count += owns(from, right, b, edges[2 * k].next, edges, points);
-        owned[count] = 2 * k + 1;
+        owned[count] = (2 * k + 1) | (right ? 0 : GOES_RIGHT);
         count += owns(to, !right, a, edges[2 * k + 1].next, edges, points);
       }
       for (int k = 0; k < count; ++k) {
-        write_triangle(owned[k], with_corners, points, source, edges, first_rows, triangles);
+        write_triangle(owned[k] & ~GOES_RIGHT, owned[k] < 0, with_corners, points, source, edges, first_rows,
+                       triangles);
       }
     }
   }
@@ -129,8 +134,7 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const coo
 typedef struct {
   int left, right;
 } corner_pair;
-static inline corner_pair corners_of_pair(int k, int n, global const ring_edge* edges) {
-  fetch(&edges[2 * min(n - 1, k + STREAM_AHEAD)]);
+static inline corner_pair corners_of_pair(int k, global const ring_edge* edges) {
   const ring_edge there = edges[2 * k], back = edges[2 * k + 1];
   const int is_free = there.to == NO_VERTEX;
   const corner_pair corners = {is_free || is_outside(there.next) ? NO_CORNER : there.previous,
@@ -142,7 +146,7 @@ static inline corner_pair corners_of_pair(int k, int n, global const ring_edge* 
 kernel void write_neighbors(int n, global const ring_edge* restrict edges, global int* restrict neighbors) {
   const int k = get_global_id(0);
   if (k < n) {
-    const corner_pair of = corners_of_pair(k, n, edges);
+    const corner_pair of = corners_of_pair(k, edges);
     if (of.left != NO_CORNER) neighbors[of.left] = of.right == NO_CORNER ? -1 : of.right / 3;
     if (of.right != NO_CORNER) neighbors[of.right] = of.left == NO_CORNER ? -1 : of.left / 3;
   }
@@ -152,7 +156,7 @@ kernel void write_neighbors(int n, global const ring_edge* restrict edges, globa
 kernel void write_halfedges(int n, global const ring_edge* restrict edges, global int* restrict halfedges) {
   const int k = get_global_id(0);
   if (k < n) {
-    const corner_pair of = corners_of_pair(k, n, edges);
+    const corner_pair of = corners_of_pair(k, edges);
     const int from_left = of.left == NO_CORNER ? -1 : opposite_halfedge(of.left);
     const int from_right = of.right == NO_CORNER ? -1 : opposite_halfedge(of.right);
     if (from_left >= 0) halfedges[from_left] = from_right;
