@@ -44,8 +44,8 @@ struct Numbers {
   std::vector<cl_int> distinct{};  // by block, of the first round
   std::vector<cl_uint> account = std::vector<cl_uint>(kernel::RINGS_NUMBERS);
 
-  void read_later(host::Runtime& runtime, const Blocks& blocks, const Rings& rings, bool is_first) {
-    if (is_first) {
+  void read_later(host::Runtime& runtime, const Blocks& blocks, const Rings& rings, bool with_distinct) {
+    if (with_distinct) {
       distinct.resize(blocks.count);
       runtime.read_later(rings.device_distinct, 0, blocks.count, distinct.data());
     }
@@ -58,6 +58,7 @@ struct Numbers {
 
 // The points that go on to a round, and their open edges.
 struct OpenPoints {
+  std::size_t most;                  // that can be in any round but the first
   std::vector<std::size_t> offsets;  // by set
   Buffer<cl_double2> points{};
   Buffer<cl_int> vertices{};
@@ -66,11 +67,11 @@ struct OpenPoints {
 
   std::size_t count() const { return offsets.back(); }
   // Makes room where there is not enough. The memory is kept: rounds use two lists in turn.
-  void reserve(Arena& persistent, std::size_t edge_count) {
-    if (points.size() < count()) {
-      points = persistent.allocate<cl_double2>(count());
-      vertices = persistent.allocate<cl_int>(count());
-      offsets_of_edges = persistent.allocate<cl_int>(count() + 1);
+  void reserve(Arena& persistent, std::size_t point_count, std::size_t edge_count) {
+    if (points.size() < point_count) {
+      points = persistent.allocate<cl_double2>(point_count);
+      vertices = persistent.allocate<cl_int>(point_count);
+      offsets_of_edges = persistent.allocate<cl_int>(point_count + 1);
     }
     if (edges.size() < edge_count) edges = persistent.allocate<kernel::open_edge>(edge_count);
   }
@@ -89,7 +90,16 @@ struct Round {
 
   // Whether each set has one triangulation.
   bool is_last() const { return is_merged || blocks.count == blocks.sets; }
+  // Whether every block is solved for certain: others are no larger than is guessed, as a rule.
+  bool can_be_merged() const { return !blocks.offsets.empty(); }
 };
+
+// Makes the triangulations of the blocks canonical, or those of the sets if blocks are merged.
+void complete(Workspace& work, const Round& round) {
+  if (round.is_merged) merge(work, round.blocks, round.rings);
+  // Coarse coordinates have no ties: merges break them.
+  if (work.runtime.at_most(work.bounds.circle != 0.0, true)) make_fans(work, round.blocks, round.rings);
+}
 
 SetBoxes boxes_of_sets(Workspace& work, const Blocks& blocks, const Rings& rings) {
   const SetBoxes found{work.persistent.allocate<kernel::vertex_box>(blocks.count), blocks.device_set_blocks};
@@ -121,9 +131,8 @@ std::vector<cl_int> first_nodes(const Blocks& blocks) {
   return nodes;
 }
 
-void frame(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& emitted) {
+void frame(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
-  round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
   work.runtime.map(blocks.count, kernels::frame_blocks{.cut_sets = {.sets = blocks.sets,
@@ -169,16 +178,22 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
                                                    .hull_previous = emitted.hull_previous});
 }
 
-// Emits what is final of a round's triangulations.
-void emit(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& emitted) {
-  host::Runtime& runtime = work.runtime;
+// Memory for what is said of a round's triangulations, and the names of their vertices.
+void begin_emission(Workspace& work, Round& round) {
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
-  runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
-                                                          .listed = blocks.source,
-                                                          .listed_vertices = round.open.vertices,
-                                                          .vertices = round.vertices});
+  round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
+  work.runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
+                                                               .listed = blocks.source,
+                                                               .listed_vertices = round.open.vertices,
+                                                               .vertices = round.vertices});
+}
+
+// Emits what is final of a round's triangulations. What was emitted of them before is written again, as it
+// is.
+void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
+  host::Runtime& runtime = work.runtime;
   frame(work, round, boxes, emitted);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   launch_emission<kernels::emit_unsure>(work, round, emitted);
@@ -189,8 +204,16 @@ void emit(Workspace& work, Round& round, const SetBoxes& boxes, const Emitted& e
                                                                .links = emitted.links});
 }
 
-// Finds the points around which something is missing after a round. Waits once.
-void find_open(Workspace& work, Arena& persistent, const Round& round, const Numbers& numbers,
+// Whether so many points of a round go on that merging is less work. Rounds in which all of them do would not
+// end.
+bool stalls(host::Runtime& runtime, const Round& round, const OpenPoints& next) {
+  const std::size_t before = round.open.count();
+  return 100 * next.count() > tuning_of(runtime).merge_from_percent * before || next.count() == before;
+}
+
+// Finds the points around which something is missing after a round. Waits once. Returns false, without the
+// points, if the round's own blocks should be merged.
+bool find_open(Workspace& work, Arena& persistent, const Round& round, const Numbers& numbers,
                OpenPoints& next) {
   host::Runtime& runtime = work.runtime;
   const Blocks& blocks = round.blocks;
@@ -219,9 +242,13 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   for (std::size_t s = 0; s < sizes.size(); ++s) {
     next.offsets.push_back(runtime.at_most<std::size_t>(sizes[s].s[0], round.open.offsets[s]));
   }
-  if (next.count() == 0) return;
-  next.reserve(persistent, std::max<std::size_t>(1, runtime.at_most(std::size_t{sizes.back().s[1]},
-                                                                    kMostOpenEdges * next.count())));
+  if (next.count() == 0) return true;
+  // What is counted are the points of a round that goes on.
+  if (runtime.at_most(round.can_be_merged() && stalls(runtime, round, next), false)) return false;
+  const std::size_t points = runtime.at_most(next.count(), next.most);
+  next.reserve(
+      persistent, points,
+      std::max<std::size_t>(1, runtime.at_most(std::size_t{sizes.back().s[1]}, kMostOpenEdges * points)));
   runtime.map(blocks.points, kernels::write_open{.open_vertices = open_vertices(round),
                                                  .points = blocks.vertices,
                                                  .edges = round.rings.edges,
@@ -232,6 +259,7 @@ void find_open(Workspace& work, Arena& persistent, const Round& round, const Num
                                                  .next_vertices = next.vertices,
                                                  .next_offsets = next.offsets_of_edges,
                                                  .next_edges = next.edges});
+  return true;
 }
 
 // Rows and hulls from what is emitted.
@@ -366,7 +394,6 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   Workspace work{runtime, persistent};
   Numbers numbers;
   const host::Runtime::Settled settled(runtime);
-  const Tuning& tuning = tuning_of(runtime);
 
   phases.progress("blocks", 0);
   const Buffer<cl_int>& representatives = exchange.representatives;
@@ -384,8 +411,10 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   // What a round needs is given back when it ends.
   Workspace rounds_work{runtime, runtime.arena(), work.bounds};
   SetBoxes boxes;
-  OpenPoints lists[2];
-  lists[0].offsets = offsets;
+  // If more went on from the first round, its blocks would be merged.
+  const std::size_t n = offsets.back();
+  const std::size_t most = std::clamp<std::size_t>(tuning_of(runtime).merge_from_percent * n / 100, 1, n);
+  OpenPoints lists[2] = {{.most = most, .offsets = offsets}, {.most = most}};
   Outcome outcome;
   bool is_merged = false;
   for (std::size_t r = 0; lists[r % 2].count() > 0; ++r) {
@@ -396,24 +425,29 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
     if (r > 0) later_blocks = blocks_of(rounds_work, open, is_merged);
     const Blocks& blocks = r > 0 ? *later_blocks : first_blocks;
     Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives)};
-    if (is_merged) merge(rounds_work, blocks, round.rings);
-    // Coarse coordinates have no ties: merges break them.
-    if (runtime.at_most(work.bounds.circle != 0.0, true)) make_fans(rounds_work, blocks, round.rings);
+    complete(rounds_work, round);
     if (r == 0) {
       exchange.while_device_computes();
       boxes = boxes_of_sets(work, blocks, round.rings);
     }
+    begin_emission(rounds_work, round);
     emit(rounds_work, round, boxes, emitted);
     outcome.undecided += numbers.undecided();  // of the round before
     numbers.read_later(runtime, blocks, round.rings, r == 0);
     next.offsets.assign(blocks.sets + 1, 0);
-    if (!round.is_last()) find_open(rounds_work, persistent, round, numbers, next);
+    if (!round.is_last() && !find_open(rounds_work, persistent, round, numbers, next)) {
+      round.is_merged = true;
+      complete(rounds_work, round);
+      emit(rounds_work, round, boxes, emitted);
+      numbers.read_later(runtime, blocks, round.rings, false);
+      next.offsets.assign(blocks.sets + 1, 0);
+    }
     ++outcome.rounds;
     outcome.round_points += open.count();
-    if (is_merged) outcome.merged_points = open.count();
-    is_merged = 100 * next.count() > tuning.merge_from_percent * open.count() || next.count() == open.count();
+    if (round.is_merged) outcome.merged_points = open.count();
+    is_merged = stalls(runtime, round, next);
     done = std::max(done, kBlocksMerged - (kBlocksMerged - kBlocksMade) * static_cast<double>(next.count()) /
-                                              static_cast<double>(offsets.back()));
+                                              static_cast<double>(n));
     phases.progress("triangulate", done);
   }
   phases.end("triangulate");

@@ -92,8 +92,8 @@ struct Tuning : host::Sizes {
   std::size_t round_points = 0;
   /// Samples per block, for the trees that cut in gaps; at most a tile of them.
   std::size_t samples_per_gap_block = 1;
-  /// If a round leaves more than so many percent of its points, the next one is the last: its blocks are
-  /// merged.
+  /// If a round leaves more than so many percent of its points, its blocks are merged, or if some may not be
+  /// solved, those of the next one.
   std::size_t merge_from_percent = 1;
 
   /// So many levels of regions are reached from outside between two waits.

@@ -97,7 +97,7 @@ struct Statistics {
   /// the other points. The number of rounds; 0 if blocks were merged up the trees of cuts instead.
   std::size_t rounds = 0;
   std::size_t round_points = 0;  ///< points of all rounds together; the first has all points
-  /// Points of a last round whose blocks were merged up the trees, because the round before left too many.
+  /// Points of a last round whose blocks were merged up the trees, because too many were left.
   std::size_t merged_points = 0;
   std::vector<PhaseStatistics> phases;    ///< in the order in which they ran
   std::vector<KernelStatistics> kernels;  ///< the slowest first; empty without Options::profile
