@@ -10,7 +10,8 @@
 // - In each round, keep_waiting makes a list of the constraints that are left. choose_constraints: those that hold all
 //   rows that they cross win. It writes what bounds these rows, two chains of vertices, to the entries of the
 //   constraint.
-//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they gift-wrap.
+//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they gift-wrap. If
+//   they are many, constrained/fill_filtered.cl has done so before, as far as floating point decides.
 //   join_cavities: joins the new rows to what is beyond the chains. walk_constraints: the others walk and claim again.
 // - Winners with long walks: gather_long writes their chains, chain_vertices what triangulates them, fill_long has a
 //   work-item per triangle, and join_long one per entry.
@@ -26,6 +27,7 @@
 
 #include "arithmetic/language.h"
 #include "constrained/arguments.h"
+#include "constrained/cavities.h"
 #include "constrained/codes.h"
 #include "constrained/limits.h"
 #include "constrained/meanwhile.h"
@@ -86,8 +88,6 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
 
 // Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
 #define BLOCKED -1
-// What became of a constraint that stays blocked; see constrained/codes.h for other outcomes.
-#define CONSTRAINT_BLOCKED 3
 
 // What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
@@ -414,88 +414,6 @@ kernel void choose_constraints(int n, filter_bound bound, global const int* rest
   }
 }
 
-// The arrays of rows that are replaced. new_corners: per old corner opposite to a side, the new one.
-typedef struct {
-  global int* triangles;
-  global int* neighbors;
-  global uint* claims;
-  global uchar* flags;
-  global uchar* changed;
-  global int* new_corners;
-  uint mark;
-} replaced_rows;
-
-// Writes a new row, all but its neighbours.
-static inline void put_row(int row, int a, int b, int c, uint flags, const replaced_rows* rows) {
-  rows->triangles[3 * row] = a;
-  rows->triangles[3 * row + 1] = b;
-  rows->triangles[3 * row + 2] = c;
-  rows->flags[row] = (uchar)flags;
-  rows->changed[row] = 1;
-  rows->claims[row] = rows->mark;
-}
-
-// The edge opposite to a new corner is the side at an entry. Returns its flag.
-static inline uint put_side(int corner, global chain_entry* entry, const replaced_rows* rows) {
-  rows->new_corners[entry->corner] = corner;
-  entry->corner = corner;
-  return entry->side & 1u ? edge_flag(corner) : 0u;
-}
-
-static inline void join(int corner, int other, const replaced_rows* rows) {
-  rows->neighbors[corner] = other / 3;
-  rows->neighbors[other] = corner / 3;
-}
-
-// A new row (i, k, j) of a chain has the chord (j, k) opposite to its first corner, (i, j) opposite to its second, and
-// its base opposite to its third one.
-#define BASE_CORNER 2
-
-// The circles through the chord's ends and one of the vertices between are nested: the smallest.
-static inline int apex_of(int i, int k, global const chain_entry* chain, global const coordinate* points,
-                          filter_bound bound) {
-  int best = i + 1;
-  for (int j = best + 1; j < k; ++j) {
-    if (circle_canonical(vload2(chain[i].vertex, points), vload2(chain[k].vertex, points),
-                         vload2(chain[best].vertex, points), vload2(chain[j].vertex, points), bound) > 0)
-      best = j;
-  }
-  return best;
-}
-
-// Gift-wraps a chain of `size` entries into the rows of the entries from row_entry on.
-static inline void fill_chain(int size, global chain_entry* chain, global const chain_entry* row_entry,
-                              global const coordinate* points, filter_bound bound, const replaced_rows* rows) {
-  int chords[SHORT_CHAINS], beyond[SHORT_CHAINS];
-  int open = 1;
-  chords[0] = size - 1;
-  beyond[0] = -1;
-  while (open > 0) {
-    --open;
-    const int i = chords[open] >> 16, k = chords[open] & 0xffff, outer = beyond[open];
-    const int j = apex_of(i, k, chain, points, bound), row = row_entry++->row, corner = 3 * row;
-    uint flags = 0;
-    if (outer < 0) {
-      flags = edge_flag(corner + BASE_CORNER);
-    } else {
-      join(corner + BASE_CORNER, outer, rows);
-    }
-    if (k - j > 1) {
-      chords[open] = j << 16 | k;
-      beyond[open++] = corner;
-    } else {
-      flags |= put_side(corner, &chain[j], rows);
-    }
-    if (j - i > 1) {
-      chords[open] = i << 16 | j;
-      beyond[open++] = corner + 1;
-    } else {
-      flags |= put_side(corner + 1, &chain[i], rows);
-    }
-    put_row(row, chain[i].vertex, chain[k].vertex, chain[j].vertex, flags, rows);
-  }
-}
-
 // Constraints whose entries' points are fetched. Entries follow each other in memory, so they need not be.
 #define CAVITIES_AHEAD 4
 
@@ -512,31 +430,15 @@ kernel void fill_cavities(int n, uint mark, filter_bound bound, global const int
   }
 #endif
   if (i < n && outcomes[i] == CONSTRAINT_FITS) {
-    const constraint_walk walk = walks[list[i]];
-    if (walk.rows == 0) {
-      const int row = walk.corner / 3, beyond = neighbors[walk.corner];
-      flags[row] |= (uchar)edge_flag(walk.corner);
-      claims[row] = UNCLAIMED;
-      if (beyond >= 0) {
-        flags[beyond] |= (uchar)edge_flag(corner_with(beyond, row, neighbors));
-        claims[beyond] = UNCLAIMED;
-      }
-    } else {
-      const replaced_rows rows = {triangles, neighbors, claims, flags, changed, new_corners, mark};
-      global chain_entry* const left = entries + offsets[i];
-      const int split = lefts[i];
-      const int base = 3 * left[0].row + BASE_CORNER, other_base = 3 * left[split - 2].row + BASE_CORNER;
-      fill_chain(split, left, left, points, bound, &rows);
-      fill_chain(walk.rows + 4 - split, left + split, left + split - 2, points, bound, &rows);
-      join(base, other_base, &rows);
-    }
+    const replaced_rows rows = {triangles, neighbors, claims, flags, changed, new_corners, mark};
+    fill_cavity(walks[list[i]], lefts[i], entries + offsets[i], points, bound, &rows);
   }
 }
 
 // Joins a side to what is beyond it, and makes the place of its vertex a new one if its row was replaced.
 static inline void join_side(chain_entry entry, uint mark, global const uint* claims, global const uint* marks,
                              global const int* new_corners, global int* neighbors, global volatile uint* places) {
-  const int row = entry.corner / 3, twin = (int)(entry.side >> 1) - 1;
+  const int inside = new_corners[entry.corner], row = inside / 3, twin = (int)(entry.side >> 1) - 1;
   int beyond = -1;
   if (twin >= 0) {
     beyond = twin / 3;
@@ -546,11 +448,11 @@ static inline void join_side(chain_entry entry, uint mark, global const uint* cl
       neighbors[twin] = row;
     }
   }
-  neighbors[entry.corner] = beyond;
+  neighbors[inside] = beyond;
   const int v = entry.vertex;
   if (marks[v >> 5] >> (v & 31) & 1) {
     // The edge from i to j is opposite to the second corner, and i is at the first one; or j to k, and j at the third.
-    const int corner = 3 * row + (entry.corner - 3 * row == 1 ? 0 : BASE_CORNER);
+    const int corner = 3 * row + (inside - 3 * row == 1 ? 0 : BASE_CORNER);
     if (claims[read_shared(&places[v]) / 3] == mark) write_shared(&places[v], (uint)corner);
   }
 }
@@ -570,6 +472,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
       const int twin = max(0, (int)(ahead[p].side >> 1) - 1);
       fetch(&claims[twin / 3]);
       fetch(&neighbors[twin]);
+      fetch(&new_corners[max(0, ahead[p].corner)]);
       const int v = ahead[p].vertex;
       if (marks[v >> 5] >> (v & 31) & 1) fetch((global const void*)&places[v]);
     }
@@ -579,7 +482,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
     const int rows = walks[list[i]].rows;
     if (outcomes[i] == CONSTRAINT_WAITS) {
       if (rows == BLOCKED && claims[walks[list[i]].turns] < rank_of(list[i])) outcomes[i] = CONSTRAINT_BLOCKED;
-    } else if (outcomes[i] == CONSTRAINT_FITS && rows > 0) {
+    } else if ((outcomes[i] == CONSTRAINT_FITS || outcomes[i] == CONSTRAINT_FILLED) && rows > 0) {
       for (int p = 0; p < rows + 3; ++p) {
         const chain_entry entry = entries[offsets[i] + p];
         if (p != lefts[i] - 1) join_side(entry, mark, claims, marks, new_corners, neighbors, places);

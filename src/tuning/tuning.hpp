@@ -23,7 +23,8 @@ struct Tuning : host::Sizes {
   /// The largest work-group that sorts and halves a block.
   std::size_t halve_group = 1;
   /// A launch of merges that are fewer than this has about so many work-items, most of them idle, so that
-  /// merges are not in one warp.
+  /// merges are not in one warp. If more cavities of constraints than this are filled at once, floating point
+  /// is tried first, with fewer registers.
   std::size_t merge_items = 0;
   /// Halves of blocks that have at least so many points together are merged from both ends of their seam, if
   /// they are at most merge_items.

@@ -130,6 +130,26 @@ TEST(SmallInsertion, EdgesOfOtherTriangulations) {
   }
 }
 
+// Cavities of cocircular points that are not coarse: floating point decides some, but not all.
+TEST(SmallInsertion, CavitiesThatStop) {
+  Coordinates points = random_integer_points(80, 12, 1);
+  for (double& c : points) c += 0x1p40;
+  const Segments segments = edges_of_stretched(points, 8, 1, 1);
+  expect_as_twin(points, segments);
+  if (tests_native() || tunings().size() == 1) return;
+  call::Engine& engine = Engines::get("small");
+  const std::vector<std::size_t> offsets = {0, points.size() / 2};
+  ConstrainedTriangulation mesh;
+  static_cast<Triangulation&>(mesh) = delaunay_of(points, offsets);
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  Options options;
+  options.profile = true;
+  *call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
+  EXPECT_EQ(engine.runtime.kernel_times().count("fill_filtered"), 1u);
+}
+
 // One segment with a long walk, and what is left of those beside it.
 TEST(SmallInsertion, LongWalks) {
   FixtureRandom random(2);

@@ -14,6 +14,7 @@
 #include "constrained/records.h"
 #include "geometry/magnitudes.hpp"
 #include "host/launch/vector_operations.hpp"
+#include "launchers/constrained/fill_filtered.cl.hpp"
 #include "launchers/constrained/insert.cl.hpp"
 #include "launchers/constrained/order.cl.hpp"
 #include "launchers/constrained/segments.cl.hpp"
@@ -418,16 +419,8 @@ class Insertion {
                                                             .status = status_});
     LongWinners winners;
     if (any_long) winners = gather_long(walks, waiting);
-    runtime_.map_in_small_groups(waiting.count,
-                                 kernels::fill_cavities{.mark = waiting.mark,
-                                                        .bound = points_.bounds.circle,
-                                                        .list = waiting.list,
-                                                        .offsets = waiting.offsets,
-                                                        .outcomes = waiting.outcomes,
-                                                        .lefts = waiting.lefts,
-                                                        .walks = walks.walks,
-                                                        .points = points_.coordinates,
-                                                        .rebuilt_rows = rebuilt_rows(entries)});
+    if (pays_to_filter(waiting)) fill_cavities<kernels::fill_filtered>(walks, waiting, entries);
+    fill_cavities<kernels::fill_cavities>(walks, waiting, entries);
     if (winners.count > 0) fill_long(waiting, winners);
     runtime_.map(waiting.count, kernels::join_cavities{.mark = waiting.mark,
                                                        .list = waiting.list,
@@ -450,6 +443,27 @@ class Insertion {
                                                            .neighbors = result_.neighbors,
                                                            .places = places_});
     }
+  }
+
+  // Whether a device would have more cavities than lanes with the registers of exact predicates, of which
+  // most cavities need none.
+  bool pays_to_filter(const Waiting& waiting) const {
+    return !runtime_.is_native() && waiting.count > tuning_of(runtime_).merge_items &&
+           tuning_of(runtime_).merge_items > 0 && points_.bounds.coarse == 0 && points_.bounds.circle != 0;
+  }
+
+  // kernels::fill_cavities or kernels::fill_filtered.
+  template <typename Kernel>
+  void fill_cavities(const Walks& walks, const Waiting& waiting, const Buffer<kernel::chain_entry>& entries) {
+    runtime_.map_in_small_groups(waiting.count, Kernel{.mark = waiting.mark,
+                                                       .bound = points_.bounds.circle,
+                                                       .list = waiting.list,
+                                                       .offsets = waiting.offsets,
+                                                       .outcomes = waiting.outcomes,
+                                                       .lefts = waiting.lefts,
+                                                       .walks = walks.walks,
+                                                       .points = points_.coordinates,
+                                                       .rebuilt_rows = rebuilt_rows(entries)});
   }
 
   void walk_again(const Walks& walks, const Waiting& waiting) {
