@@ -1,5 +1,5 @@
 // Leaves and merges at which floating point could not decide, with exact predicates: what blocks/merge.cl has stopped
-// at is continued to its end, and walks along seams at which blocks/seams.cl has stopped are done again. Each kernel is
+// at is continued to its end, and so are walks along seams at which blocks/seams.cl has stopped. Each kernel is
 // one pass over the states of a launch, most of which are done, with the work-items and arguments of that launch.
 
 // Compiled in half the time, and these are called rarely.
@@ -37,7 +37,7 @@ kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bou
   if (w < n && walks[w].outcome == WALK_HAS_STOPPED) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
-    walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, walks[w], crossings, removed);
     COUNT_STEPS(g.counted.steps);
     add_to_account(&g, account);
   }

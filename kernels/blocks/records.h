@@ -8,13 +8,15 @@
 BEGIN_SHARED
 
 // A walk along the seam of a merge: the vertices of its first crossing edge, of which a downward walk has the high
-// side's as its left one, and the hull edges out of them that it saw there; how many crossing edges it has, and how it
-// ended.
+// side's as its left one, and the hull edges out of them that it saw there; the edges along which it came to its last
+// crossing edge, out of that edge's vertices, or NO_EDGE before it has found the tangent; how many crossing edges it
+// has, and how it ended.
 typedef struct {
   int left, right, left_edge, right_edge;
+  int left_from, right_from;
   int crossings, outcome;
 } seam_walk;
-ASSERT_SIZE(seam_walk, 24);
+ASSERT_SIZE(seam_walk, 32);
 
 // Where a block of points lies in its set. All other points of the round are on or beyond the sides of its rectangle,
 // which are infinite where there are none beyond; `all` is the box around the set. outside: if the block's hull has

@@ -1,6 +1,6 @@
 // Merges of large halves on devices with many lanes, from both ends of their seam at once: see blocks/seams.h. A launch
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
-// cross the seam and mark those that go. Walks that stopped are done again by finish_walks of blocks/merge_exact.cl; in
+// cross the seam and mark those that go. Walks that stopped are continued by finish_walks of blocks/merge_exact.cl; in
 // fixed point none stops, since exact predicates of integers take few registers and no stack to speak of. A launch of
 // sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
 // in the rings. Each is one pass over what begins in the cells of that height (blocks/halves.h).
@@ -34,7 +34,8 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
   if (w < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
-    walks[w] = walk_of_cell(&g, &blocks, height, w, crossings, removed);
+    const seam_walk before = walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_HAS_STOPPED);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, before, crossings, removed);
 #ifndef RINGS_STOP
     add_to_account(&g, account);
 #endif

@@ -6,7 +6,7 @@
 // They meet, since the crossing edges are the same from both ends, ties included: where candidates of both sides and
 // the base are on one circle, the upward walk takes the left one first and the downward walk the right one, which is
 // one and the same edge. With RINGS_STOP a walk stops at a predicate that floating point cannot decide, and a program
-// without it walks again from the beginning; marks are right in any case.
+// without it continues from the last crossing edge; marks are right in any case.
 #ifndef FLAUNAY_SEAMS_H
 #define FLAUNAY_SEAMS_H
 
@@ -207,11 +207,16 @@ static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
   return 1;
 }
 
-// Walks from the tangent, which it finds from two vertices on, as the plane is turned for this walk.
-static inline seam_walk walk_along(rings* g, const seam* s, int left, int right) {
-  seam_walk walk = {left, right, NO_EDGE, NO_EDGE, 1, WALK_HAS_STOPPED};
-  if (!find_seam_tangent(g, s, &walk)) return walk;
-  seam_side l = side_from(g, s, walk.left, walk.left_edge, 0), r = side_from(g, s, walk.right, walk.right_edge, 1);
+// Walks from the tangent, which it finds from two vertices on, as the plane is turned for this walk; or on from where
+// the walk has stopped.
+static inline seam_walk walk_along(rings* g, const seam* s, seam_walk walk) {
+  if (walk.left_from == NO_EDGE) {
+    if (!find_seam_tangent(g, s, &walk)) return walk;
+    walk.left_from = walk.left_edge;
+    walk.right_from = walk.right_edge;
+  }
+  seam_side l = side_from(g, s, g->edges[walk.left_from ^ 1].to, walk.left_from, 0);
+  seam_side r = side_from(g, s, g->edges[walk.right_from ^ 1].to, walk.right_from, 1);
   for (;;) {
     const coordinate2 low = as_point(s->is_downward ? r.at : l.at), high = as_point(s->is_downward ? l.at : r.at);
     walk.outcome = WALK_HAS_CROSSED;
@@ -224,8 +229,12 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
     drop_ruled_out(g, s, &l, l.at, r.at, 0);
     drop_ruled_out(g, s, &r, l.at, r.at, 1);
     const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen));
-    walk.outcome = WALK_HAS_STOPPED;
-    if (HAS_STOPPED(g) || walk.crossings == s->most) return walk;
+    if (HAS_STOPPED(g) || walk.crossings == s->most) {
+      walk.outcome = WALK_HAS_STOPPED;
+      walk.left_from = l.from;
+      walk.right_from = r.from;
+      return walk;
+    }
     s->crossings[walk.crossings] = takes_right ? VECTOR(int2, r.edge, l.vertex) : VECTOR(int2, l.edge, r.vertex);
     ++walk.crossings;
     if (takes_right) {
@@ -236,13 +245,17 @@ static inline seam_walk walk_along(rings* g, const seam* s, int left, int right)
   }
 }
 
-// Walk w of those of a height: cell w / 2, upwards or downwards. crossings and removed: of all upward walks, and behind
-// them of all downward ones.
-static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, GLOBAL int2* crossings,
-                                     GLOBAL uchar* removed) {
+static inline seam_walk walk_from(int left, int right, int crossings, int outcome) {
+  const seam_walk walk = {left, right, NO_EDGE, NO_EDGE, NO_EDGE, NO_EDGE, crossings, outcome};
+  return walk;
+}
+
+// Walk w of those of a height: cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
+// tangent, or else one without edges. crossings and removed: of all upward walks, and behind them of all downward ones.
+static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
+                                     GLOBAL int2* crossings, GLOBAL uchar* removed) {
   const part_halves halves = halves_of_cell(blocks, height, w / 2);
-  const seam_walk nothing = {NO_VERTEX, NO_VERTEX, NO_EDGE, NO_EDGE, 0, WALK_IS_WHOLE};
-  if (halves.part.block < 0) return nothing;
+  if (halves.part.block < 0) return walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_IS_WHOLE);
   const hull_ends low = blocks->parts[halves.low_at].ends, high = blocks->parts[halves.high_at].ends;
   const int is_downward = w & 1;
   g->errors = errors_between(g, joined_ends(g, low, high, halves.axis));
@@ -250,12 +263,14 @@ static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int 
                   CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
                   removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
                   crossings + CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin)};
+  if (before.left_from != NO_EDGE) return walk_along(g, &s, before);
   // Upwards is along y, or against x.
   const int lowest =
       (halves.axis == 1) != is_downward ? last_along(high, !halves.axis) : first_along(high, !halves.axis);
   const int from_low = lowest_end(g, &s, low, g->points[lowest], 0);
   const int from_high = lowest_end(g, &s, high, g->points[from_low], 1);
-  return is_downward ? walk_along(g, &s, from_high, from_low) : walk_along(g, &s, from_low, from_high);
+  const int left = is_downward ? from_high : from_low, right = is_downward ? from_low : from_high;
+  return walk_along(g, &s, walk_from(left, right, 1, WALK_HAS_STOPPED));
 }
 
 // The crossing edges of two walks, from below: all those of the upward walk, and of the other those before the edge at

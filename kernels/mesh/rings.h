@@ -188,9 +188,11 @@ static inline void count_tie(rings* g, coordinate2 a, coordinate2 b, coordinate2
 OUT_OF_LINE static inline int in_circle_exactly(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
                                                 filter_bound bound) {
   ++g->undecided;
-  const int sign = EXACT_OR_STOPPED(circle_undecided(a, b, c, d, bound));
+#ifdef RINGS_STOP
+  return 0;
+#else
+  const int sign = circle_undecided(a, b, c, d, bound);
   if (sign != 0) return sign > 0;
-  if (HAS_STOPPED(g)) return 0;
   // Below a base, nothing is inside of a circle over it.
   if (!turns_left(g, a, b, d)) return 0;
   ++g->ties;
@@ -198,6 +200,7 @@ OUT_OF_LINE static inline int in_circle_exactly(rings* g, coordinate2 a, coordin
   if (g->ties_in_row < g->most_ties) return RINGS_TIE(a, b, c, d, g->bounds);
   ++g->ties_left;
   return 0;
+#endif
 }
 
 OUT_OF_LINE static inline int in_circle_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d,
