@@ -18,7 +18,6 @@
 #include "predicates/records.h"
 
 #define MOST_DEPTH 32
-#define MOST_TIES 2
 #define FETCHED_VERTICES_AHEAD 256
 
 // A work-item's own arrays, with room for one block.
@@ -128,9 +127,9 @@ static inline hull_ends solve_block(rings* g, int first, int count, const block_
 // Solves the blocks of more than `larger` and at most `capacity` points. Each work-item's part of the scratch arrays
 // has room for `capacity` points. next: the next block to be taken; 0 at first.
 kernel void solve_blocks(int workers, int blocks, int capacity, int larger, global const int* restrict offsets,
-                         filter_bounds bounds, global volatile int* next, BLOCK_POINTS(), global ring_edge* edges,
-                         global int* vertex_edge, global volatile uint* account, BLOCK_SCRATCH(),
-                         global uchar* scratch_axes COUNTERS) {
+                         filter_bounds bounds, uint most_ties, global volatile int* next, BLOCK_POINTS(),
+                         global ring_edge* edges, global int* vertex_edge, global volatile uint* account,
+                         BLOCK_SCRATCH(), global uchar* scratch_axes COUNTERS) {
   const int w = get_global_id(0);
   if (w < workers) {
     const long base = (long)w * capacity;
@@ -148,7 +147,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
       rank(distinct, &s);
       rings g = rings_on(edges, points, vertex_edge, bounds);
       g.unused = EDGES_PER_VERTEX * first;
-      g.most_ties = MOST_TIES;
+      g.most_ties = most_ties;
       const hull_ends ends = distinct == 0 ? no_ends() : solve_block(&g, first, distinct, &s, points, source);
       for (int v = first + distinct; v < first + count; ++v) vertex_edge[v] = NO_EDGE;
       free_unused(&g, EDGES_PER_VERTEX * (first + count));
@@ -163,16 +162,16 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
 
 // The first block of either side of a merge has the side's triangulation.
 kernel void merge_blocks(int n, int first_merge, global const block_merge* restrict merges,
-                         global const cut_node* restrict nodes, filter_bounds bounds, global const coordinate2* points,
-                         global ring_edge* edges, global int* vertex_edge, global solved_block* solved,
-                         global volatile uint* account COUNTERS) {
+                         global const cut_node* restrict nodes, filter_bounds bounds, uint most_ties,
+                         global const coordinate2* points, global ring_edge* edges, global int* vertex_edge,
+                         global solved_block* solved, global volatile uint* account COUNTERS) {
   const int m = get_global_id(0);
   if (m < n) {
     const block_merge merge = merges[first_merge + m];
     const hull_ends low = solved[merge.low].ends, high = solved[merge.high].ends;
     const int axis = cut_axis(nodes[merge.node]);
     rings g = rings_on(edges, points, vertex_edge, bounds);
-    g.most_ties = MOST_TIES;
+    g.most_ties = most_ties;
     join_free_lists(&g, solved[merge.low].unused, solved[merge.high].unused);
     const hull_ends both = joined_ends(&g, low, high, axis);
     if (low.first_x != NO_VERTEX && high.first_x != NO_VERTEX) {

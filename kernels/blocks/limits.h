@@ -16,6 +16,10 @@ INTEGER_CONSTANT(LARGEST_GROUP, 1024);
 // Rounds join the boxes of so many blocks in one step.
 INTEGER_CONSTANT(JOINED_BOXES, 16);
 
+// Polygons with so many ties in a row, which has shown that they have more than four points, are left to fans.cl by
+// merges of blocks by single work-items (mesh/rings.h).
+INTEGER_CONSTANT(MOST_TIES, 2);
+
 END_SHARED
 
 #endif

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "blocks/codes.h"
+#include "blocks/limits.h"
 #include "blocks/pipeline.hpp"
 #include "launchers/blocks/divide.cl.hpp"
 #include "mesh/limits.h"
@@ -13,6 +14,8 @@ namespace flaunay::blocks {
 using namespace points;
 
 namespace {
+
+cl_uint most_ties(const Workspace& work) { return work.ties_are_left ? 0 : kernel::MOST_TIES; }
 
 // If the caller wants progress, blocks are solved in several launches. Each has many blocks per work-item,
 // because work-items end at different times, and then wait for the last one.
@@ -47,6 +50,7 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
             .larger = larger,
             .offsets = blocks.device_offsets,
             .bounds = work.bounds,
+            .most_ties = most_ties(work),
             .next = next,
             .block_points = {.points = blocks.vertices,
                              .source = blocks.source,
@@ -91,6 +95,7 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .merges = blocks.device_merges,
                                             .nodes = blocks.device_nodes,
                                             .bounds = work.bounds,
+                                            .most_ties = most_ties(work),
                                             .points = blocks.vertices,
                                             .edges = rings.edges,
                                             .vertex_edge = rings.vertex_edge,

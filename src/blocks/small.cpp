@@ -5,6 +5,7 @@
 
 #include "arithmetic/coordinates.h"
 #include "blocks/codes.h"
+#include "blocks/limits.h"
 #include "blocks/run.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/native/launch.hpp"
@@ -107,6 +108,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                                            .larger = -1,
                                            .offsets = here(s.offsets),
                                            .bounds = scalings.bounds,
+                                           .most_ties = kernel::MOST_TIES,
                                            .next = here(&next),
                                            .block_points = {.points = vertices,
                                                             .source = source,

@@ -89,6 +89,8 @@ research::Triangulation run_levels(TriangulatorAccess::Implementation& self, con
 
 points::Rings solve_blocks(points::Workspace& work, const points::Blocks& blocks,
                            const host::Buffer<cl_int>& representatives) {
+  // The order of rows follows from the edges, and is to be the same on all devices.
+  work.ties_are_left = true;
   points::Rings rings = blocks::divide(work, blocks, representatives);
   blocks::await_rings(work, blocks, rings);
   return rings;

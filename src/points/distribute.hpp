@@ -21,6 +21,9 @@ struct Workspace {
   host::Runtime& runtime;
   Arena& persistent;  ///< arrays that live as long as the call
   geometry::Bounds bounds{};
+  /// Merges keep all edges in cocircular polygons as they find them, on any device. Otherwise single
+  /// work-items make small polygons canonical at once.
+  bool ties_are_left = false;
 
   Arena& scratch() { return runtime.arena(); }
 };
