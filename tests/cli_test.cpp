@@ -1273,7 +1273,8 @@ TEST_F(CommandPartitionTest, WritesWhatItSays) {
   run_well({"generate", "uniform", "1000", "-o", path("points.npy")}, kNoPlatform);
   const Outcome outcome = run_well(
       {"partition", path("points.npy"), "--levels", "2", "-o", path("p"), "--picture", path("p/p.svg")});
-  for (const char* part : {"1000 points", "4 regions", "finished", "partitioned in", "points per second"}) {
+  for (const char* part :
+       {"1000 points", "4 regions", "finished", "partitioned on the host in", "points per second"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
   }
   EXPECT_EQ(folder().size(), 2 * 4u + 2 + 1);
@@ -1469,7 +1470,8 @@ TEST_F(CommandPartitionTest, AnErrorLeavesNoFolderBehind) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n5 5\n");
   expect_error(kBadInput, {"missing.npy"},
                {"partition", path("missing.npy"), "--levels", "1", "-o", path("p")});
-  expect_error(kDevice, {"pocl-opencl-icd"}, {"partition", points, "--levels", "1", "-o", path("p")});
+  expect_error(kDevice, {"pocl-opencl-icd"},
+               {"partition", points, "--levels", "1", "-o", path("p"), "--device", "#0"});
   expect_error(kUsage, {"p.png", ".svg"},
                {"partition", points, "--levels", "1", "-o", path("p"), "--picture", path("p.png")});
   expect_error(kBadInput, {"no/such/folder"},
