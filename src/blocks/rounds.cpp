@@ -58,8 +58,8 @@ struct Numbers {
 
 // The points that go on to a round, and their open edges.
 struct OpenPoints {
-  std::size_t most;                  // that can be in any round but the first
-  std::vector<std::size_t> offsets;  // by set
+  std::size_t most;                    // that can be in any round but the first
+  std::vector<std::size_t> offsets{};  // by set
   Buffer<cl_double2> points{};
   Buffer<cl_int> vertices{};
   Buffer<cl_int> offsets_of_edges{};
