@@ -33,12 +33,7 @@ void expect_same_arrays(const Triangulation& found, const Triangulation& expecte
   for_each_array([&](const auto& array, std::size_t) {
     EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
   });
-  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
-  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
-  EXPECT_EQ(found.statistics.points, expected.statistics.points);
-  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
-  EXPECT_EQ(found.statistics.triangles, expected.statistics.triangles);
-  EXPECT_EQ(found.statistics.hull_vertices, expected.statistics.hull_vertices);
+  expect_same_sizes(found, expected);
 }
 
 void expect_same_arrays(const ConstrainedTriangulation& found, const ConstrainedTriangulation& expected) {

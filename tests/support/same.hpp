@@ -1,4 +1,4 @@
-// Whether two arrays are the same, to the sign of each zero.
+// Whether two arrays are the same, to the sign of each zero, and two triangulations of the same sizes.
 #pragma once
 
 #include <CL/cl.h>
@@ -39,6 +39,17 @@ template <typename T>
     }
   }
   return ::testing::AssertionSuccess();
+}
+
+/// The offsets of sets, and the numbers that statistics have of points and results.
+template <typename Result>
+void expect_same_sizes(const Result& found, const Result& expected) {
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+  EXPECT_EQ(found.statistics.points, expected.statistics.points);
+  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
+  EXPECT_EQ(found.statistics.triangles, expected.statistics.triangles);
+  EXPECT_EQ(found.statistics.hull_vertices, expected.statistics.hull_vertices);
 }
 
 }  // namespace flaunay::testing
