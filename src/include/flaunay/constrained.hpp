@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "flaunay/refinement.hpp"
 
 namespace flaunay {
 

@@ -1,0 +1,67 @@
+// Types for meshes whose triangles have a smallest angle and a largest area. docs/refinement.md defines the
+// results.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace flaunay {
+
+/// Which constraints may be split by points that are added.
+enum class KeptEdges {
+  none,    ///< all may be split
+  border,  ///< those with triangles of the mesh on one side only are kept as they are
+  all,     ///< all are kept as they are
+};
+
+/// Gives the areas that triangles may have: one per place, 0 or infinity for any. places: x and y of the
+/// centroids of `count` triangles. It is called once a round.
+using AreasAt = std::function<void(const double* places, std::size_t count, double* areas)>;
+
+/// What a mesh is refined to. By default, nothing is added.
+struct Refinement {
+  /// In degrees, from 0 to 34: no angle of a triangle is smaller, except where docs/refinement.md says that
+  /// it cannot be helped. Up to 30 the number of points is near the least known; above 33, many inputs do not
+  /// end before the limits.
+  double min_angle = 0;
+  double max_area = 0;  ///< no triangle is larger; 0 for any
+  /// One per seed of Constraints, or null: the largest area of a triangle in its region, 0 for any.
+  const double* seed_areas = nullptr;
+  AreasAt areas_at;                  ///< the areas that triangles may have by their places, or nothing
+  KeptEdges kept = KeptEdges::none;  ///< which constraints must not be split
+  const std::uint8_t* kept_segments = nullptr;  ///< one per segment: 1 if it must not be split, or null
+  /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
+  /// bounding box.
+  double min_edge = -1;
+  std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added
+  std::size_t most_rounds = 10000;                         ///< no more rounds are made
+
+  /// Whether anything is asked for.
+  bool is_wanted() const { return min_angle > 0 || max_area > 0 || seed_areas != nullptr || areas_at; }
+};
+
+/// Why a triangle is worse than it should be.
+enum class Excuse : std::uint8_t {
+  input_angle = 1,  ///< its smallest angle is one between two segments
+  /// Its shortest edge joins points on two segments, equally far from where these meet at less than 60
+  /// degrees.
+  near_apex,
+  min_edge,     ///< what would mend it is nearer to a point than Refinement::min_edge
+  kept,         ///< a constraint is in the way that must not be split
+  frozen,       ///< a constraint is in the way that rounding does not allow to split
+  most_points,  ///< Refinement::most_points were added
+  most_rounds,  ///< Refinement::most_rounds were made
+};
+
+/// How a refinement went.
+struct RefinementReport {
+  std::size_t rounds = 0;                   ///< in which points were added
+  std::size_t added_points = 0;             ///< on constraints or not
+  std::size_t split_points = 0;             ///< those of them that are on constraints
+  std::vector<std::int32_t> bad_triangles;  ///< triangles that are worse than asked for, ascending
+  std::vector<Excuse> excuses;              ///< why, for each of them
+};
+
+}  // namespace flaunay
