@@ -269,7 +269,8 @@ def main(command_line):
             results.append({"machine": name, "cores": machine["cores"], "mode": summary["mode"],
                             "distribution": summary["distribution"], "n": summary["n"], **totals, "kernels": rows})
     if arguments.json:
-        text = {"predicted": True, "launches": pathlib.Path(arguments.launches).name, "results": results}
+        text = {"predicted": True, "command": f"bench/predictions/predict.py {' '.join(command_line)}",
+                "launches": pathlib.Path(arguments.launches).name, "results": results}
         pathlib.Path(arguments.json).write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
 
 

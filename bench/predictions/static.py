@@ -7,7 +7,8 @@ stack, spills and local memory, by architecture.
     bench/predictions/static.py --json bench/results/static.json   and a record, which predict.py reads
 
 Clang compiles OpenCL C with the functions of libclc, in place of a vendor's driver, which is LLVM too but another
-version, so figures may differ a little. NVIDIA's machine code comes from ptxas, AMD's from Clang itself. What is not
+version. Registers of a kernel differ by up to a third from one version of Clang to another, so a record names its
+compilers and is made as a whole. NVIDIA's machine code comes from ptxas, AMD's from Clang itself. What is not
 installed is skipped, and standard error says what to install:
 
     apt-get install clang-19 libclc-19      (other versions will do)
@@ -53,15 +54,27 @@ def run(command, what):
     return result.stdout + result.stderr
 
 
+def version_of(program):
+    """As "19.1.7" of Clang, or "13.0.88" of ptxas."""
+    return re.search(r"(?:version |V)(\d[\d.]*)", run([program, "--version"], program))[1]
+
+
+def version_of_bitcode(path):
+    """The main version of the LLVM that wrote it, which stands before its target."""
+    with open(path, "rb") as file:
+        found = re.search(rb"(\d\d)\.\d+\.\d+(?:amdgcn|nvptx64)-", file.read())
+    return found and found[1].decode()
+
+
 def clang_with(name, target, architecture):
     """The newest clang that knows the architecture and has libclc's functions of its own version, and these."""
     names = [*(f"clang-{version}" for version in range(NEWEST, OLDEST, -1)), "clang"]
     for clang in filter(None, map(shutil.which, names)):
-        version = re.search(r"version (\d+)", run([clang, "--version"], clang))[1]
+        version = version_of(clang).split(".")[0]
         # Links are not followed: some packages' lead back to their folder.
-        builtins = [os.path.join(folder, f"{name}.bc")
-                    for top in (f"/usr/lib/llvm-{version}", "/usr/lib/clc", "/usr/local/share/clc")
-                    for folder, _, files in os.walk(top) if f"{name}.bc" in files]
+        builtins = [path for top in (f"/usr/lib/llvm-{version}", "/usr/lib/clc", "/usr/local/share/clc")
+                    for folder, _, _ in os.walk(top)
+                    for path in glob.glob(os.path.join(folder, f"{name}.bc")) if version_of_bitcode(path) == version]
         check = [clang, "-x", "cl", "-target", target, "-Xclang", "-target-cpu", "-Xclang", architecture, "-nogpulib",
                  "-S", "-o", os.devnull, os.devnull]
         if builtins and subprocess.run(check, capture_output=True, check=False).returncode == 0:
@@ -118,6 +131,7 @@ class Compiler:
         self.command = [clang, *COMMON, "-target", target, *(cpu if self.is_nvidia else [f"-mcpu={architecture}"]),
                         "-nogpulib", "-Xclang", "-mlink-builtin-bitcode", "-Xclang", builtins]
         self.ptxas = find_ptxas() if self.is_nvidia else None
+        self.versions = {"clang": version_of(clang), **({"ptxas": version_of(self.ptxas)} if self.is_nvidia else {})}
 
     def compile(self, file, folder, options):
         assembly = os.path.join(folder, "kernel.s")
@@ -135,13 +149,15 @@ def texts_of(file):
 
 
 def table_of(files, architectures):
-    rows, failures = [], 0
+    """Rows, the versions of compilers by architecture, and how many files failed."""
+    rows, compilers, failures = [], {}, 0
     for architecture in architectures:
         try:
             compiler = Compiler(architecture)
         except Missing as missing:
             note(f"{architecture} is skipped: {missing}")
             continue
+        compilers[architecture] = compiler.versions
         for file, fixed_point in [(file, text) for file in files for text in texts_of(file)]:
             begin = time.monotonic()
             try:
@@ -155,7 +171,7 @@ def table_of(files, architectures):
             seconds = round(time.monotonic() - begin, 2)
             rows += [{"architecture": architecture, "file": file, "fixed_point": fixed_point, **row,
                       "file_seconds": seconds} for row in sorted(compiled, key=lambda row: row["kernel"])]
-    return rows, failures
+    return rows, compilers, failures
 
 
 def print_table(rows):
@@ -181,7 +197,7 @@ def main(command_line):
     arguments = parser.parse_args(command_line)
     files = arguments.files or sorted(os.path.relpath(path, KERNELS)
                                       for path in glob.glob(os.path.join(KERNELS, "*", "*.cl")))
-    rows, failures = table_of(files, arguments.arch or ARCHITECTURES)
+    rows, compilers, failures = table_of(files, arguments.arch or ARCHITECTURES)
     if not rows:
         note("nothing was compiled")
         return 1
@@ -190,7 +206,8 @@ def main(command_line):
     if arguments.json:
         text = ",\n".join("    " + json.dumps(row) for row in rows)
         with open(arguments.json, "w", encoding="utf-8") as file:
-            file.write(f'{{\n  "options": {json.dumps(OPTIONS)},\n  "results": [\n{text}\n  ]\n}}\n')
+            file.write(f'{{\n  "compilers": {json.dumps(compilers)},\n  "options": {json.dumps(OPTIONS)},\n'
+                       f'  "results": [\n{text}\n  ]\n}}\n')
     return 1 if failures else 0
 
 
