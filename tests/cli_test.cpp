@@ -452,6 +452,32 @@ TEST_F(CommandVerifyTest, Constraints) {
                {"verify", points, other, "--constraints", write("beyond.txt", "0 7\n")});
 }
 
+TEST_F(CommandVerifyTest, RefinedMeshes) {
+  const std::string points = write("points.xy", "0 0\n4 0\n4 1\n0 1\n");
+  const std::string triangles =
+      write("t.npy", npy("<i4", "False", "(2, 3)", bytes_of<std::int32_t>({0, 1, 2, 0, 2, 3})));
+  const std::string poly =
+      write("map.poly", "4 2 0 0\n0 0 0\n1 4 0\n2 4 1\n3 0 1\n5 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n4 0 2\n0\n");
+  run_well({"verify", points, triangles, "--min-angle", "14", "--max-area", "2"}, kNoPlatform);
+  const Outcome good = run_well({"verify", poly, triangles, "--min-angle", "30"}, kNoPlatform);
+  EXPECT_NE(good.out.find("; 5 constraint edges, 2 triangles with smaller angles, which the input has"),
+            std::string::npos)
+      << good.out;
+  for (const char* input : {points.c_str(), poly.c_str()}) {
+    const Outcome bad = run({"verify", input, triangles, "--max-area", "1.5"}, kNoPlatform);
+    EXPECT_EQ(bad.exit_code, kFailure);
+    EXPECT_NE(bad.err.find("has the area 2, which is above 1.5"), std::string::npos) << bad.err;
+  }
+  EXPECT_EQ(run({"verify", points, triangles, "--min-angle", "30"}, kNoPlatform).exit_code, kFailure);
+  for (const char* angle : {"-1", "35", "nan"}) {
+    expect_error(kUsage, {"smallest angle"}, {"verify", points, triangles, "--min-angle", angle});
+  }
+  for (const char* area : {"-1", "nan"}) {
+    expect_error(kUsage, {"--max-area"}, {"verify", points, triangles, "--max-area", area});
+  }
+  expect_error(kUsage, {"--memory"}, {"verify", points, triangles, "--min-angle", "20", "--memory", "64M"});
+}
+
 TEST_F(CommandVerifyTest, BadFiles) {
   const std::string points = write("points.xy", "0 0\n4 0\n0 4\n");
   expect_error(kBadInput, {"missing.npy"}, {"verify", points, path("missing.npy")});

@@ -54,15 +54,15 @@ TEST(RefinementBounds, RefuseAnglesAndAreasThatMakeNoSense) {
     EXPECT_THROW(quality_bounds(degrees), Error) << degrees;
   }
   const double areas[] = {0, 1e-300, HUGE_VAL, -1e-300, kNan};
-  EXPECT_NO_THROW(check_areas(areas, 3, "seeds"));
+  EXPECT_NO_THROW(check_areas(areas, 3, "seed"));
   try {
-    check_areas(areas, 4, "seeds");
+    check_areas(areas, 4, "seed");
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_STREQ(error.what(), "seeds: largest area 3 is -1e-300, but it can be 0, for any, or more");
+    EXPECT_STREQ(error.what(), "seed 3: the largest area is -1e-300, but it can be 0, for any, or more");
   }
-  EXPECT_THROW(check_areas(areas + 4, 1, "seeds"), Error);
+  EXPECT_THROW(check_areas(areas + 4, 1, "seed"), Error);
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ struct Case {
   Outside outside = Outside::keep;
   FillRule fill_rule = FillRule::nesting;
   std::vector<double> holes;
+  double min_angle = 0, max_area = 0;
 
   Case() = default;
   Case(Coordinates coordinates, Segments ends) : points(std::move(coordinates)), segments(std::move(ends)) {
@@ -64,6 +65,8 @@ struct Case {
     constraints.outside = outside;
     constraints.fill_rule = fill_rule;
     if (!holes.empty()) constraints.holes = &holes;
+    constraints.min_angle = min_angle;
+    constraints.max_area = max_area;
     return constraints;
   }
   // Leaves out rows.
@@ -282,6 +285,67 @@ TEST(SmallVerifyConstrained, Holes) {
   }
   half.holes = {0, 1};
   EXPECT_NE(half.problem(), "");
+}
+
+TEST(SmallVerifyRefined, AnglesAndAreas) {
+  const auto refined = [](Case mesh, double angle, double area) {
+    mesh.min_angle = angle;
+    mesh.max_area = area;
+    return mesh.verify();
+  };
+  const Coordinates rectangle = {0, 0, 4, 0, 4, 1, 0, 1};
+  const Case plain(rectangle, {});
+  EXPECT_EQ(refined(plain, 14.03, 2).problem, "");
+  EXPECT_EQ(refined(plain, 14.03, 2).excused_triangles, 0u);
+  const std::string row = "triangle 0 with points 0, 1, 2 at (0, 0), (4, 0), (4, 1)";
+  EXPECT_EQ(refined(plain, 0, std::nextafter(2, 0)).problem,
+            row + " has the area 2, which is above 1.9999999999999998");
+  EXPECT_EQ(refined(plain, 14.04, 0).problem,
+            row + " has an angle of 14.036243467926477 degrees at point 0, which is below 14.04");
+  // Between constraints, of which the border is one.
+  const VerifyReport excused = refined(Case(rectangle, {0, 2}), 30, 2);
+  EXPECT_EQ(excused.problem, "");
+  EXPECT_EQ(excused.excused_triangles, 2u);
+  EXPECT_NE(refined(Case(rectangle, {0, 2}), 30, 1).problem, "");
+  EXPECT_THROW(refined(plain, 35, 0), Error);
+}
+
+TEST(SmallVerifyRefined, EncroachedEdges) {
+  // The widest angle is 141.4 degrees, or 138.9.
+  for (const double y : {0.7, 0.75}) {
+    for (const Segments& segments : {Segments{}, Segments{1, 0}}) {
+      Case mesh({0, 0, 4, 0, 2, y, 2, -5}, segments);
+      if (!segments.empty()) mesh = Case({0, 0, 4, 0, 2, y, 2, -5, 2, 5}, segments);
+      mesh.max_area = 100;
+      const std::string problem = mesh.problem();
+      const bool is_encroached = y == 0.7 && !segments.empty();
+      EXPECT_EQ(problem.empty(), !is_encroached) << problem;
+      if (is_encroached) {
+        EXPECT_EQ(
+            problem.rfind("the edge from point 0 at (0, 0) to point 1 at (4, 0) is encroached: point 2 at "
+                          "(2, 0.7) of triangle ",
+                          0),
+            0u)
+            << problem;
+      }
+    }
+  }
+}
+
+// Two segments meet at 22.6 degrees, and are split where they are equally far from there.
+TEST(SmallVerifyRefined, Apexes) {
+  const auto problem = [](double factor, double bend) {
+    Case mesh({0, 0, 6.5, 0, 13, 0, 26, 0, 24, 10, 12 * factor, 5 * factor, 6, 2.5 + bend},
+              {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 0});
+    mesh = without_outside(mesh);
+    mesh.min_angle = 20.7;
+    return mesh.problem();
+  };
+  EXPECT_EQ(problem(1, 0), "");
+  EXPECT_EQ(problem(1.001, 0), "");
+  EXPECT_NE(problem(1.01, 0).find(" has an angle of "), std::string::npos) << problem(1.01, 0);
+  // The upper segment's first part is not on one line with the others.
+  EXPECT_NE(problem(1, 1e-9).find(" has an angle of "), std::string::npos) << problem(1, 1e-9);
 }
 
 // Rectangles along the lines of a grid, which overlap: depths by counting the rectangles around a triangle.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/test_kernels.hpp"
@@ -35,6 +36,16 @@ Decisions by_host(const Case& of) {
   const auto& [a, b, c] = of.p;
   return {kernel::is_angle_below(a, b, c, of.square) != 0, kernel::is_area_above(a, b, c, of.area) != 0,
           kernel::is_encroached(a, b, c, of.square) != 0, kernel::is_below_60_degrees(a, b, c) != 0};
+}
+
+/// As `flaunay verify` decides.
+Decisions by_verify(const Case& of) {
+  ExactPredicates exact;
+  const double *a = &of.p[0].x, *b = &of.p[1].x, *c = &of.p[2].x;
+  return {exact.compare_sine(a, b, c, of.square) < 0 || exact.compare_sine(b, c, a, of.square) < 0 ||
+              exact.compare_sine(c, a, b, of.square) < 0,
+          exact.compare_area(a, b, c, of.area) > 0, exact.compare_cosine(c, a, b, -of.square) <= 0,
+          exact.compare_cosine(a, b, c, 0.25) > 0};
 }
 
 /// In units of 2^-255, and their products.
@@ -135,6 +146,9 @@ class Quality : public ::testing::Test {
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [a, b, c] = cases[i].p;
       const Decisions expected = by_definition(cases[i]), on_host = by_host(cases[i]);
+      EXPECT_EQ(by_verify(cases[i]), expected) << describe(cases[i]);
+      const Vector u = between(a, b), v = between(a, c);
+      EXPECT_EQ(ExactPredicates().compare_lengths(&a.x, &b.x, &c.x), sgn(mpz_class(dot(u, u) - dot(v, v))));
       for (std::size_t k = 0; k < expected.size(); ++k) {
         held[k] += expected[k];
         EXPECT_EQ(on_host[k], expected[k]) << kNames[k] << ": " << describe(cases[i]);

@@ -23,6 +23,7 @@
 #include "app/files/points.hpp"
 #include "app/verify/chunks.hpp"
 #include "app/verify/constrained.hpp"
+#include "constrained/refinement/bounds.hpp"
 #include "files/file.hpp"
 #include "host/memory/system_memory.hpp"
 
@@ -37,9 +38,12 @@ struct VerifyRequest {
   std::uint64_t memory_bytes = 0;  // 0: as much as there is
   std::string scratch;
   bool has_constraints = false;
+  double min_angle = 0, max_area = 0;
   bool quiet = false;
   ConstraintRequest constraints;
   std::string constraint_edges;
+
+  bool is_refined() const { return min_angle > 0 || max_area > 0; }
 };
 
 /// 0 if it is no regular file.
@@ -111,7 +115,12 @@ Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Pro
 
 Checked verify_with_constraints(const VerifyRequest& request, Progress& progress) {
   ConstraintRequest asked = request.constraints;
-  const io::Map map = read_domain(request.points, asked);
+  io::Map map;
+  if (request.has_constraints) {
+    map = read_domain(request.points, asked);
+  } else {
+    map.points = io::read_points(request.points);
+  }
   const std::vector<std::int32_t> segments = all_segments(map);
   const Rings rings = rings_of(map, asked.fill);
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
@@ -123,6 +132,8 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
   constraints.outside = asked.outside;
   constraints.fill_rule = asked.fill;
   if (!map.holes.empty()) constraints.holes = &map.holes;
+  constraints.min_angle = request.min_angle;
+  constraints.max_area = request.max_area;
   if (!request.constraint_edges.empty()) {
     edges = io::read_npy_segments(request.constraint_edges, map.points.size());
     constraints.edges = &edges;
@@ -132,11 +143,15 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
   const VerifyReport report =
       verify_constrained(map.points.coordinates.data(), map.points.size(), triangles,
                          request.neighbors.empty() ? nullptr : &neighbors, constraints);
-  return {report, stopwatch.seconds(), fmt::format("; {} constraint edges", report.constraint_edges)};
+  std::string how = fmt::format("; {} constraint edges", report.constraint_edges);
+  if (request.min_angle > 0) {
+    how += fmt::format(", {} triangles with smaller angles, which the input has", report.excused_triangles);
+  }
+  return {report, stopwatch.seconds(), how};
 }
 
 Checked check(const VerifyRequest& request, Progress& progress) {
-  if (request.has_constraints) return verify_with_constraints(request, progress);
+  if (request.has_constraints || request.is_refined()) return verify_with_constraints(request, progress);
   const std::uint64_t memory = memory_for_chunks(request);
   return memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
 }
@@ -162,15 +177,21 @@ int verify(const VerifyRequest& request) {
   return report.ok ? kSuccess : kFailure;
 }
 
+void refuse_chunks(const CLI::App& command) {
+  refuse_all(command, {"--memory", "--scratch"},
+             "constraints, angles and areas are checked in memory, not in chunks");
+}
+
 /// Whether segments are given. Throws Error(usage) for options that do not go together.
 bool has_constraints(const CLI::App& command, VerifyRequest& request) {
   if (!io::is_map(request.points) && request.constraints.segments.empty()) {
     refuse_all(command, {"--outside", "--fill", "--hole", "--constraint-edges"},
                "needs segments: --constraints, or a .poly or .geojson file with the points");
+    if (request.is_refined()) refuse_chunks(command);
     return false;
   }
   check_domain_options(command, request.points, request.constraints);
-  refuse_all(command, {"--memory", "--scratch"}, "constraints are checked in memory, not in chunks");
+  refuse_chunks(command);
   if (!request.constraint_edges.empty() && io::ending_of(request.constraint_edges) != ".npy") {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: --constraint-edges needs an .npy file", request.constraint_edges));
@@ -196,6 +217,10 @@ void add_verify(CLI::App& app, Action& action) {
   add_domain_options(command, request->constraints);
   add_path(command, "--constraint-edges", request->constraint_edges,
            "Constraint edges to check too, as triangulate writes them: .npy");
+  command->add_option(
+      "--min-angle", request->min_angle,
+      "Check that no angle is smaller, in degrees, but where the input has such angles: 0 to 34");
+  command->add_option("--max-area", request->max_area, "Check that no triangle is larger");
   add_memory(command, request->memory_bytes,
              "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
              "triangles. Default: hold everything if it fits");
@@ -205,6 +230,8 @@ void add_verify(CLI::App& app, Action& action) {
       ->check(CLI::ExistingDirectory);
   add_quiet(command, request->quiet);
   command->callback([request, command, &action] {
+    constrained::quality_bounds(request->min_angle);
+    constrained::check_areas(&request->max_area, 1, "--max-area");
     request->has_constraints = has_constraints(*command, *request);
     action = [request] { return verify(*request); };
   });

@@ -21,13 +21,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 
+#include "app/verify/apexes.hpp"
 #include "app/verify/checker.hpp"
 #include "app/verify/sweep.hpp"
+#include "constrained/refinement/bounds.hpp"
 
 namespace flaunay {
 namespace {
 
+using verification::Apexes;
 using verification::Checker;
 using verification::is_before;
 using verification::kHull;
@@ -128,6 +132,7 @@ class ConstrainedChecker : public Checker {
       check_edge_segments();
       check_labels();
       check_neighbors();
+      check_quality();
     });
     report_.exact_evaluations = predicates_.exact_evaluations();
     return report_;
@@ -687,8 +692,73 @@ class ConstrainedChecker : public Checker {
     return faces;
   }
 
+  void check_quality() {
+    const double angle = constraints_.min_angle, area = constraints_.max_area;
+    if (angle == 0 && area == 0) return;
+    const constrained::QualityBounds bounds = constrained::quality_bounds(angle);
+    for (std::size_t t = 0; t < report_.triangles; ++t) {
+      const double *a = point(corners_[3 * t]), *b = point(corners_[3 * t + 1]),
+                   *c = point(corners_[3 * t + 2]);
+      if (area > 0 && predicates_.compare_area(a, b, c, area) > 0) {
+        const double twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        violate("{} has the area {}, which is above {}", describe_row(t), twice / 2, area);
+      }
+      check_angles(t, bounds.squared_sine);
+    }
+    for (std::size_t h = 0; h < corners_.size(); ++h) {
+      if (piece_of_[h] == kNoPiece) continue;
+      const double *a = point(origin(h)), *b = point(target(h)), *c = point(corners_[h]);
+      if (predicates_.compare_cosine(c, a, b, -bounds.squared_cosine) > 0) continue;
+      violate("{} is encroached: {} of triangle {} sees it at {} degrees",
+              describe_piece(sweep_.pieces()[piece_of_[h]]), describe_point(corners_[h]), h / 3, angle_at(h));
+    }
+  }
+
+  /// The smallest angle, or each of several, decides.
+  void check_angles(std::size_t t, double squared_sine) {
+    bool is_excused = false;
+    std::size_t smallest = 3 * t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t h = 3 * t + k, next = 3 * t + (k + 1) % 3, last = 3 * t + (k + 2) % 3;
+      const double *c = point(corners_[h]), *a = point(corners_[next]), *b = point(corners_[last]);
+      if (predicates_.compare_lengths(b, a, c) > 0 || predicates_.compare_lengths(a, b, c) > 0) continue;
+      if (predicates_.compare_sine(c, a, b, squared_sine) >= 0) return;
+      smallest = h;
+      is_excused = is_excused || (piece_of_[next] != kNoPiece && piece_of_[last] != kNoPiece) ||
+                   apexes().are_shells(corners_[next], corners_[last]);
+    }
+    if (!is_excused) {
+      violate("{} has an angle of {} degrees at point {}, which is below {}", describe_row(t),
+              angle_at(smallest), corners_[smallest], constraints_.min_angle);
+    }
+    ++report_.excused_triangles;
+  }
+
+  /// At the corner opposite to a half-edge, in degrees.
+  double angle_at(std::size_t h) const {
+    const double *a = point(origin(h)), *b = point(target(h)), *c = point(corners_[h]);
+    const double ux = a[0] - c[0], uy = a[1] - c[1], vx = b[0] - c[0], vy = b[1] - c[1];
+    return std::atan2(ux * vy - uy * vx, ux * vx + uy * vy) * 180 / std::acos(-1.0);
+  }
+
+  /// Of the edges that are constraints or on the border of what is covered.
+  Apexes& apexes() {
+    if (apexes_ == nullptr) {
+      std::vector<std::int32_t> edges;
+      for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+        if (below_[i] == kNone && above_[i] == kNone) continue;
+        const Piece& piece = sweep_.pieces()[i];
+        edges.push_back(static_cast<std::int32_t>(point_of(static_cast<std::size_t>(piece.from))));
+        edges.push_back(static_cast<std::int32_t>(point_of(static_cast<std::size_t>(piece.to))));
+      }
+      apexes_ = std::make_unique<Apexes>(coordinates_, n_, edges, predicates_);
+    }
+    return *apexes_;
+  }
+
   const VerifyConstraints& constraints_;
   const std::vector<std::int32_t>& segments_;
+  std::unique_ptr<Apexes> apexes_;
   std::vector<Place> places_;
   std::vector<std::int32_t> place_of_point_, point_of_place_, place_of_hole_;
   Sweep sweep_;

@@ -27,6 +27,8 @@ struct VerifyConstraints {
   const std::vector<std::int32_t>* segment_edges = nullptr;
   /// If given: per constraint edge the smallest index of a segment that has it.
   const std::vector<std::int32_t>* edge_segments = nullptr;
+  /// If not 0: what a refined mesh has been asked for, in degrees and as an area.
+  double min_angle = 0, max_area = 0;
   /// If given: per triangle its depth by the fill rule, and the number of its region.
   const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
 };
@@ -37,8 +39,12 @@ struct VerifyConstraints {
 /// smallest vertex; and that the triangles tile the convex hull without the faces between constraints that
 /// are to be left out, so every edge with one triangle is on the hull or a constraint. neighbors: null, or 3
 /// per triangle. Segments that cross where no point is are an error, as are open curves if the fill rule
-/// needs closed ones, and holes that are on a constraint or outside of the hull. O((n + s) log (n + s)) for n
-/// points and s segments, whatever overlaps and whatever meets at a point.
+/// needs closed ones, and holes that are on a constraint or outside of the hull. With a smallest angle or a
+/// largest area, no triangle may be worse than that, but those whose angle the input makes unavoidable: their
+/// smallest angle lies between two constraints, or their shortest edge joins points on two, equally far from
+/// where these meet at less than 60 degrees; and no corner may see an edge of its triangle that is a
+/// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more. O((n + s)
+/// log (n + s)) for n points and s segments, whatever overlaps and whatever meets at a point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,
                                 const std::vector<std::int32_t>* neighbors,

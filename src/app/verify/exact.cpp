@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 
 namespace flaunay {
@@ -20,11 +22,11 @@ using BigInt = mp::number<mp::cpp_int_backend<>, mp::et_off>;
 template <int kPoints>
 struct Scaled {
   std::int64_t mantissas[2 * kPoints];
-  int shifts[2 * kPoints];  // coordinate i is mantissas[i] * 2^(unit + shifts[i])
-  int bits = 0;             // |mantissas[i] * 2^shifts[i]| < 2^bits
+  int shifts[2 * kPoints];                     // coordinate i is mantissas[i] * 2^(unit + shifts[i])
+  int bits = 0;                                // |mantissas[i] * 2^shifts[i]| < 2^bits
+  int unit = std::numeric_limits<int>::max();  // the exponent of the factor
 
   explicit Scaled(const double* const (&points)[kPoints]) {
-    int unit = std::numeric_limits<int>::max();
     for (int i = 0; i < 2 * kPoints; ++i) {
       int exponent = 0;
       const double fraction = std::frexp(points[i / 2][i % 2], &exponent);  // right for subnormals too
@@ -39,6 +41,7 @@ struct Scaled {
       mantissas[i] = mantissa;
       shifts[i] = exponent;
     }
+    if (unit == std::numeric_limits<int>::max()) unit = 0;
     for (int i = 0; i < 2 * kPoints; ++i) {
       if (mantissas[i] == 0) {
         shifts[i] = 0;
@@ -111,6 +114,38 @@ int crossing_sign(const Scaled<5>& points, int axis) {
       Integer(points.difference<Integer>(0, axis) * at_a1 + points.difference<Integer>(1, axis) * at_a0));
 }
 
+/// An integer times a power of two.
+struct Shifted {
+  BigInt integer;
+  int exponent;
+
+  explicit Shifted(double value) {
+    integer = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+    exponent -= 53;
+  }
+};
+
+/// The sign of value * 2^exponent - number * factor.
+int compare(BigInt value, int exponent, const Shifted& number, const BigInt& factor) {
+  BigInt other = number.integer * factor;
+  const int shift = exponent - number.exponent;
+  (shift > 0 ? value : other) *= BigInt(1) << std::abs(shift);
+  return sign(BigInt(value - other));
+}
+
+/// The vectors from a to b and c; their units are powers of two.
+struct Vectors {
+  Scaled<3> points;
+  BigInt ux = points.difference<BigInt>(0, 0), uy = points.difference<BigInt>(0, 1);
+  BigInt vx = points.difference<BigInt>(1, 0), vy = points.difference<BigInt>(1, 1);
+
+  Vectors(const double* a, const double* b, const double* c) : points({b, c, a}) {}
+  BigInt cross() const { return ux * vy - uy * vx; }
+  BigInt dot() const { return ux * vx + uy * vy; }
+  BigInt u() const { return ux * ux + uy * uy; }
+  BigInt v() const { return vx * vx + vy * vy; }
+};
+
 }  // namespace
 
 int ExactPredicates::exact_orient2d(const double* a, const double* b, const double* c) {
@@ -133,6 +168,27 @@ int ExactPredicates::exact_side_of_crossing(const double* a0, const double* a1, 
   if (3 * points.bits + 5 <= 127) return crossing_sign<Int128>(points, axis);
   if (3 * points.bits + 5 <= 512) return crossing_sign<Int512>(points, axis);
   return crossing_sign<BigInt>(points, axis);
+}
+
+int ExactPredicates::exact_compare_cosine(const double* a, const double* b, const double* c, double square) {
+  const Vectors of(a, b, c);
+  const BigInt dot = of.dot();
+  return compare(dot * abs(dot), 0, Shifted(square), of.u() * of.v());
+}
+
+int ExactPredicates::exact_compare_sine(const double* a, const double* b, const double* c, double square) {
+  const Vectors of(a, b, c);
+  return compare(of.cross() * of.cross(), 0, Shifted(square), of.u() * of.v());
+}
+
+int ExactPredicates::exact_compare_area(const double* a, const double* b, const double* c, double area) {
+  const Vectors of(a, b, c);
+  return compare(of.cross(), 2 * of.points.unit, Shifted(area), 2);
+}
+
+int ExactPredicates::exact_compare_lengths(const double* a, const double* b, const double* c) {
+  const Vectors of(a, b, c);
+  return sign(BigInt(of.u() - of.v()));
 }
 
 }  // namespace flaunay

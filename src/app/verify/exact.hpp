@@ -1,4 +1,4 @@
-// Exact signs of the two geometric predicates on the host, for any finite doubles. On purpose they share no
+// Exact signs of geometric predicates on the host, for any finite doubles. On purpose they share no
 // text with the kernels' (kernels/arithmetic, kernels/predicates), so that an error there cannot hide itself
 // from the check.
 #pragma once
@@ -82,11 +82,67 @@ class ExactPredicates {
     return 0;
   }
 
+  /// Compares c |c| with a number, where c is the cosine of the angle between ab and ac: +1 if it is greater.
+  int compare_cosine(const double* a, const double* b, const double* c, double square) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
+    const double dot = ux * vx + uy * vy;
+    return compare_squares(dot * std::fabs(dot), ux * ux + uy * uy, vx * vx + vy * vy, square,
+                           [&] { return exact_compare_cosine(a, b, c, square); });
+  }
+
+  /// Compares the squared sine of that angle with a number.
+  int compare_sine(const double* a, const double* b, const double* c, double square) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
+    const double cross = ux * vy - uy * vx;
+    return compare_squares(cross * cross, ux * ux + uy * uy, vx * vx + vy * vy, square,
+                           [&] { return exact_compare_sine(a, b, c, square); });
+  }
+
+  /// Compares the area of a counter-clockwise triangle with a number: +1 if it is larger.
+  int compare_area(const double* a, const double* b, const double* c, double area) {
+    const Area twice(a, b, c);
+    const double excess = twice.value - 2 * area;
+    // Between them is a rounding that leaves the sign right.
+    if (twice.magnitude >= 0x1p-900 && std::fabs(excess) > 5 * kEpsilon * twice.magnitude) {
+      return excess > 0 ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exact_compare_area(a, b, c, area);
+  }
+
+  /// Compares the lengths of ab and ac: +1 if ab is longer.
+  int compare_lengths(const double* a, const double* b, const double* c) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - a[0], vy = c[1] - a[1];
+    const double ab = ux * ux + uy * uy, ac = vx * vx + vy * vy;
+    if (ab >= 0x1p-900 && ac >= 0x1p-900 && std::fabs(ab - ac) > 6 * kEpsilon * (ab + ac)) {
+      return ab > ac ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exact_compare_lengths(a, b, c);
+  }
+
   /// How many calls floating point could not decide.
   std::size_t exact_evaluations() const { return exact_evaluations_; }
 
  private:
   static constexpr double kEpsilon = 0x1p-53;  // half a unit in the last place of 1, as in Shewchuk's paper
+
+  /// Compares value, the square of a product of two vectors, with `square`, at most 1, times these squared
+  /// lengths.
+  ///
+  /// The product has an error below 4.1 eps of the lengths, so its square one of 9.3 eps of their squares'
+  /// product; what it is compared with has ten roundings. We take 24 eps, and nothing overflows or
+  /// underflows.
+  template <typename Exactly>
+  int compare_squares(double value, double u, double v, double square, const Exactly& exactly) {
+    const double lengths = u * v, excess = value - square * lengths;
+    if (lengths >= 0x1p-900 && u >= 0x1p-900 && v >= 0x1p-900 && lengths <= 0x1p900 &&
+        std::fabs(excess) > 24 * kEpsilon * lengths) {
+      return excess > 0 ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exactly();
+  }
 
   int side_of_crossing(const double* a0, const double* a1, const double* b0, const double* b1,
                        const double* p, int axis) {
@@ -117,6 +173,10 @@ class ExactPredicates {
   static int exact_incircle(const double* a, const double* b, const double* c, const double* d);
   static int exact_side_of_crossing(const double* a0, const double* a1, const double* b0, const double* b1,
                                     const double* p, int axis);
+  static int exact_compare_cosine(const double* a, const double* b, const double* c, double square);
+  static int exact_compare_sine(const double* a, const double* b, const double* c, double square);
+  static int exact_compare_area(const double* a, const double* b, const double* c, double area);
+  static int exact_compare_lengths(const double* a, const double* b, const double* c);
 
   std::size_t exact_evaluations_ = 0;
 };

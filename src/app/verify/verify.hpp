@@ -18,6 +18,7 @@ struct VerifyReport {
   std::size_t hull_vertices = 0;      ///< points on the boundary, collinear ones included
   std::size_t cocircular_edges = 0;   ///< interior edges whose two triangles share a circle
   std::size_t constraint_edges = 0;   ///< those that segments are made of, if there are segments
+  std::size_t excused_triangles = 0;  ///< with a smaller angle than asked for, which the input has
   std::size_t exact_evaluations = 0;  ///< predicates that floating point could not decide
 };
 

@@ -65,8 +65,9 @@ QualityBounds quality_bounds(double min_angle) {
 void check_areas(const double* areas, std::size_t count, const char* what) {
   for (std::size_t i = 0; i < count; ++i) {
     if (areas[i] >= 0) continue;
-    throw Error(ErrorKind::usage, fmt::format("{}: largest area {} is {}, but it can be 0, for any, or more",
-                                              what, i, areas[i]));
+    throw Error(ErrorKind::usage,
+                fmt::format("{}{}: the largest area is {}, but it can be 0, for any, or more", what,
+                            count > 1 ? fmt::format(" {}", i) : "", areas[i]));
   }
 }
 

@@ -1,0 +1,117 @@
+// Where constraints meet at less than 60 degrees.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <numeric>
+#include <vector>
+
+#include "app/verify/exact.hpp"
+
+namespace flaunay::verification {
+
+/// Constraint edges that go on straight, but for the rounding of their points, are one chain.
+class Apexes {
+ public:
+  /// edges: 2 points per edge, each edge once.
+  Apexes(const double* coordinates, std::size_t points, const std::vector<std::int32_t>& edges,
+         ExactPredicates& predicates)
+      : coordinates_(coordinates),
+        predicates_(predicates),
+        first_edge_(points + 1, 0),
+        chains_(edges.size() / 2) {
+    for (const std::int32_t v : edges) ++first_edge_[static_cast<std::size_t>(v) + 1];
+    std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
+    edges_at_.resize(edges.size());
+    std::vector<std::size_t> next(first_edge_.begin(), first_edge_.end() - 1);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      edges_at_[next[edges[i]]++] = {static_cast<std::int32_t>(i / 2), edges[i ^ 1]};
+      largest_ = std::max({largest_, std::fabs(point(edges[i])[0]), std::fabs(point(edges[i])[1])});
+    }
+    std::iota(chains_.begin(), chains_.end(), 0);
+    for (std::size_t v = 0; v < points; ++v) join_at(static_cast<std::int32_t>(v));
+    junctions_.resize(chains_.size());
+    for (std::size_t v = 0; v < points; ++v) {
+      const std::vector<std::int32_t> chains = chains_at(static_cast<std::int32_t>(v));
+      if (chains.size() < 2) continue;
+      for (const std::int32_t chain : chains) junctions_[chain].push_back(static_cast<std::int32_t>(v));
+    }
+  }
+
+  /// Whether p and q are equally far from a point where chains that they are on meet at less than 60 degrees.
+  bool are_shells(std::int32_t p, std::int32_t q) {
+    for (const std::int32_t of_p : chains_at(p)) {
+      for (const std::int32_t of_q : chains_at(q)) {
+        if (of_p == of_q) continue;
+        std::vector<std::int32_t> common;
+        std::set_intersection(junctions_[of_p].begin(), junctions_[of_p].end(), junctions_[of_q].begin(),
+                              junctions_[of_q].end(), std::back_inserter(common));
+        for (const std::int32_t apex : common) {
+          if (apex != p && apex != q && is_as_far(apex, p, q) &&
+              predicates_.compare_cosine(point(apex), point(p), point(q), 0.25) > 0) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  struct EdgeAt {
+    std::int32_t edge, other;
+  };
+
+  const double* point(std::int32_t v) const { return coordinates_ + 2 * static_cast<std::size_t>(v); }
+  double distance(std::int32_t a, std::int32_t b) const {
+    return std::hypot(point(b)[0] - point(a)[0], point(b)[1] - point(a)[1]);
+  }
+  /// Points on constraints are rounded, so their distances are a little more apart than the tolerance of
+  /// 1e-3.
+  bool is_as_far(std::int32_t apex, std::int32_t p, std::int32_t q) const {
+    const double of_p = distance(apex, p), of_q = distance(apex, q);
+    return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q);
+  }
+  /// A point is at most two units in the last place of the largest coordinate off its constraint.
+  bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) const {
+    const double ax = point(a)[0] - point(v)[0], ay = point(a)[1] - point(v)[1];
+    const double bx = point(b)[0] - point(v)[0], by = point(b)[1] - point(v)[1];
+    const double off = std::fabs(ax * by - ay * bx) / distance(a, b);
+    return ax * bx + ay * by < 0 && off <= 0x1p-50 * largest_;
+  }
+  void join_at(std::int32_t v) {
+    for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {
+      for (std::size_t k = i + 1; k < first_edge_[v + 1]; ++k) {
+        if (is_straight(edges_at_[i].other, v, edges_at_[k].other)) {
+          chains_[chain_of(edges_at_[i].edge)] = chain_of(edges_at_[k].edge);
+        }
+      }
+    }
+  }
+  std::int32_t chain_of(std::int32_t edge) {
+    while (chains_[edge] != edge) edge = chains_[edge] = chains_[chains_[edge]];
+    return edge;
+  }
+  std::vector<std::int32_t> chains_at(std::int32_t v) {
+    std::vector<std::int32_t> chains;
+    for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {
+      chains.push_back(chain_of(edges_at_[i].edge));
+    }
+    std::sort(chains.begin(), chains.end());
+    chains.erase(std::unique(chains.begin(), chains.end()), chains.end());
+    return chains;
+  }
+
+  const double* coordinates_;
+  ExactPredicates& predicates_;
+  double largest_ = 0;
+  std::vector<std::size_t> first_edge_;  // by point
+  std::vector<EdgeAt> edges_at_;
+  std::vector<std::int32_t> chains_;                  // by edge: union and find
+  std::vector<std::vector<std::int32_t>> junctions_;  // by chain: points that are on others, too; ascending
+};
+
+}  // namespace flaunay::verification
