@@ -469,6 +469,11 @@ TEST_F(CommandVerifyTest, RefinedMeshes) {
     EXPECT_NE(bad.err.find("has the area 2, which is above 1.5"), std::string::npos) << bad.err;
   }
   EXPECT_EQ(run({"verify", points, triangles, "--min-angle", "30"}, kNoPlatform).exit_code, kFailure);
+  const std::string half =
+      write("half.npy", npy("<i4", "False", "(1, 3)", bytes_of<std::int32_t>({0, 1, 2})));
+  EXPECT_EQ(run({"verify", points, half, "--max-area", "2"}, kNoPlatform).exit_code, kFailure);
+  const std::string hull = write("hull.xy", "0 0\n4 0\n4 1\n");
+  run_well({"verify", hull, half, "--max-area", "2"}, kNoPlatform);
   for (const char* angle : {"-1", "35", "nan"}) {
     expect_error(kUsage, {"smallest angle"}, {"verify", points, triangles, "--min-angle", angle});
   }

@@ -332,6 +332,21 @@ TEST(SmallVerifyRefined, EncroachedEdges) {
   }
 }
 
+TEST(SmallVerifyRefined, SliversAtTheHull) {
+  for (const double off : {0x1p-53, 1e-9}) {
+    Case mesh({0, 0, 1, 0, 1, 1, 0, 1, 1 - off, 0.5}, {0, 1, 1, 4, 4, 2, 2, 3, 3, 0});
+    mesh.max_area = 1;
+    mesh.keep_if([](const Ids& row) {
+      return std::find(row.begin(), row.end(), 0) != row.end() ||
+             std::find(row.begin(), row.end(), 3) != row.end();
+    });
+    EXPECT_EQ(mesh.triangles.size(), 9u);
+    EXPECT_EQ(mesh.problem().empty(), off < 1e-9);
+    mesh.max_area = 0;
+    EXPECT_NE(mesh.problem(), "");
+  }
+}
+
 // Two segments meet at 22.6 degrees, and are split where they are equally far from there.
 TEST(SmallVerifyRefined, Apexes) {
   const auto problem = [](double factor, double bend) {

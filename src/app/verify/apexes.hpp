@@ -13,6 +13,10 @@
 
 namespace flaunay::verification {
 
+/// How far refined points may be off the straight line through others that are on one edge with them, in
+/// terms of the largest coordinate: each is two units in the last place of that off at most.
+constexpr double kRoundedOff = 0x1p-50;
+
 /// Constraint edges that go on straight, but for the rounding of their points, are one chain.
 class Apexes {
  public:
@@ -75,12 +79,11 @@ class Apexes {
     const double of_p = distance(apex, p), of_q = distance(apex, q);
     return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q);
   }
-  /// A point is at most two units in the last place of the largest coordinate off its constraint.
   bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) const {
     const double ax = point(a)[0] - point(v)[0], ay = point(a)[1] - point(v)[1];
     const double bx = point(b)[0] - point(v)[0], by = point(b)[1] - point(v)[1];
     const double off = std::fabs(ax * by - ay * bx) / distance(a, b);
-    return ax * bx + ay * by < 0 && off <= 0x1p-50 * largest_;
+    return ax * bx + ay * by < 0 && off <= kRoundedOff * largest_;
   }
   void join_at(std::int32_t v) {
     for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {

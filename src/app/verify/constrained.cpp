@@ -281,8 +281,39 @@ class ConstrainedChecker : public Checker {
         if (depths_[f] == 0 || (drops_holes && depths_[f] % 2 == 0)) covered_[f] = 0;
       }
     }
+    if (is_refined() && constraints_.outside == Outside::keep) drop_slivers();
     drop_seeded();
   }
+
+  /// Points that refinement puts on the hull are rounded, so that there may be slivers between them and it.
+  void drop_slivers() {
+    std::vector<std::int32_t> hull_piece(covered_.size(), kNoPiece);
+    double largest = 0;
+    for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
+      const Piece& piece = sweep_.pieces()[i];
+      if (is_constraint(piece)) continue;
+      hull_piece[std::max(piece.below, piece.above)] = static_cast<std::int32_t>(i);
+      for (const double x : places_[piece.from].at) largest = std::max(largest, std::fabs(x));
+    }
+    std::vector<double> widths(covered_.size(), 0);
+    for (const Piece& piece : sweep_.pieces()) {
+      for (const std::int32_t face : {piece.below, piece.above}) {
+        if (hull_piece[face] == kNoPiece) continue;
+        const double* from = places_[sweep_.pieces()[hull_piece[face]].from].at;
+        const double* to = places_[sweep_.pieces()[hull_piece[face]].to].at;
+        const double x = to[0] - from[0], y = to[1] - from[1], length = std::hypot(x, y);
+        for (const std::int32_t place : {piece.from, piece.to}) {
+          const double* at = places_[place].at;
+          widths[face] =
+              std::max(widths[face], std::fabs(x * (at[1] - from[1]) - y * (at[0] - from[0])) / length);
+        }
+      }
+    }
+    for (std::size_t f = 1; f < covered_.size(); ++f) {
+      if (hull_piece[f] != kNoPiece && widths[f] <= verification::kRoundedOff * largest) covered_[f] = 0;
+    }
+  }
+  bool is_refined() const { return constraints_.min_angle > 0 || constraints_.max_area > 0; }
 
   /// Rules other than nesting need closed curves.
   void check_closed() {
@@ -693,9 +724,9 @@ class ConstrainedChecker : public Checker {
   }
 
   void check_quality() {
-    const double angle = constraints_.min_angle, area = constraints_.max_area;
-    if (angle == 0 && area == 0) return;
-    const constrained::QualityBounds bounds = constrained::quality_bounds(angle);
+    if (!is_refined()) return;
+    const double area = constraints_.max_area;
+    const constrained::QualityBounds bounds = constrained::quality_bounds(constraints_.min_angle);
     for (std::size_t t = 0; t < report_.triangles; ++t) {
       const double *a = point(corners_[3 * t]), *b = point(corners_[3 * t + 1]),
                    *c = point(corners_[3 * t + 2]);

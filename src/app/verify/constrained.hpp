@@ -43,7 +43,8 @@ struct VerifyConstraints {
 /// largest area, no triangle may be worse than that, but those whose angle the input makes unavoidable: their
 /// smallest angle lies between two constraints, or their shortest edge joins points on two, equally far from
 /// where these meet at less than 60 degrees; and no corner may see an edge of its triangle that is a
-/// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more. O((n + s)
+/// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more. Slivers
+/// between such edges and the hull need no triangle, because points on edges are rounded. O((n + s)
 /// log (n + s)) for n points and s segments, whatever overlaps and whatever meets at a point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,
