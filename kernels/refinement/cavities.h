@@ -1,0 +1,184 @@
+// Cavities: the triangles whose circumcircles contain a point that is to be inserted, as far as constraints let it see
+// them. Around a point that splits a constraint, those on both of its sides.
+//
+// A cavity has no vertex inside, so its triangles are a tree. A tour around the tree meets the sides of the cavity
+// counter-clockwise and takes no memory but the way back, of which it keeps a few steps: beyond them it tests again.
+#ifndef FLAUNAY_CAVITIES_OF_POINTS_H
+#define FLAUNAY_CAVITIES_OF_POINTS_H
+
+#include "arithmetic/language.h"
+#include "mesh/halfedges.h"
+#include "predicates/planar.h"
+#include "refinement/codes.h"
+#include "refinement/records.h"
+
+#ifndef FIXED_POINT
+
+BEGIN_SHARED
+
+// The mesh, as kernels that only read it have it.
+typedef struct {
+  GLOBAL const mesh_row* rows;
+  GLOBAL const double2* points;
+} seen_mesh;
+
+static inline int row_of(int corner) { return corner / 3; }
+static inline int vertex_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].corner[corner % 3]; }
+static inline double2 point_at(const seen_mesh* mesh, int corner) { return mesh->points[vertex_at(mesh, corner)]; }
+static inline int neighbor_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].neighbor[corner % 3]; }
+static inline int edge_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].edge[corner % 3]; }
+
+// The corner of a row that is opposite to its neighbour.
+static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
+  GLOBAL const int* const neighbors = mesh->rows[row].neighbor;
+  return 3 * row + (neighbors[0] == neighbor ? 0 : neighbors[1] == neighbor ? 1 : 2);
+}
+
+// Never on the circle: see planar.h.
+static inline int is_in_circle(const seen_mesh* mesh, int row, double2 p) {
+  GLOBAL const int* const corners = mesh->rows[row].corner;
+  return circle_canonical(mesh->points[corners[0]], mesh->points[corners[1]], mesh->points[corners[2]], p,
+                          CIRCLE_BOUND) > 0;
+}
+
+// Whether p is in the place of a row's corner.
+static inline int is_vertex(const seen_mesh* mesh, int row, double2 p) {
+  for (int k = 0; k < 3; ++k) {
+    const double2 q = point_at(mesh, 3 * row + k);
+    if (q.x == p.x && q.y == p.y) return 1;
+  }
+  return 0;
+}
+
+#define TOUR_MEMORY 16
+
+// corner: the side that comes next is opposite to it. end: the tour is over there.
+typedef struct {
+  int corner, end, begins, depth;
+  int back[TOUR_MEMORY];
+} cavity_tour;
+
+// A tour from this corner's row on, up to another corner, which may be the same.
+static inline void start_tour(cavity_tour* tour, int corner, int end) {
+  tour->corner = corner;
+  tour->end = end;
+  tour->begins = 1;
+  tour->depth = 0;
+}
+
+// Goes on to the next side of the cavity of p and returns the corner of the row inside opposite to it; or to a row that
+// the tour has not met yet, or not known for long, and returns it complemented. At the end returns NO_MORE.
+#define NO_MORE INT_MIN
+static inline int next_in_tour(cavity_tour* tour, const seen_mesh* mesh, double2 p) {
+  while (tour->begins || tour->corner != tour->end) {
+    const int corner = tour->corner, row = row_of(corner), beyond = neighbor_at(mesh, corner);
+    tour->begins = 0;
+    const int knows = tour->depth > 0 && tour->depth <= TOUR_MEMORY;
+    if (knows && beyond == tour->back[tour->depth - 1]) {
+      --tour->depth;
+      tour->corner = next_halfedge(corner_facing(mesh, beyond, row));
+      continue;
+    }
+    if (beyond < 0 || edge_at(mesh, corner) >= 0 || !is_in_circle(mesh, beyond, p)) {
+      tour->corner = next_halfedge(corner);
+      return corner;
+    }
+    // Where it has forgotten the way back, it never knows again whether it goes back.
+    if (tour->depth < TOUR_MEMORY) tour->back[tour->depth] = row;
+    if (tour->depth <= TOUR_MEMORY) ++tour->depth;
+    tour->corner = next_halfedge(corner_facing(mesh, beyond, row));
+    return ~beyond;
+  }
+  return NO_MORE;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Points that split constraints
+
+static inline double squared_distance(double2 a, double2 b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  return x * x + y * y;
+}
+
+// New coordinates near 0 are rounded so that predicates are exact. coarse: see refinement_rules.
+static inline double rounded_to(double x, double coarse) {
+  return fabs(x) < coarse ? (x + 3.0 * coarse) - 3.0 * coarse : x;
+}
+
+// The largest power of two that is not above x.
+static inline double power_below(double x) { return as_double(as_ulong(x) & 0x7ff0000000000000UL); }
+
+typedef struct {
+  double2 point;
+  edge_place at;
+} split_place;
+
+// Where the part of an edge between vertices a and b is split: in the middle; or if one of them is an apex, at a power
+// of two from it, so that parts of all edges there have the same lengths (Ruppert's concentric shells). New vertices
+// are computed from the ends of the whole edge, never from other rounded vertices.
+static inline split_place place_of_split(int a, int b, int edge, GLOBAL const double2* points,
+                                         GLOBAL const edge_place* places, GLOBAL const int* ends, int vertices,
+                                         double coarse) {
+  const int first = ends[2 * edge], last = ends[2 * edge + 1];
+  const double length = sqrt(squared_distance(points[first], points[last]));
+  const edge_place of_a = places[a], of_b = places[b];
+  const double part_a = a == first ? 0.0 : a == last ? 1.0 : of_a.part;
+  const double part_b = b == first ? 0.0 : b == last ? 1.0 : of_b.part;
+  const int is_apex_a = a < vertices && of_a.apex == a, is_apex_b = b < vertices && of_b.apex == b;
+  split_place split;
+  split.at.edge = edge;
+  split.at.apex = -1;
+  split.at.distance = 0.0;
+  if (is_apex_a != is_apex_b) {
+    const int apex = is_apex_a ? a : b;
+    const edge_place other = is_apex_a ? of_b : of_a;
+    split.at.apex = apex;
+    split.at.distance = other.apex == apex ? other.distance / 2.0
+                                           : power_below(sqrt(squared_distance(points[a], points[b])) * (2.0 / 3.0));
+    const double part = split.at.distance / length;
+    split.at.part = apex == first ? part : 1.0 - part;
+  } else {
+    split.at.part = (part_a + part_b) / 2.0;
+    // The far end of an edge with an apex counts as being at the edge's length.
+    int apex_a = of_a.apex, apex_b = of_b.apex;
+    double distance_a = of_a.distance, distance_b = of_b.distance;
+    if (apex_a < 0 && apex_b >= 0 && apex_b != a && (a == first || a == last)) {
+      apex_a = apex_b;
+      distance_a = length;
+    }
+    if (apex_b < 0 && apex_a >= 0 && apex_a != b && (b == first || b == last)) {
+      apex_b = apex_a;
+      distance_b = length;
+    }
+    if (apex_a >= 0 && apex_a == apex_b) {
+      split.at.apex = apex_a;
+      split.at.distance = (distance_a + distance_b) / 2.0;
+    }
+  }
+  const int from_last = split.at.apex >= 0 && split.at.apex == last;
+  const double2 origin = points[from_last ? last : first], goal = points[from_last ? first : last];
+  const double part = split.at.apex >= 0 ? split.at.distance / length : split.at.part;
+  split.point = VECTOR(double2, rounded_to(origin.x + part * (goal.x - origin.x), coarse),
+                       rounded_to(origin.y + part * (goal.y - origin.y), coarse));
+  return split;
+}
+
+// Whether a point is strictly left of the two sides of a row that are not opposite to the corner.
+static inline int is_before_sides(const seen_mesh* mesh, int corner, double2 p) {
+  const double2 apex = point_at(mesh, corner), from = point_at(mesh, next_halfedge(corner)),
+                to = point_at(mesh, previous_halfedge(corner));
+  return orient_sign(to, apex, p, ORIENT_BOUND) > 0 && orient_sign(apex, from, p, ORIENT_BOUND) > 0;
+}
+
+// Whether the constraint opposite to a corner may be split at p: then no triangle turns over.
+static inline int can_split_at(const seen_mesh* mesh, int corner, double2 p) {
+  const int beyond = neighbor_at(mesh, corner);
+  return is_before_sides(mesh, corner, p) &&
+         (beyond < 0 || is_before_sides(mesh, corner_facing(mesh, beyond, row_of(corner)), p));
+}
+
+END_SHARED
+
+#endif
+
+#endif

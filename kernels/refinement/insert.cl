@@ -1,0 +1,375 @@
+// Points are put into the mesh, those whose cavities are apart at once. Segments: the cavities. One work-item per
+// point; steps of three passes each, until no point waits.
+//
+// start_splits and start_points: what is to be inserted, in the order of ranks. claim_points finds the cavities in the
+// mesh as it is now and claims their rows by atomic minima; gather_stars, after a scan of the numbers of sides, lists
+// the sides of cavities that have no row, and no row beside them, of a point with a smaller rank; insert_stars writes a
+// triangle for each side. The rows of a cavity are used again, and so are two rows that were set aside.
+// freeze_constraints: those that could not be split. sort keys of constraints: constraint_keys; find_new: each
+// constraint once.
+
+#include "operations/prefetch.h"
+#include "refinement/arguments.h"
+#include "refinement/limits.h"
+#include "refinement/quality_of_rows.h"
+#include "refinement/records.h"
+
+#ifndef FIXED_POINT
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Constraints that are split
+
+// n elements of made, at these positions, whose constraints are to be split as the bits say: the corners opposite,
+// three elements each, those that are none less than 0.
+kernel void list_encroached(int n, global const int* restrict positions, global const int2* restrict made,
+                            global const uchar* restrict split_bits, global int* restrict corners) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    for (int k = 0; k < SLOTS_PER_ROW; ++k) {
+      corners[SLOTS_PER_ROW * i + k] = split_bits[positions[i]] >> k & 1 ? 3 * made[positions[i]].x + k : -1;
+    }
+  }
+}
+
+// Their keys: hashes of their ends, whichever side they are seen from.
+kernel void constraint_keys(int n, global const int* restrict corners, REFINED_MESH(), global ulong* restrict keys) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    ulong key = NO_KEY;
+    if (corners[i] >= 0) {
+      const double2 a = point_at(&mesh, next_halfedge(corners[i])), b = point_at(&mesh, previous_halfedge(corners[i]));
+      key = comes_before(a, b) ? hash_with(hash_with(0, a), b) : hash_with(hash_with(0, b), a);
+      key = min(key, NO_KEY - 1);
+    }
+    keys[i] = key;
+  }
+}
+
+// corners: sorted by their keys. is_new: whether no corner before is opposite to the same constraint.
+kernel void find_new(int n, global const ulong* restrict keys, global const int* restrict corners,
+                     global const mesh_row* restrict rows, global uchar* restrict is_new) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    int found = keys[i] != NO_KEY;
+    for (int j = i - 1; found && j >= 0 && keys[j] == keys[i]; --j) {
+      const int row = row_of(corners[i]);
+      found = corners[j] != corners[i] && !(rows[row].neighbor[corners[i] % 3] == row_of(corners[j]) &&
+                                            rows[row_of(corners[j])].neighbor[corners[j] % 3] == row);
+    }
+    is_new[i] = (uchar)found;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What is inserted
+
+// Rows that are set aside for a point have no triangle as long as it is not inserted.
+static inline void clear_row(int row, global mesh_row* rows, global ulong* row_keys) {
+  rows[row].corner[0] = NO_TRIANGLE;
+  row_keys[row] = NO_KEY;
+}
+
+// n constraints, in the order of their ranks, at these positions of corners.
+kernel void start_splits(int n, refinement_rules rules, int first_vertex, int first_row,
+                         global const int* restrict positions, global const int* restrict corners,
+                         global const int* restrict ends, global mesh_row* restrict rows,
+                         global double2* restrict points, global edge_place* restrict places,
+                         global ulong* restrict row_keys, global insertion* restrict insertions,
+                         global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    const int corner = corners[positions[i]], v = first_vertex + i;
+    insertion made;
+    made.vertex = v;
+    made.corner = corner;
+    made.known = -1;
+    made.rank = (uint)i;
+    made.from = vertex_at(&mesh, next_halfedge(corner));
+    made.to = vertex_at(&mesh, previous_halfedge(corner));
+    made.count = 0;
+    made.first_row = first_row + 2 * i;
+    const split_place split = place_of_split(made.from, made.to, edge_at(&mesh, corner) & EDGE_NUMBER, points, places,
+                                             ends, rules.vertices, rules.coarse);
+    points[v] = split.point;
+    places[v] = split.at;
+    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys);
+    insertions[i] = made;
+    states[i] = POINT_WAITS;
+  }
+}
+
+kernel void list_places(int n, global const int* restrict positions, global const int* restrict order,
+                        global int* restrict places_of) {
+  const int i = get_global_id(0);
+  if (i < n) places_of[order[positions[i]]] = i;
+}
+
+// n proposals, of which the points are inserted; places_of: their places in the order of ranks, behind those of `first`
+// constraints. Of these at most `most` are inserted. Vertices and rows are numbered in the order of the list, which is
+// that of places in the plane, more or less.
+kernel void start_points(int n, int first, int most, int first_vertex, int first_row, global const int* restrict list,
+                         global const int* restrict places_of, global const proposal* restrict proposals,
+                         global mesh_row* restrict rows, global double2* restrict points,
+                         global edge_place* restrict places, global ulong* restrict row_keys,
+                         global insertion* restrict insertions, global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int at = places_of[list[i]];
+    const proposal of = proposals[list[i]];
+    insertion made;
+    made.vertex = first_vertex + i;
+    made.corner = of.start;
+    made.known = list[i];
+    made.rank = (uint)(first + at);
+    made.from = made.to = -1;
+    made.count = of.count;
+    made.first_row = first_row + 2 * i;
+    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys);
+    const edge_place nowhere = {0.0, 0.0, -1, -1};
+    points[made.vertex] = of.place;
+    places[made.vertex] = nowhere;
+    insertions[first + i] = made;
+    states[first + i] = (uchar)(at < most ? POINT_WAITS : POINT_DROPPED);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Steps
+
+// All triangles around the vertex that was inserted last, if a step has changed a row, have it for their first corner.
+// The one of them that has p in it.
+static inline int find_in_star(const seen_mesh* mesh, int row, double2 p) {
+  for (;;) {
+    const double2 centre = point_at(mesh, 3 * row);
+    const int first = orient_sign(centre, point_at(mesh, 3 * row + 1), p, ORIENT_BOUND);
+    const int last = orient_sign(centre, point_at(mesh, 3 * row + 2), p, ORIENT_BOUND);
+    const int turn = first < 0 ? 2 : last > 0 ? 1 : 0;
+    if (turn == 0 || mesh->rows[row].neighbor[turn] < 0) return row;
+    row = mesh->rows[row].neighbor[turn];
+  }
+}
+
+// The corner opposite to the constraint that runs between these vertices, near a corner that was it before a step; or
+// -1.
+static inline int find_constraint(const seen_mesh* mesh, int corner, int from, int to) {
+  if (vertex_at(mesh, next_halfedge(corner)) == from && vertex_at(mesh, previous_halfedge(corner)) == to) return corner;
+  const int start = row_of(corner);
+  for (int turn = 1; turn <= 2; ++turn) {
+    int row = start;
+    do {
+      if (mesh->rows[row].corner[1] == from && mesh->rows[row].corner[2] == to) return 3 * row;
+      row = mesh->rows[row].neighbor[turn];
+    } while (row >= 0 && row != start);
+  }
+  return -1;
+}
+
+// Whether all sides of a triangle have p on their left or on them.
+static inline int is_in_row(const seen_mesh* mesh, int row, double2 p) {
+  for (int k = 0; k < 3; ++k) {
+    if (orient_sign(point_at(mesh, 3 * row + k), point_at(mesh, 3 * row + next_corner(k)), p, ORIENT_BOUND) < 0)
+      return 0;
+  }
+  return 1;
+}
+
+// Tours a cavity, or one side of it, and claims its rows. Returns the number of its sides.
+static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, uint claim,
+                             global volatile uint* claims) {
+  atomic_min(&claims[row_of(end)], claim);
+  cavity_tour tour;
+  start_tour(&tour, start, end);
+  int sides = 0;
+  for (int next = next_in_tour(&tour, mesh, p); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
+    if (next < 0) {
+      atomic_min(&claims[~next], claim);
+    } else {
+      ++sides;
+    }
+  }
+  return sides;
+}
+
+// n elements of the list. first: the claim of rank 0. sizes: of each point the number of triangles around it.
+kernel void claim_points(int n, int is_first, uint first, global const int* restrict list,
+                         global const int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
+                         global insertion* restrict insertions, global uint* restrict sizes,
+                         global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    insertion of = insertions[list[i]];
+    const uint claim = first + of.rank;
+    uint size = 0;
+    if (states[list[i]] != POINT_WAITS) {
+      // It was left out from the beginning.
+    } else if (is_first && of.known >= 0 && of.count <= LISTED_ROWS) {
+      for (int k = 0; k < of.count; ++k) atomic_min(&claims[cavities[LISTED_ROWS * of.known + k]], claim);
+      size = (uint)of.count + 2u;
+    } else {
+      const double2 p = points[of.vertex];
+      if (of.from >= 0) {
+        of.corner = find_constraint(&mesh, of.corner, of.from, of.to);
+        if (of.corner >= 0 && can_split_at(&mesh, of.corner, p)) {
+          const int beyond = neighbor_at(&mesh, of.corner);
+          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims);
+          of.count = (int)size - 1;
+          if (beyond >= 0) {
+            const int other = corner_facing(&mesh, beyond, row_of(of.corner));
+            size += (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims);
+            of.count = (int)size - 2;
+          }
+        }
+      } else {
+        int row = row_of(of.corner);
+        if (!is_in_row(&mesh, row, p)) row = find_in_star(&mesh, row, p);
+        of.corner = 3 * row;
+        if (!is_vertex(&mesh, row, p)) size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims);
+        of.count = (int)size - 2;
+      }
+      if (size == 0) states[list[i]] = POINT_DROPPED;
+      insertions[list[i]] = of;
+    }
+    sizes[i] = size;
+  }
+}
+
+// What gather_stars has found of a cavity so far.
+typedef struct {
+  int rows, sides, holds;
+} gathered;
+
+// Tours the rows that a point holds, and lists them and the sides.
+static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, uint claim, global const uint* claims,
+                                   global uint* visits, global star_side* sides, gathered found) {
+  int corner = start, row = row_of(end);
+  found.holds = claims[row] == claim;
+  if (!found.holds) return found;
+  visits[row] = claim;
+  sides[found.rows++].row = row;
+  do {
+    row = row_of(corner);
+    const int beyond = neighbor_at(mesh, corner), edge = edge_at(mesh, corner);
+    const uint other = beyond < 0 ? UNCLAIMED_ROW : claims[beyond];
+    if (other < claim) {
+      found.holds = 0;
+      return found;
+    }
+    if (other == claim && edge < 0) {
+      if (visits[beyond] != claim) {
+        visits[beyond] = claim;
+        sides[found.rows++].row = beyond;
+      }
+      corner = next_halfedge(corner_facing(mesh, beyond, row));
+    } else {
+      global star_side* const side = &sides[found.sides++];
+      side->from = vertex_at(mesh, next_halfedge(corner));
+      side->outside = beyond;
+      side->facing = beyond < 0 ? 0 : corner_facing(mesh, beyond, row) % 3;
+      side->edge = edge;
+      side->parent = mesh->rows[row].parent;
+      corner = next_halfedge(corner);
+    }
+  } while (corner != end);
+  return found;
+}
+
+// offsets: the scanned sizes. visits: per row the last claim by which gather_stars met it.
+kernel void gather_stars(int n, uint first, global const int* restrict list, global const uint* restrict offsets,
+                         global const insertion* restrict insertions, REFINED_MESH(),
+                         global const uint* restrict claims, global uint* restrict visits,
+                         global star_side* restrict sides, global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n && states[list[i]] == POINT_WAITS) {
+    const seen_mesh mesh = {rows, points};
+    const insertion of = insertions[list[i]];
+    const uint claim = first + of.rank;
+    gathered found = {0, 0, 1};
+    global star_side* const star = sides + offsets[i];
+    if (of.from < 0) {
+      found = gather_tour(&mesh, of.corner, of.corner, claim, claims, visits, star, found);
+    } else {
+      const int beyond = neighbor_at(&mesh, of.corner);
+      found = gather_tour(&mesh, next_halfedge(of.corner), of.corner, claim, claims, visits, star, found);
+      if (found.holds && beyond >= 0) {
+        const int other = corner_facing(&mesh, beyond, row_of(of.corner));
+        found = gather_tour(&mesh, next_halfedge(other), other, claim, claims, visits, star, found);
+      }
+    }
+    if (found.holds) states[list[i]] = POINT_INSERTED;
+  }
+}
+
+// made: from element first_made on, per side the row of the triangle that was made of it, and its first vertex, or -1.
+// waits: 1 for points that wait for the next step.
+kernel void insert_stars(int n, int first_made, global const int* restrict list, global const uint* restrict offsets,
+                         global const insertion* restrict insertions, global const uchar* restrict states,
+                         global const star_side* restrict sides, global const edge_place* restrict places,
+                         global mesh_row* restrict rows, global ulong* restrict row_keys,
+                         global uchar* restrict refused, global int2* restrict made, global uchar* restrict waits) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const uint first = offsets[i];
+    const int count = (int)(offsets[i + 1] - first), state = states[list[i]];
+    waits[i] = state == POINT_WAITS;
+    if (state != POINT_INSERTED) {
+      for (int k = 0; k < count; ++k) made[first_made + (int)first + k] = VECTOR(int2, -1, -1);
+    } else {
+      const insertion of = insertions[list[i]];
+      global const star_side* const star = sides + first;
+      // Where a constraint on the border is split, the triangles do not go all the way round.
+      const int is_open = count == of.count + 1, edge = of.from < 0 ? NO_EDGE_THERE : places[of.vertex].edge;
+      int row = star[0].row, before = -1;
+      if (!is_open) before = of.count < count - 1 ? of.first_row + count - 1 - of.count : star[count - 1].row;
+      const int row_of_first = row;
+      for (int k = 0; k < count; ++k) {
+        const star_side side = star[k];
+        const int is_last = k + 1 == count;
+        const int to = is_last ? (is_open ? of.from : star[0].from) : star[k + 1].from;
+        const int after = is_last            ? (is_open ? -1 : row_of_first)
+                          : k + 1 < of.count ? star[k + 1].row
+                                             : of.first_row + k + 1 - of.count;
+        global mesh_row* const written = &rows[row];
+        written->corner[0] = of.vertex;
+        written->corner[1] = side.from;
+        written->corner[2] = to;
+        written->neighbor[0] = side.outside;
+        written->neighbor[1] = after;
+        written->neighbor[2] = before;
+        written->edge[0] = side.edge;
+        written->edge[1] = to == of.from || to == of.to ? edge : NO_EDGE_THERE;
+        written->edge[2] = side.from == of.from || side.from == of.to ? edge : NO_EDGE_THERE;
+        written->parent = side.parent;
+        if (side.outside >= 0) rows[side.outside].neighbor[side.facing] = row;
+        row_keys[row] = NO_KEY;
+        refused[row] = EXCUSED_NOT;
+        made[first_made + (int)first + k] = VECTOR(int2, row, of.vertex);
+        before = row;
+        row = after;
+      }
+    }
+  }
+}
+
+// Those of n insertions of the list that were dropped and are constraints cannot be split there, and are not tried
+// again.
+kernel void freeze_constraints(int n, global const int* restrict list, global const insertion* restrict insertions,
+                               global const uchar* restrict states, global const double2* restrict points,
+                               global mesh_row* restrict rows) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const insertion of = insertions[list[i]];
+    const seen_mesh mesh = {rows, points};
+    const int is_frozen = states[list[i]] == POINT_DROPPED && of.from >= 0 && of.corner >= 0;
+    const int corner = is_frozen ? find_constraint(&mesh, of.corner, of.from, of.to) : -1;
+    if (corner >= 0) {
+      const int beyond = neighbor_at(&mesh, corner);
+      rows[row_of(corner)].edge[corner % 3] |= EDGE_FROZEN;
+      if (beyond >= 0) rows[beyond].edge[corner_facing(&mesh, beyond, row_of(corner)) % 3] |= EDGE_FROZEN;
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,16 @@
+// Sizes on which kernels of refinement and the host agree.
+#ifndef FLAUNAY_REFINEMENT_LIMITS_H
+#define FLAUNAY_REFINEMENT_LIMITS_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// The rows of cavities with at most so many are kept in a list: on average there are four.
+INTEGER_CONSTANT(LISTED_ROWS, 12);
+// A row may have so many constraints.
+INTEGER_CONSTANT(SLOTS_PER_ROW, 3);
+
+END_SHARED
+
+#endif

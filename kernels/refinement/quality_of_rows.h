@@ -1,0 +1,120 @@
+// What is wrong with single triangles, and in what order bad ones are mended.
+#ifndef FLAUNAY_QUALITY_OF_ROWS_H
+#define FLAUNAY_QUALITY_OF_ROWS_H
+
+#include "arithmetic/language.h"
+#include "predicates/quality.h"
+#include "refinement/cavities.h"
+
+#ifndef FIXED_POINT
+
+BEGIN_SHARED
+
+// Nominal distances from an apex that differ by no more than this part of themselves count as equal.
+#define EQUAL_DISTANCES 0.001
+
+// A triangle's corners from the lexicographically smallest one on, so that what is computed from them does not depend
+// on the order in which they are stored.
+typedef struct {
+  int corner[3];  // of the mesh
+  double2 point[3];
+} ordered_triangle;
+
+static inline ordered_triangle ordered(const seen_mesh* mesh, int row) {
+  int first = 3 * row;
+  for (int k = 1; k < 3; ++k) {
+    if (comes_before(point_at(mesh, 3 * row + k), point_at(mesh, first))) first = 3 * row + k;
+  }
+  ordered_triangle triangle;
+  for (int k = 0; k < 3; ++k) {
+    triangle.corner[k] = first;
+    triangle.point[k] = point_at(mesh, first);
+    first = next_halfedge(first);
+  }
+  return triangle;
+}
+
+// The corner, by its place among the three, that is opposite to the shortest side.
+static inline int opposite_to_shortest(const double2* p) {
+  const double a = squared_distance(p[1], p[2]), b = squared_distance(p[2], p[0]), c = squared_distance(p[0], p[1]);
+  return a <= b && a <= c ? 0 : b <= c ? 1 : 2;
+}
+
+static inline double area_wanted(const seen_mesh* mesh, int row, refinement_rules rules, GLOBAL const double* areas) {
+  const double area = rules.area_kind == AREAS_NONE        ? 0.0
+                      : rules.area_kind == AREAS_BY_PARENT ? areas[mesh->rows[row].parent]
+                                                           : areas[row];
+  return rules.area > 0.0 && !(area > 0.0 && area < rules.area) ? rules.area : area;
+}
+
+static inline int is_too_large(const seen_mesh* mesh, int row, const double2* p, refinement_rules rules,
+                               GLOBAL const double* areas) {
+  const double area = area_wanted(mesh, row, rules, areas);
+  return area > 0.0 && area < INFINITY && is_area_above(p[0], p[1], p[2], area);
+}
+
+// Whether the smallest angle of a triangle cannot be helped: it is one between two constraints that meet at a vertex of
+// the input, or is across from one (Miller, Pav and Walkington, 2003): the shortest side joins two constraints, equally
+// far from where they meet.
+static inline int excuse_of(const seen_mesh* mesh, const ordered_triangle* triangle, GLOBAL const edge_place* places,
+                            int vertices) {
+  const int k = opposite_to_shortest(triangle->point), corner = triangle->corner[k], next = next_halfedge(corner),
+            previous = previous_halfedge(corner);
+  if (vertex_at(mesh, corner) < vertices && edge_at(mesh, next) >= 0 && edge_at(mesh, previous) >= 0)
+    return EXCUSED_INPUT_ANGLE;
+  const edge_place a = places[vertex_at(mesh, next)], b = places[vertex_at(mesh, previous)];
+  return a.apex >= 0 && a.apex == b.apex && a.edge != b.edge &&
+                 fabs(a.distance - b.distance) <= EQUAL_DISTANCES * a.distance
+             ? EXCUSED_NEAR_APEX
+             : EXCUSED_NOT;
+}
+
+// Spreads the bits of a hash, by the constants of SplitMix64 (Steele, Lea and Flood, 2014).
+static inline ulong mixed(ulong hash) {
+  hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9UL;
+  hash = (hash ^ hash >> 27) * 0x94d049bb133111ebUL;
+  return hash ^ hash >> 31;
+}
+static inline ulong hash_with(ulong hash, double2 p) {
+  hash = mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.x));
+  return mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.y));
+}
+
+// Triangles that are too large come first, the largest one first; then those with the shortest sides. Equal ones are
+// ordered by hashes: in the order of coordinates, long chains of them would wait for each other.
+static inline ulong key_of(const ordered_triangle* triangle, int is_large) {
+  const double2* const p = triangle->point;
+  uint first;
+  if (is_large) {
+    const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
+    first = 0x7fffffffu - (uint)(as_ulong(fabs(area)) >> 33);
+  } else {
+    const int k = opposite_to_shortest(p);
+    first = 0x80000000u | (uint)(as_ulong(squared_distance(p[(k + 1) % 3], p[(k + 2) % 3])) >> 33);
+  }
+  ulong hash = 0;
+  for (int k = 0; k < 3; ++k) hash = hash_with(hash, p[k]);
+  return (ulong)first << 32 | hash >> 32;
+}
+static inline int is_key_of_large(ulong key) { return (int)(key >> 63 == 0); }
+
+// Of a constraint or a part of one, opposite to a corner: whether it may be split, EXCUSED_NOT, or why not.
+static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_rules rules) {
+  const int edge = edge_at(mesh, corner);
+  if (edge & EDGE_KEPT) return EXCUSED_KEPT;
+  if (edge & EDGE_FROZEN) return EXCUSED_FROZEN;
+  const double length =
+      squared_distance(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)));
+  return length < 4.0 * rules.min_edge ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
+}
+
+static inline int encroaches(const seen_mesh* mesh, int corner, double2 p, refinement_rules rules) {
+  return is_encroached(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)), p,
+                       rules.squared_cosine);
+}
+
+END_SHARED
+
+#endif
+
+#endif

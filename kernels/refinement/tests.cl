@@ -1,0 +1,126 @@
+// What is bad, of one triangle each. Segments: none; one pass each.
+//
+// load_rows: the rows of the mesh, from the arrays of the host. test_rows, over those that the last round has made:
+// whether triangles are bad, with their keys, and which of their constraints they encroach. find_unchanged, over the
+// list of bad triangles: which are as they were. append_made and append_unchanged: make the next list. write_centroids:
+// places at which the host asks for areas. report_rows: why triangles are bad in the end.
+
+#include "refinement/arguments.h"
+#include "refinement/quality_of_rows.h"
+#include "refinement/records.h"
+
+#ifndef FIXED_POINT
+
+kernel void load_rows(int n, global const int* restrict triangles, global const int* restrict neighbors,
+                      global const int* restrict edges, global mesh_row* restrict rows, global int2* restrict made) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    for (int k = 0; k < 3; ++k) {
+      rows[t].corner[k] = triangles[3 * t + k];
+      rows[t].neighbor[k] = neighbors[3 * t + k];
+      rows[t].edge[k] = edges[3 * t + k];
+    }
+    rows[t].parent = t;
+    made[t] = VECTOR(int2, t, triangles[3 * t]);
+  }
+}
+
+// Whether a row is still the one that was made, with this first vertex; a later step may have used it again.
+static inline int is_as_made(int2 made, global const mesh_row* rows) {
+  return made.x >= 0 && rows[made.x].corner[0] == made.y;
+}
+
+// made: rows and their first vertices, or less than 0. keys: per row. bad: 1 or 0. split_bits: a bit per corner whose
+// opposite constraint is to be split; encroached: whether there is one.
+kernel void test_rows(int n, refinement_rules rules, global const int2* restrict made, REFINED_MESH(),
+                      global ulong* restrict keys, global uchar* restrict bad, global uchar* restrict encroached,
+                      global uchar* restrict split_bits) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    int is_bad = 0, splits = 0;
+    if (is_as_made(made[i], rows)) {
+      const int row = made[i].x;
+      const ordered_triangle triangle = ordered(&mesh, row);
+      const double2* const p = triangle.point;
+      const int is_large = is_too_large(&mesh, row, p, rules, areas);
+      is_bad = is_large || (is_angle_below(p[0], p[1], p[2], rules.squared_sine) &&
+                            excuse_of(&mesh, &triangle, places, rules.vertices) == EXCUSED_NOT);
+      keys[row] = is_bad ? key_of(&triangle, is_large) : NO_KEY;
+      for (int k = 0; k < 3; ++k) {
+        const int corner = 3 * row + k;
+        if (edge_at(&mesh, corner) >= 0 && encroaches(&mesh, corner, point_at(&mesh, corner), rules) &&
+            why_not_split(&mesh, corner, rules) == EXCUSED_NOT)
+          splits |= 1 << k;
+      }
+    }
+    bad[i] = (uchar)is_bad;
+    encroached[i] = splits != 0;
+    split_bits[i] = (uchar)splits;
+  }
+}
+
+kernel void find_unchanged(int n, global const int* restrict list, global const ulong* restrict keys,
+                           global uchar* restrict unchanged) {
+  const int i = get_global_id(0);
+  if (i < n) unchanged[i] = keys[list[i]] != NO_KEY;
+}
+
+// The n rows at these positions go to a list, from its element `first` on.
+kernel void append_made(int n, int first, global const int* restrict positions, global const int2* restrict made,
+                        global int* restrict list) {
+  const int i = get_global_id(0);
+  if (i < n) list[first + i] = made[positions[i]].x;
+}
+kernel void append_unchanged(int n, global const int* restrict positions, global const int* restrict from,
+                             global int* restrict list) {
+  const int i = get_global_id(0);
+  if (i < n) list[i] = from[positions[i]];
+}
+
+// n elements of made; x and y of those that are no rows any more are not a number.
+kernel void write_centroids(int n, global const int2* restrict made, REFINED_MESH(),
+                            global double2* restrict centroids) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    double2 sum = VECTOR(double2, NAN, NAN);
+    if (is_as_made(made[i], rows)) {
+      const ordered_triangle triangle = ordered(&mesh, made[i].x);
+      const double2* const p = triangle.point;
+      sum = VECTOR(double2, (p[0].x + p[1].x + p[2].x) / 3.0, (p[0].y + p[1].y + p[2].y) / 3.0);
+    }
+    centroids[i] = sum;
+  }
+}
+
+// n elements of made: the areas that the host was given for them.
+kernel void set_areas(int n, global const int2* restrict made, global const mesh_row* restrict rows,
+                      global const double* restrict given, global double* restrict areas) {
+  const int i = get_global_id(0);
+  if (i < n && is_as_made(made[i], rows)) areas[made[i].x] = given[i];
+}
+
+// n rows: EXCUSED_NOT of those that are good enough.
+kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global const uchar* restrict refused,
+                        global uchar* restrict excuses) {
+  const int row = get_global_id(0);
+  if (row < n) {
+    const seen_mesh mesh = {rows, points};
+    int excuse = EXCUSED_NOT;
+    if (rows[row].corner[0] != NO_TRIANGLE) {
+      const ordered_triangle triangle = ordered(&mesh, row);
+      const double2* const p = triangle.point;
+      const int reason = refused[row] == EXCUSED_NOT ? EXCUSED_LIMIT : refused[row];
+      if (is_too_large(&mesh, row, p, rules, areas)) {
+        excuse = reason;
+      } else if (is_angle_below(p[0], p[1], p[2], rules.squared_sine)) {
+        excuse = excuse_of(&mesh, &triangle, places, rules.vertices);
+        if (excuse == EXCUSED_NOT) excuse = reason;
+      }
+    }
+    excuses[row] = (uchar)excuse;
+  }
+}
+
+#endif

@@ -1,0 +1,701 @@
+#include "constrained/refinement/refine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "constrained/refinement/bounds.hpp"
+#include "geometry/magnitudes.hpp"
+#include "geometry/predicates.hpp"
+#include "host/launch/vector_operations.hpp"
+#include "launchers/refinement/insert.cl.hpp"
+#include "launchers/refinement/propose.cl.hpp"
+#include "launchers/refinement/tests.cl.hpp"
+#include "points/download.hpp"
+#include "predicates/quality.h"
+#include "refinement/codes.h"
+#include "refinement/limits.h"
+#include "refinement/records.h"
+
+namespace flaunay::constrained {
+
+static_assert(static_cast<int>(Excuse::input_angle) == kernel::EXCUSED_INPUT_ANGLE);
+static_assert(static_cast<int>(Excuse::near_apex) == kernel::EXCUSED_NEAR_APEX);
+static_assert(static_cast<int>(Excuse::min_edge) == kernel::EXCUSED_MIN_EDGE);
+static_assert(static_cast<int>(Excuse::kept) == kernel::EXCUSED_KEPT);
+static_assert(static_cast<int>(Excuse::frozen) == kernel::EXCUSED_FROZEN);
+static_assert(static_cast<int>(Excuse::most_points) == kernel::EXCUSED_LIMIT);
+
+namespace {
+
+using host::Arena;
+using kernel::double2;
+using kernel::edge_place;
+using kernel::insertion;
+using kernel::mesh_row;
+using kernel::proposal;
+using kernel::star_side;
+
+// Up to this angle, bad triangles wait for better neighbours; above the second one, a point must hold all
+// rows around its cavity. Measured: docs/refinement.md.
+constexpr double kWaitsUpTo = 30, kRingAbove = 32;
+// Of the larger side of the bounding box: the smallest edge unless the caller has one.
+constexpr int kMinEdgeExponent = -40;
+// New coordinates have no binary places below that of the largest coordinate by so many.
+constexpr int kBinaryPlaces = 200;
+// Memory grows by half of what there is.
+constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
+
+// The mesh. Arrays have room for more.
+struct Arrays {
+  Buffer<mesh_row> rows{};
+  Buffer<cl_ulong> keys{};
+  Buffer<cl_uint> claims{}, visits{};
+  Buffer<cl_uchar> refused{};
+  Buffer<cl_double> areas{};
+  Buffer<cl_double2> points{};
+  Buffer<edge_place> places{};
+  Buffer<cl_int> bad{}, next_bad{};  // rows
+};
+
+class Rounds {
+ public:
+  Rounds(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted)
+      : runtime_(runtime), arena_(runtime.arena()), mesh_(mesh), wanted_(wanted) {
+    scale();
+    set_rules();
+  }
+
+  RefinedMesh run() {
+    upload();
+    while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
+      const std::size_t before = added_;
+      Arena::Scope scope(arena_);
+      if (!make_round()) break;
+      if (added_ > before) ++report_.rounds;
+    }
+    return result();
+  }
+
+ private:
+  bool is_at_limit() const { return report_.rounds >= wanted_.most_rounds || added_ >= wanted_.most_points; }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Before and after
+
+  void scale() {
+    const geometry::Magnitudes magnitudes = geometry::inspect(mesh_.coordinates, 0, mesh_.points);
+    shift_ = geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes).shift;
+    // The last binary place that new coordinates have, scaled: exact in predicates, and a double when scaled
+    // back.
+    const int lowest = std::max({magnitudes.largest + shift_ - kBinaryPlaces, int{kernel::LOWEST_EXPONENT},
+                                 shift_ + std::numeric_limits<double>::min_exponent - kernel::DOUBLE_BITS});
+    rules_.coarse = std::ldexp(1.0, lowest + kernel::DOUBLE_BITS - 2);
+    order_vertices();
+    points_.resize(mesh_.points);
+    double low[2] = {0, 0}, high[2] = {0, 0};
+    for (std::size_t i = 0; i < mesh_.points; ++i) {
+      double at[2];
+      for (int k = 0; k < 2; ++k) {
+        at[k] = std::ldexp(mesh_.coordinates[2 * i + k], shift_) + 0.0;
+        low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
+        high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
+      }
+      points_[place_of_[i]] = {at[0], at[1]};
+    }
+    extent_ = std::max(high[0] - low[0], high[1] - low[1]);
+  }
+
+  // Vertices are numbered as triangles need them, which are in the order of places in the plane, more or
+  // less: then what is used together is together in memory.
+  void order_vertices() {
+    place_of_.assign(mesh_.points, -1);
+    std::int32_t next = 0;
+    const auto number = [&](std::int32_t& place) {
+      if (place < 0) place = next++;
+    };
+    for (const std::int32_t v : mesh_.triangles) number(place_of_[v]);
+    for (std::int32_t& place : place_of_) number(place);
+  }
+  std::vector<std::int32_t> places_of(const std::vector<std::int32_t>& vertices) const {
+    std::vector<std::int32_t> places(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) places[i] = place_of_[vertices[i]];
+    return places;
+  }
+
+  void set_rules() {
+    const QualityBounds bounds = quality_bounds(wanted_.min_angle);
+    check_areas(&wanted_.max_area, 1, "max_area");
+    check_areas(mesh_.largest_areas.data(), mesh_.largest_areas.size(), "largest areas");
+    rules_.squared_sine = bounds.squared_sine;
+    rules_.off_centre = bounds.off_centre;
+    rules_.squared_cosine = bounds.squared_cosine;
+    rules_.area = std::ldexp(wanted_.max_area, 2 * shift_);
+    const double min_edge =
+        wanted_.min_edge >= 0 ? std::ldexp(wanted_.min_edge, shift_) : std::ldexp(extent_, kMinEdgeExponent);
+    rules_.min_edge = min_edge * min_edge;
+    rules_.area_kind = wanted_.areas_at               ? kernel::AREAS_BY_ROW
+                       : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
+                                                      : kernel::AREAS_NONE;
+    rules_.rule = wanted_.min_angle > kRingAbove ? kernel::RULE_RING : kernel::RULE_NEIGHBORS;
+    rules_.waits = wanted_.min_angle <= kWaitsUpTo;
+    rules_.vertices = static_cast<int>(mesh_.points);
+  }
+
+  // The ends of edges, the lexicographically smaller one first.
+  std::vector<std::int32_t> ordered_ends() const {
+    std::vector<std::int32_t> ends = places_of(mesh_.edge_ends);
+    for (std::size_t e = 0; 2 * e < ends.size(); ++e) {
+      if (kernel::comes_before(points_[ends[2 * e + 1]], points_[ends[2 * e]])) {
+        std::swap(ends[2 * e], ends[2 * e + 1]);
+      }
+    }
+    return ends;
+  }
+
+  // Where input vertices are: those at which two edges meet at less than 60 degrees are apexes.
+  std::vector<edge_place> input_places() const {
+    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
+    const std::vector<std::int32_t> ends = places_of(mesh_.edge_ends);
+    std::vector<std::size_t> first(mesh_.points + 1);
+    for (const std::int32_t v : ends) ++first[v + 1];
+    for (std::size_t v = 0; v < mesh_.points; ++v) first[v + 1] += first[v];
+    std::vector<std::int32_t> other(ends.size());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < ends.size(); ++i) other[next[ends[i]]++] = ends[i ^ 1];
+    // Of more edges than this, two meet at less than 60 degrees.
+    constexpr std::size_t kMostApart = 6;
+    for (std::size_t v = 0; v < mesh_.points; ++v) {
+      const std::size_t begin = first[v], end = first[v + 1];
+      bool is_apex = end - begin > kMostApart;
+      for (std::size_t i = begin; i < end && !is_apex; ++i) {
+        for (std::size_t j = i + 1; j < end && !is_apex; ++j) {
+          is_apex = kernel::is_below_60_degrees(points_[v], points_[other[i]], points_[other[j]]) != 0;
+        }
+      }
+      if (is_apex) places[v].apex = static_cast<int>(v);
+    }
+    return places;
+  }
+
+  void upload() {
+    rows_ = mesh_.triangles.size() / 3;
+    vertices_ = mesh_.points;
+    std::vector<std::int32_t> edges = mesh_.edges;
+    for (std::int32_t& e : edges) {
+      if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
+    }
+    ends_ = runtime_.upload(arena_, ordered_ends());
+    reserve(rows_, vertices_);
+    reserve_made(rows_);
+    made_count_ = rows_;
+    runtime_.fill(arrays_.refused, rows_, cl_uchar{kernel::EXCUSED_NOT});
+    {
+      Arena::Scope scope(arena_);
+      runtime_.map(rows_, kernels::load_rows{.triangles = runtime_.upload(arena_, places_of(mesh_.triangles)),
+                                             .neighbors = runtime_.upload(arena_, mesh_.neighbors),
+                                             .edges = runtime_.upload(arena_, std::move(edges)),
+                                             .rows = arrays_.rows,
+                                             .made = made_});
+      runtime_.finish();
+    }
+    runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
+    const std::vector<edge_place> places = input_places();
+    runtime_.write(arrays_.places, 0, places.size(), places.data());
+    if (rules_.area_kind == kernel::AREAS_BY_PARENT) {
+      std::vector<double> areas = mesh_.largest_areas;
+      for (double& area : areas) area = std::ldexp(area, 2 * shift_);
+      parent_areas_ = runtime_.upload(arena_, std::move(areas));
+    } else if (rules_.area_kind == kernel::AREAS_NONE) {
+      parent_areas_ = arena_.allocate<cl_double>(1);  // nobody reads it
+    }
+  }
+
+  template <typename T>
+  void grow(Buffer<T>& array, std::size_t used, std::size_t size) {
+    const Buffer<T> larger(host::allocate_memory(runtime_.memory(), size * sizeof(T)), size);
+    runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
+    array = larger;
+  }
+  void reserve_made(std::size_t count) {
+    if (count > made_.size()) grow(made_, made_count_, count + count / 2);
+  }
+
+  // Makes room, with more than is needed now.
+  void reserve(std::size_t rows, std::size_t vertices) {
+    if (rows > row_room_) {
+      if (rows > kMostTriangles) {
+        throw Error(ErrorKind::input,
+                    fmt::format("refining takes more than {} triangles: ask for larger angles or areas, "
+                                "or set a limit of points",
+                                kMostTriangles));
+      }
+      const std::size_t size = std::min(kMostTriangles, rows + rows / 2);
+      grow(arrays_.rows, rows_, size);
+      grow(arrays_.keys, rows_, size);
+      grow(arrays_.claims, 0, size);
+      grow(arrays_.visits, 0, size);
+      grow(arrays_.refused, rows_, size);
+      if (rules_.area_kind == kernel::AREAS_BY_ROW) grow(arrays_.areas, rows_, size);
+      grow(arrays_.bad, bad_count_, size);
+      grow(arrays_.next_bad, 0, size);
+      row_room_ = size;
+      clear_claims();
+    }
+    if (vertices > vertex_room_) {
+      const std::size_t size = vertices + vertices / 2;
+      grow(arrays_.points, vertices_, size);
+      grow(arrays_.places, vertices_, size);
+      vertex_room_ = size;
+    }
+  }
+
+  // Claims of later steps are smaller than those before, so that nobody has to clear them.
+  void clear_claims() {
+    runtime_.fill(arrays_.claims, row_room_, cl_uint{UNCLAIMED_ROW});
+    runtime_.fill(arrays_.visits, row_room_, cl_uint{UNCLAIMED_ROW});
+    next_claim_ = UNCLAIMED_ROW;
+  }
+  // The first of so many claims.
+  cl_uint take_claims(std::size_t count) {
+    if (count >= next_claim_) clear_claims();
+    next_claim_ -= static_cast<cl_uint>(count);
+    return next_claim_;
+  }
+
+  kernels::refined_mesh refined_mesh() const {
+    return {.rows = arrays_.rows,
+            .points = arrays_.points,
+            .places = arrays_.places,
+            .ends = ends_,
+            .areas = rules_.area_kind == kernel::AREAS_BY_ROW ? arrays_.areas : parent_areas_};
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Tests
+
+  // What is to be split in any case.
+  struct Encroached {
+    Buffer<cl_int> corners{};  // opposite; those less than 0 are none
+    std::size_t count = 0;
+  };
+
+  // Tests what the last round has made, and makes the list of bad rows.
+  Encroached test() {
+    const std::size_t count = made_count_;
+    const auto bad = arena_.allocate<cl_uchar>(count), encroached = arena_.allocate<cl_uchar>(count),
+               split_bits = arena_.allocate<cl_uchar>(count),
+               unchanged = arena_.allocate<cl_uchar>(bad_count_);
+    // Before the test, which gives rows that were made keys again.
+    runtime_.map(bad_count_,
+                 kernels::find_unchanged{.list = arrays_.bad, .keys = arrays_.keys, .unchanged = unchanged});
+    runtime_.map(count, kernels::test_rows{.rules = rules_,
+                                           .made = made_,
+                                           .refined_mesh = refined_mesh(),
+                                           .keys = arrays_.keys,
+                                           .bad = bad,
+                                           .encroached = encroached,
+                                           .split_bits = split_bits});
+    const auto [kept_at, kept_count] = host::pack_positions(runtime_, unchanged, bad_count_, 1);
+    const auto [bad_at, bad_count] = host::pack_positions(runtime_, bad, count, 1);
+    const auto [encroached_at, encroached_count] = host::pack_positions(runtime_, encroached, count, 1);
+    runtime_.map(kept_count, kernels::append_unchanged{
+                                 .positions = kept_at, .from = arrays_.bad, .list = arrays_.next_bad});
+    runtime_.map(bad_count, kernels::append_made{.first = static_cast<int>(kept_count),
+                                                 .positions = bad_at,
+                                                 .made = made_,
+                                                 .list = arrays_.next_bad});
+    std::swap(arrays_.bad, arrays_.next_bad);
+    bad_count_ = kept_count + bad_count;
+    const Encroached found{arena_.allocate<cl_int>(kernel::SLOTS_PER_ROW * encroached_count),
+                           kernel::SLOTS_PER_ROW * encroached_count};
+    runtime_.map(
+        encroached_count,
+        kernels::list_encroached{
+            .positions = encroached_at, .made = made_, .split_bits = split_bits, .corners = found.corners});
+    return found;
+  }
+
+  // Asks for the areas of rows that were made.
+  void ask_for_areas() {
+    if (!wanted_.areas_at) return;
+    const auto centroids = arena_.allocate<cl_double2>(made_count_);
+    runtime_.map(made_count_, kernels::write_centroids{
+                                  .made = made_, .refined_mesh = refined_mesh(), .centroids = centroids});
+    const std::vector<double> all = points::download(runtime_, centroids.as<cl_double>(), 2 * made_count_);
+    std::vector<double> places, areas;
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < made_count_; ++i) {
+      if (std::isnan(all[2 * i])) continue;
+      of.push_back(i);
+      for (int k = 0; k < 2; ++k) places.push_back(std::ldexp(all[2 * i + k], -shift_));
+    }
+    areas.resize(of.size());
+    wanted_.areas_at(places.data(), of.size(), areas.data());
+    check_areas(areas.data(), areas.size(), "areas");
+    std::vector<double> given(made_count_);
+    for (std::size_t i = 0; i < of.size(); ++i) given[of[i]] = std::ldexp(areas[i], 2 * shift_);
+    runtime_.map(made_count_, kernels::set_areas{.made = made_,
+                                                 .rows = arrays_.rows,
+                                                 .given = runtime_.upload(arena_, std::move(given)),
+                                                 .areas = arrays_.areas});
+    runtime_.finish();
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Rounds
+
+  struct Proposals {
+    std::size_t count = 0, winners = 0;
+    Buffer<proposal> all{};
+    Buffer<cl_int> cavities{};  // kernel::LISTED_ROWS each
+    Buffer<cl_int> order{};     // by ranks
+    Buffer<cl_uchar> outcomes{};
+    Buffer<cl_int> winners_at{};  // places in the order
+    Buffer<cl_uint> wanted{};     // scanned: the constraints that are split for each
+    std::size_t wanted_count = 0;
+  };
+
+  // Returns false if there is nothing left to do.
+  bool make_round() {
+    ask_for_areas();
+    const Encroached encroached = test();
+    may_propose_ |= encroached.count == 0;
+    Proposals proposals;
+    if (may_propose_) proposals = propose(encroached);
+    if (encroached.count + proposals.count == 0) return false;
+    insert(encroached, proposals);
+    return true;
+  }
+
+  Proposals propose(const Encroached& encroached) {
+    const auto active = arena_.allocate<cl_uchar>(bad_count_);
+    runtime_.map(bad_count_, kernels::find_active{.waits = rules_.waits,
+                                                  .list = arrays_.bad,
+                                                  .rows = arrays_.rows,
+                                                  .keys = arrays_.keys,
+                                                  .active = active});
+    const auto [active_at, count] = host::pack_positions(runtime_, active, bad_count_, 1);
+    Proposals made;
+    made.count = count;
+    if (count == 0) return made;
+    const auto list = arena_.allocate<cl_int>(count);
+    runtime_.map(count, kernels::append_unchanged{.positions = active_at, .from = arrays_.bad, .list = list});
+    made.all = arena_.allocate<proposal>(count);
+    made.cavities = arena_.allocate<cl_int>(kernel::LISTED_ROWS * count);
+    made.order = arena_.allocate<cl_int>(count);
+    made.outcomes = arena_.allocate<cl_uchar>(count);
+    const auto keys = arena_.allocate<cl_ulong>(count);
+    runtime_.map_in_small_groups(count, kernels::propose{.rules = rules_,
+                                                         .list = list,
+                                                         .refined_mesh = refined_mesh(),
+                                                         .row_keys = arrays_.keys,
+                                                         .proposals = made.all,
+                                                         .cavities = made.cavities,
+                                                         .keys = keys,
+                                                         .payloads = made.order,
+                                                         .outcomes = made.outcomes});
+    host::sort_by_key(runtime_, keys, made.order, count);
+    runtime_.map(
+        count, kernels::order_equal{
+                   .keys = keys, .proposals = made.all, .refined_mesh = refined_mesh(), .order = made.order});
+    const auto ranks = arena_.allocate<cl_uint>(count);
+    runtime_.map(count, kernels::list_ranks{.order = made.order, .ranks = ranks});
+    const cl_uint splits_claim = take_claims(count + 1), first = splits_claim + 1;
+    if (encroached.count > 0) {
+      runtime_.map_in_small_groups(encroached.count, kernels::claim_splits{.rules = rules_,
+                                                                           .claim = splits_claim,
+                                                                           .corners = encroached.corners,
+                                                                           .refined_mesh = refined_mesh(),
+                                                                           .claims = arrays_.claims});
+      runtime_.map_in_small_groups(count, kernels::find_blocked{.claim = splits_claim,
+                                                                .proposals = made.all,
+                                                                .cavities = made.cavities,
+                                                                .refined_mesh = refined_mesh(),
+                                                                .claims = arrays_.claims,
+                                                                .outcomes = made.outcomes});
+    }
+    runtime_.map_in_small_groups(count, kernels::claim_cavities{.rules = rules_,
+                                                                .first = first,
+                                                                .proposals = made.all,
+                                                                .cavities = made.cavities,
+                                                                .ranks = ranks,
+                                                                .outcomes = made.outcomes,
+                                                                .refined_mesh = refined_mesh(),
+                                                                .claims = arrays_.claims});
+    runtime_.map_in_small_groups(count, kernels::decide{.rules = rules_,
+                                                        .first = first,
+                                                        .proposals = made.all,
+                                                        .ranks = ranks,
+                                                        .refined_mesh = refined_mesh(),
+                                                        .row_keys = arrays_.keys,
+                                                        .claims = arrays_.claims,
+                                                        .outcomes = made.outcomes});
+    const auto inserts = arena_.allocate<cl_uchar>(count);
+    runtime_.map(count,
+                 kernels::mark_winners{.order = made.order, .outcomes = made.outcomes, .inserts = inserts});
+    std::tie(made.winners_at, made.winners) = host::pack_positions(runtime_, inserts, count, 1);
+    runtime_.map(count, kernels::refuse{.proposals = made.all,
+                                        .outcomes = made.outcomes,
+                                        .row_keys = arrays_.keys,
+                                        .refused = arrays_.refused});
+    made.wanted = arena_.allocate<cl_uint>(count + 1);
+    runtime_.map(count, kernels::count_wanted{
+                            .proposals = made.all, .outcomes = made.outcomes, .counts = made.wanted});
+    host::exclusive_scan(runtime_, made.wanted, count, made.wanted);
+    made.wanted_count = runtime_.read_one(made.wanted, count);
+    return made;
+  }
+
+  // The constraints that are split in this round, each once, in an order of their own.
+  struct Splits {
+    Buffer<cl_int> corners{}, at{};  // opposite corners, and those of them that count
+    std::size_t count = 0;
+  };
+
+  Splits find_splits(const Encroached& encroached, const Proposals& proposals) {
+    const std::size_t count = encroached.count + proposals.wanted_count;
+    Splits splits;
+    if (count == 0) return splits;
+    splits.corners = arena_.allocate<cl_int>(count);
+    runtime_.copy(encroached.corners, 0, splits.corners, 0, encroached.count);
+    if (proposals.wanted_count > 0) {
+      runtime_.map_in_small_groups(proposals.count,
+                                   kernels::list_wanted{.rules = rules_,
+                                                        .first = static_cast<int>(encroached.count),
+                                                        .proposals = proposals.all,
+                                                        .outcomes = proposals.outcomes,
+                                                        .offsets = proposals.wanted,
+                                                        .refined_mesh = refined_mesh(),
+                                                        .corners = splits.corners});
+    }
+    const auto keys = arena_.allocate<cl_ulong>(count);
+    const auto is_new = arena_.allocate<cl_uchar>(count);
+    runtime_.map(count, kernels::constraint_keys{
+                            .corners = splits.corners, .refined_mesh = refined_mesh(), .keys = keys});
+    host::sort_by_key(runtime_, keys, splits.corners, count);
+    runtime_.map(count, kernels::find_new{
+                            .keys = keys, .corners = splits.corners, .rows = arrays_.rows, .is_new = is_new});
+    std::tie(splits.at, splits.count) = host::pack_positions(runtime_, is_new, count, 1);
+    return splits;
+  }
+
+  void insert(const Encroached& encroached, const Proposals& proposals) {
+    const Splits splits = find_splits(encroached, proposals);
+    const std::size_t most = wanted_.most_points - added_;
+    const std::size_t split_count = std::min(splits.count, most);
+    const std::size_t point_count = std::min(proposals.winners, most - split_count);
+    const std::size_t count = split_count + proposals.winners;
+    made_count_ = 0;
+    if (count == 0) return;
+    reserve(rows_ + 2 * count, vertices_ + count);
+    const auto insertions = arena_.allocate<insertion>(count);
+    const auto states = arena_.allocate<cl_uchar>(count);
+    const int first_vertex = static_cast<int>(vertices_), first_row = static_cast<int>(rows_);
+    runtime_.map(split_count, kernels::start_splits{.rules = rules_,
+                                                    .first_vertex = first_vertex,
+                                                    .first_row = first_row,
+                                                    .positions = splits.at,
+                                                    .corners = splits.corners,
+                                                    .ends = ends_,
+                                                    .rows = arrays_.rows,
+                                                    .points = arrays_.points,
+                                                    .places = arrays_.places,
+                                                    .row_keys = arrays_.keys,
+                                                    .insertions = insertions,
+                                                    .states = states});
+    if (proposals.winners > 0) {
+      const auto places_of = arena_.allocate<cl_int>(proposals.count);
+      runtime_.map(proposals.winners,
+                   kernels::list_places{
+                       .positions = proposals.winners_at, .order = proposals.order, .places_of = places_of});
+      const auto [list, winners] =
+          host::pack_positions(runtime_, proposals.outcomes, proposals.count, kernel::PROPOSAL_INSERTS);
+      runtime_.map(winners,
+                   kernels::start_points{.first = static_cast<int>(split_count),
+                                         .most = static_cast<int>(point_count),
+                                         .first_vertex = first_vertex + static_cast<int>(split_count),
+                                         .first_row = first_row + 2 * static_cast<int>(split_count),
+                                         .list = list,
+                                         .places_of = places_of,
+                                         .proposals = proposals.all,
+                                         .rows = arrays_.rows,
+                                         .points = arrays_.points,
+                                         .places = arrays_.places,
+                                         .row_keys = arrays_.keys,
+                                         .insertions = insertions,
+                                         .states = states});
+    }
+    rows_ += 2 * count;
+    vertices_ += count;
+    added_ += split_count + point_count;
+    insert_in_steps(insertions, states, count, split_count > 0, proposals.cavities);
+  }
+
+  void insert_in_steps(const Buffer<insertion>& insertions, const Buffer<cl_uchar>& states, std::size_t count,
+                       bool has_splits, const Buffer<cl_int>& cavities) {
+    std::vector<std::int32_t> all(count);
+    std::iota(all.begin(), all.end(), 0);
+    auto list = runtime_.upload(arena_, std::move(all));
+    auto next = arena_.allocate<cl_int>(count);
+    const Buffer<cl_int> known = cavities.size() > 0 ? cavities : arena_.allocate<cl_int>(1);
+    const std::size_t ranks = count;
+    for (std::size_t waiting = count; waiting > 0;) {
+      Arena::Scope scope(arena_);
+      const auto sizes = arena_.allocate<cl_uint>(waiting + 1);
+      const auto waits = arena_.allocate<cl_uchar>(waiting);
+      const cl_uint first = take_claims(ranks);
+      runtime_.map_in_small_groups(waiting, kernels::claim_points{.is_first = waiting == count,
+                                                                  .first = first,
+                                                                  .list = list,
+                                                                  .cavities = known,
+                                                                  .refined_mesh = refined_mesh(),
+                                                                  .claims = arrays_.claims,
+                                                                  .insertions = insertions,
+                                                                  .sizes = sizes,
+                                                                  .states = states});
+      host::exclusive_scan(runtime_, sizes, waiting, sizes);
+      const std::size_t all_sides = runtime_.read_one(sizes, waiting);
+      const auto sides = arena_.allocate<star_side>(all_sides);
+      reserve_made(made_count_ + all_sides);
+      runtime_.map(waiting, kernels::gather_stars{.first = first,
+                                                  .list = list,
+                                                  .offsets = sizes,
+                                                  .insertions = insertions,
+                                                  .refined_mesh = refined_mesh(),
+                                                  .claims = arrays_.claims,
+                                                  .visits = arrays_.visits,
+                                                  .sides = sides,
+                                                  .states = states});
+      runtime_.map(waiting, kernels::insert_stars{.first_made = static_cast<int>(made_count_),
+                                                  .list = list,
+                                                  .offsets = sizes,
+                                                  .insertions = insertions,
+                                                  .states = states,
+                                                  .sides = sides,
+                                                  .places = arrays_.places,
+                                                  .rows = arrays_.rows,
+                                                  .row_keys = arrays_.keys,
+                                                  .refused = arrays_.refused,
+                                                  .made = made_,
+                                                  .waits = waits});
+      if (has_splits) {
+        runtime_.map(waiting, kernels::freeze_constraints{.list = list,
+                                                          .insertions = insertions,
+                                                          .states = states,
+                                                          .points = arrays_.points,
+                                                          .rows = arrays_.rows});
+      }
+      made_count_ += all_sides;
+      const auto [at, left] = host::pack_positions(runtime_, waits, waiting, 1);
+      runtime_.map(left, kernels::append_unchanged{.positions = at, .from = list, .list = next});
+      std::swap(list, next);
+      if (left == waiting) {
+        throw Error(ErrorKind::internal,
+                    "points to be inserted wait for each other; please report the input");
+      }
+      waiting = left;
+    }
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // The result
+
+  RefinedMesh result() {
+    RefinedMesh refined;
+    Arena::Scope scope(arena_);
+    const auto excuses_there = arena_.allocate<cl_uchar>(rows_);
+    runtime_.map(rows_, kernels::report_rows{.rules = rules_,
+                                             .refined_mesh = refined_mesh(),
+                                             .refused = arrays_.refused,
+                                             .excuses = excuses_there});
+    const std::vector<cl_uchar> excuses = points::download(runtime_, excuses_there, rows_);
+    const std::vector<mesh_row> rows = points::download(runtime_, arrays_.rows, rows_);
+    const std::vector<double> coordinates =
+        points::download(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
+    const std::vector<edge_place> places = points::download(runtime_, arrays_.places, vertices_);
+
+    // Rows and vertices of points that were dropped are left out.
+    std::vector<std::int32_t> row_of(rows_, -1), vertex_of(vertices_, -1);
+    std::int32_t row_count = 0;
+    for (std::size_t t = 0; t < rows_; ++t) {
+      if (rows[t].corner[0] == kernel::NO_TRIANGLE) continue;
+      row_of[t] = row_count++;
+      for (const int v : rows[t].corner) vertex_of[v] = 0;
+    }
+    std::int32_t vertex_count = static_cast<std::int32_t>(mesh_.points);
+    for (std::size_t v = 0; v < mesh_.points; ++v) vertex_of[place_of_[v]] = static_cast<std::int32_t>(v);
+    for (std::size_t v = mesh_.points; v < vertices_; ++v) {
+      if (vertex_of[v] == 0) {
+        vertex_of[v] = vertex_count++;
+        for (int k = 0; k < 2; ++k) refined.added.push_back(std::ldexp(coordinates[2 * v + k], -shift_));
+        refined.added_edges.push_back(places[v].edge);
+        refined.added_places.push_back(places[v].part);
+        if (places[v].edge >= 0) ++report_.split_points;
+      }
+    }
+    const Excuse at_limit = report_.rounds >= wanted_.most_rounds ? Excuse::most_rounds : Excuse::most_points;
+    const std::size_t all = static_cast<std::size_t>(row_count);
+    refined.triangles.resize(3 * all);
+    refined.neighbors.resize(3 * all);
+    refined.edges.resize(3 * all);
+    refined.parents.resize(all);
+    for (std::size_t t = 0; t < rows_; ++t) {
+      if (row_of[t] < 0) continue;
+      const mesh_row& row = rows[t];
+      int first = 0;
+      for (int k = 1; k < 3; ++k) {
+        if (vertex_of[row.corner[k]] < vertex_of[row.corner[first]]) first = k;
+      }
+      const std::size_t to = 3 * static_cast<std::size_t>(row_of[t]);
+      for (int k = 0; k < 3; ++k) {
+        const int from = (first + k) % 3;
+        refined.triangles[to + k] = vertex_of[row.corner[from]];
+        refined.neighbors[to + k] = row.neighbor[from] < 0 ? -1 : row_of[row.neighbor[from]];
+        refined.edges[to + k] = row.edge[from] < 0 ? -1 : row.edge[from] & kernel::EDGE_NUMBER;
+      }
+      refined.parents[to / 3] = row.parent;
+      if (excuses[t] != kernel::EXCUSED_NOT) {
+        report_.bad_triangles.push_back(row_of[t]);
+        report_.excuses.push_back(excuses[t] == kernel::EXCUSED_LIMIT ? at_limit
+                                                                      : static_cast<Excuse>(excuses[t]));
+      }
+    }
+    report_.added_points = refined.added_edges.size();
+    refined.report = std::move(report_);
+    return refined;
+  }
+
+  host::Runtime& runtime_;
+  Arena& arena_;
+  const MeshToRefine& mesh_;
+  const Refinement& wanted_;
+  int shift_ = 0;
+  double extent_ = 0;
+  kernel::refinement_rules rules_{};
+  std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
+  std::vector<double2> points_;         // scaled, by these numbers
+  Arrays arrays_;
+  Buffer<cl_int> ends_{};
+  Buffer<cl_double> parent_areas_{};
+  Buffer<cl_int2> made_{};  // what the last round has made: rows and their first vertices
+  std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
+              added_ = 0;
+  cl_uint next_claim_ = 0;
+  bool may_propose_ = false;
+  RefinementReport report_;
+};
+
+}  // namespace
+
+RefinedMesh refine(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted) {
+  Arena::Scope scope(runtime.arena());
+  return Rounds(runtime, mesh, wanted).run();
+}
+
+}  // namespace flaunay::constrained
