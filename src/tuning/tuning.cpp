@@ -356,9 +356,8 @@ constexpr Row kTable[] = {
      {0},
      {kSlowFp64},
      {0},
-     "GPUs have 1/2 of fp32's rate, or 1/16 to 1/64. By the model, fixed point takes 1.02 of the time at "
-     "1/16, "
-     "0.93 at 1/32 and 0.77 at 1/64."},
+     "GPUs have 1/2 of fp32's rate, or 1/16 to 1/64. By the model, fixed point takes 1.03 of the time at "
+     "1/16, 0.94 at 1/32 and 0.77 at 1/64."},
     {"small_region",
      &Tuning::small_region,
      {kSmallRegion},
