@@ -128,7 +128,7 @@ kernel void start_points(int n, int first, int most, int first_vertex, int first
     made.first_row = first_row + 2 * i;
     for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys);
     const edge_place nowhere = {0.0, 0.0, -1, -1};
-    points[made.vertex] = of.place;
+    points[made.vertex] = VECTOR(double2, of.x, of.y);
     places[made.vertex] = nowhere;
     insertions[first + i] = made;
     states[first + i] = (uchar)(at < most ? POINT_WAITS : POINT_DROPPED);

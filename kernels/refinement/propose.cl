@@ -36,8 +36,8 @@ static inline double2 centre_of(const double2* p, int is_large, refinement_rules
   const int k = opposite_to_shortest(p);
   const double2 from = p[(k + 1) % 3], to = p[(k + 2) % 3], apex = p[k];
   const double2 u = to - from, v = apex - from;
-  const double uu = u.x * u.x + u.y * u.y, vv = v.x * v.x + v.y * v.y, half = 0.5 / (u.x * v.y - u.y * v.x);
-  double2 centre = VECTOR(double2, (v.y * uu - u.y * vv) * half, (u.x * vv - v.x * uu) * half);
+  const double uu = u.x * u.x + u.y * u.y, vv = v.x * v.x + v.y * v.y, scale = 0.5 / (u.x * v.y - u.y * v.x);
+  double2 centre = VECTOR(double2, (v.y * uu - u.y * vv) * scale, (u.x * vv - v.x * uu) * scale);
   if (!is_large && rules.off_centre > 0.0) {
     const double2 off = VECTOR(double2, 0.5 * u.x - rules.off_centre * u.y, 0.5 * u.y + rules.off_centre * u.x);
     if (squared_length(off) < squared_length(centre)) centre = off;
@@ -76,14 +76,15 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
     const ordered_triangle triangle = ordered(&mesh, row);
     const ulong key = row_keys[row];
     proposal made;
-    made.place = centre_of(triangle.point, is_key_of_large(key), rules);
+    const double2 p = centre_of(triangle.point, is_key_of_large(key), rules);
+    made.x = p.x;
+    made.y = p.y;
     made.row = row;
     made.count = 1;
     made.splits = 0;
     made.hit = -1;
     made.start = triangle.corner[0];
     int outcome = PROPOSAL_OPEN;
-    const double2 p = made.place;
     const int nearest = (opposite_to_shortest(triangle.point) + 1) % 3;
     if (!(squared_distance(p, triangle.point[nearest]) >= rules.min_edge) || !(fabs(p.x) < INFINITY)) {
       outcome = EXCUSED_MIN_EDGE;
@@ -179,6 +180,8 @@ static inline void claim_split(const seen_mesh* mesh, int corner, double2 p, uin
   }
 }
 
+static inline double2 place_of(const proposal* made) { return VECTOR(double2, made->x, made->y); }
+
 static inline split_place place_of_constraint(const seen_mesh* mesh, int corner, global const edge_place* places,
                                               global const int* ends, refinement_rules rules) {
   return place_of_split(vertex_at(mesh, next_halfedge(corner)), vertex_at(mesh, previous_halfedge(corner)),
@@ -207,8 +210,8 @@ static inline int is_blocked(const seen_mesh* mesh, const proposal* made, global
   cavity_tour tour;
   start_tour(&tour, made->start, made->start);
   int blocked = claims[row_of(made->start)] <= claim;
-  for (int next = next_in_tour(&tour, mesh, made->place); next != NO_MORE;
-       next = next_in_tour(&tour, mesh, made->place)) {
+  for (int next = next_in_tour(&tour, mesh, place_of(made)); next != NO_MORE;
+       next = next_in_tour(&tour, mesh, place_of(made))) {
     if (next < 0) blocked |= claims[~next] <= claim;
   }
   return blocked;
@@ -243,11 +246,11 @@ kernel void claim_cavities(int n, refinement_rules rules, uint first, global con
       atomic_min(&claims[row_of(made.start)], claim);
       cavity_tour tour;
       start_tour(&tour, made.start, made.start);
-      for (int next = next_in_tour(&tour, &mesh, made.place); next != NO_MORE;
-           next = next_in_tour(&tour, &mesh, made.place)) {
+      for (int next = next_in_tour(&tour, &mesh, place_of(&made)); next != NO_MORE;
+           next = next_in_tour(&tour, &mesh, place_of(&made))) {
         if (next < 0) {
           atomic_min(&claims[~next], claim);
-        } else if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, made.place, rules)) {
+        } else if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, place_of(&made), rules)) {
           claim_split(&mesh, next, place_of_constraint(&mesh, next, places, ends, rules).point, claim, claims);
         }
       }
@@ -263,8 +266,8 @@ static inline int holds_ring(const seen_mesh* mesh, const proposal* made, global
   cavity_tour tour;
   start_tour(&tour, made->start, made->start);
   int holds = claims[row_of(made->start)] == claim;
-  for (int next = next_in_tour(&tour, mesh, made->place); next != NO_MORE;
-       next = next_in_tour(&tour, mesh, made->place)) {
+  for (int next = next_in_tour(&tour, mesh, place_of(made)); next != NO_MORE;
+       next = next_in_tour(&tour, mesh, place_of(made))) {
     if (next < 0) {
       holds &= claims[~next] == claim;
     } else if (neighbor_at(mesh, next) >= 0) {
@@ -335,9 +338,10 @@ kernel void list_wanted(int n, refinement_rules rules, int first, global const p
     } else {
       cavity_tour tour;
       start_tour(&tour, made.start, made.start);
-      for (int next = next_in_tour(&tour, &mesh, made.place); next != NO_MORE;
-           next = next_in_tour(&tour, &mesh, made.place)) {
-        if (next >= 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, made.place, rules)) corners[to++] = next;
+      for (int next = next_in_tour(&tour, &mesh, place_of(&made)); next != NO_MORE;
+           next = next_in_tour(&tour, &mesh, place_of(&made))) {
+        if (next >= 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, place_of(&made), rules))
+          corners[to++] = next;
       }
     }
   }

@@ -38,7 +38,7 @@ ASSERT_SIZE(refinement_rules, 64);
 // A point that is to mend a triangle. start: the corner at which a tour of its cavity begins. hit: the corner opposite
 // to the constraint that is in the way, or -1. count: rows in the cavity; splits: constraints that it encroaches.
 typedef struct {
-  double2 place;
+  double x, y;
   int row, start, hit, count, splits, spare;
 } proposal;
 ASSERT_SIZE(proposal, 40);
