@@ -1162,6 +1162,78 @@ static void test_carried(void) {
   flaunay_constrained_destroy(result);
 }
 
+// A square with a hole, whose ring repeats its first point, and a triangle.
+static const double kRings[] = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 2, 4, 4, 4, 4, 2, 2, 2, 6, 0, 9, 3, 6, 6};
+static const size_t kRingOffsets[] = {0, 4, 9, 12}, kPolygonOffsets[] = {0, 2, 3};
+static const flaunay_polygons kPolygons = {.coordinates = kRings,
+                                           .ring_offsets = kRingOffsets,
+                                           .ring_count = 3,
+                                           .polygon_offsets = kPolygonOffsets,
+                                           .polygon_count = 2};
+
+// 0 on the left of x = 1, and on the right an area that halves it.
+static void areas_at(const double* places, size_t count, double* areas, void* data) {
+  ++*(int*)data;
+  for (size_t k = 0; k < count; ++k) areas[k] = places[2 * k] < 1 ? 0 : 0.125;
+}
+
+static void test_refined(void) {
+  int calls = 0;
+  const uint8_t kept_segments[] = {1, 0, 0, 0};
+  flaunay_refinement refinement = {
+      .min_angle = 25, .max_area = 0.5, .areas_at = areas_at, .areas_data = &calls};
+  flaunay_constraints constraints = {.segments = kDiagonals, .segment_count = 4, .refinement = &refinement};
+  const flaunay_options options = {.parts = FLAUNAY_PART_AREAS};
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, &options,
+                                          &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  const flaunay_refinement_report* report = flaunay_constrained_refinement(result);
+  CHECK(arrays->added_count > 0 && report->added_points == arrays->added_count && report->rounds > 0);
+  CHECK(mesh->point_count == 8 + arrays->added_count && mesh->set_count == 2 && calls > 0);
+  CHECK(report->split_points > 0 && report->smallest_angle >= 25 - 1e-9 &&
+        report->largest_angle <= 130 + 1e-9);
+  CHECK(report->bad_count == 0 && report->bad_triangles == NULL && report->excuses == NULL);
+  for (size_t t = 0; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.5);
+  for (size_t t = mesh->triangle_offsets[1]; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.125);
+  CHECK(arrays->piece_edges[1] > 1);
+  flaunay_constrained_destroy(result);
+
+  refinement.kept_segments = kept_segments;
+  refinement.has_most_points = 1;
+  refinement.most_points = 3;
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, &options,
+                                          &result) == FLAUNAY_SUCCESS);
+  report = flaunay_constrained_refinement(result);
+  CHECK(report->added_points <= 3 && report->bad_count > 0);
+  for (size_t k = 0; k < report->bad_count; ++k) {
+    CHECK(report->excuses[k] == FLAUNAY_EXCUSE_MOST_POINTS || report->excuses[k] == FLAUNAY_EXCUSE_KEPT);
+  }
+  CHECK(flaunay_constrained_get_arrays(result)->piece_edges[1] == 1);
+  flaunay_constrained_destroy(result);
+
+  flaunay_polygons polygons = kPolygons;
+  polygons.refinement = &refinement;
+  refinement = (flaunay_refinement){.min_angle = 20, .kept = FLAUNAY_KEPT_EDGES_NONE};
+  REQUIRE(flaunay_triangulate_polygons(triangulator, &polygons, NULL, &result) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_constrained_refinement(result)->smallest_angle >= 20 - 1e-9);
+  flaunay_constrained_destroy(result);
+
+  const flaunay_refinement bad[] = {{.min_angle = 35},
+                                    {.max_area = -1},
+                                    {.min_angle = 20, .kept = 3},
+                                    {.min_angle = 20, .reserved = {0, 1}}};
+  const char* const texts[] = {"35", "-1", "flaunay_kept_edges", "flaunay_refinement"};
+  for (int k = 0; k < 4; ++k) {
+    constraints.refinement = &bad[k];
+    CHECK(fails(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
+                                                &result),
+                FLAUNAY_ERROR_USAGE, texts[k]));
+  }
+  CHECK(flaunay_constrained_refinement(NULL) == NULL);
+}
+
 static void test_constrained_without_constraints(void) {
   flaunay_triangulation* plain = NULL;
   flaunay_constrained* result = NULL;
@@ -1205,7 +1277,7 @@ static void test_bad_constraints(void) {
                                      {.crossings = 2},
                                      {.outside = 3},
                                      {.fill_rule = -1},
-                                     {.reserved = {0, 1}}};
+                                     {.reserved = {1}}};
   const char* const texts[] = {"4",
                                "null",
                                "null",
@@ -1224,15 +1296,6 @@ static void test_bad_constraints(void) {
   CHECK(flaunay_constrained_mesh(NULL) == NULL && flaunay_constrained_get_arrays(NULL) == NULL);
   flaunay_constrained_destroy(NULL);
 }
-
-// A square with a hole, whose ring repeats its first point, and a triangle.
-static const double kRings[] = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 2, 4, 4, 4, 4, 2, 2, 2, 6, 0, 9, 3, 6, 6};
-static const size_t kRingOffsets[] = {0, 4, 9, 12}, kPolygonOffsets[] = {0, 2, 3};
-static const flaunay_polygons kPolygons = {.coordinates = kRings,
-                                           .ring_offsets = kRingOffsets,
-                                           .ring_count = 3,
-                                           .polygon_offsets = kPolygonOffsets,
-                                           .polygon_count = 2};
 
 static void test_polygons(void) {
   flaunay_constrained* result = NULL;
@@ -2208,6 +2271,7 @@ static void test_all(void) {
   test_voronoi();
   test_constrained();
   test_carried();
+  test_refined();
   test_constrained_without_constraints();
   test_bad_constraints();
   test_polygons();

@@ -1615,6 +1615,84 @@ TEST_F(CommandConstraintsTest, SegmentsBesidePointsBecomeEdges) {
   run_well({"triangulate", "-", "--constraints", segments}, kNoPlatform, contents(points));
 }
 
+TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
+  // Two squares side by side, one of which may have larger triangles.
+  const std::string poly = write("a.poly",
+                                 "6 2 0 1\n0 0 0 5\n1 2 0 5\n2 4 0 5\n3 4 2 5\n4 2 2 5\n5 0 2 5\n"
+                                 "7 1\n0 0 1 7\n1 1 2 7\n2 2 3 7\n3 3 4 7\n4 4 5 7\n5 5 0 7\n6 1 4 9\n0\n"
+                                 "2\n0 1 1 1 0.05\n1 3 1 2 -1\n");
+  const auto refine = [&](const Arguments& options) {
+    Arguments arguments = {"triangulate", poly,           "--min-angle",      "30",
+                           "--stats",     path("s.json"), "--vertex-markers", path("m.npy")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_well(arguments, kNoPlatform);
+  };
+  const Outcome outcome =
+      refine({"--max-area", "0.5", "--region-areas", "-o", path("b.ele"), "--areas", path("f.npy")});
+  EXPECT_NE(outcome.out.find("angles from 3"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("worse"), std::string::npos) << outcome.out;
+  const nlohmann::json stats = nlohmann::json::parse(contents(path("s.json"))), report = stats["refinement"];
+  EXPECT_GE(report["smallest_angle"], 30 - 1e-9);
+  EXPECT_LE(report["largest_angle"], 120 + 1e-9);
+  EXPECT_EQ(report["added_points"], stats["constraints"]["added_points"]);
+  EXPECT_EQ(stats["points"], 6 + report["added_points"].get<int>());
+  EXPECT_GT(report["rounds"], 0);
+  EXPECT_GT(report["split_points"], 0);
+  EXPECT_EQ(report["bad_triangles"]["kept"], 0);
+  // The points are beside the triangles, with the markers of their segments.
+  std::istringstream node(contents(path("b.node")));
+  std::size_t points = 0, dimension = 0, attributes = 0, markers = 0;
+  node >> points >> dimension >> attributes >> markers;
+  EXPECT_EQ(points, stats["points"].get<std::size_t>());
+  EXPECT_EQ(markers, 1U);
+  const std::vector<std::int32_t> found = read_array(path("m.npy")).values;
+  ASSERT_EQ(found.size(), points);
+  for (const std::int32_t marker : {7, 9, 0})
+    EXPECT_NE(std::count(found.begin() + 6, found.end(), marker), 0) << marker;
+  // An attribute per triangle: in region 1 there are more than 2 / 0.05.
+  std::istringstream ele(contents(path("b.ele")));
+  std::string line;
+  std::size_t of_first = 0, of_second = 0;
+  std::getline(ele, line);
+  while (std::getline(ele, line)) {
+    std::istringstream row(line);
+    std::vector<double> fields{std::istream_iterator<double>(row), std::istream_iterator<double>()};
+    ASSERT_GE(fields.size(), 5U);
+    ++(fields[4] == 1 ? of_first : of_second);
+  }
+  EXPECT_GE(of_first, 80U);
+  EXPECT_GE(of_second, 8U);
+  EXPECT_LT(of_second, of_first / 2);
+
+  // What is left is said, and where the first one is.
+  const Outcome kept = refine({"--max-area", "0.05", "--keep-edges", "all"});
+  EXPECT_NE(kept.out.find("at an edge that is kept; the first one is triangle "), std::string::npos)
+      << kept.out;
+  const auto of_kept = nlohmann::json::parse(contents(path("s.json")))["refinement"];
+  EXPECT_EQ(of_kept["split_points"], 0);
+  EXPECT_GT(of_kept["bad_triangles"]["kept"], 0);
+  const Outcome few = refine({"--max-area", "0.01", "--most-points", "5"});
+  EXPECT_NE(few.out.find("for --most-points"), std::string::npos) << few.out;
+  EXPECT_LE(nlohmann::json::parse(contents(path("s.json")))["refinement"]["added_points"], 5);
+
+  // Points alone are refined inside of their hull.
+  const std::string square = write("q.xy", "0 0\n1 0\n1 1\n0 1\n");
+  EXPECT_NEAR(area(square, {"--max-area", "0.01"}), 1, 1e-12);
+  EXPECT_GT(sorted_rows(path("t.npy")).size(), 100U);
+  run_well({"triangulate", poly, "--stats", path("s.json")}, kNoPlatform);
+  EXPECT_TRUE(nlohmann::json::parse(contents(path("s.json")))["refinement"].is_null());
+
+  expect_error(kUsage, {"--min-angle", "34"}, {"triangulate", poly, "--min-angle", "40"});
+  expect_error(kUsage, {"--max-area"}, {"triangulate", poly, "--max-area", "-1"});
+  expect_error(kUsage, {"--keep-edges", "needs --min-angle"}, {"triangulate", poly, "--keep-edges", "all"});
+  expect_error(kUsage, {"--region-areas", ".poly"}, {"triangulate", square, "--region-areas"});
+  expect_error(kUsage, {"--crossings", "needs segments"},
+               {"triangulate", square, "--max-area", "1", "--crossings", "split"});
+  expect_error(kUsage, {"--memory", "refinement"},
+               {"triangulate", square, "--max-area", "1", "--memory", "64M"});
+  expect_error(kUsage, {"no regions with areas"}, {"triangulate", data("star.poly"), "--region-areas"});
+}
+
 TEST_F(CommandConstraintsTest, ALetterIsWhatTriangleMakesOfIt) {
   // The outline is a trapezium without the gap between the legs; the opening is a hole.
   const double gap = (0.52 + 0.30) / 2 * 0.28, opening = 0.16 * 0.24 / 2, trapezium = (1 + 0.24) / 2;

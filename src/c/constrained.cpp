@@ -50,6 +50,23 @@ static_assert(FLAUNAY_OUTSIDE_HULL == static_cast<int>(Outside::hull) &&
               FLAUNAY_OUTSIDE_HOLES == static_cast<int>(Outside::holes));
 static_assert(FLAUNAY_FILL_RULE_EVEN_ODD == static_cast<int>(FillRule::even_odd) &&
               FLAUNAY_FILL_RULE_WINDING == static_cast<int>(FillRule::winding));
+flaunay_refinement_report view_of(const RefinementReport& report) {
+  flaunay_refinement_report view{};
+  view.rounds = report.rounds;
+  view.added_points = report.added_points;
+  view.split_points = report.split_points;
+  view.smallest_angle = report.smallest_angle;
+  view.largest_angle = report.largest_angle;
+  view.bad_count = report.bad_triangles.size();
+  view.bad_triangles = elements(report.bad_triangles);
+  view.excuses = reinterpret_cast<const std::uint8_t*>(elements(report.excuses));
+  return view;
+}
+
+static_assert(FLAUNAY_KEPT_EDGES_BORDER == static_cast<int>(KeptEdges::border) &&
+              FLAUNAY_KEPT_EDGES_ALL == static_cast<int>(KeptEdges::all));
+static_assert(FLAUNAY_EXCUSE_INPUT_ANGLE == static_cast<int>(Excuse::input_angle) &&
+              FLAUNAY_EXCUSE_MOST_ROUNDS == static_cast<int>(Excuse::most_rounds));
 static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
 
 Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
@@ -72,6 +89,28 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   return result;
 }
 
+Refinement to_refinement(const flaunay_refinement* wanted) {
+  Refinement result;
+  if (wanted == nullptr) return result;
+  const flaunay_refinement& given = *wanted;
+  c::check_reserved(given, "flaunay_refinement");
+  result.min_angle = given.min_angle;
+  result.max_area = given.max_area;
+  result.seed_areas = given.seed_areas;
+  if (given.areas_at != nullptr) {
+    result.areas_at = [call = given.areas_at, data = given.areas_data](const double* places,
+                                                                       std::size_t count, double* areas) {
+      call(places, count, areas, data);
+    };
+  }
+  result.kept = c::to_enum<KeptEdges>(given.kept, FLAUNAY_KEPT_EDGES_ALL, "flaunay_kept_edges");
+  result.kept_segments = given.kept_segments;
+  if (given.has_min_edge != 0) result.min_edge = given.min_edge;
+  if (given.has_most_points != 0) result.most_points = given.most_points;
+  if (given.most_rounds != 0) result.most_rounds = given.most_rounds;
+  return result;
+}
+
 // The options that are the same for segments and for polygons, without the defaults that differ.
 template <typename Result, typename Given>
 Result to_options(const Given& given, const flaunay_options* options) {
@@ -84,6 +123,7 @@ Result to_options(const Given& given, const flaunay_options* options) {
   static_cast<Options&>(result) = plain;
   result.crossings = c::to_enum<Crossings>(given.crossings, FLAUNAY_CROSSINGS_SPLIT, "flaunay_crossings");
   result.labels = given.labels != 0;
+  result.refinement = to_refinement(given.refinement);
   return result;
 }
 
@@ -137,6 +177,7 @@ struct flaunay_constrained {
     statistics.show(cpp.statistics);
     mesh = c::view_of(cpp, statistics);
     arrays = view_of(cpp);
+    refinement = view_of(cpp.refinement);
   }
   // The views refer to the other members.
   flaunay_constrained(const flaunay_constrained&) = delete;
@@ -146,6 +187,7 @@ struct flaunay_constrained {
   c::StatisticsView statistics;
   flaunay_mesh mesh;
   flaunay_constrained_arrays arrays;
+  flaunay_refinement_report refinement;
 };
 
 flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulator, const double* coordinates,
@@ -183,6 +225,10 @@ const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result) 
 
 const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_constrained* result) {
   return read(result, [](const auto& handle) { return &handle.arrays; });
+}
+
+const flaunay_refinement_report* flaunay_constrained_refinement(const flaunay_constrained* result) {
+  return read(result, [](const auto& handle) { return &handle.refinement; });
 }
 
 FLAUNAY_DEVICE_RESULT(constraints, "the constraint edges")

@@ -10,6 +10,7 @@
 #include "call/domains.hpp"
 #include "call/groups.hpp"
 #include "call/insert_segments.hpp"
+#include "call/refine.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
@@ -23,12 +24,13 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-void check(const Constraints& constraints) {
+void check(const Constraints& constraints, const Refinement& refinement) {
   call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
   call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
-  call::expect(
-      (constraints.seeds != nullptr && constraints.seed_attributes != nullptr) || constraints.seed_count == 0,
-      "the seeds or their attributes are null");
+  const bool has_seed_values = constraints.seed_attributes != nullptr || refinement.seed_areas != nullptr;
+  call::expect((constraints.seeds != nullptr && has_seed_values) || constraints.seed_count == 0,
+               "the seeds or their attributes are null");
+  call::check_refinement(refinement, constraints.seed_count);
 }
 
 // The coordinates of n points and of those that splitting added. Empty if there are none of these.
@@ -122,10 +124,11 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   return result;
 }
 
-// Edges have the markers of their segments, and so have points that splitting added.
+// Edges have the markers of their segments, and so have points that were added on them.
 void carry_markers(const Constraints& constraints, std::size_t n, ConstrainedTriangulation& result) {
   const std::int32_t* const of_segments = constraints.segment_markers;
   if (of_segments != nullptr) {
+    result.edge_markers.clear();
     for (const std::int32_t segment : result.edge_segments) {
       result.edge_markers.push_back(of_segments[segment]);
     }
@@ -232,19 +235,33 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
                                                    const DomainRequest& request) {
   geometry::check_offsets(offsets);
   geometry::check_coordinates(coordinates, offsets.back());
-  check(constraints);
-  if (auto joined = constrain_by_groups(self, coordinates, offsets, constraints, options, request)) {
-    return *std::move(joined);
+  check(constraints, options.refinement);
+  const bool is_refined = options.refinement.is_wanted();
+  // What is made of the triangles that are left comes after their refinement.
+  ConstrainedOptions first = options;
+  if (is_refined) {
+    first.neighbors = true;
+    first.halfedges = first.areas = false;
   }
-  ConstrainedTriangulation result = options.crossings == Crossings::split
-                                        ? constrain_split(self, coordinates, offsets, constraints, options)
-                                        : constrain(self, coordinates, offsets, constraints, options);
-  const double begin = host::now();
+  auto grouped = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
+  if (grouped && !is_refined) return *std::move(grouped);
+  ConstrainedTriangulation result = grouped ? *std::move(grouped)
+                                    : options.crossings == Crossings::split
+                                        ? constrain_split(self, coordinates, offsets, constraints, first)
+                                        : constrain(self, coordinates, offsets, constraints, first);
+  double begin = host::now();
+  std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
+  const auto points = [&] { return all.empty() ? coordinates : all.data(); };
+  Ids seeds;
+  if (!grouped) seeds = apply_domains(self, points(), offsets, constraints, request, result);
+  if (is_refined) {
+    if (!grouped) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
+    refine(self, points(), offsets, options, seeds, result);
+    all = with_added(coordinates, offsets.back(), result.added_points);
+  }
   carry_markers(constraints, offsets.back(), result);
-  const std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
-  apply_domains(self, all.empty() ? coordinates : all.data(), offsets, constraints, request, result);
-  finish(self, all.empty() ? coordinates : all.data(), options, result);
-  end_phase("domains", begin, result.statistics);
+  finish(self, points(), options, result);
+  end_phase(is_refined ? "refine" : "domains", begin, result.statistics);
   return result;
 }
 

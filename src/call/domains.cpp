@@ -104,21 +104,23 @@ DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
   return {{options.fill_rule, options.outside, are_closed}, options.labels};
 }
 
-void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-                   const Constraints& constraints, const DomainRequest& request,
-                   ConstrainedTriangulation& result) {
+std::vector<std::int32_t> apply_domains(Implementation& self, const double* coordinates,
+                                        const std::vector<std::size_t>& offsets,
+                                        const Constraints& constraints, const DomainRequest& request,
+                                        ConstrainedTriangulation& result) {
   const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
-  if (!request.needs_depths() && !has_places) return;
+  if (!request.needs_depths() && !has_places) return {};
   // About two triangles per point.
   const bool is_small = !self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points;
   Engine& engine = is_small ? Engine::of_thread() : self.for_host_memory();
   Engine& with_doubles = has_places ? self.with_doubles(engine) : engine;
-  apply_domains_on(engine, with_doubles, coordinates, offsets, constraints, request, result);
+  return apply_domains_on(engine, with_doubles, coordinates, offsets, constraints, request, result);
 }
 
-void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
-                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      const DomainRequest& request, ConstrainedTriangulation& result) {
+std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
+                                           const std::vector<std::size_t>& offsets,
+                                           const Constraints& constraints, const DomainRequest& request,
+                                           ConstrainedTriangulation& result) {
   Left left;
   Frame call(engine);
   host::Runtime& runtime = call.runtime;
@@ -164,14 +166,17 @@ void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordi
   if (request.polygons) write(regions.polygons, result.polygons);
   if (constraints.seed_count > 0) write(regions.seeds, left.seeds);
   call.end();
-  for (const std::int32_t seed : left.seeds) {
-    result.triangle_attributes.push_back(seed < 0 ? 0 : constraints.seed_attributes[seed]);
+  if (constraints.seed_attributes != nullptr) {
+    for (const std::int32_t seed : left.seeds) {
+      result.triangle_attributes.push_back(seed < 0 ? 0 : constraints.seed_attributes[seed]);
+    }
   }
-  if (are_all_left) return;
+  if (are_all_left) return std::move(left.seeds);
   result.triangles = std::move(left.triangles);
   result.neighbors = std::move(left.neighbors);
   result.constrained = std::move(left.constrained);
   result.triangle_offsets = std::move(left.triangle_offsets);
+  return std::move(left.seeds);
 }
 
 }  // namespace flaunay::call

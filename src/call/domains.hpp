@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "call/implementation.hpp"
@@ -28,14 +29,17 @@ DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
 /// Labels a triangulation, which must have neighbours, leaves out what the request and the holes say, and
 /// writes the attributes of triangles if there are seeds: on the engine for host memory or, if it is small
 /// and no device was named, on the calling thread. coordinates: of all points, those that splitting added
-/// too; offsets: without those.
-void apply_domains(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-                   const Constraints& constraints, const DomainRequest& request,
-                   ConstrainedTriangulation& result);
+/// too; offsets: without those. Returns for each triangle that is left the seed of its region, or -1; nothing
+/// if there are no seeds.
+std::vector<std::int32_t> apply_domains(Implementation& self, const double* coordinates,
+                                        const std::vector<std::size_t>& offsets,
+                                        const Constraints& constraints, const DomainRequest& request,
+                                        ConstrainedTriangulation& result);
 /// Applies the domains on an engine. with_doubles: finds holes and seeds; another engine if the first one
 /// computes in fixed point.
-void apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
-                      const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                      const DomainRequest& request, ConstrainedTriangulation& result);
+std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
+                                           const std::vector<std::size_t>& offsets,
+                                           const Constraints& constraints, const DomainRequest& request,
+                                           ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

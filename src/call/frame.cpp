@@ -24,6 +24,32 @@ void add_note(const Engine& asked, const Engine& used, const std::string& what, 
                                                  asked.runtime.name(), what, done));
 }
 
+void add_accounts(Engine& engine, Statistics& all) {
+  Statistics step;
+  engine.write_accounts(step);
+  all.build_seconds += step.build_seconds;
+  all.kernel_launches += step.kernel_launches;
+  all.host_waits += step.host_waits;
+  all.bytes_to_device += step.bytes_to_device;
+  all.bytes_to_host += step.bytes_to_host;
+  all.device_allocations += step.device_allocations;
+  host::append_note(all.note, step.note);
+  all.device_bytes_peak = std::max(all.device_bytes_peak, step.device_bytes_peak);
+  for (const KernelStatistics& kernel : step.kernels) {
+    const auto same = std::find_if(all.kernels.begin(), all.kernels.end(),
+                                   [&kernel](const KernelStatistics& k) { return k.name == kernel.name; });
+    if (same == all.kernels.end()) {
+      all.kernels.push_back(kernel);
+    } else {
+      same->launches += kernel.launches;
+      same->seconds += kernel.seconds;
+    }
+  }
+  std::stable_sort(
+      all.kernels.begin(), all.kernels.end(),
+      [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
+}
+
 namespace {
 
 // For another engine on the same device: a queue of the caller's, or else the own queue of the triangulator,

@@ -1,6 +1,5 @@
 #include "call/insert_segments.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include "call/frame.hpp"
@@ -8,7 +7,6 @@
 #include "constrained/crossings/first_crossing.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/insertion/insert.hpp"
-#include "host/note.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -17,31 +15,6 @@ namespace {
 
 // So many are inserted in less time than it takes to look for an early error.
 constexpr std::size_t kFewSegments = 500;
-
-// Adds what one step of a call did to what others did.
-void add(const Statistics& step, Statistics& all) {
-  all.build_seconds += step.build_seconds;
-  all.kernel_launches += step.kernel_launches;
-  all.host_waits += step.host_waits;
-  all.bytes_to_device += step.bytes_to_device;
-  all.bytes_to_host += step.bytes_to_host;
-  all.device_allocations += step.device_allocations;
-  host::append_note(all.note, step.note);
-  all.device_bytes_peak = std::max(all.device_bytes_peak, step.device_bytes_peak);
-  for (const KernelStatistics& kernel : step.kernels) {
-    const auto same = std::find_if(all.kernels.begin(), all.kernels.end(),
-                                   [&kernel](const KernelStatistics& k) { return k.name == kernel.name; });
-    if (same == all.kernels.end()) {
-      all.kernels.push_back(kernel);
-    } else {
-      same->launches += kernel.launches;
-      same->seconds += kernel.seconds;
-    }
-  }
-  std::stable_sort(
-      all.kernels.begin(), all.kernels.end(),
-      [](const KernelStatistics& a, const KernelStatistics& b) { return a.seconds > b.seconds; });
-}
 
 // Makes segments edges of a mesh, which kernels change. edges: gets the arrays of constraint edges. Returns
 // their number.
@@ -138,9 +111,7 @@ void insert_segments(Implementation& self, const double* coordinates, const std:
                                                   [&] { phases.interrupt("compiling kernels"); });
     const auto done = insert_segments_on(used, coordinates, offsets, constraints, options, result);
     if (!done) return done;
-    Statistics step;
-    used.write_accounts(step);
-    add(step, result.statistics);
+    add_accounts(used, result.statistics);
     return done;
   };
   in_fixed_point_or([&] { return insert(engine); },

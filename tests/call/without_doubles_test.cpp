@@ -520,6 +520,20 @@ TEST(WithoutDoubles, HolesAndCrossings) {
   }
 }
 
+TEST(WithoutDoubles, Refinement) {
+  const Rows rows(0.25);
+  ConstrainedOptions options;
+  options.refinement.min_angle = 25;
+  const auto result_of = [&](Triangulator& used) {
+    return used.constrained(rows.points.data(), rows.n(), rows.constraints, options);
+  };
+  const ConstrainedTriangulation expected = result_of(on_host()), found = result_of(triangulator());
+  EXPECT_GT(expected.added_points.size(), 0U);
+  expect_same(found, expected);
+  EXPECT_TRUE(same(found.added_points, expected.added_points));
+  expect_note(found.statistics, true, "refined on the host");
+}
+
 TEST(WithoutDoubles, Polygons) {
   Polygons polygons;
   const Coordinates ring = {0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 1, 3, 3, 3, 3, 1};

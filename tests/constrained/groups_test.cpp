@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "flaunay/result_arrays.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"
@@ -28,20 +27,6 @@ struct Triangulators {
   Triangulator together = host("group_points=0"), groups = host("group_points=40"),
                alone = host("group_points=1");
 };
-
-void expect_same_arrays(const Triangulation& found, const Triangulation& expected) {
-  for_each_array([&](const auto& array, std::size_t) {
-    EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
-  });
-  expect_same_sizes(found, expected);
-}
-
-void expect_same_arrays(const ConstrainedTriangulation& found, const ConstrainedTriangulation& expected) {
-  expect_same_arrays(static_cast<const Triangulation&>(found), expected);
-  for_each_array(kConstrainedArrays, [&](const auto& array, std::size_t) {
-    EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
-  });
-}
 
 // call(triangulator) with and without groups. By groups, there are two phases.
 template <typename Call>

@@ -1,4 +1,4 @@
-// Whether two arrays are the same, to the sign of each zero, and two triangulations of the same sizes.
+// Whether two arrays are the same, to the sign of each zero, and two triangulations.
 #pragma once
 
 #include <CL/cl.h>
@@ -7,6 +7,8 @@
 #include <cmath>
 #include <type_traits>
 #include <vector>
+
+#include "flaunay/result_arrays.hpp"
 
 namespace flaunay::testing {
 
@@ -50,6 +52,22 @@ void expect_same_sizes(const Result& found, const Result& expected) {
   EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
   EXPECT_EQ(found.statistics.triangles, expected.statistics.triangles);
   EXPECT_EQ(found.statistics.hull_vertices, expected.statistics.hull_vertices);
+}
+
+/// All arrays of two triangulations.
+inline void expect_same_arrays(const Triangulation& found, const Triangulation& expected) {
+  for_each_array([&](const auto& array, std::size_t) {
+    EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
+  });
+  expect_same_sizes(found, expected);
+}
+
+inline void expect_same_arrays(const ConstrainedTriangulation& found,
+                               const ConstrainedTriangulation& expected) {
+  expect_same_arrays(static_cast<const Triangulation&>(found), expected);
+  for_each_array(kConstrainedArrays, [&](const auto& array, std::size_t) {
+    EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
+  });
 }
 
 }  // namespace flaunay::testing

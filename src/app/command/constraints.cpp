@@ -29,6 +29,13 @@ const NamedChoices<FillRule> kFillRules = {
 
 const NamedChoices<Overlaps> kOverlaps = {{"first", Overlaps::first}, {"error", Overlaps::error}};
 
+const NamedChoices<KeptEdges> kKeptEdges = {
+    {"none", KeptEdges::none}, {"border", KeptEdges::border}, {"all", KeptEdges::all}};
+
+// Those that ask for refinement, and those that say how.
+const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas"};
+const std::vector<std::string> kRefinementLimits = {"--keep-edges", "--min-edge", "--most-points"};
+
 const std::vector<std::string> kChoices = {"--crossings", "--outside",  "--fill",
                                            "--hole",      "--separate", "--overlaps"};
 
@@ -71,7 +78,7 @@ io::Map read_input(const std::string& input, const ConstraintRequest& request) {
   io::Map map;
   map.points = io::read_points(input);
   map.has_others = true;
-  map.segments = io::read_segments(request.segments, map.points.size());
+  if (!request.segments.empty()) map.segments = io::read_segments(request.segments, map.points.size());
   return map;
 }
 
@@ -108,6 +115,11 @@ void check_carried(const io::Map& map, const std::string& input, const Constrain
     check(AskedBy::point_markers, !map.points.markers.empty(), "markers of points");
     check(AskedBy::seeds, !map.regions.empty(), "regions with attributes");
   });
+  const auto has_area = [](const io::PolyRegion& region) { return region.area.has_value(); };
+  if (request.region_areas && std::none_of(map.regions.begin(), map.regions.end(), has_area)) {
+    throw Error(ErrorKind::usage, fmt::format("{} has no regions with areas, which --region-areas needs",
+                                              io::printable(input)));
+  }
 }
 
 /// Whether the map is given to the library as polygons, which knows then which triangle is in which of them.
@@ -134,6 +146,7 @@ ConstrainedOptions options_of(const Task& task, const ConstraintRequest& request
   options.crossings = request.crossings;
   options.outside = request.outside;
   options.fill_rule = request.fill;
+  options.refinement = request.refinement;
   options.labels = io::shows_labels(task.results.mesh) || wants(request, AskedBy::labels);
   options.progress = progress.callback();
   return options;
@@ -151,15 +164,14 @@ std::vector<std::int32_t> sets_of(const Triangulation& mesh) {
 }
 
 ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const io::Map& map,
-                                              const ConstraintRequest& request,
-                                              const ConstrainedOptions& options) {
+                                              const ConstraintRequest& request, ConstrainedOptions options) {
   Polygons polygons;
   polygons.coordinates = map.points.coordinates.data();
   polygons.ring_offsets = map.ring_offsets;
   polygons.polygon_offsets = map.polygon_offsets;
   polygons.part_offsets = map.part_offsets;
   PolygonOptions polygon_options;
-  static_cast<ConstrainedOptions&>(polygon_options) = options;
+  static_cast<ConstrainedOptions&>(polygon_options) = std::move(options);
   polygon_options.map = !request.separate;
   polygon_options.overlaps = request.overlaps;
   ConstrainedTriangulation mesh = triangulator.polygons(polygons, polygon_options);
@@ -168,8 +180,7 @@ ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const 
 }
 
 ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const io::Map& map,
-                                              const ConstraintRequest& request,
-                                              const ConstrainedOptions& options) {
+                                              const ConstraintRequest& request, ConstrainedOptions options) {
   const std::vector<std::int32_t> segments = all_segments(map);
   Constraints constraints;
   constraints.rings = rings_of(map, request.fill);
@@ -179,11 +190,14 @@ ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const 
   constraints.hole_count = map.holes.size() / 2;
   if (!map.segment_markers.empty()) constraints.segment_markers = map.segment_markers.data();
   if (!map.points.markers.empty()) constraints.point_markers = map.points.markers.data();
-  std::vector<double> seeds, attributes;
+  std::vector<double> seeds, attributes, areas;
   for (const io::PolyRegion& region : map.regions) {
     seeds.insert(seeds.end(), {region.place[0], region.place[1]});
     attributes.push_back(region.attribute);
+    // As for Triangle, negative areas are none.
+    areas.push_back(std::max(region.area.value_or(0), 0.0));
   }
+  if (request.region_areas) options.refinement.seed_areas = areas.data();
   constraints.seeds = seeds.data();
   constraints.seed_attributes = attributes.data();
   constraints.seed_count = attributes.size();
@@ -217,6 +231,19 @@ std::string empty_note(const ConstrainedTriangulation& mesh, const ConstraintReq
     return degenerate_note(statistics);
   }
   return "note: no triangles: no part of the plane is inside; --outside keep keeps what is outside\n";
+}
+
+/// A line that says which triangles are worse than asked for; empty if there are none.
+std::string refinement_note(const ConstrainedTriangulation& mesh, const std::vector<double>& points) {
+  const std::vector<std::int32_t>& bad = mesh.refinement.bad_triangles;
+  if (bad.empty()) return "";
+  double place[2] = {0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto v = static_cast<std::size_t>(mesh.triangles[3 * static_cast<std::size_t>(bad[0]) + k]);
+    for (std::size_t axis = 0; axis < 2; ++axis) place[axis] += points[2 * v + axis] / 3;
+  }
+  return fmt::format("note: worse than asked for: {}; the first one is triangle {} at ({:.6g}, {:.6g})\n",
+                     excuses_text(mesh.refinement), bad[0], place[0], place[1]);
 }
 
 void write_results(const Task& task, const ConstraintRequest& request, const io::Map& map,
@@ -268,6 +295,27 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
   add_named_choice(command, "--overlaps", request.overlaps,
                    "GeoJSON: what is in several polygons belongs to the first one, or is an error", kOverlaps)
       ->default_str("first");
+  Refinement& refinement = request.refinement;
+  command
+      ->add_option("--min-angle", refinement.min_angle,
+                   "Add points until no triangle has a smaller angle, in degrees, from 0 to 34")
+      ->check(CLI::Range(0.0, 34.0))
+      ->type_name("DEGREES");
+  command->add_option("--max-area", refinement.max_area, "Add points until no triangle is larger")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("AREA");
+  command->add_flag("--region-areas", request.region_areas,
+                    ".poly: add points until no triangle is larger than its region allows");
+  add_named_choice(command, "--keep-edges", refinement.kept,
+                   "Which edges points must not be put on: none, those at the border, or all constraints",
+                   kKeptEdges)
+      ->default_str("none");
+  command
+      ->add_option("--min-edge", refinement.min_edge,
+                   "Put no two points nearer to each other; default: 2^-40 of the extent")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("LENGTH");
+  command->add_option("--most-points", refinement.most_points, "Add no more points")->type_name("N");
   for_each_file([&](const auto& array, std::size_t k) { add_array(command, array, request.arrays[k]); });
   add_path(command, "--points", request.points,
            fmt::format("The points of the map and those that were added, to which indices refer: {}",
@@ -306,14 +354,21 @@ Rings rings_of(const io::Map& map, FillRule fill) {
 
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
   const bool is_map = io::is_map(input);
-  const bool has_any = is_map || !request.segments.empty();
-  if (!has_any) {
-    for (const auto& options : {kChoices, file_options()}) {
-      refuse_all(command, options, "needs segments: --constraints, or a .poly or .geojson file as input");
+  const auto was_given = [&command](const std::string& option) { return command.count(option) > 0; };
+  const bool is_refined = std::any_of(kRefining.begin(), kRefining.end(), was_given);
+  if (!is_refined) refuse_all(command, kRefinementLimits, "needs --min-angle, --max-area or --region-areas");
+  const bool has_segments = is_map || !request.segments.empty();
+  if (!has_segments) {
+    const char* const reason = "needs segments: --constraints, or a .poly or .geojson file as input";
+    refuse_all(command, kChoices, reason);
+    if (!is_refined) {
+      refuse_all(command, file_options(), reason);
+      return false;
     }
-    return false;
   }
-  check_domain_options(command, input, request);
+  if (io::ending_of(input) != ".poly") refuse(command, "--region-areas", "needs regions, from a .poly file");
+  if (has_segments) check_domain_options(command, input, request);
+  const char* const needing = has_segments ? "constraints need" : "refinement needs";
   if (io::ending_of(input) == ".poly" || !is_map) {
     refuse_all(command, {"--separate", "--overlaps", "--polygons"}, "needs polygons, from a .geojson file");
   }
@@ -322,9 +377,9 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
     refuse(command, "--overlaps", "with --separate, each polygon has triangles of its own");
   }
   refuse_all(command, {"--memory", "--chunk-points", "--scratch"},
-             "constraints need all points at once, not in chunks");
+             fmt::format("{} all points at once, not in chunks", needing));
   if (command.count("--mode") > 0 && command.get_option("--mode")->as<std::string>() != "blocks") {
-    refuse(command, "--mode", "constraints need --mode blocks, the default");
+    refuse(command, "--mode", fmt::format("{} --mode blocks, the default", needing));
   }
   request.chose_overlaps = command.count("--overlaps") > 0;
   return true;
@@ -363,6 +418,7 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
        {"hole", task.input}},
       [&] { return triangulate(triangulator, map, request, options_of(task, request, progress)); });
   facts.constraints = facts_of(map, request, mesh);
+  if (request.is_refined()) facts.refinement = mesh.refinement;
   map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
                                 mesh.added_points.end());
   map.points.markers = mesh.vertex_markers;
@@ -371,8 +427,9 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
   if (!task.quiet) {
     std::string text = task.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
-    print(text + empty_note(mesh, request) + host_note(facts.compiling_note) +
-          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
+    print(text + empty_note(mesh, request) + refinement_note(mesh, map.points.coordinates) +
+          host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
+          summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

@@ -18,11 +18,15 @@ struct ConstraintRequest {
   FillRule fill = FillRule::nesting;
   std::vector<std::string> holes;  ///< "X,Y" each
   bool separate = false;
+  Refinement refinement;
+  bool region_areas = false;  ///< seed areas are those of the input
   Overlaps overlaps = Overlaps::first;
   ArrayPaths<decltype(kConstrainedArrays)> arrays;
   std::string points;  ///< the file for input and added points
   // Whether the user chose these; otherwise the input decides.
   bool chose_outside = false, chose_fill = false, chose_overlaps = false;
+
+  bool is_refined() const { return refinement.is_wanted() || region_areas; }
 };
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);

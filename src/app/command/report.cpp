@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "app/command/json.hpp"
@@ -97,6 +98,43 @@ Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
           {"fill", constraints->fill}};
 }
 
+// What excuses are called in statistics and in notes, from the first one on.
+struct ExcuseNames {
+  const char *key, *text;
+};
+constexpr std::array<ExcuseNames, 7> kExcuses = {{{"input_angle", "between segments at a small angle"},
+                                                  {"near_apex", "near a small angle between segments"},
+                                                  {"min_edge", "for --min-edge"},
+                                                  {"kept", "at an edge that is kept"},
+                                                  {"frozen", "at an edge that is too short to be split"},
+                                                  {"most_points", "for --most-points"},
+                                                  {"most_rounds", "for the limit of rounds"}}};
+
+std::array<std::size_t, kExcuses.size()> count_excuses(const RefinementReport& report) {
+  std::array<std::size_t, kExcuses.size()> counts{};
+  for (const Excuse excuse : report.excuses) ++counts.at(static_cast<std::size_t>(excuse) - 1);
+  return counts;
+}
+
+std::string refinement_counts(const std::optional<RefinementReport>& report) {
+  if (!report) return "";
+  return fmt::format(", angles from {:.2f} to {:.2f} degrees after {}", report->smallest_angle,
+                     report->largest_angle, counted(report->rounds, "round", "rounds"));
+}
+
+Json refinement_json(const std::optional<RefinementReport>& report) {
+  if (!report) return Json();
+  const auto counts = count_excuses(*report);
+  Json bad;
+  for (std::size_t k = 0; k < counts.size(); ++k) bad[kExcuses[k].key] = counts[k];
+  return {{"rounds", report->rounds},
+          {"added_points", report->added_points},
+          {"split_points", report->split_points},
+          {"smallest_angle", report->smallest_angle},
+          {"largest_angle", report->largest_angle},
+          {"bad_triangles", bad}};
+}
+
 OperationCounts sum_over_levels(const Work& work, std::size_t component) {
   OperationCounts sum = work.start[component];
   for (const Work::Components& level : work.levels) sum += level[component];
@@ -115,8 +153,8 @@ std::string work_row(const char* name, const OperationCounts& counts, std::size_
 }  // namespace
 
 std::string summary(const Statistics& statistics, const RunFacts& facts) {
-  return fmt::format("{}{}; {}", counts(statistics), constraint_counts(facts.constraints),
-                     times_and_speed(statistics, facts));
+  return fmt::format("{}{}{}; {}", counts(statistics), constraint_counts(facts.constraints),
+                     refinement_counts(facts.refinement), times_and_speed(statistics, facts));
 }
 
 std::string chunk_summary(const ChunkStatistics& statistics, const RunFacts& facts) {
@@ -181,6 +219,17 @@ std::string degenerate_note(const Statistics& statistics) {
       "note: all {} distinct points are on one line: no triangles; the hull is those, in order\n", distinct);
 }
 
+std::string excuses_text(const RefinementReport& report) {
+  const auto counts = count_excuses(report);
+  std::string text;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counted(counts[k], "triangle", "triangles"),
+                        kExcuses[k].text);
+  }
+  return text;
+}
+
 std::string host_note(const std::string& note) { return note.empty() ? "" : "note: " + note + "\n"; }
 
 std::string kernel_table(const Statistics& statistics) {
@@ -231,6 +280,7 @@ std::string statistics_json(const research::Triangulation& result, const RunFact
   json["input"] = facts.input;
   add_counts(json, statistics);
   json["constraints"] = constraints_json(facts.constraints);
+  json["refinement"] = refinement_json(facts.refinement);
   json["seconds"] = {{"reading", facts.reading_seconds},
                      {"opening_device", facts.opening_seconds},
                      {"building_programs", compiling_seconds(statistics, facts)},

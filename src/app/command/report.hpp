@@ -6,6 +6,7 @@
 #include <string>
 
 #include "flaunay/chunks.hpp"
+#include "flaunay/refinement.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::cli {
@@ -25,6 +26,7 @@ struct RunFacts {
   bool counted = false;        ///< Triangulation::work is filled
   std::string what_was_done = "triangulated";
   std::optional<ConstraintFacts> constraints;
+  std::optional<RefinementReport> refinement;
   double reading_seconds = 0;
   double opening_seconds = 0;    ///< choosing the device and testing it, which compiles a few kernels
   double compiling_seconds = 0;  ///< the call of compile_kernels
@@ -45,6 +47,9 @@ std::string partition_summary(const research::Partition& partition, const RunFac
 
 /// A line that says why there are no triangles; empty if there are some.
 std::string degenerate_note(const Statistics& statistics);
+
+/// How many triangles are worse than asked for, by the reasons.
+std::string excuses_text(const RefinementReport& report);
 
 /// A line that says what the device left to the host (Statistics::note); empty if it left nothing.
 std::string host_note(const std::string& note);

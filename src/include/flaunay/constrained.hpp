@@ -74,7 +74,7 @@ struct Constraints {
   /// x and y per seed: the region that this place is in has an attribute. If there are some,
   /// ConstrainedTriangulation::triangle_attributes are computed.
   const double* seeds = nullptr;
-  const double* seed_attributes = nullptr;  ///< one per seed
+  const double* seed_attributes = nullptr;  ///< one per seed; may be null if there are seed_areas
   std::size_t seed_count = 0;               ///< number of seeds
   /// sets + 1 values: set s has seeds [seed_offsets[s], seed_offsets[s + 1]). May be empty if there is one
   /// set.
@@ -87,6 +87,7 @@ struct ConstrainedOptions : Options {
   Outside outside = Outside::keep;         ///< which triangles the result has
   FillRule fill_rule = FillRule::nesting;  ///< what is outside, and what is a hole
   bool labels = false;                     ///< compute ConstrainedTriangulation::depths and regions
+  Refinement refinement;                   ///< what the triangles that are left are refined to
 };
 
 /// What becomes of places that are in several polygons of a map.
@@ -128,15 +129,17 @@ struct PolygonOptions : ConstrainedOptions {
 };
 
 /// The triangulations of one or more point sets with constraints. If triangles are left out, neighbours and
-/// half-edges are -1 there; the hull remains that of the points.
+/// half-edges are -1 there; the hull remains that of the points. Refinement splits edges of the hull that are
+/// left: it then has the points added on them, too, and turns there by rounding.
 struct ConstrainedTriangulation : Triangulation {
-  /// x and y of the points that splitting added. The k-th one has the index n + k. Points of a set follow
-  /// each other, set by set.
+  /// x and y of the points that splitting added, and then those of refinement. The k-th one has the index
+  /// n + k. Points of a set follow each other, set by set.
   std::vector<double> added_points;
   /// sets + 1 values: set s has added points [added_offsets[s], added_offsets[s + 1]).
   std::vector<std::size_t> added_offsets;
   /// The edges that segments are made of, each once: 2 points per edge, the lexicographically smaller one
-  /// first. Edges that follow each other on a segment follow each other here.
+  /// first. Edges that follow each other on a segment follow each other here. Those that refinement has split
+  /// an edge into have its direction.
   std::vector<std::int32_t> constraint_edges;
   /// One per constraint edge: the smallest index of a segment that has it.
   std::vector<std::int32_t> edge_segments;
@@ -157,12 +160,13 @@ struct ConstrainedTriangulation : Triangulation {
   std::vector<std::int32_t> polygons;
   /// One per constraint edge: the marker of its segment in edge_segments.
   std::vector<std::int32_t> edge_markers;
-  /// One per point: those of the input as they were given, and for each point that splitting added the marker
-  /// of the segment with the smallest index that has it; 0 if segments have no markers.
+  /// One per point: those of the input as they were given, and for each point that was added the marker of
+  /// the segment with the smallest index that has it; 0 if none has it or segments have no markers.
   std::vector<std::int32_t> vertex_markers;
   /// One per triangle: the attribute of its region; of several seeds in one region the last one counts, and
   /// where there is none it is 0. Seeds on a constraint, and those in no triangle, count for nothing.
   std::vector<double> triangle_attributes;
+  RefinementReport refinement;  ///< how refinement went; of all sets together
 };
 
 }  // namespace flaunay

@@ -175,6 +175,24 @@ typedef enum flaunay_interpolation {
 typedef struct flaunay_triangulator flaunay_triangulator;
 /// The triangulations of one or more point sets, in host memory.
 typedef struct flaunay_triangulation flaunay_triangulation;
+/// Which constraints may be split by points that are added.
+typedef enum flaunay_kept_edges {
+  FLAUNAY_KEPT_EDGES_NONE = 0,    ///< all may be split
+  FLAUNAY_KEPT_EDGES_BORDER = 1,  ///< those with triangles on one side only are kept as they are
+  FLAUNAY_KEPT_EDGES_ALL = 2      ///< all are kept as they are
+} flaunay_kept_edges;
+
+/// Why a triangle is worse than it should be; docs/refinement.md says more.
+typedef enum flaunay_excuse {
+  FLAUNAY_EXCUSE_INPUT_ANGLE = 1,  ///< its smallest angle is one between two segments
+  FLAUNAY_EXCUSE_NEAR_APEX = 2,    ///< its shortest edge joins two segments near where they meet
+  FLAUNAY_EXCUSE_MIN_EDGE = 3,     ///< what would mend it is nearer to a point than min_edge
+  FLAUNAY_EXCUSE_KEPT = 4,         ///< a constraint is in the way that must not be split
+  FLAUNAY_EXCUSE_FROZEN = 5,       ///< a constraint is in the way that rounding does not allow to split
+  FLAUNAY_EXCUSE_MOST_POINTS = 6,  ///< most_points were added
+  FLAUNAY_EXCUSE_MOST_ROUNDS = 7   ///< most_rounds were made
+} flaunay_excuse;
+
 /// The triangulations of one or more point sets with constraints, in host memory.
 typedef struct flaunay_constrained flaunay_constrained;
 /// Constraint edges in device memory.
@@ -414,6 +432,38 @@ typedef struct flaunay_mesh {
   const double* areas;                   ///< t values; NULL if not asked for
 } flaunay_mesh;
 
+/// What a mesh is refined to. {0}: nothing is added.
+typedef struct flaunay_refinement {
+  double min_angle;  ///< in degrees, from 0 to 34: no angle of a triangle is smaller; 0 for any
+  double max_area;   ///< no triangle is larger; 0 for any
+  /// NULL, or one per seed of flaunay_constraints: the largest area of a triangle in its region, 0 for any.
+  const double* seed_areas;
+  /// If not NULL, called once a round on the calling thread: gives the areas that triangles may have, 0 or
+  /// infinity for any. places: x and y of the centroids of `count` triangles. It must return normally.
+  void (*areas_at)(const double* places, size_t count, double* areas, void* areas_data);
+  void* areas_data;              ///< passed to areas_at unchanged
+  int kept;                      ///< a flaunay_kept_edges
+  const uint8_t* kept_segments;  ///< NULL, or one per segment: 1 if it must not be split
+  int has_min_edge;              ///< other than 0: `min_edge` counts; 0: 2^-40 of the bounding box
+  double min_edge;               ///< no two points are put nearer to each other
+  int has_most_points;           ///< other than 0: `most_points` counts; 0: there is no limit
+  size_t most_points;            ///< no more points are added
+  size_t most_rounds;            ///< no more rounds are made; 0: 10,000
+  uintptr_t reserved[4];         ///< 0
+} flaunay_refinement;
+
+/// How a refinement went.
+typedef struct flaunay_refinement_report {
+  size_t rounds;                 ///< in which points were added
+  size_t added_points;           ///< on constraints or not
+  size_t split_points;           ///< those of them that are on constraints
+  double smallest_angle;         ///< of all triangles, in degrees, rounded
+  double largest_angle;          ///< of all triangles, in degrees, rounded
+  size_t bad_count;              ///< number of triangles that are worse than asked for
+  const int32_t* bad_triangles;  ///< these, ascending; NULL if there are none
+  const uint8_t* excuses;        ///< a flaunay_excuse for each of them
+} flaunay_refinement_report;
+
 /// Segments that are to be edges, what is to be left out, and what is known of segments, points and regions.
 /// {0}: no segments.
 typedef struct flaunay_constraints {
@@ -435,10 +485,11 @@ typedef struct flaunay_constraints {
   /// x and y per seed: the region that this place is in has an attribute. If there are some,
   /// triangle_attributes are computed.
   const double* seeds;
-  const double* seed_attributes;  ///< one per seed
-  size_t seed_count;              ///< number of seeds
-  const size_t* seed_offsets;     ///< as hole_offsets
-  uintptr_t reserved[2];          ///< 0
+  const double* seed_attributes;         ///< one per seed; may be NULL if there are seed_areas
+  size_t seed_count;                     ///< number of seeds
+  const size_t* seed_offsets;            ///< as hole_offsets
+  const flaunay_refinement* refinement;  ///< NULL for none
+  uintptr_t reserved[1];                 ///< 0
 } flaunay_constraints;
 
 /// Polygons with holes, as rings with offsets, in the layout of GeoArrow. {0}: no polygons. A ring may repeat
@@ -474,13 +525,14 @@ typedef struct flaunay_polygons {
   /// of polygons. Ignored by nesting. NULL: the fill rule counts all rings of a polygon alike, and part_count
   /// is ignored.
   const size_t* part_offsets;
-  size_t part_count;      ///< number of parts
-  uintptr_t reserved[6];  ///< 0
+  size_t part_count;                     ///< number of parts
+  const flaunay_refinement* refinement;  ///< NULL for none
+  uintptr_t reserved[5];                 ///< 0
 } flaunay_polygons;
 
 /// What a constrained triangulation has besides its triangles. Arrays are NULL if they are empty.
 typedef struct flaunay_constrained_arrays {
-  size_t added_count;           ///< a, the number of points that splitting added
+  size_t added_count;           ///< a, the number of points that were added
   size_t constraint_count;      ///< e, the number of constraint edges
   size_t segment_count;         ///< s, the number of segments
   size_t piece_count;           ///< p, the number of pieces of segments
@@ -505,7 +557,7 @@ typedef struct flaunay_constrained_arrays {
   const int32_t*
       edge_markers;  ///< e values: the marker of its segment in edge_segments; NULL without markers
   /// A value per point, added ones too: those of the input as they were given, and for each added point the
-  /// marker of the segment with the smallest index that has it, 0 if segments have none. NULL without.
+  /// marker of the segment with the smallest index that has it, 0 if there is none. NULL without.
   const int32_t* vertex_markers;
   /// t values: the attribute of its region; of several seeds in one region the last one counts, and where
   /// there is none it is 0. Seeds on a constraint, and those in no triangle, count for nothing. NULL without.
@@ -783,12 +835,15 @@ FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* tr
 /// Frees the arrays.
 FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
 /// The triangles with their neighbours and the other arrays of a triangulation. point_count, hull and
-/// representatives include points that splitting added. Where triangles are left out, neighbours and
+/// representatives include points that were added. Where triangles are left out, neighbours and
 /// halfedges are -1; the hull remains that of the points. Voronoi diagrams and locators need
 /// Delaunay triangulations, so they do not take this handle, and must not be given its arrays.
 FLAUNAY_API const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result);
 /// What the result has besides.
 FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
+    const flaunay_constrained* result);
+/// How its refinement went.
+FLAUNAY_API const flaunay_refinement_report* flaunay_constrained_refinement(
     const flaunay_constrained* result);
 
 // ---- Points and results in device memory

@@ -1,0 +1,442 @@
+#include "call/refine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include "call/frame.hpp"
+#include "constrained/refinement/bounds.hpp"
+#include "constrained/refinement/refine.hpp"
+#include "statistics/phases.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::call {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+using constrained::MeshToRefine;
+using constrained::RefinedMesh;
+
+// The ends of the edge opposite to a corner, with its triangle on the left.
+std::array<std::int32_t, 2> ends_of(const Ids& triangles, std::size_t corner) {
+  const std::size_t first = corner - corner % 3;
+  return {triangles[first + (corner + 1) % 3], triangles[first + (corner + 2) % 3]};
+}
+
+// The constraint edges and borders that the triangles of a result have. They are numbered anew.
+struct FixedEdges {
+  Ids of_corners;                       // as in MeshToRefine
+  Ids ends;                             // 2 per edge; of constraint edges in their order
+  std::vector<std::uint8_t> is_border;  // per edge
+  Ids of_constraints;                   // per constraint edge: its number here, or -1
+  Ids of_hull;                          // per hull vertex: the number of the edge to the next one, or -1
+};
+
+// For each point the hull vertex that it is, and for each hull vertex the next one of its set.
+struct HullPlaces {
+  HullPlaces(const Triangulation& mesh, std::size_t points) : of_points(points, -1), next(mesh.hull.size()) {
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      of_points[mesh.hull[i]] = static_cast<std::int32_t>(i);
+      next[i] = static_cast<std::int32_t>(i + 1);
+    }
+    for (std::size_t s = 0; s + 1 < mesh.hull_offsets.size(); ++s) {
+      const std::size_t first = mesh.hull_offsets[s], end = mesh.hull_offsets[s + 1];
+      if (first < end) next[end - 1] = static_cast<std::int32_t>(first);
+    }
+  }
+  Ids of_points, next;
+};
+
+FixedEdges fixed_edges(const ConstrainedTriangulation& mesh, std::size_t points) {
+  const auto key = [](std::int32_t a, std::int32_t b) {
+    const auto low = static_cast<std::uint64_t>(std::min(a, b)),
+               high = static_cast<std::uint64_t>(std::max(a, b));
+    return high << 32 | low;
+  };
+  const std::size_t constraint_count = mesh.constraint_edges.size() / 2;
+  std::unordered_map<std::uint64_t, std::int32_t> numbers(constraint_count);
+  for (std::size_t e = 0; e < constraint_count; ++e) {
+    numbers.emplace(key(mesh.constraint_edges[2 * e], mesh.constraint_edges[2 * e + 1]), e);
+  }
+  const HullPlaces hull(mesh, points);
+  FixedEdges edges;
+  edges.of_corners.assign(mesh.triangles.size(), -1);
+  edges.of_constraints.assign(constraint_count, -1);
+  edges.of_hull.assign(mesh.hull.size(), -1);
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    const bool is_border = mesh.neighbors[c] < 0, is_constraint = mesh.constrained[c] != 0;
+    if (!is_border && !is_constraint) continue;
+    auto [a, b] = ends_of(mesh.triangles, c);
+    const std::int32_t place = is_border ? hull.of_points[a] : -1;
+    std::int32_t border = -1, constraint = -1;
+    if (is_constraint) constraint = numbers.at(key(a, b));
+    std::int32_t& number = is_constraint ? edges.of_constraints[constraint] : border;
+    if (number < 0) {
+      number = static_cast<std::int32_t>(edges.is_border.size());
+      edges.is_border.push_back(is_border ? 1 : 0);
+      const bool is_turned =
+          is_constraint && mesh.constraint_edges[2 * static_cast<std::size_t>(constraint)] != a;
+      edges.ends.insert(edges.ends.end(), {is_turned ? b : a, is_turned ? a : b});
+    }
+    edges.of_corners[c] = number;
+    if (place >= 0 && mesh.hull[hull.next[place]] == b) edges.of_hull[place] = number;
+  }
+  return edges;
+}
+
+// Which edges must not be split, as in MeshToRefine.
+std::vector<std::uint8_t> kept_edges(const Refinement& wanted, const FixedEdges& edges,
+                                     const ConstrainedTriangulation& mesh) {
+  if (wanted.kept == KeptEdges::none && wanted.kept_segments == nullptr) return {};
+  std::vector<std::uint8_t> kept = edges.is_border;
+  if (wanted.kept != KeptEdges::border) std::fill(kept.begin(), kept.end(), wanted.kept == KeptEdges::all);
+  if (wanted.kept_segments == nullptr) return kept;
+  for (std::size_t s = 0; s + 1 < mesh.piece_offsets.size(); ++s) {
+    if (wanted.kept_segments[s] == 0) continue;
+    for (std::int32_t p = mesh.piece_offsets[s]; p < mesh.piece_offsets[s + 1]; ++p) {
+      for (std::int32_t e = mesh.piece_edges[2 * p]; e < mesh.piece_edges[2 * p + 1]; ++e) {
+        if (edges.of_constraints[e] >= 0) kept[edges.of_constraints[e]] = 1;
+      }
+    }
+  }
+  return kept;
+}
+
+// The smaller one of the largest area of all triangles and that of their region. Empty if there is none.
+std::vector<double> largest_areas(const Refinement& wanted, const Ids& seeds, std::size_t triangles) {
+  const bool has_areas = wanted.seed_areas != nullptr && !seeds.empty();
+  if (!has_areas) return std::vector<double>(wanted.max_area > 0 ? triangles : 0, wanted.max_area);
+  std::vector<double> areas;
+  areas.reserve(triangles);
+  for (const std::int32_t seed : seeds) {
+    const double own = seed >= 0 ? wanted.seed_areas[seed] : 0;
+    areas.push_back(own > 0 && wanted.max_area > 0 ? std::min(own, wanted.max_area)
+                                                   : std::max(own, wanted.max_area));
+  }
+  return areas;
+}
+
+// Corners relative to the first one, for what needs no exactness.
+struct Shape {
+  Shape(const double* coordinates, const std::int32_t* corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* const p = coordinates + 2 * static_cast<std::size_t>(corners[(k + 1) % 3]);
+      const double* const q = coordinates + 2 * static_cast<std::size_t>(corners[(k + 2) % 3]);
+      sides[k] = {q[0] - p[0], q[1] - p[1]};
+    }
+  }
+  double doubled_area() const { return sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]; }
+  // The product of the two sides at a corner.
+  double product(std::size_t corner) const {
+    const auto &p = sides[(corner + 1) % 3], &q = sides[(corner + 2) % 3];
+    return -(p[0] * q[0] + p[1] * q[1]);
+  }
+  std::array<std::array<double, 2>, 3> sides;  // opposite to the corners
+};
+
+// About how many points there will be. Only what is far more than there are changes where the work is done.
+double expected_points(const MeshToRefine& mesh) {
+  double expected = 4.0 * static_cast<double>(mesh.triangles.size() / 6);
+  for (std::size_t t = 0; t < mesh.largest_areas.size(); ++t) {
+    if (mesh.largest_areas[t] <= 0) continue;
+    expected += Shape(mesh.coordinates, &mesh.triangles[3 * t]).doubled_area() / 2 / mesh.largest_areas[t];
+  }
+  return expected;
+}
+
+void measure_angles(const std::vector<double>& coordinates, const Ids& triangles, RefinementReport& report) {
+  // The angles' cotangents.
+  double most = -std::numeric_limits<double>::infinity(), least = -most;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const Shape shape(coordinates.data(), &triangles[t]);
+    const double scale = 1 / shape.doubled_area();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double cotangent = shape.product(k) * scale;
+      most = std::max(most, cotangent);
+      least = std::min(least, cotangent);
+    }
+  }
+  const auto degrees = [](double cotangent) { return std::atan2(1, cotangent) * 180 / std::acos(-1.0); };
+  if (!triangles.empty()) {
+    report.smallest_angle = degrees(most);
+    report.largest_angle = degrees(least);
+  }
+}
+
+// The points that were added on each edge, from its first end to its second one.
+class EdgeChains {
+ public:
+  EdgeChains(const FixedEdges& edges, const RefinedMesh& mesh, std::size_t points) {
+    const auto first_added = static_cast<std::int32_t>(points);
+    // The points before and after each one that was added, and the first one of each edge.
+    Ids links(2 * mesh.added_edges.size(), -1), first(edges.is_border.size(), -1);
+    for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+      const std::int32_t e = mesh.edges[c], beyond = mesh.neighbors[c];
+      // A piece between two triangles counts once.
+      if (e < 0 || (beyond >= 0 && static_cast<std::size_t>(beyond) < c / 3)) continue;
+      const auto [a, b] = ends_of(mesh.triangles, c);
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
+        if (from >= first_added) {
+          std::int32_t* const link = &links[2 * static_cast<std::size_t>(from - first_added)];
+          link[link[0] < 0 ? 0 : 1] = to;
+        } else if (from == edges.ends[2 * static_cast<std::size_t>(e)]) {
+          first[e] = to;
+        }
+      }
+    }
+    offsets_.push_back(0);
+    for (std::size_t e = 0; e < first.size(); ++e) {
+      std::int32_t before = edges.ends[2 * e], v = first[e];
+      while (v != edges.ends[2 * e + 1]) {
+        vertices_.push_back(v);
+        const std::int32_t* const link = &links[2 * static_cast<std::size_t>(v - first_added)];
+        before = std::exchange(v, link[link[0] == before ? 1 : 0]);
+      }
+      offsets_.push_back(vertices_.size());
+    }
+  }
+  // Adds those of an edge to a list; of edge -1 there are none.
+  void append(std::int32_t edge, bool is_turned, Ids& to) const {
+    if (edge < 0) return;
+    const auto begin = vertices_.begin() + static_cast<std::ptrdiff_t>(offsets_[edge]),
+               end = vertices_.begin() + static_cast<std::ptrdiff_t>(offsets_[edge + 1]);
+    if (is_turned) {
+      to.insert(to.end(), std::make_reverse_iterator(end), std::make_reverse_iterator(begin));
+    } else {
+      to.insert(to.end(), begin, end);
+    }
+  }
+
+ private:
+  std::vector<std::size_t> offsets_;
+  Ids vertices_;
+};
+
+void split_constraints(const FixedEdges& edges, const EdgeChains& chains, ConstrainedTriangulation& result) {
+  Ids all, segments, first(1, 0), chain;
+  for (std::size_t e = 0; e < edges.of_constraints.size(); ++e) {
+    chain.assign(1, result.constraint_edges[2 * e]);
+    chains.append(edges.of_constraints[e], false, chain);
+    chain.push_back(result.constraint_edges[2 * e + 1]);
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+      all.insert(all.end(), {chain[k - 1], chain[k]});
+      segments.push_back(result.edge_segments[e]);
+    }
+    first.push_back(static_cast<std::int32_t>(segments.size()));
+  }
+  result.constraint_edges = std::move(all);
+  result.edge_segments = std::move(segments);
+  for (std::int32_t& edge : result.piece_edges) edge = first[edge];
+}
+
+void split_hull(const FixedEdges& edges, const EdgeChains& chains, Triangulation& result) {
+  Ids hull;
+  std::vector<std::size_t> offsets;
+  for (std::size_t i = 0, s = 0; i <= result.hull.size(); ++i) {
+    for (; s < result.hull_offsets.size() && result.hull_offsets[s] == i; ++s) offsets.push_back(hull.size());
+    if (i == result.hull.size()) break;
+    const std::int32_t v = result.hull[i], edge = edges.of_hull[i];
+    hull.push_back(v);
+    chains.append(edge, edge >= 0 && edges.ends[2 * static_cast<std::size_t>(edge)] != v, hull);
+  }
+  result.hull = std::move(hull);
+  result.hull_offsets = std::move(offsets);
+}
+
+// Triangles have what those had that they are parts of.
+template <typename T>
+void inherit(const Ids& parents, std::vector<T>& values) {
+  if (values.empty()) return;
+  std::vector<T> own;
+  own.reserve(parents.size());
+  for (const std::int32_t parent : parents) own.push_back(values[parent]);
+  values = std::move(own);
+}
+
+// Numbers things by their sets, in their order within one. new_numbers: empty if nothing changes. Returns
+// where sets begin, and the end.
+std::vector<std::size_t> number_by_sets(const Ids& sets, std::size_t set_count, Ids& new_numbers) {
+  std::vector<std::size_t> offsets(set_count + 1, 0);
+  for (const std::int32_t set : sets) ++offsets[set + 1];
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  if (std::is_sorted(sets.begin(), sets.end())) return offsets;
+  std::vector<std::size_t> next = offsets;
+  for (const std::int32_t set : sets) new_numbers.push_back(static_cast<std::int32_t>(next[set]++));
+  return offsets;
+}
+
+template <typename T>
+void permute(const Ids& numbers, std::size_t columns, std::vector<T>& rows) {
+  std::vector<T> permuted(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    permuted[columns * static_cast<std::size_t>(numbers[i / columns]) + i % columns] = rows[i];
+  }
+  rows = std::move(permuted);
+}
+
+// For each triangle the number of its set.
+Ids sets_of(const std::vector<std::size_t>& offsets) {
+  Ids sets;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
+    sets.resize(offsets[s + 1], static_cast<std::int32_t>(s));
+  return sets;
+}
+
+// Numbers the points that were added, of which there are n others, by their sets.
+void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation& result) {
+  if (numbers.empty()) return;
+  const auto first = static_cast<std::int32_t>(n);
+  for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
+    for (std::int32_t& v : *vertices) v = v < first ? v : first + numbers[v - first];
+  }
+  permute(numbers, 2, result.added_points);
+  Ids added(result.representatives.begin() + first, result.representatives.end());
+  permute(numbers, 1, added);
+  std::copy(added.begin(), added.end(), result.representatives.begin() + first);
+  for (std::size_t t = 0; t < result.triangles.size(); t += 3) {
+    const auto row = result.triangles.begin() + static_cast<std::ptrdiff_t>(t);
+    const std::ptrdiff_t smallest = std::min_element(row, row + 3) - row;
+    std::rotate(row, row + smallest, row + 3);
+    const auto rotate = [&](auto& rows) {
+      const auto own = rows.begin() + static_cast<std::ptrdiff_t>(t);
+      std::rotate(own, own + smallest, own + 3);
+    };
+    rotate(result.neighbors);
+    rotate(result.constrained);
+  }
+}
+
+void renumber_triangles(const Ids& numbers, ConstrainedTriangulation& result) {
+  if (numbers.empty()) return;
+  for (std::int32_t& neighbor : result.neighbors) neighbor = neighbor < 0 ? neighbor : numbers[neighbor];
+  permute(numbers, 3, result.triangles);
+  permute(numbers, 3, result.neighbors);
+  permute(numbers, 3, result.constrained);
+  for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) permute(numbers, 1, *labels);
+  permute(numbers, 1, result.triangle_attributes);
+  RefinementReport& report = result.refinement;
+  std::vector<std::pair<std::int32_t, Excuse>> bad;
+  for (std::size_t k = 0; k < report.excuses.size(); ++k) {
+    bad.emplace_back(numbers[report.bad_triangles[k]], report.excuses[k]);
+  }
+  std::sort(bad.begin(), bad.end());
+  for (std::size_t k = 0; k < bad.size(); ++k) {
+    std::tie(report.bad_triangles[k], report.excuses[k]) = bad[k];
+  }
+}
+
+// Makes the points of each set follow each other, and its triangles. parents: of triangles.
+void sort_by_sets(std::size_t n, const Ids& parents, ConstrainedTriangulation& result) {
+  const std::size_t set_count = result.triangle_offsets.size() - 1;
+  Ids of_triangles = sets_of(result.triangle_offsets), of_points = sets_of(result.added_offsets);
+  inherit(parents, of_triangles);
+  of_points.resize(result.added_points.size() / 2, 0);
+  for (std::size_t c = 0; c < result.triangles.size(); ++c) {
+    const auto v = static_cast<std::size_t>(result.triangles[c]);
+    if (v >= n) of_points[v - n] = of_triangles[c / 3];
+  }
+  Ids numbers;
+  result.added_offsets = number_by_sets(of_points, set_count, numbers);
+  renumber_points(n, numbers, result);
+  numbers.clear();
+  result.triangle_offsets = number_by_sets(of_triangles, set_count, numbers);
+  renumber_triangles(numbers, result);
+}
+
+// Writes the mesh to the result, with its own numbers of points and triangles.
+void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& mesh,
+                ConstrainedTriangulation& result) {
+  result.added_points.insert(result.added_points.end(), mesh.added.begin(), mesh.added.end());
+  const std::size_t before = result.representatives.size();
+  result.representatives.resize(before + mesh.added_edges.size());
+  std::iota(result.representatives.begin() + static_cast<std::ptrdiff_t>(before),
+            result.representatives.end(), static_cast<std::int32_t>(before));
+  split_constraints(edges, chains, result);
+  split_hull(edges, chains, result);
+  std::vector<std::uint8_t> is_constraint(edges.is_border.size(), 0);
+  for (const std::int32_t edge : edges.of_constraints) {
+    if (edge >= 0) is_constraint[edge] = 1;
+  }
+  result.constrained.clear();
+  for (const std::int32_t edge : mesh.edges) result.constrained.push_back(edge < 0 ? 0 : is_constraint[edge]);
+  result.triangles = std::move(mesh.triangles);
+  result.neighbors = std::move(mesh.neighbors);
+  for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) inherit(mesh.parents, *labels);
+  inherit(mesh.parents, result.triangle_attributes);
+  result.refinement = std::move(mesh.report);
+}
+
+// By their first triangles.
+void renumber_regions(Ids& regions) {
+  if (regions.empty()) return;
+  Ids numbers(*std::max_element(regions.begin(), regions.end()) + 1, -1);
+  std::int32_t next = 0;
+  for (std::int32_t& region : regions) {
+    std::int32_t& number = numbers[region];
+    if (number < 0) number = next++;
+    region = number;
+  }
+}
+
+RefinedMesh refine_on(Engine& engine, const MeshToRefine& mesh, const Options& options,
+                      const Refinement& wanted, Statistics& statistics) {
+  RefinedMesh refined;
+  {
+    Frame call(engine, options.profile);
+    const statistics::Phases phases(options);
+    const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                  [&] { phases.interrupt("compiling kernels"); });
+    phases.progress("refine", 0);
+    refined = constrained::refine(engine.runtime, mesh, wanted);
+    call.end();
+  }
+  if (&engine != &Engine::of_thread()) add_accounts(engine, statistics);
+  return refined;
+}
+
+}  // namespace
+
+void check_refinement(const Refinement& wanted, std::size_t seeds) {
+  constrained::quality_bounds(wanted.min_angle);
+  constrained::check_areas(&wanted.max_area, 1, "all triangles");
+  if (wanted.seed_areas != nullptr) constrained::check_areas(wanted.seed_areas, seeds, "seed");
+  expect(!std::isnan(wanted.min_edge), "the smallest edge is not a number");
+}
+
+void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
+            const ConstrainedOptions& options, const Ids& seeds, ConstrainedTriangulation& result) {
+  const Refinement& wanted = options.refinement;
+  const std::size_t n = offsets.back(), points = n + result.added_points.size() / 2;
+  FixedEdges edges = fixed_edges(result, points);
+  MeshToRefine mesh;
+  mesh.coordinates = coordinates;
+  mesh.points = points;
+  mesh.triangles = result.triangles;
+  mesh.neighbors = result.neighbors;
+  mesh.edges = edges.of_corners;
+  mesh.edge_ends = edges.ends;
+  mesh.kept_edges = kept_edges(wanted, edges, result);
+  mesh.largest_areas = largest_areas(wanted, seeds, result.triangles.size() / 3);
+
+  const bool may_stay = !self.is_named() && !options.profile &&
+                        expected_points(mesh) <= static_cast<double>(self.host_tuning().host_points);
+  Engine& asked = may_stay ? Engine::of_thread() : self.for_host_memory();
+  Engine& engine = self.with_doubles(asked);
+  add_note(asked, engine, "refinement", "refined", result.statistics);
+  RefinedMesh refined = refine_on(engine, mesh, options, wanted, result.statistics);
+
+  write_mesh(edges, EdgeChains(edges, refined, points), refined, result);
+  sort_by_sets(n, refined.parents, result);
+  renumber_regions(result.regions);
+  std::vector<double> all(coordinates, coordinates + 2 * n);
+  all.insert(all.end(), result.added_points.begin(), result.added_points.end());
+  measure_angles(all, result.triangles, result.refinement);
+  result.statistics.points += result.refinement.added_points;
+  result.statistics.hull_vertices = result.hull.size();
+}
+
+}  // namespace flaunay::call
