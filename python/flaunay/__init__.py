@@ -38,7 +38,8 @@ from flaunay._interpolate import (
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._polygons import PolygonTriangulation, polygons
-from flaunay._triangulate import triangulate
+from flaunay._refinement import RefinementReport
+from flaunay._triangulate import refine, triangulate
 from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
@@ -62,6 +63,7 @@ __all__ = [
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
     "PolygonTriangulation",
+    "RefinementReport",
     "Triangulation",
     "UsageError",
     "Voronoi",
@@ -71,6 +73,7 @@ __all__ = [
     "griddata",
     "modes",
     "polygons",
+    "refine",
     "relax",
     "relax_device",
     "triangulate",

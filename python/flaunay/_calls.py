@@ -180,6 +180,7 @@ def _members(struct: type[ctypes.Structure], *without: str) -> Callable[[Any], d
 
 _STATISTICS = _members(_declarations.Statistics, "phase_count", "kernels", "kernel_count")
 _ROUND = _members(_declarations.ChunkRound)
+_REFINEMENT = _members(_declarations.RefinementReport, "bad_count", "bad_triangles", "excuses")
 _CHUNK_STATISTICS = _members(
     _declarations.ChunkStatistics,
     *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
@@ -311,8 +312,64 @@ class _Triangulation(Handle):
     _destroy = library.triangulation_destroy
 
 
+class _Refinement:
+    """A refinement for one call. given: members of flaunay_refinement; there may be none."""
+
+    def __init__(self, given: dict[str, Any]) -> None:
+        self._given = given  # the arrays, which the struct refers to
+        self._error: Optional[BaseException] = None
+        self._function = given.get("areas_at")
+        members = {
+            name: _address_of(value) if isinstance(value, _ARRAY) else value
+            for name, value in given.items()
+        }
+        if self._function is not None:
+            members["areas_at"] = _declarations.RefinementAreasAt(self._write_areas)
+        self._struct = _declarations.Refinement(**members)
+        self.pointer = ctypes.pointer(self._struct) if given else None
+
+    def _write_areas(self, places: int, count: int, areas: int, _: Any) -> None:
+        """Nothing passes on exceptions here, so the first one is kept, and areas are any from then on."""
+        written: _Doubles = np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))
+        written[...] = 0
+        if self._error is not None or self._function is None:
+            return
+        try:
+            there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
+            given = there.copy()
+            found = np.asarray(self._function(given), _FLOAT64)
+            if found.shape != (count,):
+                raise UsageError(
+                    f"areas_at must return areas of the shape ({count},), not {found.shape}"
+                )
+            if not (found >= 0).all():
+                first = int(np.flatnonzero(~(found >= 0))[0])
+                raise UsageError(
+                    f"areas_at has returned {found[first]} at {given[first].tolist()}; "
+                    "areas are positive, or 0 for any"
+                )
+            written[...] = found
+        except BaseException as error:
+            self._error = error
+
+    def check(self) -> None:
+        """Raises what the caller's function has raised."""
+        if self._error is not None:
+            raise self._error
+
+
 class _Constrained(Handle):
     _destroy = library.constrained_destroy
+
+    def report(self) -> dict[str, Any]:
+        """How refinement went."""
+        given = library.constrained_refinement(self.pointer)[0]
+        shape = (given.bad_count,)
+        return {
+            **_REFINEMENT(given),
+            "bad_triangles": _view(self, given.bad_triangles, shape, _INT32),
+            "excuses": _view(self, given.excuses, shape, _UINT8),
+        }
 
     def arrays(self, parts: int, asked_by: set[str]) -> dict[str, Any]:
         """What was computed, by its name; None if an array was not asked for. asked_by: what asks for arrays."""
@@ -412,12 +469,13 @@ def triangulate_constrained(
     places: dict[str, tuple[_Doubles, Optional[_Offsets]]],
     carried: dict[str, Optional[npt.NDArray[Any]]],
     rules: dict[str, int],
+    refinement: dict[str, Any],
     wanted: set[str],
 ) -> dict[str, Any]:
     """Triangulates points with segments.
 
     places: the holes and the seeds, with their offsets. carried, rules: other members of flaunay_constraints, which
-    are arrays, and numbers.
+    are arrays, and numbers. refinement: members of flaunay_refinement; the result has a report if there are some.
     """
     n = _count_points(points)
     parts = _parts_of(wanted) | PART["triangles"]
@@ -432,14 +490,21 @@ def triangulate_constrained(
         arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
         counts[f"{name}_count"] = len(rows)
     addresses = {name: _address_or_none(array) for name, array in arrays.items()}
-    constraints = _declarations.Constraints(**addresses, **counts, **rules)
+    refining = _Refinement(refinement)
+    constraints = _declarations.Constraints(
+        **addresses, **counts, **rules, refinement=refining.pointer
+    )
     result, options = _Constrained(), _options_for("blocks", parts)
     triangulator.call(
         library.triangulate_constrained,
         *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
     )
+    refining.check()
     asked_by = names_of(labels=bool(rules["labels"]), seeds=counts["seed_count"] > 0)
-    return result.arrays(parts, asked_by | {name for name in carried if carried[name] is not None})
+    arrays = result.arrays(
+        parts, asked_by | {name for name in carried if carried[name] is not None}
+    )
+    return {**arrays, "refinement": result.report() if refinement else None}
 
 
 def triangulate_polygons(
@@ -449,14 +514,19 @@ def triangulate_polygons(
     polygon_offsets: _Offsets,
     part_offsets: Optional[_Offsets],
     rules: dict[str, int],
+    refinement: dict[str, Any],
     wanted: set[str],
 ) -> dict[str, Any]:
-    """Triangulates polygons. rules: members of flaunay_polygons that are no arrays."""
+    """Triangulates polygons. rules: members of flaunay_polygons that are no arrays.
+
+    refinement: as of `triangulate_constrained`.
+    """
     parts = _parts_of(wanted) | PART["triangles"]
     rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
     outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
     inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
     points = _as_doubles(points)
+    refining = _Refinement(refinement)
     polygons = _declarations.Polygons(
         coordinates=_address_of(points),
         ring_offsets=_address_or_none(rings),
@@ -467,13 +537,16 @@ def triangulate_polygons(
         part_count=part_count,
         has_outside=1,
         has_fill_rule=1,
+        refinement=refining.pointer,
         **rules,
     )
     result, options = _Constrained(), _options_for("blocks", parts)
     triangulator.call(
         library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
     )
-    return result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
+    refining.check()
+    arrays = result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
+    return {**arrays, "refinement": result.report() if refinement else None}
 
 
 def _encoded(text: str) -> bytes:

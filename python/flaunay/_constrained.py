@@ -16,6 +16,7 @@ from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
+from flaunay._refinement import RefinementReport, Refining, as_refinement
 from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class ConstrainedTriangulation(Triangulation):
     areas : ndarray of float64, shape (m,)
         The area of each triangle, the float64 next to the exact one.
     points : ndarray of float64, shape (n + a, 2)
-        A copy of the points, and after them those that splitting added.
+        A copy of the points, and after them those that splitting and refinement added.
     added_offsets : ndarray of int64, shape (sets + 1,)
         Of the points that were added, set s has those from ``added_offsets[s]`` to ``added_offsets[s + 1]``.
     constraint_edges : ndarray of int32, shape (e, 2)
@@ -65,11 +66,13 @@ class ConstrainedTriangulation(Triangulation):
         The marker of each constraint edge: that of its segment in ``edge_segments``. None without
         `segment_markers`.
     vertex_markers : ndarray of int32, shape (n + a,), or None
-        Those that were given, and for each point that splitting added that of the segment with the smallest
-        index that has it, 0 if segments have none. None without `point_markers`.
+        Those that were given, and for each point that was added that of the segment with the smallest index
+        that has it, 0 if there is none. None without `point_markers`.
     triangle_attributes : ndarray of float64, shape (m,), or None
         The attribute of each triangle's region: of the last seed in it, and 0 where there is none. None
         without `seeds`.
+    refinement : RefinementReport, or None
+        How refinement went. None if nothing was asked for.
 
     Notes
     -----
@@ -93,6 +96,7 @@ class ConstrainedTriangulation(Triangulation):
     edge_markers: Optional[Indices]
     vertex_markers: Optional[Indices]
     triangle_attributes: Optional[Doubles]
+    refinement: Optional[RefinementReport]
 
     why_no_array = (
         "are needed, or a Delaunay triangulation of them, not one with constraints: "
@@ -119,7 +123,7 @@ class ConstrainedTriangulation(Triangulation):
 
     @property
     def added_points(self) -> Doubles:
-        """The points that splitting added, float64, shape (a, 2): the last ones of `points`."""
+        """The points that were added, float64, shape (a, 2): the last ones of `points`."""
         added: Doubles = self.points[len(self.points) - int(self.added_offsets[-1]) :]
         return added
 
@@ -308,6 +312,8 @@ def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:
     """What the library computed, with all points in place of those that it added."""
     added = result.pop("added_points")
     result["points"] = np.concatenate([given, added])
+    report = result["refinement"]
+    result["refinement"] = None if report is None else RefinementReport.of(report)
     return result
 
 
@@ -317,6 +323,7 @@ def arrays_of_constrained(
     offsets: Optional[npt.NDArray[np.int64]],
     given: dict[str, Any],
     rules: dict[str, int],
+    refining: Refining,
     wanted: set[str],
     device: Optional[str],
 ) -> dict[str, Any]:
@@ -345,8 +352,10 @@ def arrays_of_constrained(
     }
     carried["seed_attributes"] = np.ascontiguousarray(seeds[:, 2])
     triangulator = _triangulators.of_device(device)
+    refinement = as_refinement(refining, len(pairs), len(seeds))
     result = _calls.triangulate_constrained(
-        triangulator, coordinates, offsets, pairs, places, carried, rules, wanted | {"areas"}
+        *(triangulator, coordinates, offsets, pairs, places, carried),
+        *(rules, refinement, wanted | {"areas"}),
     )
     del result["polygons"]
     return with_points(result, coordinates)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,10 @@ from flaunay._constrained import (
 from flaunay._declarations import OVERLAPS
 from flaunay._errors import UsageError
 from flaunay._optional import optional
+from flaunay._refinement import Refining, as_refinement
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -309,6 +313,7 @@ def polygons(
     neighbors: bool = False,
     halfedges: bool = False,
     device: Optional[str] = None,
+    **refining: Unpack[Refining],
 ) -> PolygonTriangulation:
     """Triangulates polygons with holes, all of them in one call.
 
@@ -351,6 +356,8 @@ def polygons(
         What else to compute; see `triangulate`.
     device : str, optional
         As of `triangulate`.
+    **refining
+        What `refine` takes, such as ``min_angle`` and ``max_area``, to add points.
 
     Returns
     -------
@@ -410,8 +417,9 @@ def polygons(
             ) from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     triangulator = _triangulators.of_device(device)
+    refinement = as_refinement(refining, len(points), 0)
     result = _calls.triangulate_polygons(
-        triangulator, points, rings, outer, parts, rules, wanted | {"areas"}
+        *(triangulator, points, rings, outer, parts, rules, refinement, wanted | {"areas"})
     )
     return PolygonTriangulation(
         **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Optional, Union, overload
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,11 @@ from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_o
 from flaunay._calls import TRIANGULATION
 from flaunay._constrained import ConstrainedTriangulation, arrays_of_constrained, rules_of
 from flaunay._errors import UsageError
+from flaunay._refinement import Doubles, Refining
 from flaunay._triangulation import Triangulation, arrays_of_mesh
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
@@ -88,6 +92,7 @@ def triangulate(
     areas: bool = False,
     mode: str = "blocks",
     out: Out = None,
+    **refining: Unpack[Refining],
 ) -> ConstrainedTriangulation: ...
 
 
@@ -112,6 +117,7 @@ def triangulate(
     areas: bool = False,
     mode: str = "blocks",
     out: Out = None,
+    **refining: Unpack[Refining],
 ) -> Triangulation:
     """Triangulates one set of points, or many sets in one call, with segments as edges if there are any.
 
@@ -170,11 +176,14 @@ def triangulate(
         Arrays for ``triangles``, ``neighbors``, ``halfedges``, ``hull``, ``representatives`` and ``areas``
         (float64), or some of them, with as many rows as there are results or more. n points have fewer than
         2 n triangles. The result has views of their first rows; it costs one copy.
+    **refining
+        What `refine` takes, such as ``min_angle`` and ``max_area``: points are added, with or without
+        segments.
 
     Returns
     -------
     Triangulation
-        With segments, a `ConstrainedTriangulation`.
+        With segments, or if it is refined, a `ConstrainedTriangulation`.
 
     Raises
     ------
@@ -238,6 +247,8 @@ def triangulate(
         "seeds": seeds,
         "seed_offsets": seed_offsets,
     }
+    if segments is None and refining:
+        segments = np.empty((0, 2), np.int32)
     if segments is None:
         for name, is_given in {
             **{name: value is not None for name, value in given.items()},
@@ -252,7 +263,85 @@ def triangulate(
     else:
         if mode != "blocks":
             raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
-        result = arrays_of_constrained(points, segments, sets, given, rules, wanted, device)
+        result = arrays_of_constrained(
+            points, segments, sets, given, rules, refining, wanted, device
+        )
     if places:
         _write(result, places)
     return Triangulation(**result) if segments is None else ConstrainedTriangulation(**result)
+
+
+def refine(
+    points: ArrayLike,
+    segments: Optional[npt.ArrayLike] = None,
+    *,
+    min_angle: float = 20,
+    max_area: float = 0,
+    seed_areas: Optional[npt.ArrayLike] = None,
+    areas_at: Optional[Callable[[Doubles], npt.ArrayLike]] = None,
+    keep_edges: str = "none",
+    kept_segments: Optional[npt.ArrayLike] = None,
+    min_edge: Optional[float] = None,
+    most_points: Optional[int] = None,
+    most_rounds: Optional[int] = None,
+    **others: Any,
+) -> ConstrainedTriangulation:
+    """Triangulates, and adds points until no triangle has a small angle or is too large.
+
+    Parameters
+    ----------
+    points, segments, **others
+        As of `triangulate`. What is left out, such as holes, is not refined. Without segments, the domain is
+        the convex hull.
+    min_angle : float
+        In degrees, from 0 to 34. Above 30, many more points are needed.
+    max_area : float
+        The largest area of a triangle; 0 for any.
+    seed_areas : array_like, shape (r,), optional
+        For each of the `seeds`, the largest area in its region; 0 for any.
+    areas_at : callable, optional
+        Takes places, an array of shape (k, 2), and returns the areas that triangles may have there, of shape
+        (k,); 0 for any. It is called once a round.
+    keep_edges : {"none", "border", "all"}
+        Where no points may be put: on edges with triangles on one side only, or on no segment at all.
+    kept_segments : array_like of bool, shape (k,), optional
+        For each segment whether no points may be put on it.
+    min_edge : float, optional
+        No two points are put nearer to each other. Without it, 2^-40 of the extent.
+    most_points, most_rounds : int, optional
+        No more points are added, and no more rounds made.
+
+    Returns
+    -------
+    ConstrainedTriangulation
+        Its `refinement` says which triangles are worse than asked for, and why.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As `triangulate`; UsageError for what is out of range, too. What `areas_at` raises is raised.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> mesh = flaunay.refine([[0, 0], [9, 0], [9, 1], [0, 1]], min_angle=30, max_area=0.5)
+    >>> mesh.areas.max() <= 0.5, mesh.refinement.smallest_angle >= 30 - 1e-9
+    (True, True)
+    >>> len(mesh.refinement.bad_triangles)
+    0
+    """
+    result = triangulate(
+        points,
+        np.empty((0, 2), np.int32) if segments is None else segments,
+        min_angle=min_angle,
+        max_area=max_area,
+        seed_areas=seed_areas,
+        areas_at=areas_at,
+        keep_edges=keep_edges,
+        kept_segments=kept_segments,
+        min_edge=min_edge,
+        most_points=most_points,
+        most_rounds=most_rounds,
+        **others,
+    )
+    return result

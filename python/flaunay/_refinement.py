@@ -1,0 +1,118 @@
+"""What meshes are refined to, and how that went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Optional, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import as_floats, frozen
+from flaunay._declarations import EXCUSE, KEPT_EDGES
+from flaunay._errors import UsageError
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+
+class Refining(TypedDict, total=False):
+    """The keywords of `refine` that say what a mesh is refined to."""
+
+    min_angle: float
+    max_area: float
+    seed_areas: Optional[npt.ArrayLike]
+    areas_at: Optional[Callable[[Doubles], npt.ArrayLike]]
+    keep_edges: str
+    kept_segments: Optional[npt.ArrayLike]
+    min_edge: Optional[float]
+    most_points: Optional[int]
+    most_rounds: Optional[int]
+
+
+@dataclass(frozen=True, eq=False)
+class RefinementReport:
+    """How a refinement went: `ConstrainedTriangulation.refinement`.
+
+    Attributes
+    ----------
+    rounds : int
+        In which points were added.
+    added_points, split_points : int
+        How many points were added, and how many of them on segments or on the border.
+    smallest_angle, largest_angle : float
+        Of all triangles, in degrees; 0 if there are none.
+    bad_triangles : ndarray of int32, shape (b,)
+        The triangles that are worse than asked for, ascending.
+    excuses : ndarray of str, shape (b,)
+        Why, for each of them: ``"input_angle"``, ``"near_apex"``, ``"min_edge"``, ``"kept"``, ``"frozen"``,
+        ``"most_points"`` or ``"most_rounds"``.
+    """
+
+    rounds: int
+    added_points: int
+    split_points: int
+    smallest_angle: float
+    largest_angle: float
+    bad_triangles: Indices
+    excuses: npt.NDArray[np.str_]
+
+    @staticmethod
+    def of(report: Mapping[str, Any]) -> RefinementReport:
+        """Of what the library says, in which excuses are numbers."""
+        names = np.array([""] + sorted(EXCUSE, key=EXCUSE.__getitem__))
+        return RefinementReport(**{**report, "excuses": frozen(names[report["excuses"]])})
+
+
+def _number(given: Any, name: str) -> float:
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name} must be a number, not {given!r}") from None
+
+
+def _count(given: Any, name: str) -> int:
+    if not isinstance(given, (int, np.integer)) or given < 0:
+        raise UsageError(f"{name} must be an integer from 0 on, not {given!r}")
+    return int(given)
+
+
+def _row(given: Any, name: str, size: int, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    array = np.asarray(as_floats(given, name))
+    if array.shape != (size,):
+        raise UsageError(f"{name} must have the shape ({size},), not {array.shape}")
+    return np.ascontiguousarray(array, dtype)
+
+
+def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
+    """The members of flaunay_refinement, arrays and a function among them. Nothing if nothing is asked for."""
+    if not given:
+        return {}
+    names = Refining.__annotations__
+    for name in given:
+        if name not in names:
+            raise TypeError(f"unexpected keyword argument {name!r}")
+    wanted: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    kept = wanted.pop("keep_edges", "none")
+    if kept not in KEPT_EDGES:
+        raise UsageError(
+            f"keep_edges must be one of {', '.join(map(repr, KEPT_EDGES))}, not {kept!r}"
+        )
+    wanted["kept"] = KEPT_EDGES[kept]
+    for name in ("min_angle", "max_area", "min_edge"):
+        if name in wanted:
+            wanted[name] = _number(wanted[name], name)
+    for name in ("most_points", "most_rounds"):
+        if name in wanted:
+            wanted[name] = _count(wanted[name], name)
+    for name in ("min_edge", "most_points"):
+        wanted[f"has_{name}"] = int(name in wanted)
+    if "seed_areas" in wanted:
+        wanted["seed_areas"] = _row(wanted["seed_areas"], "seed_areas", seeds, np.float64)
+    if "kept_segments" in wanted:
+        are_kept = _row(wanted["kept_segments"], "kept_segments", segments, np.bool_)
+        wanted["kept_segments"] = are_kept.view(np.uint8)
+    if "areas_at" in wanted and not callable(wanted["areas_at"]):
+        raise UsageError(f"areas_at must be a function, not {type(wanted['areas_at']).__name__}")
+    return wanted

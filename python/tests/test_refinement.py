@@ -1,0 +1,153 @@
+"""Refined meshes."""
+
+import pickle
+
+import numpy as np
+import pytest
+from conftest import areas
+
+import flaunay
+
+SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4]]
+RING = [[0, 1], [1, 2], [2, 3], [3, 0]]
+
+
+def angles(mesh):
+    """Of each triangle at its corners, in degrees."""
+    corners = mesh.points[mesh.triangles]
+    ahead = np.roll(corners, -1, axis=1) - corners
+    back = np.roll(corners, 1, axis=1) - corners
+    dot = (ahead * back).sum(axis=2)
+    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
+    return np.degrees(np.arctan2(cross, dot))
+
+
+def test_triangles_are_as_good_as_is_asked_for():
+    mesh = flaunay.refine(
+        SQUARE,
+        RING,
+        min_angle=30,
+        max_area=0.1,
+        segment_markers=[1, 2, 3, 4],
+        point_markers=[9] * 4,
+    )
+    report = mesh.refinement
+    assert angles(mesh).min() == pytest.approx(report.smallest_angle)
+    assert angles(mesh).max() == pytest.approx(report.largest_angle)
+    assert report.smallest_angle >= 30 - 1e-9 and mesh.areas.max() <= 0.1
+    assert mesh.areas.sum() == pytest.approx(16)
+    assert report.added_points == len(mesh.added_points) > 100 and report.rounds > 0
+    assert len(report.bad_triangles) == len(report.excuses) == 0
+    edges = mesh.edges_of(2)
+    assert len(edges) > 5 and (mesh.points[edges][..., 1] == 4).all()
+    inner = edges[1:, 0]
+    assert (mesh.vertex_markers[inner] == 3).all() and (mesh.vertex_markers[:4] == 9).all()
+    assert report.split_points == sum(len(mesh.edges_of(k)) - 1 for k in range(4))
+    assert set(mesh.hull) == set(mesh.constraint_edges.ravel())
+
+
+def test_all_entries_take_the_same_keywords():
+    options = {"min_angle": 25, "max_area": 0.2}
+    mesh = flaunay.refine(SQUARE, RING, **options)
+    assert np.array_equal(flaunay.triangulate(SQUARE, RING, **options).triangles, mesh.triangles)
+    polygon = flaunay.polygons([[SQUARE]], **options)
+    assert polygon.areas.max() <= 0.2 and polygon.polygon_areas == pytest.approx([16])
+    assert polygon.refinement.smallest_angle >= 25 - 1e-9
+    # Points alone: up to their hull.
+    hull = flaunay.triangulate(SQUARE, **options)
+    assert isinstance(hull, flaunay.ConstrainedTriangulation) and len(hull.constraint_edges) == 0
+    assert hull.areas.max() <= 0.2 and hull.areas.sum() == pytest.approx(16)
+    assert flaunay.triangulate(SQUARE, RING).refinement is None
+    assert flaunay.refine(SQUARE).refinement.added_points == 0
+
+
+def test_many_domains_in_one_call():
+    points = np.concatenate([np.array(SQUARE) + 10 * k for k in range(5)])
+    segments = np.concatenate([np.array(RING) + 4 * k for k in range(5)])
+    meshes = flaunay.refine(points, segments, offsets=np.arange(0, 21, 4), max_area=0.5)
+    assert len(meshes.triangle_offsets) == 6 and (np.diff(meshes.triangle_offsets) >= 32).all()
+    for k in range(5):
+        own = meshes.triangles[meshes.triangle_offsets[k] : meshes.triangle_offsets[k + 1]]
+        assert areas(meshes.points, own).sum() == pytest.approx(32)
+        assert (meshes.points[own] >= 10 * k).all() and (meshes.points[own] <= 10 * k + 4).all()
+
+
+def test_a_function_of_places():
+    calls = []
+
+    def areas_at(places):
+        calls.append(len(places))
+        assert places.shape == (len(places), 2) and places.dtype == np.float64
+        return np.where(places[:, 0] < 2, 0.02, 0)
+
+    mesh = flaunay.refine(SQUARE, RING, areas_at=areas_at)
+    centroids = mesh.points[mesh.triangles].mean(axis=1)
+    left = centroids[:, 0] < 2 - 1e-9
+    assert mesh.areas[left].max() <= 0.02 and mesh.areas[~left].max() > 0.02
+    assert 0 < len(calls) <= mesh.refinement.rounds + 2
+
+    def fails(places):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        flaunay.refine(SQUARE, RING, areas_at=fails)
+    with pytest.raises(flaunay.UsageError, match=r"shape \(\d+,\)"):
+        flaunay.refine(SQUARE, RING, areas_at=lambda places: places)
+    with pytest.raises(flaunay.UsageError, match="has returned nan"):
+        flaunay.refine(SQUARE, RING, areas_at=lambda places: np.full(len(places), np.nan))
+    # The triangulator is as it was.
+    assert len(flaunay.refine(SQUARE, RING, max_area=1).triangles) >= 16
+
+
+def test_regions_kept_edges_and_limits():
+    wall = [*SQUARE, [2, 0], [2, 4]]
+    segments = [*RING, [4, 5]]
+    mesh = flaunay.refine(
+        wall,
+        segments,
+        seeds=[[1, 1, 7], [3, 3, 8]],
+        seed_areas=[0.05, 0],
+        kept_segments=[0, 0, 0, 0, 1],
+    )
+    good = np.ones(len(mesh.areas), bool)
+    good[mesh.refinement.bad_triangles] = False
+    assert mesh.areas[good & (mesh.triangle_attributes == 7)].max() <= 0.05 < mesh.areas[good].max()
+    assert (
+        set(mesh.refinement.excuses) == {"kept"}
+        and len(mesh.edges_of(4)) == 1
+        and len(mesh.edges_of(3)) > 2
+    )
+    kept = flaunay.refine(SQUARE, RING, max_area=0.1, keep_edges="all")
+    assert kept.refinement.split_points == 0 and len(kept.constraint_edges) == 4
+    assert set(kept.refinement.excuses) == {"kept"} and kept.refinement.added_points > 0
+    few = flaunay.refine(SQUARE, RING, max_area=0.1, most_points=7)
+    assert few.refinement.added_points <= 7
+    assert "most_points" in few.refinement.excuses
+    bad = few.refinement.bad_triangles
+    assert (np.diff(bad) > 0).all() and (few.areas[bad] > 0.1).any()
+    again = pickle.loads(pickle.dumps(few))
+    assert np.array_equal(again.refinement.bad_triangles, bad)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"min_angle": 40}, "40"),
+        ({"min_angle": "steep"}, "min_angle"),
+        ({"max_area": -1}, "-1"),
+        ({"keep_edges": "some"}, "keep_edges"),
+        ({"kept_segments": [1, 0]}, "kept_segments"),
+        ({"seed_areas": [1]}, "seed_areas"),
+        ({"most_points": -3}, "most_points"),
+        ({"most_points": 2.5}, "most_points"),
+        ({"areas_at": 3}, "areas_at"),
+    ],
+)
+def test_wrong_requests(options, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.refine(SQUARE, RING, **options)
+
+
+def test_unknown_keywords():
+    with pytest.raises(TypeError, match="min_angel"):
+        flaunay.triangulate(SQUARE, RING, min_angel=30)
