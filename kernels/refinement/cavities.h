@@ -8,6 +8,7 @@
 
 #include "arithmetic/language.h"
 #include "mesh/halfedges.h"
+#include "operations/prefetch.h"
 #include "predicates/planar.h"
 #include "refinement/codes.h"
 #include "refinement/records.h"
@@ -34,6 +35,27 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + (neighbors[0] == neighbor ? 0 : neighbors[1] == neighbor ? 1 : 2);
 }
 
+// Fetches a row that a list has far ahead, and of one that is nearer what its triangle and those beside it are made of.
+#define ROWS_FAR_AHEAD 16
+#define ROWS_AHEAD 8
+#define ROWS_NEXT 4
+FETCHING void fetch_row(const seen_mesh* mesh, int row) {
+#if FETCH_AHEAD
+  fetch(&mesh->rows[row]);
+  fetch(&mesh->rows[row].parent);
+#endif
+}
+FETCHING void fetch_corners(const seen_mesh* mesh, int row) {
+#if FETCH_AHEAD
+  for (int k = 0; k < 3; ++k) fetch(&mesh->points[max(0, mesh->rows[row].corner[k])]);
+#endif
+}
+FETCHING void fetch_neighbors(const seen_mesh* mesh, int row) {
+#if FETCH_AHEAD
+  for (int k = 0; k < 3; ++k) fetch_row(mesh, max(0, mesh->rows[row].neighbor[k]));
+#endif
+}
+
 // Never on the circle: see planar.h.
 static inline int is_in_circle(const seen_mesh* mesh, int row, double2 p) {
   GLOBAL const int* const corners = mesh->rows[row].corner;
@@ -52,44 +74,56 @@ static inline int is_vertex(const seen_mesh* mesh, int row, double2 p) {
 
 #define TOUR_MEMORY 16
 
-// corner: the side that comes next is opposite to it. end: the tour is over there.
+// The side that comes next is opposite to corner k of a row. The tour is over at the corner `end`.
 typedef struct {
-  int corner, end, begins, depth;
+  int row, k, end, begins, depth;
   int back[TOUR_MEMORY];
 } cavity_tour;
 
 // A tour from this corner's row on, up to another corner, which may be the same.
 static inline void start_tour(cavity_tour* tour, int corner, int end) {
-  tour->corner = corner;
+  tour->row = row_of(corner);
+  tour->k = corner - 3 * tour->row;
   tour->end = end;
   tour->begins = 1;
   tour->depth = 0;
+}
+
+// The number of the corner that is opposite to a neighbour.
+static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
+  return row->neighbor[0] == neighbor ? 0 : row->neighbor[1] == neighbor ? 1 : 2;
 }
 
 // Goes on to the next side of the cavity of p and returns the corner of the row inside opposite to it; or to a row that
 // the tour has not met yet, or not known for long, and returns it complemented. At the end returns NO_MORE.
 #define NO_MORE INT_MIN
 static inline int next_in_tour(cavity_tour* tour, const seen_mesh* mesh, double2 p) {
-  while (tour->begins || tour->corner != tour->end) {
-    const int corner = tour->corner, row = row_of(corner), beyond = neighbor_at(mesh, corner);
+  for (;;) {
+    const int row = tour->row, corner = 3 * row + tour->k;
+    if (corner == tour->end && !tour->begins) return NO_MORE;
     tour->begins = 0;
-    const int knows = tour->depth > 0 && tour->depth <= TOUR_MEMORY;
-    if (knows && beyond == tour->back[tour->depth - 1]) {
-      --tour->depth;
-      tour->corner = next_halfedge(corner_facing(mesh, beyond, row));
-      continue;
-    }
-    if (beyond < 0 || edge_at(mesh, corner) >= 0 || !is_in_circle(mesh, beyond, p)) {
-      tour->corner = next_halfedge(corner);
+    GLOBAL const mesh_row* const from = &mesh->rows[row];
+    const int beyond = from->neighbor[tour->k];
+    if (from->edge[tour->k] >= 0) {
+      tour->k = next_corner(tour->k);
       return corner;
     }
-    // Where it has forgotten the way back, it never knows again whether it goes back.
-    if (tour->depth < TOUR_MEMORY) tour->back[tour->depth] = row;
-    if (tour->depth <= TOUR_MEMORY) ++tour->depth;
-    tour->corner = next_halfedge(corner_facing(mesh, beyond, row));
-    return ~beyond;
+    const int knows = tour->depth > 0 && tour->depth <= TOUR_MEMORY && beyond == tour->back[tour->depth - 1];
+    if (!knows && !is_in_circle(mesh, beyond, p)) {
+      tour->k = next_corner(tour->k);
+      return corner;
+    }
+    tour->row = beyond;
+    tour->k = next_corner(number_facing(&mesh->rows[beyond], row));
+    if (knows) {
+      --tour->depth;
+    } else {
+      // Where it has forgotten the way back, it never knows again whether it goes back.
+      if (tour->depth < TOUR_MEMORY) tour->back[tour->depth] = row;
+      if (tour->depth <= TOUR_MEMORY) ++tour->depth;
+      return ~beyond;
+    }
   }
-  return NO_MORE;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

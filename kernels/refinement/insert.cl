@@ -244,14 +244,16 @@ typedef struct {
 // Tours the rows that a point holds, and lists them and the sides.
 static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, uint claim, global const uint* claims,
                                    global uint* visits, global star_side* sides, gathered found) {
-  int corner = start, row = row_of(end);
+  int row = row_of(end), k;
   found.holds = claims[row] == claim;
   if (!found.holds) return found;
   visits[row] = claim;
   sides[found.rows++].row = row;
+  row = row_of(start);
+  k = start - 3 * row;
   do {
-    row = row_of(corner);
-    const int beyond = neighbor_at(mesh, corner), edge = edge_at(mesh, corner);
+    global const mesh_row* const at = &mesh->rows[row];
+    const int beyond = at->neighbor[k], edge = at->edge[k];
     const uint other = beyond < 0 ? UNCLAIMED_ROW : claims[beyond];
     if (other < claim) {
       found.holds = 0;
@@ -262,17 +264,18 @@ static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, ui
         visits[beyond] = claim;
         sides[found.rows++].row = beyond;
       }
-      corner = next_halfedge(corner_facing(mesh, beyond, row));
+      k = next_corner(number_facing(&mesh->rows[beyond], row));
+      row = beyond;
     } else {
       global star_side* const side = &sides[found.sides++];
-      side->from = vertex_at(mesh, next_halfedge(corner));
+      side->from = at->corner[next_corner(k)];
       side->outside = beyond;
-      side->facing = beyond < 0 ? 0 : corner_facing(mesh, beyond, row) % 3;
+      side->facing = beyond < 0 ? 0 : number_facing(&mesh->rows[beyond], row);
       side->edge = edge;
-      side->parent = mesh->rows[row].parent;
-      corner = next_halfedge(corner);
+      side->parent = at->parent;
+      k = next_corner(k);
     }
-  } while (corner != end);
+  } while (3 * row + k != end);
   return found;
 }
 
@@ -284,6 +287,19 @@ kernel void gather_stars(int n, uint first, global const int* restrict list, glo
   const int i = get_global_id(0);
   if (i < n && states[list[i]] == POINT_WAITS) {
     const seen_mesh mesh = {rows, points};
+#if FETCH_AHEAD
+    const int far = row_of(max(0, insertions[list[min(n - 1, i + ROWS_AHEAD)]].corner)),
+              near = row_of(max(0, insertions[list[min(n - 1, i + ROWS_NEXT)]].corner));
+    fetch_row(&mesh, far);
+    fetch(&claims[far]);
+    fetch(&visits[far]);
+    fetch_neighbors(&mesh, near);
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, rows[near].neighbor[k]);
+      fetch(&claims[beyond]);
+      fetch(&visits[beyond]);
+    }
+#endif
     const insertion of = insertions[list[i]];
     const uint claim = first + of.rank;
     gathered found = {0, 0, 1};

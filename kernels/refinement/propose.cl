@@ -18,6 +18,13 @@ kernel void find_active(int n, int waits, global const int* restrict list, globa
                         global const ulong* restrict keys, global uchar* restrict active) {
   const int i = get_global_id(0);
   if (i < n) {
+#if FETCH_AHEAD
+    const seen_mesh mesh = {rows, 0};
+    const int far = list[min(n - 1, i + ROWS_FAR_AHEAD)], near = list[min(n - 1, i + ROWS_AHEAD)];
+    fetch_row(&mesh, far);
+    fetch(&keys[far]);
+    for (int k = 0; k < 3; ++k) fetch(&keys[max(0, rows[near].neighbor[k])]);
+#endif
     const int row = list[i];
     const ulong key = keys[row];
     int is_active = 1;
@@ -49,19 +56,25 @@ static inline double2 centre_of(const double2* p, int is_large, refinement_rules
 // triangle; or of a constraint in the way, the corner opposite, complemented. In Delaunay triangulations it ends
 // (Edelsbrunner, 1990).
 static inline int walk_to(const seen_mesh* mesh, int corner, double2 p) {
-  int side = corner, left = 3;
+  int row = row_of(corner), k = corner - 3 * row, left = 3;
+  double2 from = mesh->points[mesh->rows[row].corner[next_corner(k)]];
   while (left > 0) {
-    if (orient_sign(point_at(mesh, next_halfedge(side)), point_at(mesh, previous_halfedge(side)), p, ORIENT_BOUND) <
-        0) {
-      if (edge_at(mesh, side) >= 0) return ~side;
-      side = next_halfedge(corner_facing(mesh, neighbor_at(mesh, side), row_of(side)));
+    GLOBAL const mesh_row* const at = &mesh->rows[row];
+    const double2 to = mesh->points[at->corner[corner_before(k)]];
+    if (orient_sign(from, to, p, ORIENT_BOUND) < 0) {
+      if (at->edge[k] >= 0) return ~(3 * row + k);
+      const int beyond = at->neighbor[k];
+      // The next side begins where this one does.
+      k = next_corner(number_facing(&mesh->rows[beyond], row));
+      row = beyond;
       left = 2;
     } else {
-      side = next_halfedge(side);
+      k = next_corner(k);
+      from = to;
       --left;
     }
   }
-  return 3 * row_of(side);
+  return 3 * row;
 }
 
 // cavities: of each proposal the rows of its cavity, if they are at most LISTED_ROWS.
@@ -72,6 +85,17 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
+#if FETCH_AHEAD
+    fetch_row(&mesh, list[min(n - 1, i + ROWS_FAR_AHEAD)]);
+    const int ahead = list[min(n - 1, i + ROWS_AHEAD)], next_row = list[min(n - 1, i + ROWS_NEXT)];
+    fetch_corners(&mesh, ahead);
+    fetch_neighbors(&mesh, ahead);
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, rows[next_row].neighbor[k]);
+      fetch_corners(&mesh, beyond);
+      fetch_neighbors(&mesh, beyond);
+    }
+#endif
     const int row = list[i];
     const ordered_triangle triangle = ordered(&mesh, row);
     const ulong key = row_keys[row];
@@ -237,6 +261,10 @@ kernel void claim_cavities(int n, refinement_rules rules, uint first, global con
   const int i = get_global_id(0);
   if (i < n && outcomes[i] == PROPOSAL_OPEN) {
     const seen_mesh mesh = {rows, points};
+#if FETCH_AHEAD
+    const int ahead = min(n - 1, i + ROWS_AHEAD);
+    for (int k = 0; k < ROWS_NEXT; ++k) fetch((global const void*)&claims[max(0, cavities[LISTED_ROWS * ahead + k])]);
+#endif
     const proposal made = proposals[i];
     const uint claim = first + ranks[i];
     if (made.count <= LISTED_ROWS) {
@@ -283,6 +311,13 @@ kernel void decide(int n, refinement_rules rules, uint first, global const propo
   const int i = get_global_id(0);
   if (i < n && outcomes[i] == PROPOSAL_OPEN) {
     const seen_mesh mesh = {rows, points};
+#if FETCH_AHEAD
+    const int far = proposals[min(n - 1, i + ROWS_FAR_AHEAD)].row, near = proposals[min(n - 1, i + ROWS_AHEAD)].row;
+    fetch_row(&mesh, far);
+    fetch(&claims[far]);
+    fetch(&row_keys[far]);
+    for (int k = 0; k < 3; ++k) fetch(&claims[max(0, rows[near].neighbor[k])]);
+#endif
     const proposal made = proposals[i];
     const uint claim = first + ranks[i];
     const int is_large = is_key_of_large(row_keys[made.row]);

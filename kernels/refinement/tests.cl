@@ -39,17 +39,27 @@ kernel void test_rows(int n, refinement_rules rules, global const int2* restrict
   if (i < n) {
     const seen_mesh mesh = {rows, points};
     int is_bad = 0, splits = 0;
+#if FETCH_AHEAD
+    const int far = max(0, made[min(n - 1, i + ROWS_FAR_AHEAD)].x);
+    fetch_row(&mesh, far);
+    fetch(&keys[far]);
+    fetch_corners(&mesh, max(0, made[min(n - 1, i + ROWS_AHEAD)].x));
+#endif
     if (is_as_made(made[i], rows)) {
       const int row = made[i].x;
-      const ordered_triangle triangle = ordered(&mesh, row);
-      const double2* const p = triangle.point;
+      double2 p[3];
+      for (int k = 0; k < 3; ++k) p[k] = points[rows[row].corner[k]];
       const int is_large = is_too_large(&mesh, row, p, rules, areas);
-      is_bad = is_large || (is_angle_below(p[0], p[1], p[2], rules.squared_sine) &&
-                            excuse_of(&mesh, &triangle, places, rules.vertices) == EXCUSED_NOT);
-      keys[row] = is_bad ? key_of(&triangle, is_large) : NO_KEY;
+      is_bad = is_large || is_angle_below(p[0], p[1], p[2], rules.squared_sine);
+      keys[row] = NO_KEY;
+      if (is_bad) {
+        const ordered_triangle triangle = ordered(&mesh, row);
+        is_bad = is_large || excuse_of(&mesh, &triangle, places, rules.vertices) == EXCUSED_NOT;
+        if (is_bad) keys[row] = key_of(&triangle, is_large);
+      }
       for (int k = 0; k < 3; ++k) {
         const int corner = 3 * row + k;
-        if (edge_at(&mesh, corner) >= 0 && encroaches(&mesh, corner, point_at(&mesh, corner), rules) &&
+        if (rows[row].edge[k] >= 0 && encroaches(&mesh, corner, point_at(&mesh, corner), rules) &&
             why_not_split(&mesh, corner, rules) == EXCUSED_NOT)
           splits |= 1 << k;
       }
@@ -109,12 +119,13 @@ kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global co
     const seen_mesh mesh = {rows, points};
     int excuse = EXCUSED_NOT;
     if (rows[row].corner[0] != NO_TRIANGLE) {
-      const ordered_triangle triangle = ordered(&mesh, row);
-      const double2* const p = triangle.point;
+      double2 p[3];
+      for (int k = 0; k < 3; ++k) p[k] = points[rows[row].corner[k]];
       const int reason = refused[row] == EXCUSED_NOT ? EXCUSED_LIMIT : refused[row];
       if (is_too_large(&mesh, row, p, rules, areas)) {
         excuse = reason;
       } else if (is_angle_below(p[0], p[1], p[2], rules.squared_sine)) {
+        const ordered_triangle triangle = ordered(&mesh, row);
         excuse = excuse_of(&mesh, &triangle, places, rules.vertices);
         if (excuse == EXCUSED_NOT) excuse = reason;
       }
