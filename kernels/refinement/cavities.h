@@ -197,14 +197,17 @@ static inline split_place place_of_split(int a, int b, int edge, GLOBAL const do
   return split;
 }
 
-// Whether a point is strictly left of the two sides of a row that are not opposite to the corner.
+// Whether a point is strictly left of the two sides of a row that are not opposite to the corner, and in its circle. If
+// rounding puts it beyond the constraint by more than the circle reaches, the row would have to stay.
 static inline int is_before_sides(const seen_mesh* mesh, int corner, double2 p) {
   const double2 apex = point_at(mesh, corner), from = point_at(mesh, next_halfedge(corner)),
                 to = point_at(mesh, previous_halfedge(corner));
-  return orient_sign(to, apex, p, ORIENT_BOUND) > 0 && orient_sign(apex, from, p, ORIENT_BOUND) > 0;
+  return orient_sign(to, apex, p, ORIENT_BOUND) > 0 && orient_sign(apex, from, p, ORIENT_BOUND) > 0 &&
+         is_in_circle(mesh, row_of(corner), p);
 }
 
-// Whether the constraint opposite to a corner may be split at p: then no triangle turns over.
+// Whether the constraint opposite to a corner may be split at p: then no triangle turns over, and all edges that are
+// left are locally Delaunay.
 static inline int can_split_at(const seen_mesh* mesh, int corner, double2 p) {
   const int beyond = neighbor_at(mesh, corner);
   return is_before_sides(mesh, corner, p) &&

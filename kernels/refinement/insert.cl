@@ -318,6 +318,9 @@ kernel void gather_stars(int n, uint first, global const int* restrict list, glo
   }
 }
 
+// A constraint that rounding did not allow to split is tried again when a triangle there is another one.
+static inline int thawed(int edge) { return edge < 0 ? edge : edge & ~EDGE_FROZEN; }
+
 // made: from element first_made on, per side the row of the triangle that was made of it, and its first vertex, or -1.
 // waits: 1 for points that wait for the next step.
 kernel void insert_stars(int n, int first_made, global const int* restrict list, global const uint* restrict offsets,
@@ -354,11 +357,14 @@ kernel void insert_stars(int n, int first_made, global const int* restrict list,
         written->neighbor[0] = side.outside;
         written->neighbor[1] = after;
         written->neighbor[2] = before;
-        written->edge[0] = side.edge;
+        written->edge[0] = thawed(side.edge);
         written->edge[1] = to == of.from || to == of.to ? edge : NO_EDGE_THERE;
         written->edge[2] = side.from == of.from || side.from == of.to ? edge : NO_EDGE_THERE;
         written->parent = side.parent;
-        if (side.outside >= 0) rows[side.outside].neighbor[side.facing] = row;
+        if (side.outside >= 0) {
+          rows[side.outside].neighbor[side.facing] = row;
+          if (side.edge >= 0) rows[side.outside].edge[side.facing] = thawed(side.edge);
+        }
         row_keys[row] = NO_KEY;
         refused[row] = EXCUSED_NOT;
         made[first_made + (int)first + k] = VECTOR(int2, row, of.vertex);

@@ -40,11 +40,14 @@ static inline int opposite_to_shortest(const double2* p) {
   return a <= b && a <= c ? 0 : b <= c ? 1 : 2;
 }
 
+// Of two areas that triangles may have, 0 for any.
+static inline double smaller_area(double a, double b) { return b > 0.0 && !(a > 0.0 && a < b) ? b : a; }
+
 static inline double area_wanted(const seen_mesh* mesh, int row, refinement_rules rules, GLOBAL const double* areas) {
   const double area = rules.area_kind == AREAS_NONE        ? 0.0
                       : rules.area_kind == AREAS_BY_PARENT ? areas[mesh->rows[row].parent]
                                                            : areas[row];
-  return rules.area > 0.0 && !(area > 0.0 && area < rules.area) ? rules.area : area;
+  return smaller_area(area, rules.area);
 }
 
 static inline int is_too_large(const seen_mesh* mesh, int row, const double2* p, refinement_rules rules,

@@ -30,6 +30,14 @@ static inline int is_as_made(int2 made, global const mesh_row* rows) {
   return made.x >= 0 && rows[made.x].corner[0] == made.y;
 }
 
+// Whether an apex of the triangles beside a constraint encroaches it. The one beyond may be as it was when rounding did
+// not allow to split the constraint.
+static inline int is_encroached_from_a_side(const seen_mesh* mesh, int corner, refinement_rules rules) {
+  const int beyond = neighbor_at(mesh, corner);
+  return encroaches(mesh, corner, point_at(mesh, corner), rules) ||
+         (beyond >= 0 && encroaches(mesh, corner, point_at(mesh, corner_facing(mesh, beyond, row_of(corner))), rules));
+}
+
 // made: rows and their first vertices, or less than 0. keys: per row. bad: 1 or 0. split_bits: a bit per corner whose
 // opposite constraint is to be split; encroached: whether there is one.
 kernel void test_rows(int n, refinement_rules rules, global const int2* restrict made, REFINED_MESH(),
@@ -59,7 +67,7 @@ kernel void test_rows(int n, refinement_rules rules, global const int2* restrict
       }
       for (int k = 0; k < 3; ++k) {
         const int corner = 3 * row + k;
-        if (rows[row].edge[k] >= 0 && encroaches(&mesh, corner, point_at(&mesh, corner), rules) &&
+        if (rows[row].edge[k] >= 0 && is_encroached_from_a_side(&mesh, corner, rules) &&
             why_not_split(&mesh, corner, rules) == EXCUSED_NOT)
           splits |= 1 << k;
       }
@@ -104,11 +112,15 @@ kernel void write_centroids(int n, global const int2* restrict made, REFINED_MES
   }
 }
 
-// n elements of made: the areas that the host was given for them.
-kernel void set_areas(int n, global const int2* restrict made, global const mesh_row* restrict rows,
-                      global const double* restrict given, global double* restrict areas) {
+// n elements of made: the areas that the host was given for them, and those of their parents, if these have some.
+kernel void set_areas(int n, int has_parents, global const int2* restrict made, global const mesh_row* restrict rows,
+                      global const double* restrict given, global const double* restrict parent_areas,
+                      global double* restrict areas) {
   const int i = get_global_id(0);
-  if (i < n && is_as_made(made[i], rows)) areas[made[i].x] = given[i];
+  if (i < n && is_as_made(made[i], rows)) {
+    const int row = made[i].x;
+    areas[row] = has_parents ? smaller_area(given[i], parent_areas[rows[row].parent]) : given[i];
+  }
 }
 
 // n rows: EXCUSED_NOT of those that are good enough.

@@ -79,6 +79,7 @@ class Rounds {
       if (!make_round()) break;
       if (added_ > before) ++report_.rounds;
     }
+    if (is_at_limit()) ask_for_areas();
     return result();
   }
 
@@ -207,11 +208,11 @@ class Rounds {
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
     const std::vector<edge_place> places = input_places();
     runtime_.write(arrays_.places, 0, places.size(), places.data());
-    if (rules_.area_kind == kernel::AREAS_BY_PARENT) {
+    if (!mesh_.largest_areas.empty()) {
       std::vector<double> areas = mesh_.largest_areas;
       for (double& area : areas) area = std::ldexp(area, 2 * shift_);
       parent_areas_ = runtime_.upload(arena_, std::move(areas));
-    } else if (rules_.area_kind == kernel::AREAS_NONE) {
+    } else {
       parent_areas_ = arena_.allocate<cl_double>(1);  // nobody reads it
     }
   }
@@ -324,6 +325,7 @@ class Rounds {
   // Asks for the areas of rows that were made.
   void ask_for_areas() {
     if (!wanted_.areas_at) return;
+    Arena::Scope scope(arena_);
     const auto centroids = arena_.allocate<cl_double2>(made_count_);
     runtime_.map(made_count_, kernels::write_centroids{
                                   .made = made_, .refined_mesh = refined_mesh(), .centroids = centroids});
@@ -340,9 +342,11 @@ class Rounds {
     check_areas(areas.data(), areas.size(), "areas");
     std::vector<double> given(made_count_);
     for (std::size_t i = 0; i < of.size(); ++i) given[of[i]] = std::ldexp(areas[i], 2 * shift_);
-    runtime_.map(made_count_, kernels::set_areas{.made = made_,
+    runtime_.map(made_count_, kernels::set_areas{.has_parents = mesh_.largest_areas.empty() ? 0 : 1,
+                                                 .made = made_,
                                                  .rows = arrays_.rows,
                                                  .given = runtime_.upload(arena_, std::move(given)),
+                                                 .parent_areas = parent_areas_,
                                                  .areas = arrays_.areas});
     runtime_.finish();
   }
