@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # Looks for bytes that a reader of files mishandles (tests/fuzz/readers.cpp), and for points and segments that are
-# triangulated wrongly (tests/fuzz/triangulations.cpp, tests/fuzz/constrained.cpp), by trying random ones for some time.
+# triangulated or refined wrongly (tests/fuzz/triangulations.cpp, constrained.cpp, refinement.cpp), by trying random ones
+# for some time.
 #   scripts/fuzz.sh 8h                         all, side by side; or 30m, or 90s
 #   scripts/fuzz.sh 8h readers                 the readers alone
 #   scripts/fuzz.sh 8h triangulations [SEED]   the triangulation alone; the seed is random if it is not given
 #   scripts/fuzz.sh 8h constrained [SEED]      the triangulation with segments alone
+#   scripts/fuzz.sh 8h refinement [SEED]       the refinement of meshes alone
 # Fails if it found something. A file that a reader mishandles is then in build/fuzz/failures; what is triangulated
 # wrongly is printed. What the readers were tried with is kept in build/fuzz/found, for the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
-  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations [SEED] | constrained [SEED]]' >&2
+  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations | constrained | refinement [SEED]]' >&2
   exit 2
 }
 
@@ -76,10 +78,10 @@ fuzz_library() {
 cores="$(nproc)"
 case "$what" in
   readers) fuzz_readers "$cores" ;;
-  triangulations | constrained) fuzz_library "$what" ;;
+  triangulations | constrained | refinement) fuzz_library "$what" ;;
   all)
     # Those of the library take one core or more.
-    fuzz_library triangulations constrained &
+    fuzz_library triangulations constrained refinement &
     library="$!"
     status=0
     fuzz_readers "$((cores > 2 ? cores - 2 : 1))" || status=1

@@ -1,0 +1,400 @@
+// Refinement: by its definition, for domains that are nasty; and the same bytes by any runtime, from input in
+// any order.
+//
+// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "constrained/refinement/refine.hpp"
+#include "tests/constrained/domains.hpp"
+#include "tests/constrained/nasty_domains.hpp"
+#include "tests/constrained/refined.hpp"
+#include "tests/support/runtimes.hpp"
+#include "tests/support/same.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using constrained::MeshToRefine;
+using constrained::RefinedMesh;
+
+using Runtimes = SharedRuntimes<make_tuned_runtime>;
+[[maybe_unused]] ::testing::Environment* const kRuntimes = ::testing::AddGlobalTestEnvironment(new Runtimes);
+
+/// A result that adds nothing.
+RefinedMesh unrefined(const MeshToRefine& mesh) {
+  RefinedMesh refined;
+  refined.triangles = mesh.triangles;
+  refined.neighbors = mesh.neighbors;
+  refined.edges = mesh.edges;
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t)
+    refined.parents.push_back(static_cast<std::int32_t>(t));
+  return refined;
+}
+
+DomainToRefine unit_square() {
+  DomainToRefine domain;
+  nasty_detail::add_square(domain, 0.5, 0.5, 0.5);
+  return domain;
+}
+
+TEST(SmallRefinedCheck, AcceptsWhatIsThere) {
+  for (const NastyDomain& nasty : nasty_domains()) {
+    SCOPED_TRACE(nasty.name);
+    const DomainToRefine domain = nasty.make(40, 1);
+    const MeshToRefine mesh = mesh_to_refine(domain);
+    EXPECT_GT(mesh.triangles.size(), 0);
+    EXPECT_EQ(what_is_wrong(mesh, unrefined(mesh), {}), "");
+  }
+}
+
+// Each of these is one thing that is wrong with a square of two triangles.
+TEST(SmallRefinedCheck, Refuses) {
+  const DomainToRefine domain = unit_square();
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  const auto problem = [&](const auto& change, const Refinement& wanted) {
+    RefinedMesh refined = unrefined(mesh);
+    change(refined);
+    return what_is_wrong(mesh, refined, wanted);
+  };
+  const auto nothing = [](RefinedMesh&) {};
+  Refinement area, angle;
+  area.max_area = 0.49;
+  EXPECT_NE(problem(nothing, area).find("larger"), std::string::npos);
+  area.max_area = 0.5;
+  EXPECT_EQ(problem(nothing, area), "");
+  angle.min_angle = 30;
+  EXPECT_EQ(problem(nothing, angle), "");
+  const auto list = [](Excuse excuse) {
+    return [excuse](RefinedMesh& refined) {
+      refined.report.bad_triangles = {0};
+      refined.report.excuses = {excuse};
+    };
+  };
+  EXPECT_NE(problem(list(Excuse::input_angle), angle).find("is not bad"), std::string::npos);
+  area.max_area = 0.25;
+  EXPECT_NE(problem(list(Excuse::input_angle), area).find("no angle excuses"), std::string::npos);
+  EXPECT_NE(problem(list(Excuse::min_edge), area).find("short"), std::string::npos);
+  EXPECT_NE(problem(list(Excuse::kept), area).find("kept"), std::string::npos);
+  EXPECT_NE(problem(list(Excuse::frozen), area).find("rounding"), std::string::npos);
+  EXPECT_NE(problem(list(Excuse::most_points), area).find("points"), std::string::npos);
+  EXPECT_NE(problem(list(Excuse::most_rounds), area).find("rounds"), std::string::npos);
+  EXPECT_NE(problem([](RefinedMesh& r) { std::swap(r.triangles[1], r.triangles[2]); }, {}), "");
+  EXPECT_NE(problem([](RefinedMesh& r) { r.neighbors.assign(6, -1); }, {}), "");
+  EXPECT_NE(problem([](RefinedMesh& r) { std::swap(r.edges[0], r.edges[1]); }, {}), "");
+  EXPECT_NE(problem([](RefinedMesh& r) { r.parents[1] = 2; }, {}), "");
+  EXPECT_NE(problem([](RefinedMesh& r) { r.triangles.resize(3); }, {}), "");
+  // Cut along the other diagonal.
+  EXPECT_NE(problem(
+                [](RefinedMesh& r) {
+                  const auto border = [&](std::int32_t a, std::int32_t b) {
+                    for (std::size_t c = 0; c < 6; ++c) {
+                      const std::size_t t = c - c % 3;
+                      if (r.neighbors[c] < 0 && r.triangles[t + (c + 1) % 3] == a &&
+                          r.triangles[t + (c + 2) % 3] == b)
+                        return r.edges[c];
+                    }
+                    return std::int32_t{-1};
+                  };
+                  const std::int32_t e01 = border(0, 1), e12 = border(1, 2), e23 = border(2, 3),
+                                     e30 = border(3, 0);
+                  const bool is_from_0 = std::find(&r.triangles[0], &r.triangles[3], 2) != &r.triangles[3] &&
+                                         std::find(&r.triangles[0], &r.triangles[3], 0) != &r.triangles[3];
+                  if (is_from_0) {
+                    r.triangles = {0, 1, 3, 1, 2, 3};
+                    r.neighbors = {1, -1, -1, -1, 0, -1};
+                    r.edges = {-1, e30, e01, e23, -1, e12};
+                  } else {
+                    r.triangles = {0, 1, 2, 0, 2, 3};
+                    r.neighbors = {-1, 1, -1, -1, -1, 0};
+                    r.edges = {e12, -1, e01, e23, e30, -1};
+                  }
+                },
+                {})
+                .find("not in a fan"),
+            std::string::npos);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Results
+
+/// Under the tuning that the environment names alone, if it names one.
+std::vector<std::string> tunings() {
+  if (std::getenv("FLAUNAY_TUNING") != nullptr) return {"own"};
+  return {"own", "small", "gpu"};
+}
+
+void expect_same(const RefinedMesh& found, const RefinedMesh& expected) {
+  EXPECT_TRUE(same(found.added, expected.added));
+  EXPECT_TRUE(same(found.added_edges, expected.added_edges));
+  EXPECT_TRUE(same(found.added_places, expected.added_places));
+  EXPECT_TRUE(same(found.triangles, expected.triangles));
+  EXPECT_TRUE(same(found.neighbors, expected.neighbors));
+  EXPECT_TRUE(same(found.edges, expected.edges));
+  EXPECT_TRUE(same(found.parents, expected.parents));
+  EXPECT_TRUE(same(found.report.bad_triangles, expected.report.bad_triangles));
+  EXPECT_EQ(found.report.excuses, expected.report.excuses);
+  EXPECT_EQ(found.report.rounds, expected.report.rounds);
+}
+
+host::Runtime& native_runtime() {
+  static host::Runtime runtime(native_tuning(""));
+  return runtime;
+}
+
+/// By the definition, the same from input in another order, and the same bytes with every tuning. Returns the
+/// result.
+RefinedMesh expect_right(const MeshToRefine& mesh, const Refinement& wanted) {
+  const RefinedMesh refined = constrained::refine(native_runtime(), mesh, wanted);
+  EXPECT_EQ(what_is_wrong(mesh, refined, wanted), "");
+  const OwnedMesh other = shuffled(mesh, 7);
+  const RefinedMesh from_other = constrained::refine(native_runtime(), other.mesh, wanted);
+  EXPECT_TRUE(ByCoordinates(other.mesh, from_other) == ByCoordinates(mesh, refined));
+  for (const std::string& tuning : tunings()) {
+    SCOPED_TRACE("tuning " + tuning);
+    expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted), refined);
+  }
+  return refined;
+}
+
+/// So many natively, and fewer where rounds of little work take long.
+int repeated(int times) { return tests_native() ? times : is_simulated() ? 1 : std::max(1, times / 12); }
+
+Refinement angle_of(double degrees) {
+  Refinement wanted;
+  wanted.min_angle = degrees;
+  wanted.most_points = is_simulated() ? 50 : tests_native() ? 1000 : 200;
+  return wanted;
+}
+
+std::size_t excused_for(const RefinedMesh& refined, Excuse excuse) {
+  return static_cast<std::size_t>(
+      std::count(refined.report.excuses.begin(), refined.report.excuses.end(), excuse));
+}
+
+TEST(SmallRefinement, NastyDomains) {
+  const auto& all = nasty_domains();
+  const std::size_t step = all.size() / static_cast<std::size_t>(repeated(static_cast<int>(all.size())));
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    SCOPED_TRACE(all[i].name);
+    const DomainToRefine domain = all[i].make(20, 3);
+    expect_right(mesh_to_refine(domain), angle_of(28));
+    if (HasFailure()) return;
+  }
+}
+
+// Coordinates with few bits to spare, and tiny ones.
+TEST(SmallRefinement, CoordinatesOfAnyMagnitude) {
+  for (const auto& [scale, shift] : std::vector<std::pair<double, double>>{
+           {1, 1e13}, {0.05, 1e13}, {1e-30, 0}, {0x1p300, 0}, {0x1p-300, 0}}) {
+    SCOPED_TRACE(std::to_string(scale) + " at " + std::to_string(shift));
+    DomainToRefine domain = nasty_detail::wedges(8, 2);
+    for (double& value : domain.points) value = scale * value + shift;
+    expect_right(mesh_to_refine(domain), angle_of(25));
+    if (!tests_native()) return;
+  }
+}
+
+TEST(SmallRefinement, NothingIsWanted) {
+  const DomainToRefine domain = nasty_detail::polygon(30, 2);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  EXPECT_EQ(expect_right(mesh, {}).added.size(), 0);
+  Refinement wanted = angle_of(30);
+  wanted.most_points = 0;
+  const RefinedMesh none = expect_right(mesh, wanted);
+  EXPECT_EQ(none.added.size(), 0);
+  EXPECT_EQ(excused_for(none, Excuse::most_points), none.report.excuses.size());
+  EXPECT_GT(none.report.excuses.size(), 0);
+  wanted = angle_of(30);
+  wanted.most_rounds = 1;
+  EXPECT_EQ(expect_right(mesh, wanted).report.rounds, 1);
+}
+
+TEST(SmallRefinement, Areas) {
+  const DomainToRefine domain = nasty_detail::polygon(30, 4);
+  MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.max_area = 2;
+  const RefinedMesh by_area = expect_right(mesh, wanted);
+  EXPECT_GT(by_area.triangles.size() / 3, 100);
+  EXPECT_EQ(by_area.report.bad_triangles.size(), 0);
+
+  wanted.max_area = 0;
+  wanted.areas_at = [](const double* places, std::size_t count, double* areas) {
+    for (std::size_t i = 0; i < count; ++i) areas[i] = places[2 * i] > 0 ? HUGE_VAL : 2;
+  };
+  const RefinedMesh by_place = expect_right(mesh, wanted);
+  EXPECT_GT(by_place.triangles.size(), mesh.triangles.size());
+  EXPECT_LT(by_place.triangles.size(), by_area.triangles.size());
+
+  wanted.areas_at = nullptr;
+  const std::vector<std::int32_t> regions = regions_of(mesh.neighbors, mesh.edges);
+  for (const std::int32_t region : regions) mesh.largest_areas.push_back(region == 0 ? 1 : 0);
+  const RefinedMesh by_region = expect_right(mesh, wanted);
+  EXPECT_GT(by_region.triangles.size(), mesh.triangles.size());
+
+  // All at once, and where rounds end early.
+  wanted.max_area = 3;
+  wanted.areas_at = [](const double*, std::size_t count, double* areas) {
+    std::fill(areas, areas + count, 2.0);
+  };
+  expect_right(mesh, wanted);
+  wanted.most_rounds = 2;
+  EXPECT_GT(expect_right(mesh, wanted).report.bad_triangles.size(), 0);
+}
+
+TEST(SmallRefinement, KeptEdges) {
+  const DomainToRefine domain = nasty_detail::letter(0, 3);
+  MeshToRefine mesh = mesh_to_refine(domain);
+  mesh.kept_edges.assign(mesh.edge_ends.size() / 2, 1);
+  const RefinedMesh refined = expect_right(mesh, angle_of(30));
+  EXPECT_EQ(refined.report.split_points, 0);
+  EXPECT_GT(excused_for(refined, Excuse::kept), 0);
+  mesh.kept_edges.assign(mesh.edge_ends.size() / 2, 0);
+  EXPECT_EQ(excused_for(expect_right(mesh, angle_of(30)), Excuse::kept), 0);
+}
+
+// Segments so close to each other that only the smallest edge ends the refinement.
+TEST(SmallRefinement, SmallestEdge) {
+  DomainToRefine domain = unit_square();
+  domain.segment(0.25, 0.5, 0.75, 0.5);
+  domain.segment(0.25, 0.5 + 1e-9, 0.75, 0.5 + 1e-9);
+  Refinement wanted = angle_of(30);
+  wanted.min_edge = 0.02;
+  const RefinedMesh refined = expect_right(mesh_to_refine(domain), wanted);
+  EXPECT_LT(refined.added_edges.size(), 1000);
+  EXPECT_EQ(excused_for(refined, Excuse::min_edge), refined.report.excuses.size());
+  EXPECT_GT(refined.report.excuses.size(), 0);
+}
+
+TEST(SmallRefinement, SmallInputAngles) {
+  DomainToRefine domain;
+  domain.point(0, 0);
+  domain.point(1, 0);
+  domain.point(0.9, 0.1);
+  domain.chain(0, true);
+  const RefinedMesh refined = expect_right(mesh_to_refine(domain), angle_of(30));
+  const std::size_t excused =
+      excused_for(refined, Excuse::input_angle) + excused_for(refined, Excuse::near_apex);
+  EXPECT_GE(excused_for(refined, Excuse::input_angle), 1);
+  EXPECT_EQ(excused, refined.report.excuses.size());
+}
+
+TEST(SmallRefinement, Refuses) {
+  const DomainToRefine domain = unit_square();
+  MeshToRefine mesh = mesh_to_refine(domain);
+  const auto kind = [&](const Refinement& wanted) {
+    try {
+      constrained::refine(Runtimes::get("own"), mesh, wanted);
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    return ErrorKind::internal;
+  };
+  Refinement wanted;
+  for (const double angle : {-1.0, 34.5, HUGE_VAL, std::nan("")}) {
+    wanted.min_angle = angle;
+    EXPECT_EQ(kind(wanted), ErrorKind::usage) << angle;
+  }
+  wanted = {};
+  for (const double area : {-1.0, std::nan("")}) {
+    wanted.max_area = area;
+    EXPECT_EQ(kind(wanted), ErrorKind::usage) << area;
+  }
+  wanted = {};
+  mesh.largest_areas = {1, -1};
+  EXPECT_EQ(kind(wanted), ErrorKind::usage);
+  mesh.largest_areas.clear();
+  wanted.areas_at = [](const double*, std::size_t count, double* areas) {
+    std::fill(areas, areas + count, std::nan(""));
+  };
+  EXPECT_EQ(kind(wanted), ErrorKind::usage);
+}
+
+TEST(SmallRefinement, RandomDomains) {
+  FixtureRandom random(1);
+  const auto& all = nasty_domains();
+  for (int round = 0; round < repeated(60); ++round) {
+    const auto& nasty = all[static_cast<std::size_t>(random.integer(0, std::ssize(all) - 1))];
+    SCOPED_TRACE(std::to_string(round) + ": " + nasty.name);
+    DomainToRefine domain =
+        nasty.make(static_cast<int>(random.integer(4, 40)), static_cast<std::uint64_t>(round));
+    move_and_scale(random, domain);
+    Refinement wanted = angle_of(random.integer(0, 3) == 0 ? 33 : 30 * random.unit());
+    MeshToRefine mesh;
+    try {
+      mesh = mesh_to_refine(domain);
+    } catch (const Error&) {
+      continue;  // rounding made segments cross
+    }
+    expect_right(mesh, wanted);
+    if (HasFailure()) return;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Large input: the number of points beside that of Triangle 1.6.
+
+struct Known {
+  const char* name;
+  std::size_t n;
+  double degrees, area;
+  std::size_t of_triangle;
+};
+
+// At most so many times the points of Triangle 1.6, more for few points, most of which are near the hull.
+TEST(Refinement, NumbersOfPoints) {
+  const std::vector<Known> all = {
+      {"uniform", 1000, 20.7, 0, 1924},   {"uniform", 1000, 30, 0, 3492},   {"kuzmin", 1000, 30, 0, 3027},
+      {"uniform", 10000, 20.7, 0, 16729}, {"uniform", 10000, 30, 0, 28796}, {"uniform", 10000, 33, 0, 38659},
+      {"kuzmin", 10000, 20.7, 0, 16088},  {"kuzmin", 10000, 30, 0, 27788},  {"square", 0, 30, 1e-4, 8063}};
+  for (const Known& known : all) {
+    SCOPED_TRACE(known.name + std::string(" ") + std::to_string(known.n) + " at " +
+                 std::to_string(known.degrees));
+    DomainToRefine domain = unit_square();
+    if (!tests_native() && known.n != 1000) continue;
+    if (known.n > 0) {
+      domain = {};
+      domain.points = make_fixture(known.name, known.n, 1);
+    }
+    const MeshToRefine mesh = mesh_to_refine(domain);
+    Refinement wanted;
+    wanted.min_angle = known.degrees;
+    wanted.max_area = known.area;
+    const RefinedMesh refined = constrained::refine(Runtimes::get("own"), mesh, wanted);
+    EXPECT_EQ(what_is_wrong(mesh, refined, wanted), "");
+    // Corners of the hull may be sharper.
+    EXPECT_EQ(excused_for(refined, Excuse::input_angle) + excused_for(refined, Excuse::near_apex),
+              refined.report.excuses.size());
+    const auto points = static_cast<double>(mesh.points + refined.report.added_points);
+    EXPECT_LE(points, static_cast<double>(known.of_triangle) * (known.n < 10000 ? 1.07 : 1.04));
+    EXPECT_LE(refined.report.rounds, known.degrees > 32 ? 400 : 80);
+  }
+}
+
+// Threads and groups, with more work than one of them takes.
+TEST(Refinement, SameBytes) {
+  const DomainToRefine domain = nasty_detail::polygon(2000, 5);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 30;
+  const RefinedMesh refined = expect_right(mesh, wanted);
+  for (const std::size_t threads : {1, 2, 3}) {
+    SCOPED_TRACE(threads);
+    host::Runtime runtime(native_tuning(), threads);
+    expect_same(constrained::refine(runtime, mesh, wanted), refined);
+  }
+  if (std::getenv("FLAUNAY_TUNING") == nullptr)
+    expect_same(constrained::refine(Runtimes::get("gpu:32"), mesh, wanted), refined);
+}
+
+}  // namespace
+}  // namespace flaunay::testing
