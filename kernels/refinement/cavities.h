@@ -39,6 +39,7 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4
+#define ROWS_SOON 2
 FETCHING void fetch_row(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
   fetch(&mesh->rows[row]);

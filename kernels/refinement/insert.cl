@@ -200,6 +200,19 @@ kernel void claim_points(int n, int is_first, uint first, global const int* rest
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
+#if FETCH_AHEAD
+    const insertion far = insertions[list[min(n - 1, i + ROWS_AHEAD)]],
+                    near = insertions[list[min(n - 1, i + ROWS_NEXT)]];
+    if (is_first && far.known >= 0) {
+      for (int k = 0; k < ROWS_NEXT; ++k) {
+        fetch((global const void*)&claims[max(0, cavities[LISTED_ROWS * far.known + min(k, far.count - 1)])]);
+      }
+    } else {
+      fetch_row(&mesh, row_of(max(0, far.corner)));
+      fetch_corners(&mesh, row_of(max(0, near.corner)));
+      fetch_neighbors(&mesh, row_of(max(0, near.corner)));
+    }
+#endif
     insertion of = insertions[list[i]];
     const uint claim = first + of.rank;
     uint size = 0;
@@ -330,6 +343,14 @@ kernel void insert_stars(int n, int first_made, global const int* restrict list,
                          global uchar* restrict refused, global int2* restrict made, global uchar* restrict waits) {
   const int i = get_global_id(0);
   if (i < n) {
+#if FETCH_AHEAD
+    if (i + ROWS_NEXT < n) {
+      for (uint k = offsets[i + ROWS_NEXT]; k < offsets[i + ROWS_NEXT + 1]; ++k) {
+        fetch(&rows[max(0, sides[k].outside)]);
+        fetch(&row_keys[max(0, sides[k].row)]);
+      }
+    }
+#endif
     const uint first = offsets[i];
     const int count = (int)(offsets[i + 1] - first), state = states[list[i]];
     waits[i] = state == POINT_WAITS;

@@ -95,6 +95,11 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
       fetch_corners(&mesh, beyond);
       fetch_neighbors(&mesh, beyond);
     }
+    const int soon = list[min(n - 1, i + ROWS_SOON)];
+    for (int k = 0; k < 3; ++k) {
+      const int beyond = max(0, rows[soon].neighbor[k]);
+      for (int j = 0; j < 3; ++j) fetch_corners(&mesh, max(0, rows[beyond].neighbor[j]));
+    }
 #endif
     const int row = list[i];
     const ordered_triangle triangle = ordered(&mesh, row);

@@ -63,6 +63,22 @@ struct Arrays {
   Buffer<cl_int> bad{}, next_bad{};  // rows
 };
 
+// What an array holds: where it is, if kernels run natively, or else a copy.
+template <typename T>
+class Here {
+ public:
+  Here(host::Runtime& runtime, const Buffer<T>& array, std::size_t count) {
+    if (!runtime.is_native()) copy_ = points::download(runtime, array, count);
+    values_ =
+        runtime.is_native() ? reinterpret_cast<const T*>(host::address_of(array.memory())) : copy_.data();
+  }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+
+ private:
+  std::vector<T> copy_;
+  const T* values_;
+};
+
 class Rounds {
  public:
   Rounds(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted)
@@ -618,11 +634,10 @@ class Rounds {
                                              .refined_mesh = refined_mesh(),
                                              .refused = arrays_.refused,
                                              .excuses = excuses_there});
-    const std::vector<cl_uchar> excuses = points::download(runtime_, excuses_there, rows_);
-    const std::vector<mesh_row> rows = points::download(runtime_, arrays_.rows, rows_);
-    const std::vector<double> coordinates =
-        points::download(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
-    const std::vector<edge_place> places = points::download(runtime_, arrays_.places, vertices_);
+    const Here<cl_uchar> excuses(runtime_, excuses_there, rows_);
+    const Here<mesh_row> rows(runtime_, arrays_.rows, rows_);
+    const Here<double> coordinates(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
+    const Here<edge_place> places(runtime_, arrays_.places, vertices_);
 
     // Rows and vertices of points that were dropped are left out.
     std::vector<std::int32_t> row_of(rows_, -1), vertex_of(vertices_, -1);
