@@ -1664,6 +1664,8 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   EXPECT_GE(of_second, 8U);
   EXPECT_LT(of_second, of_first / 2);
 
+  run_well({"verify", path("b.poly"), path("b.ele"), "--min-angle", "30", "--max-area", "0.5"}, kNoPlatform);
+
   // What is left is said, and where the first one is.
   const Outcome kept = refine({"--max-area", "0.05", "--keep-edges", "all"});
   EXPECT_NE(kept.out.find("at an edge that is kept; the first one is triangle "), std::string::npos)

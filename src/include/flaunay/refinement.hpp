@@ -57,11 +57,11 @@ enum class Excuse : std::uint8_t {
 
 /// How a refinement went.
 struct RefinementReport {
-  std::size_t rounds = 0;        ///< in which points were added
-  std::size_t added_points = 0;  ///< on constraints or not
-  std::size_t split_points = 0;  ///< those of them that are on constraints
-  /// Of all triangles, in degrees, rounded; 0 if there are none.
-  double smallest_angle = 0, largest_angle = 0;
+  std::size_t rounds = 0;                   ///< in which points were added
+  std::size_t added_points = 0;             ///< on constraints or not
+  std::size_t split_points = 0;             ///< those of them that are on constraints
+  double smallest_angle = 0;                ///< of all triangles, in degrees, rounded; 0 if there are none
+  double largest_angle = 0;                 ///< of all triangles, in degrees, rounded; 0 if there are none
   std::vector<std::int32_t> bad_triangles;  ///< triangles that are worse than asked for, ascending
   std::vector<Excuse> excuses;              ///< why, for each of them
 };
