@@ -17,6 +17,7 @@ namespace flaunay::blocks {
 
 using namespace geometry;
 using namespace points;
+using points::Rings;  // not those of polygons
 using testing::RingCheck;
 
 /// Sets of up to so many points are held against the reference, too.
