@@ -267,7 +267,7 @@ class Picture {
       text += " · " + with_thousands(mesh_.hull.size()) + " on the hull";
     } else {
       text += " · " + counted(contents_.constraints().constraint_edges.size() / 2, "constraint edge");
-      if (added_count() > 0) text += " · " + counted(added_count(), "point") + " added where segments cross";
+      if (added_count() > 0) text += " · " + counted(added_count(), "point") + " added";
     }
     std::size_t duplicates = 0;
     for (std::size_t i = 0; i < mesh_.representatives.size(); ++i) {
