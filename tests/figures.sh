@@ -28,4 +28,5 @@ flaunay="${2-}"
 if [[ -n $flaunay ]]; then
   drawing africa.geojson
   drawing star.poly --crossings split --fill even-odd
+  drawing letter.poly --outside holes --min-angle 30 --max-area 0.005
 fi
