@@ -412,14 +412,29 @@ class Check {
                   length(rows[3 * t + 2], rows[3 * t])});
     return static_cast<double>(cross) / longest <= kCoarse * largest_;
   }
-  /// Whether that has been so of a triangle beside a piece of an edge, as far as one can tell in the end.
+  /// Whether rounding may not allow to split a piece of an edge, opposite to a corner: a triangle there is
+  /// coarse, or was so; or its circle reaches beyond the piece no farther than points are rounded.
   bool is_piece_coarse(std::size_t c) {
     if (is_at_coarse_.empty()) {
       is_at_coarse_.assign(points_.size() / 2, false);
       for (std::size_t k = 0; k < refined_.triangles.size(); ++k)
         if (is_coarse(k / 3)) is_at_coarse_[refined_.triangles[k]] = true;
     }
-    return is_at_coarse_[refined_.triangles[after(c)]] || is_at_coarse_[refined_.triangles[after(after(c))]];
+    const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];
+    if (is_at_coarse_[u] || is_at_coarse_[v] || reach(c) <= kOff * largest_) return true;
+    if (refined_.neighbors[c] < 0) return false;
+    auto opposite = 3 * static_cast<std::size_t>(refined_.neighbors[c]);
+    while (refined_.triangles[opposite] == u || refined_.triangles[opposite] == v) ++opposite;
+    return reach(opposite) <= kOff * largest_;
+  }
+  /// How far a triangle's circle reaches beyond the side opposite to a corner: half the side, times the
+  /// tangent of half the angle there.
+  double reach(std::size_t c) const {
+    const double *p = corner(c), *a = corner(after(c)), *b = corner(after(after(c)));
+    const double ux = a[0] - p[0], uy = a[1] - p[1], vx = b[0] - p[0], vy = b[1] - p[1];
+    const double cosine = ux * vx + uy * vy, sine = ux * vy - uy * vx;
+    return std::hypot(b[0] - a[0], b[1] - a[1]) / 2 * sine /
+           (std::hypot(ux, uy) * std::hypot(vx, vy) + cosine);
   }
   bool has_coarse_piece() {
     for (std::size_t c = 0; c < refined_.edges.size(); ++c) {
