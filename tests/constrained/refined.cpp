@@ -239,20 +239,28 @@ class Check {
     return of_parent > 0 ? of_parent : wanted_.max_area;
   }
 
-  /// The corners whose opposite edges are shortest.
+  /// The corners whose opposite edges are shortest, or would be if their lengths were rounded.
   std::vector<std::size_t> smallest_angles(std::size_t t) {
+    const std::vector<Index>& rows = refined_.triangles;
+    double lengths[3], shortest = HUGE_VAL;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t c = 3 * t + k;
+      lengths[k] = length(rows[after(c)], rows[after(after(c))]);
+      shortest = std::min(shortest, lengths[k]);
+    }
     std::vector<std::size_t> smallest;
-    for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
-      const double *p = corner(c), *a = corner(after(c)), *b = corner(after(after(c)));
-      if (exact_.compare_lengths(b, a, p) <= 0 && exact_.compare_lengths(a, b, p) <= 0) smallest.push_back(c);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (lengths[k] <= shortest * (1 + 0x1p-49)) smallest.push_back(3 * t + k);
     }
     return smallest;
   }
 
   bool is_thin(std::size_t t) {
-    const std::size_t c = smallest_angles(t).front();
-    return exact_.compare_sine(corner(c), corner(after(c)), corner(after(after(c))), bounds_.squared_sine) <
-           0;
+    const std::vector<std::size_t> smallest = smallest_angles(t);
+    return std::any_of(smallest.begin(), smallest.end(), [this](std::size_t c) {
+      return exact_.compare_sine(corner(c), corner(after(c)), corner(after(after(c))), bounds_.squared_sine) <
+             0;
+    });
   }
 
   bool is_larger(std::size_t t, double area) {
@@ -308,10 +316,7 @@ class Check {
       case Excuse::frozen:
         return has_coarse_piece() ? "" : "rounding would allow a split";
       case Excuse::most_points:
-        // Points count, too, that rounding does not allow.
-        return refined_.report.added_points >= wanted_.most_points || has_coarse_piece()
-                   ? ""
-                   : "more points were allowed";
+        return refined_.report.added_points == wanted_.most_points ? "" : "more points were allowed";
       case Excuse::most_rounds:
         return refined_.report.rounds == wanted_.most_rounds ? "" : "more rounds were allowed";
     }
@@ -448,8 +453,6 @@ class Check {
     const RefinementReport& report = refined_.report;
     if (!is_wanted() || report.rounds == wanted_.most_rounds || report.added_points == wanted_.most_points)
       return;
-    // Points that rounding did not allow count, too.
-    if (std::count(report.excuses.begin(), report.excuses.end(), Excuse::most_points) > 0) return;
     for (std::size_t c = 0; c < refined_.edges.size(); ++c) {
       if (refined_.edges[c] < 0 || is_kept(refined_.edges[c])) continue;
       const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];

@@ -90,10 +90,10 @@ class Rounds {
   RefinedMesh run() {
     upload();
     while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
-      const std::size_t before = added_;
+      const std::size_t before = tried_;
       Arena::Scope scope(arena_);
       if (!make_round()) break;
-      if (added_ > before) ++report_.rounds;
+      if (tried_ > before) ++report_.rounds;
     }
     if (is_at_limit()) ask_for_areas();
     return result();
@@ -553,8 +553,10 @@ class Rounds {
     }
     rows_ += 2 * count;
     vertices_ += count;
-    added_ += split_count + point_count;
+    tried_ += split_count + point_count;
     insert_in_steps(insertions, states, count, split_count > 0, proposals.cavities);
+    // Those that were dropped do not count.
+    added_ += host::pack_positions(runtime_, states, count, kernel::POINT_INSERTED).second;
   }
 
   void insert_in_steps(const Buffer<insertion>& insertions, const Buffer<cl_uchar>& states, std::size_t count,
@@ -704,7 +706,7 @@ class Rounds {
   Buffer<cl_double> parent_areas_{};
   Buffer<cl_int2> made_{};  // what the last round has made: rows and their first vertices
   std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
-              added_ = 0;
+              added_ = 0, tried_ = 0;
   cl_uint next_claim_ = 0;
   bool may_propose_ = false;
   RefinementReport report_;
