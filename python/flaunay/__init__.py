@@ -9,7 +9,8 @@ for one set of points or many at once, also with segments that are to be edges, 
 number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
-arrays that are mapped from files, and writes files.
+arrays that are mapped from files, and writes files. The module ``triangle`` has the calls of the package of
+that name.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
 call builds its kernels, which takes some seconds; they are kept on disk for later processes, and
@@ -20,6 +21,7 @@ device does one call after the other. OpenCL does not survive a fork: in a child
 used it, calls run on the host, and calls that name or need a device raise ``DeviceError``.
 """
 
+from flaunay import triangle
 from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
 from flaunay._chunks import ChunkedTriangulation, triangulate_chunks
@@ -76,6 +78,7 @@ __all__ = [
     "refine",
     "relax",
     "relax_device",
+    "triangle",
     "triangulate",
     "triangulate_chunks",
     "triangulate_device",
