@@ -66,8 +66,10 @@ std::size_t Arena::held_bytes() const {
 }
 
 std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes) {
-  // Where memory lacks, an OpenCL implementation may end the process.
-  if (source.in_host_memory) require_memory(bytes, "a buffer");
+  // Where memory lacks, an OpenCL implementation may end the process. To look takes longer than work on less
+  // than this.
+  constexpr std::size_t kNeverLacking = std::size_t{1} << 18;
+  if (source.in_host_memory && bytes > kNeverLacking) require_memory(bytes, "a buffer");
   if (source.context.get() == nullptr) return allocate_native(bytes);
 #ifdef __linux__
   if (source.in_host_memory && bytes >= kHugePage) {
