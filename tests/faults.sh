@@ -78,8 +78,7 @@ case "$1" in
     succeed 'partition on a small stack' \
       limited -s 256 "$FLAUNAY" partition "$input" --levels 3 -o "$work/regions" --quiet
     # Voronoi diagrams and queries.
-    # PoCL's threads have as much, on which a work-group of refinement's exact tests has arrays.
-    limited -s 512 "$C_TEST" || fail 'c_test on a small stack'
+    limited -s 256 "$C_TEST" || fail 'c_test on a small stack'
     ;;
   memory)
     input="$(points 200000 uniform)"

@@ -311,13 +311,13 @@ class Rounds {
     // Before the test, which gives rows that were made keys again.
     runtime_.map(bad_count_,
                  kernels::find_unchanged{.list = arrays_.bad, .keys = arrays_.keys, .unchanged = unchanged});
-    runtime_.map(count, kernels::test_rows{.rules = rules_,
-                                           .made = made_,
-                                           .refined_mesh = refined_mesh(),
-                                           .keys = arrays_.keys,
-                                           .bad = bad,
-                                           .encroached = encroached,
-                                           .split_bits = split_bits});
+    runtime_.map_in_small_groups(count, kernels::test_rows{.rules = rules_,
+                                                           .made = made_,
+                                                           .refined_mesh = refined_mesh(),
+                                                           .keys = arrays_.keys,
+                                                           .bad = bad,
+                                                           .encroached = encroached,
+                                                           .split_bits = split_bits});
     const auto [kept_at, kept_count] = host::pack_positions(runtime_, unchanged, bad_count_, 1);
     const auto [bad_at, bad_count] = host::pack_positions(runtime_, bad, count, 1);
     const auto [encroached_at, encroached_count] = host::pack_positions(runtime_, encroached, count, 1);
@@ -343,8 +343,9 @@ class Rounds {
     if (!wanted_.areas_at) return;
     Arena::Scope scope(arena_);
     const auto centroids = arena_.allocate<cl_double2>(made_count_);
-    runtime_.map(made_count_, kernels::write_centroids{
-                                  .made = made_, .refined_mesh = refined_mesh(), .centroids = centroids});
+    runtime_.map_in_small_groups(
+        made_count_,
+        kernels::write_centroids{.made = made_, .refined_mesh = refined_mesh(), .centroids = centroids});
     const std::vector<double> all = points::download(runtime_, centroids.as<cl_double>(), 2 * made_count_);
     std::vector<double> places, areas;
     std::vector<std::size_t> of;
@@ -632,10 +633,10 @@ class Rounds {
     RefinedMesh refined;
     Arena::Scope scope(arena_);
     const auto excuses_there = arena_.allocate<cl_uchar>(rows_);
-    runtime_.map(rows_, kernels::report_rows{.rules = rules_,
-                                             .refined_mesh = refined_mesh(),
-                                             .refused = arrays_.refused,
-                                             .excuses = excuses_there});
+    runtime_.map_in_small_groups(rows_, kernels::report_rows{.rules = rules_,
+                                                             .refined_mesh = refined_mesh(),
+                                                             .refused = arrays_.refused,
+                                                             .excuses = excuses_there});
     const Here<cl_uchar> excuses(runtime_, excuses_there, rows_);
     const Here<mesh_row> rows(runtime_, arrays_.rows, rows_);
     const Here<double> coordinates(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
