@@ -115,7 +115,8 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
     made.start = triangle.corner[0];
     int outcome = PROPOSAL_OPEN;
     const int nearest = (opposite_to_shortest(triangle.point) + 1) % 3;
-    if (!(squared_distance(p, triangle.point[nearest]) >= rules.min_edge) || !(fabs(p.x) < INFINITY)) {
+    if (!(squared_distance(p, triangle.point[nearest]) >= rules.min_edge) ||
+        !(fabs(p.x) < INFINITY && fabs(p.y) < INFINITY)) {
       outcome = EXCUSED_MIN_EDGE;
     } else {
       const int found = walk_to(&mesh, triangle.corner[0], p);
@@ -124,6 +125,8 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
         made.splits = 1;
         outcome = why_not_split(&mesh, made.hit, rules);
         if (outcome == EXCUSED_NOT) outcome = PROPOSAL_OPEN;
+        // The point of a flat triangle may be rounded out of its circle; then its cavity would not be a tree.
+        if (outcome == PROPOSAL_OPEN && !is_in_circle(&mesh, row, p)) outcome = EXCUSED_FROZEN;
       } else {
         made.start = found;
         if (is_vertex(&mesh, row_of(found), p)) outcome = EXCUSED_MIN_EDGE;
@@ -201,6 +204,7 @@ static inline void claim_split(const seen_mesh* mesh, int corner, double2 p, uin
   for (int side = 0; side < (beyond < 0 ? 1 : 2); ++side) {
     const int from = side ? corner_facing(mesh, beyond, row_of(corner)) : corner;
     atomic_min(&claims[row_of(from)], claim);
+    if (!is_in_circle(mesh, row_of(from), p)) continue;  // it will not be split
     cavity_tour tour;
     start_tour(&tour, next_halfedge(from), from);
     for (int next = next_in_tour(&tour, mesh, p); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
