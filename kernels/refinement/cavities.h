@@ -29,10 +29,12 @@ static inline double2 point_at(const seen_mesh* mesh, int corner) { return mesh-
 static inline int neighbor_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].neighbor[corner % 3]; }
 static inline int edge_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].edge[corner % 3]; }
 
-// The corner of a row that is opposite to its neighbour.
+// The number of the corner that is opposite to a neighbour, and the corner.
+static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
+  return row->neighbor[0] == neighbor ? 0 : row->neighbor[1] == neighbor ? 1 : 2;
+}
 static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
-  GLOBAL const int* const neighbors = mesh->rows[row].neighbor;
-  return 3 * row + (neighbors[0] == neighbor ? 0 : neighbors[1] == neighbor ? 1 : 2);
+  return 3 * row + number_facing(&mesh->rows[row], neighbor);
 }
 
 // Fetches a row that a list has far ahead, and of one that is nearer what its triangle and those beside it are made of.
@@ -90,11 +92,6 @@ static inline void start_tour(cavity_tour* tour, int corner, int end) {
   tour->depth = 0;
 }
 
-// The number of the corner that is opposite to a neighbour.
-static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
-  return row->neighbor[0] == neighbor ? 0 : row->neighbor[1] == neighbor ? 1 : 2;
-}
-
 // Goes on to the next side of the cavity of p and returns the corner of the row inside opposite to it; or to a row that
 // the tour has not met yet, or not known for long, and returns it complemented. At the end returns NO_MORE.
 #define NO_MORE INT_MIN
@@ -130,10 +127,7 @@ static inline int next_in_tour(cavity_tour* tour, const seen_mesh* mesh, double2
 // ---------------------------------------------------------------------------------------------------------------------
 // Points that split constraints
 
-static inline double squared_distance(double2 a, double2 b) {
-  const double x = b.x - a.x, y = b.y - a.y;
-  return x * x + y * y;
-}
+static inline double squared_distance(double2 a, double2 b) { return squared_length(b - a); }
 
 // New coordinates near 0 are rounded so that predicates are exact. coarse: see refinement_rules.
 static inline double rounded_to(double x, double coarse) {

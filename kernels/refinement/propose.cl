@@ -43,7 +43,7 @@ static inline double2 centre_of(const double2* p, int is_large, refinement_rules
   const int k = opposite_to_shortest(p);
   const double2 from = p[(k + 1) % 3], to = p[(k + 2) % 3], apex = p[k];
   const double2 u = to - from, v = apex - from;
-  const double uu = u.x * u.x + u.y * u.y, vv = v.x * v.x + v.y * v.y, scale = 0.5 / (u.x * v.y - u.y * v.x);
+  const double uu = squared_length(u), vv = squared_length(v), scale = 0.5 / (u.x * v.y - u.y * v.x);
   double2 centre = VECTOR(double2, (v.y * uu - u.y * vv) * scale, (u.x * vv - v.x * uu) * scale);
   if (!is_large && rules.off_centre > 0.0) {
     const double2 off = VECTOR(double2, 0.5 * u.x - rules.off_centre * u.y, 0.5 * u.y + rules.off_centre * u.x);

@@ -48,7 +48,7 @@ constexpr double kWaitsUpTo = 30, kRingAbove = 32;
 constexpr int kMinEdgeExponent = -40;
 // New coordinates have no binary places below that of the largest coordinate by so many.
 constexpr int kBinaryPlaces = 200;
-// Memory grows by half of what there is.
+// Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
 
 // The mesh. Arrays have room for more.
