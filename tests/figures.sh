@@ -29,4 +29,12 @@ if [[ -n $flaunay ]]; then
   drawing africa.geojson
   drawing star.poly --crossings split --fill even-odd
   drawing letter.poly --outside holes --min-angle 30 --max-area 0.005
+  mkdir "$folder/refined"
+  "$1" "$docs/figures/refined.py" "$flaunay" "$folder/refined"
+  for picture in "$folder"/refined/*.svg; do
+    if ! cmp "$docs/figures/${picture##*/}" "$picture"; then
+      echo "figures.sh: run docs/figures/refined.py $flaunay docs/figures" >&2
+      exit 1
+    fi
+  done
 fi
