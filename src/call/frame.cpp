@@ -133,6 +133,22 @@ std::vector<std::size_t> Frame::offsets(const DevicePoints& points) {
   return checked_offsets(place_.device->runtime, points);
 }
 
+std::vector<double> read_points(Implementation& self, const DevicePoints& points) {
+  Engine& engine = self.on_device();
+  const Enqueue own;
+  Frame call(self, {engine, &engine}, own);
+  call.check(points, "points");
+  expect(points.offsets.size() <= 2 && points.device_offsets == nullptr, "points of several sets");
+  call.begin();
+  if (points.precision == Precision::float64) {
+    return points::download(call.runtime, caller_points<cl_double>(points), 2 * points.first,
+                            2 * points.count);
+  }
+  const std::vector<float> narrow =
+      points::download(call.runtime, caller_points<cl_float>(points), 2 * points.first, 2 * points.count);
+  return {narrow.begin(), narrow.end()};
+}
+
 void Frame::check_distinct(const std::vector<cl_mem>& others) {
   std::vector<cl_mem> all = memories_;
   all.insert(all.end(), others.begin(), others.end());

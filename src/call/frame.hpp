@@ -60,6 +60,9 @@ auto in_fixed_point_or(const Work& work, const WithDoubles& with_doubles) {
 void add_note(const Engine& asked, const Engine& used, const std::string& what, const std::string& done,
               Statistics& statistics);
 
+/// Returns the coordinates of points in device memory, of one set.
+std::vector<double> read_points(Implementation& self, const DevicePoints& points);
+
 /// Adds what the engine did since its accounts were reset to what earlier steps of the call did.
 void add_accounts(Engine& engine, Statistics& all);
 

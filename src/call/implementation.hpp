@@ -64,6 +64,9 @@ struct Triangulator::Implementation {
 struct TriangulatorAccess {
   using Implementation = Triangulator::Implementation;
   static Implementation& implementation(Triangulator& triangulator) { return *triangulator.implementation_; }
+  static std::shared_ptr<Implementation> shared(Triangulator& triangulator) {
+    return triangulator.implementation_;
+  }
 };
 
 namespace call {

@@ -1,0 +1,55 @@
+// The points of a triangulation that changes, by their numbers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/magnitudes.hpp"
+
+namespace flaunay::updates {
+
+/// The points that there are, without gaps.
+struct Living {
+  std::vector<double> coordinates;
+  std::vector<std::int32_t> numbers;  ///< per point
+  std::vector<std::int32_t> places;   ///< per number: the point, or -1
+};
+
+class Points {
+ public:
+  /// Adds n points. They represent themselves until it is known whether others do.
+  void append(const double* coordinates, std::size_t n);
+  void remove(std::int32_t v);
+  void move(std::int32_t v, const double* coordinates);
+
+  /// Throws Error(input) if m further points, or these ones in new places, differ too much in magnitude from
+  /// all others. numbers: of the points, which must be marked; null for further ones.
+  void check_range(const double* coordinates, const std::int32_t* numbers, std::size_t m);
+  /// Returns the first of m entries that is no living point, or the same as one before; m if there is none.
+  std::size_t mark(const std::int32_t* numbers, std::size_t m);
+  /// Whether the last batch marked has this point.
+  bool is_marked(std::int32_t v) const { return marks_[static_cast<std::size_t>(v)] == batch_; }
+
+  Living living() const;
+  /// representatives: per living point, which living point represents it.
+  void set_representatives(const Living& living, const std::vector<std::int32_t>& representatives);
+
+  std::size_t numbers() const { return representatives_.size(); }
+  std::size_t count() const { return count_; }
+  bool is_alive(std::int32_t v) const { return representatives_[static_cast<std::size_t>(v)] >= 0; }
+  std::int32_t representative(std::size_t v) const { return representatives_[v]; }
+  /// Per number; -1 if there is no such point any more.
+  const std::vector<std::int32_t>& representatives() const { return representatives_; }
+  const std::vector<double>& coordinates() const { return coordinates_; }
+
+ private:
+  std::vector<double> coordinates_;
+  geometry::Magnitudes magnitudes_;  // of all points that there are, and maybe of others
+  std::vector<std::int32_t> representatives_;
+  std::vector<std::uint32_t> marks_;  // per number: the last batch that had it
+  std::uint32_t batch_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace flaunay::updates

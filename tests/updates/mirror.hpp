@@ -1,0 +1,229 @@
+// A triangulation that changes, and what is known of it from outside: the points that it should have, and the
+// rows that its changes tell of. After each batch, both are held against a call on all points.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flaunay/dynamic.hpp"
+
+namespace flaunay::testing {
+
+using Corners = std::array<std::int32_t, 3>;
+
+/// From the smallest number on.
+inline Corners rotated(const std::int32_t* corners) {
+  Corners row{corners[0], corners[1], corners[2]};
+  std::rotate(row.begin(), std::min_element(row.begin(), row.end()), row.end());
+  return row;
+}
+
+inline std::set<Corners> set_of(const std::vector<std::int32_t>& triangles) {
+  std::set<Corners> all;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) all.insert(rotated(&triangles[t]));
+  return all;
+}
+
+class Mirror {
+ public:
+  using Point = std::array<double, 2>;
+
+  Mirror(Triangulator& by, Triangulator& reference, const std::vector<double>& coordinates)
+      : reference_(reference), mesh(by, coordinates.data(), coordinates.size() / 2) {
+    begin(coordinates);
+  }
+  Mirror(Triangulator& by, Triangulator& reference, const std::vector<double>& coordinates,
+         const std::vector<std::int32_t>& segments)
+      : reference_(reference),
+        mesh(by, coordinates.data(), coordinates.size() / 2, constraints_of(segments)),
+        segments_(segments) {
+    begin(coordinates);
+  }
+
+  Changes insert(const std::vector<double>& coordinates) {
+    const std::size_t first = mesh.numbers();
+    const Changes changes = mesh.insert(coordinates.data(), coordinates.size() / 2);
+    EXPECT_EQ(changes.first_point, first);
+    EXPECT_EQ(changes.representatives.size(), coordinates.size() / 2);
+    for (std::size_t i = 0; i < coordinates.size(); i += 2) {
+      points[static_cast<std::int32_t>(first + i / 2)] = {coordinates[i] + 0.0, coordinates[i + 1] + 0.0};
+    }
+    for (std::size_t i = 0; i < changes.representatives.size(); ++i) {
+      EXPECT_EQ(changes.representatives[i], first_at(static_cast<std::int32_t>(first + i)));
+    }
+    apply(changes);
+    return changes;
+  }
+  Changes remove(const std::vector<std::int32_t>& numbers) {
+    const Changes changes = mesh.remove(numbers.data(), numbers.size());
+    for (const std::int32_t v : numbers) points.erase(v);
+    apply(changes);
+    return changes;
+  }
+  Changes move(const std::vector<std::int32_t>& numbers, const std::vector<double>& coordinates) {
+    const Changes changes = mesh.move(numbers.data(), coordinates.data(), numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      points[numbers[i]] = {coordinates[2 * i] + 0.0, coordinates[2 * i + 1] + 0.0};
+    }
+    EXPECT_EQ(changes.representatives.size(), numbers.size());
+    for (std::size_t i = 0; i < changes.representatives.size(); ++i) {
+      EXPECT_EQ(changes.representatives[i], first_at(numbers[i]));
+    }
+    apply(changes);
+    return changes;
+  }
+
+  /// Whether all is as it should be. Only meant for small inputs.
+  void check() {
+    EXPECT_EQ(mesh.point_count(), points.size());
+    // A call on all points, by their numbers.
+    std::vector<std::int32_t> numbers, places(mesh.numbers(), -1);
+    std::vector<double> coordinates;
+    for (const auto& [v, p] : points) {
+      EXPECT_TRUE(mesh.has_point(static_cast<std::size_t>(v)));
+      places[v] = static_cast<std::int32_t>(numbers.size());
+      numbers.push_back(v);
+      coordinates.insert(coordinates.end(), p.begin(), p.end());
+    }
+    const std::vector<double> known = mesh.coordinates();
+    ASSERT_EQ(known.size(), 2 * mesh.numbers());
+    for (std::size_t i = 0; i < known.size(); i += 2) {
+      const auto at = points.find(static_cast<std::int32_t>(i / 2));
+      if (at == points.end()) {
+        EXPECT_TRUE(std::isnan(known[i]) && std::isnan(known[i + 1]));
+        EXPECT_FALSE(mesh.has_point(i / 2));
+      } else {
+        EXPECT_EQ((Point{known[i], known[i + 1]}), at->second);
+      }
+    }
+    ConstrainedTriangulation expected;
+    if (segments_.empty()) {
+      static_cast<Triangulation&>(expected) = reference_.triangulate(coordinates.data(), numbers.size());
+    } else {
+      std::vector<std::int32_t> segments = segments_;
+      for (std::int32_t& v : segments) v = places[v];
+      expected = reference_.constrained(coordinates.data(), numbers.size(), constraints_of(segments));
+    }
+    const auto renumber = [&](std::vector<std::int32_t>& all) {
+      for (std::int32_t& v : all) v = numbers[v];
+    };
+    renumber(expected.triangles);
+    renumber(expected.hull);
+    renumber(expected.constraint_edges);
+
+    const Triangulation found = mesh.triangulation();
+    EXPECT_EQ(set_of(found.triangles), set_of(expected.triangles));
+    EXPECT_EQ(found.triangles.size(), expected.triangles.size());
+    EXPECT_EQ(mesh.triangle_count(), expected.triangles.size() / 3);
+    EXPECT_EQ(found.hull, expected.hull);
+    ASSERT_EQ(found.representatives.size(), mesh.numbers());
+    for (std::size_t v = 0; v < found.representatives.size(); ++v) {
+      const std::int32_t here = places[v];
+      EXPECT_EQ(found.representatives[v], here < 0 ? -1 : numbers[expected.representatives[here]]);
+    }
+    for (std::size_t t = 0; t < found.triangles.size(); t += 3) {
+      EXPECT_EQ(rotated(&found.triangles[t]),
+                (Corners{found.triangles[t], found.triangles[t + 1], found.triangles[t + 2]}));
+    }
+    check_neighbors(found.triangles, found.neighbors);
+
+    const TriangleRows rows = mesh.rows();
+    EXPECT_EQ(rows.triangles.size(), 3 * mesh.row_count());
+    check_neighbors(rows.triangles, rows.neighbors);
+    std::map<std::int32_t, Corners> living;
+    for (std::size_t t = 0; t < rows.triangles.size(); t += 3) {
+      if (rows.triangles[t] >= 0) living[static_cast<std::int32_t>(t / 3)] = rotated(&rows.triangles[t]);
+    }
+    EXPECT_EQ(living, rows_);
+
+    const LivingConstraints edges = mesh.constraints();
+    std::map<std::array<std::int32_t, 2>, std::int32_t> found_edges, expected_edges;
+    for (std::size_t e = 0; e < edges.segments.size(); ++e) {
+      found_edges[{edges.edges[2 * e], edges.edges[2 * e + 1]}] = edges.segments[e];
+    }
+    EXPECT_EQ(found_edges.size(), edges.segments.size());
+    for (std::size_t e = 0; e < expected.edge_segments.size(); ++e) {
+      expected_edges[{expected.constraint_edges[2 * e], expected.constraint_edges[2 * e + 1]}] =
+          expected.edge_segments[e];
+    }
+    EXPECT_EQ(found_edges, expected_edges);
+  }
+
+ private:
+  Triangulator& reference_;
+
+ public:
+  DynamicTriangulation mesh;
+  std::map<std::int32_t, Point> points;  ///< by number
+
+ private:
+  static Constraints constraints_of(const std::vector<std::int32_t>& segments) {
+    Constraints constraints;
+    constraints.segments = segments.data();
+    constraints.segment_count = segments.size() / 2;
+    return constraints;
+  }
+
+  void begin(const std::vector<double>& coordinates) {
+    for (std::size_t i = 0; i < coordinates.size(); i += 2) {
+      points[static_cast<std::int32_t>(i / 2)] = {coordinates[i] + 0.0, coordinates[i + 1] + 0.0};
+    }
+    const TriangleRows rows = mesh.rows();
+    for (std::size_t t = 0; t < rows.triangles.size(); t += 3) {
+      if (rows.triangles[t] >= 0) rows_[static_cast<std::int32_t>(t / 3)] = rotated(&rows.triangles[t]);
+    }
+  }
+
+  std::int32_t first_at(std::int32_t v) const {
+    for (const auto& [other, p] : points) {
+      if (p == points.at(v)) return other;
+    }
+    return -1;
+  }
+
+  void apply(const Changes& changes) {
+    ASSERT_EQ(changes.made_corners.size(), 3 * changes.made.size());
+    EXPECT_EQ((std::set<std::int32_t>{changes.removed.begin(), changes.removed.end()}).size(),
+              changes.removed.size());
+    for (const std::int32_t row : changes.removed) EXPECT_EQ(rows_.erase(row), 1) << "row " << row;
+    for (std::size_t i = 0; i < changes.made.size(); ++i) {
+      EXPECT_TRUE(rows_.emplace(changes.made[i], rotated(&changes.made_corners[3 * i])).second);
+    }
+  }
+
+  static void check_neighbors(const std::vector<std::int32_t>& triangles,
+                              const std::vector<std::int32_t>& neighbors) {
+    ASSERT_EQ(triangles.size(), neighbors.size());
+    std::map<std::array<std::int32_t, 2>, std::int32_t> row_at;
+    for (std::size_t c = 0; c < triangles.size(); ++c) {
+      const std::size_t first = c - c % 3;
+      if (triangles[c] < 0) continue;
+      row_at[{triangles[first + (c + 1) % 3], triangles[first + (c + 2) % 3]}] =
+          static_cast<std::int32_t>(c / 3);
+    }
+    for (std::size_t c = 0; c < triangles.size(); ++c) {
+      const std::size_t first = c - c % 3;
+      std::int32_t expected = -1;
+      if (triangles[c] >= 0) {
+        const auto beyond = row_at.find({triangles[first + (c + 2) % 3], triangles[first + (c + 1) % 3]});
+        if (beyond != row_at.end()) expected = beyond->second;
+      }
+      EXPECT_EQ(neighbors[c], expected) << "corner " << c;
+    }
+  }
+
+  std::vector<std::int32_t> segments_;
+  std::map<std::int32_t, Corners> rows_;
+};
+
+}  // namespace flaunay::testing
