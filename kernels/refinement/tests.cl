@@ -2,8 +2,9 @@
 //
 // load_rows: the rows of the mesh, from the arrays of the host. test_rows, over those that the last round has made:
 // whether triangles are bad, with their keys, and which of their constraints they encroach. find_unchanged, over the
-// list of bad triangles: which are as they were. append_made and append_unchanged: make the next list. write_centroids:
-// places at which the host asks for areas. report_rows: why triangles are bad in the end.
+// list of bad triangles: which are as they were. make_again: those that are tried once more. append_made and
+// append_unchanged: make the next list. write_centroids: places at which the host asks for areas. report_rows: why
+// triangles are bad in the end.
 
 #include "refinement/arguments.h"
 #include "refinement/quality_of_rows.h"
@@ -82,6 +83,17 @@ kernel void find_unchanged(int n, global const int* restrict list, global const 
                            global uchar* restrict unchanged) {
   const int i = get_global_id(0);
   if (i < n) unchanged[i] = keys[list[i]] != NO_KEY;
+}
+
+// Lists the n rows at these positions as if they had been made again, so that they are tested anew.
+kernel void make_again(int n, global const int* restrict positions, global const mesh_row* restrict rows,
+                       global uchar* restrict refused, global int2* restrict made) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int row = positions[i], first = rows[row].corner[0];
+    refused[row] = EXCUSED_NOT;
+    made[i] = VECTOR(int2, first == NO_TRIANGLE ? -1 : row, first);
+  }
 }
 
 // The n rows at these positions go to a list, from its element `first` on.

@@ -275,6 +275,18 @@ TEST(SmallRefinement, SmallestEdge) {
   EXPECT_GT(refined.report.excuses.size(), 0);
 }
 
+// An edge that rounding did not allow to split beside a flat triangle, which others replace later.
+TEST(SmallRefinement, FrozenEdgesThaw) {
+  if (!tests_native()) GTEST_SKIP() << "hundreds of rounds";
+  DomainToRefine domain;
+  domain.points = {1.2408,        0.401, 1, 0, 1.24045281663, 0.400662130809, 1.24045281664, 0.40066213,
+                   1.24045699574, 0.401, 0, 0};
+  domain.segments = {3, 4};
+  Refinement wanted = angle_of(33);
+  wanted.most_points = 3000;
+  EXPECT_EQ(excused_for(expect_right(mesh_to_refine(domain), wanted), Excuse::frozen), 0);
+}
+
 TEST(SmallRefinement, SmallInputAngles) {
   DomainToRefine domain;
   domain.point(0, 0);

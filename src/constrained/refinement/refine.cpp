@@ -89,18 +89,40 @@ class Rounds {
 
   RefinedMesh run() {
     upload();
-    while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
-      const std::size_t before = tried_;
-      Arena::Scope scope(arena_);
-      if (!make_round()) break;
-      if (tried_ > before) ++report_.rounds;
-    }
+    std::size_t before_retry;
+    do {
+      before_retry = added_;
+      make_rounds();
+    } while (!is_at_limit() && added_ > before_retry && retry_frozen());
     if (is_at_limit()) ask_for_areas();
     return result();
   }
 
  private:
   bool is_at_limit() const { return report_.rounds >= wanted_.most_rounds || added_ >= wanted_.most_points; }
+
+  void make_rounds() {
+    while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
+      const std::size_t before = tried_;
+      Arena::Scope scope(arena_);
+      if (!make_round()) break;
+      if (tried_ > before) ++report_.rounds;
+    }
+  }
+
+  // Constraints that could not be split where triangles were flat may be so since these changed. Tests
+  // triangles that were refused for such a constraint again; returns whether there are some.
+  bool retry_frozen() {
+    Arena::Scope scope(arena_);
+    const auto [at, count] = host::pack_positions(runtime_, arrays_.refused, rows_, kernel::EXCUSED_FROZEN);
+    reserve_made(count);
+    runtime_.map(count,
+                 kernels::make_again{
+                     .positions = at, .rows = arrays_.rows, .refused = arrays_.refused, .made = made_});
+    runtime_.finish();
+    made_count_ = count;
+    return count > 0;
+  }
 
   // -------------------------------------------------------------------------------------------------------
   // Before and after
@@ -684,8 +706,10 @@ class Rounds {
       refined.parents[to / 3] = row.parent;
       if (excuses[t] != kernel::EXCUSED_NOT) {
         report_.bad_triangles.push_back(row_of[t]);
-        report_.excuses.push_back(excuses[t] == kernel::EXCUSED_LIMIT ? at_limit
-                                                                      : static_cast<Excuse>(excuses[t]));
+        // Without the limit, those at frozen constraints would be tried again.
+        const bool is_limited =
+            excuses[t] == kernel::EXCUSED_LIMIT || (excuses[t] == kernel::EXCUSED_FROZEN && is_at_limit());
+        report_.excuses.push_back(is_limited ? at_limit : static_cast<Excuse>(excuses[t]));
       }
     }
     report_.added_points = refined.added_edges.size();
