@@ -40,7 +40,7 @@ MODES = DEVICE_MODES + ["recursive", "partition", "dwyer"]
 OPTIONS_OF_MODE = {"partition": ["--partition-levels", "3", "--threads", "2"]}
 TUNINGS = ["gpu", "gpu:32", "small", "small-blocks"]
 ARRAYS = ["triangles", "neighbors", "hull", "duplicates"]
-MESHES = [".off", ".ply", ".obj", ".vtu", ".ele", ".svg", ".npy"]
+MESHES = [".off", ".ply", ".obj", ".msh", ".vtu", ".ele", ".svg", ".npy"]
 BINARY = [".npy", ".bin", ".ply", ".vtu"]
 POINT_FORMATS = [".npy", ".node", ".xy", ".txt", ".csv", ".bin"]
 # Mode recursive-device launches many kernels per region, and is slow.

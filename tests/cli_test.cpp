@@ -348,7 +348,7 @@ TEST_F(CommandBadInputTest, OutputThatCannotBeWrittenIsFoundBeforeTheWork) {
   for (const char* option : {"--triangles", "--neighbors", "--hull", "--duplicates"}) {
     expect_error(kBadInput, {"no/such/directory/a.npy"}, {"triangulate", input, option, nowhere + "a.npy"});
   }
-  for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+  for (const char* ending : {".ele", ".off", ".ply", ".msh", ".vtu", ".obj", ".npy", ".svg"}) {
     expect_error(kBadInput, {"no/such/directory/a"}, {"triangulate", input, "-o", nowhere + "a" + ending});
   }
   expect_error(kBadInput, {"a.json"}, {"triangulate", input, "--stats", nowhere + "a.json"});
@@ -776,13 +776,13 @@ TEST_F(CommandTriangulateTest, EveryFileOfTheTestDataIsTriangulatedExactly) {
 
 TEST_F(CommandTriangulateTest, EveryMeshFormat) {
   const std::string input = data("ukraine.xy");
-  for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+  for (const char* ending : {".ele", ".off", ".ply", ".msh", ".vtu", ".obj", ".npy", ".svg"}) {
     SCOPED_TRACE(ending);
     const std::string mesh = path("mesh" + std::string(ending));
     run_well({"triangulate", input, "-o", mesh});
     EXPECT_GT(fs::file_size(mesh), 1000u);
-    // .vtu and .svg are for looking at.
-    if (std::string(ending) != ".vtu" && std::string(ending) != ".svg") {
+    // Triangles are not read from the others.
+    if (!std::set<std::string>{".msh", ".vtu", ".svg"}.contains(ending)) {
       run_well({"verify", input, mesh}, kNoPlatform);
     }
   }
@@ -864,7 +864,7 @@ TEST_F(CommandTriangulateTest, DegenerateInputHasADefinedResult) {
 TEST_F(CommandTriangulateTest, EveryMeshFormatTakesNoTriangles) {
   for (const char* text : {"# none\n", "3 4\n", "2 2\n0 0\n1 1\n"}) {
     const std::string input = write("points.xy", text);
-    for (const char* ending : {".ele", ".off", ".ply", ".vtu", ".obj", ".npy", ".svg"}) {
+    for (const char* ending : {".ele", ".off", ".ply", ".msh", ".vtu", ".obj", ".npy", ".svg"}) {
       SCOPED_TRACE(text + std::string(ending));
       run_well({"triangulate", input, "-o", path("mesh" + std::string(ending))});
       EXPECT_TRUE(fs::exists(path("mesh" + std::string(ending))));
@@ -1885,7 +1885,7 @@ TEST_F(CommandConstraintsTest, MeshesCanBeReadAgain) {
   const double once = area(path("a.poly"), {"--outside", "keep", "--constraint-edges", path("e.npy")});
   EXPECT_DOUBLE_EQ(once, area(data("letter.poly"), {"--outside", "keep"}));
   EXPECT_EQ(read_array(path("e.npy")).shape, "(12, 2)");
-  for (const char* name : {"a.off", "a.ply", "a.obj", "a.vtu", "a.npy", "a.geojson", "a.svg"}) {
+  for (const char* name : {"a.off", "a.ply", "a.obj", "a.msh", "a.vtu", "a.npy", "a.geojson", "a.svg"}) {
     run_well({"triangulate", path("a.poly"), "-o", path(name), "--quiet"}, kNoPlatform);
   }
 }

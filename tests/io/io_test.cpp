@@ -589,7 +589,7 @@ TEST_F(IoTest, AnnouncedFilesAreGoneUnlessTheyAreWritten) {
 TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
   for (const char* name : {"a.stl", "a", "-", "a.node"}) {
     expect_error(ErrorKind::usage, std::string(name) + ": ",
-                 {".npy, .geojson, .ele, .off, .obj, .ply, .vtu, .svg"}, [&] { mesh_files(name); });
+                 {".npy, .geojson, .ele, .off, .obj, .ply, .msh, .vtu, .svg"}, [&] { mesh_files(name); });
     expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
   }
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},
@@ -605,7 +605,8 @@ TEST_F(IoTest, FullDeviceIsAnError) {
 }
 
 TEST_F(IoTest, FailedWriteKeepsTheOldFile) {
-  const std::vector<const char*> targets = {"a.ele", "a.off", "a.ply", "a.vtu", "a.obj", "a.npy", "a.svg"};
+  const std::vector<const char*> targets = {"a.ele", "a.off", "a.ply", "a.msh",
+                                            "a.vtu", "a.obj", "a.npy", "a.svg"};
   std::set<std::string> before = {"a.node"};
   write("a.node", "old");
   for (const char* name : targets) {

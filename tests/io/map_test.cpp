@@ -386,6 +386,25 @@ TEST_F(ConstrainedMeshTest, EdgesAreInObjAndPly) {
                [&] { read_triangles(cut); });
 }
 
+TEST_F(ConstrainedMeshTest, GmshHasEdgesAndGroups) {
+  const std::string nodes =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n$EndNodes\n";
+  const auto expect_elements = [&](const ConstrainedTriangulation& mesh, const std::string& elements) {
+    EXPECT_EQ(write_square("a.msh", mesh), nodes + "$Elements\n" + elements + "$EndElements\n");
+  };
+  ConstrainedTriangulation mesh = square();
+  expect_elements(mesh, "3\n1 1 2 1 1 1 3\n2 2 2 1 1 1 2 3\n3 2 2 2 2 1 3 4\n");
+  mesh.constraint_edges = {0, 2, 0, 3};
+  mesh.edge_markers = {9, 4};
+  mesh.triangle_attributes = {5, 7};
+  const std::string edges = "4\n1 1 2 9 2 1 3\n2 1 2 4 1 1 4\n";
+  expect_elements(mesh, edges + "3 2 2 5 1 1 2 3\n4 2 2 7 2 1 3 4\n");
+  mesh.triangle_attributes = {0.5, 7};
+  expect_elements(mesh, edges + "3 2 2 1 1 1 2 3\n4 2 2 2 2 1 3 4\n");
+  mesh.polygons = {3, -1};
+  expect_elements(mesh, edges + "3 2 2 4 1 1 2 3\n4 2 2 0 2 1 3 4\n");
+}
+
 TEST_F(ConstrainedMeshTest, LabelsAreInVtuAndGeoJson) {
   const std::string vtu = write_square("a.vtu", square());
   EXPECT_NE(vtu.find("Name=\"region\""), std::string::npos);

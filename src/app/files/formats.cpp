@@ -7,7 +7,7 @@ namespace {
 
 /// In the order of messages.
 constexpr const Format* kFormats[] = {&kNpy,     &kNode, &kXy,  &kTxt, &kCsv, &kBin, &kLas, &kLaz, &kPoly,
-                                      &kGeoJson, &kJson, &kEle, &kOff, &kObj, &kPly, &kVtu, &kSvg};
+                                      &kGeoJson, &kJson, &kEle, &kOff, &kObj, &kPly, &kMsh, &kVtu, &kSvg};
 
 }  // namespace
 

@@ -53,7 +53,7 @@ struct Format {
 };
 
 extern const Format kNpy, kNode, kXy, kTxt, kCsv, kBin, kLas, kLaz, kPoly, kGeoJson, kJson, kEle, kOff, kObj,
-    kPly, kVtu, kSvg;
+    kPly, kMsh, kVtu, kSvg;
 
 /// What a file may be for.
 struct Use {

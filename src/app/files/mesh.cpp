@@ -1,7 +1,11 @@
 #include "app/files/mesh.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <string_view>
 
 #include "app/files/formats.hpp"
@@ -61,12 +65,17 @@ void print_points(OutputFile& file, std::string_view prefix, const Points& point
   }
 }
 
-/// On lines that begin with the prefix; the first point has the number `base`.
+/// The first point has the number `base`.
+void print_triangle(OutputFile& file, const std::int32_t* corner, long long base) {
+  file.print("{} {} {}\n", corner[0] + base, corner[1] + base, corner[2] + base);
+}
+
+/// On lines that begin with the prefix.
 void print_triangles(OutputFile& file, std::string_view prefix, const MeshContents& contents,
                      long long base) {
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
-    const std::int32_t* corner = contents.corners(t);
-    file.print("{}{} {} {}\n", prefix, corner[0] + base, corner[1] + base, corner[2] + base);
+    file.print("{}", prefix);
+    print_triangle(file, contents.corners(t), base);
   }
 }
 
@@ -157,6 +166,53 @@ void write_vtu(OutputFile& file, const MeshContents& contents) {
     }
   }
   file.print("\n</AppendedData>\n</VTKFile>\n");
+}
+
+/// What a triangle belongs to, as a number from 1 on: its attribute if these are numbers of things, or else
+/// its polygon, or else its region.
+std::vector<std::int64_t> physical_numbers(const MeshContents& contents) {
+  const ConstrainedTriangulation& mesh = contents.constraints();
+  const auto is_number = [](double attribute) {
+    return attribute == std::floor(attribute) && std::fabs(attribute) <= static_cast<double>(kIndexLimit);
+  };
+  const std::vector<double>& attributes = mesh.triangle_attributes;
+  if (!attributes.empty() && std::ranges::all_of(attributes, is_number)) {
+    return {attributes.begin(), attributes.end()};
+  }
+  std::vector<std::int64_t> numbers(contents.triangle_count(), 1);
+  const std::vector<std::int32_t>& owners = mesh.polygons.empty() ? mesh.regions : mesh.polygons;
+  for (std::size_t t = 0; t < owners.size(); ++t) numbers[t] = owners[t] + 1LL;
+  return numbers;
+}
+
+/// Gmsh's format 2.2, which many programs read. The constraint edges are lines. Physical groups are edges of
+/// one marker, and triangles of one attribute, polygon or region; elementary entities are edges of one marker
+/// and triangles of one region.
+void write_msh(OutputFile& file, const MeshContents& contents) {
+  constexpr int kLine = 1, kTriangle = 2;
+  const ConstrainedTriangulation& mesh = contents.constraints();
+  const std::size_t edges = mesh.constraint_edges.size() / 2, triangles = contents.triangle_count();
+  file.print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", contents.points.size());
+  for (std::size_t i = 0; i < contents.points.size(); ++i) {
+    file.print("{} {} {} 0\n", i + 1, contents.points.coordinates[2 * i],
+               contents.points.coordinates[2 * i + 1]);
+  }
+  file.print("$EndNodes\n$Elements\n{}\n", edges + triangles);
+  const std::vector<std::int32_t>& markers = mesh.edge_markers;
+  const std::set<std::int32_t> distinct(markers.begin(), markers.end());
+  for (std::size_t e = 0; e < edges; ++e) {
+    const std::int32_t marker = markers.empty() ? 1 : markers[e];
+    const auto rank = markers.empty() ? 0 : std::distance(distinct.begin(), distinct.find(marker));
+    file.print("{} {} 2 {} {} {} {}\n", e + 1, kLine, marker, rank + 1, mesh.constraint_edges[2 * e] + 1LL,
+               mesh.constraint_edges[2 * e + 1] + 1LL);
+  }
+  const std::vector<std::int64_t> physical = physical_numbers(contents);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    file.print("{} {} 2 {} {} ", edges + t + 1, kTriangle, physical[t],
+               contents.has_labels() ? mesh.regions[t] + 1LL : 1LL);
+    print_triangle(file, contents.corners(t), 1);
+  }
+  file.print("$EndElements\n");
 }
 
 std::vector<std::int32_t> read_ele(const std::string& path) {
@@ -373,6 +429,7 @@ const Format kEle = {.ending = ".ele",
 const Format kOff = {.ending = ".off", .triangles = read_off, .write_mesh = write_off};
 const Format kObj = {.ending = ".obj", .triangles = read_obj, .write_mesh = write_obj};
 const Format kPly = {.ending = ".ply", .triangles = read_ply, .write_mesh = write_ply};
+const Format kMsh = {.ending = ".msh", .write_mesh = write_msh, .has_labels = true};
 const Format kVtu = {.ending = ".vtu", .write_mesh = write_vtu, .has_labels = true};
 
 const ConstrainedTriangulation& MeshContents::constraints() const {

@@ -29,13 +29,14 @@ struct MeshContents {
 };
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
-/// (binary little-endian), .vtu, .obj, .npy (int32, m x 3), .geojson (a polygon per triangle), .svg (a
-/// picture). Points that splitting added follow those of the input. Constraints are written as far as the
-/// format can have them:
+/// (binary little-endian), .vtu, .obj, .msh (Gmsh 2.2), .npy (int32, m x 3), .geojson (a polygon per
+/// triangle), .svg (a picture). Points that splitting added follow those of the input. Constraints are
+/// written as far as the format can have them:
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
 ///                    edges, whose markers are those of their segments or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions
 ///   .obj .ply        the constraint edges, as lines and edges
+///   .msh             the constraint edges, and markers, attributes or polygons, and regions as its groups
 ///   .vtu .geojson    region and depth of each triangle
 ///   .svg             the constraint edges, and the inside in other colours than the outside
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
