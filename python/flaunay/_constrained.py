@@ -21,6 +21,7 @@ from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
     import matplotlib.axes
+    import meshio
 
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
@@ -113,8 +114,89 @@ class ConstrainedTriangulation(Triangulation):
         )
 
     to_matplotlib = _export.to_matplotlib
-    to_meshio = _export.to_meshio
     to_pyvista = _export.to_pyvista
+
+    def to_meshio(
+        self,
+        point_data: Optional[Mapping[str, npt.ArrayLike]] = None,
+        cell_data: Optional[Mapping[str, npt.ArrayLike]] = None,
+    ) -> meshio.Mesh:
+        """The triangulation as a mesh of meshio, with the constraint edges of triangles as lines.
+
+        Their data are those of Gmsh: ``gmsh:physical`` is the marker of a line, and of a triangle its attribute, if
+        all are whole numbers, or else its polygon or region, from 1 on; ``gmsh:geometrical`` are regions if there
+        are labels. So ``write("mesh.msh", file_format="gmsh22")`` makes physical groups. ``"marker"`` has the
+        markers of points, if there are any.
+
+        Parameters
+        ----------
+        point_data, cell_data : mapping of str to array_like, optional
+            What points and triangles have, one row for each. Lines have zeros, or NaN.
+
+        Returns
+        -------
+        meshio.Mesh
+            With copies of the arrays, points in two dimensions, and a block of triangles and one of lines.
+
+        Raises
+        ------
+        UsageError
+            For data of another length.
+        ImportError
+            Without meshio.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> border = [[0, 1], [1, 2], [2, 0]]
+        >>> mesh = flaunay.refine([[0, 0], [4, 0], [0, 4]], border, max_area=1, segment_markers=[7, 7, 8])
+        >>> mesh.to_meshio().write("mesh.msh", file_format="gmsh22")  # doctest: +SKIP
+        """
+        own = {} if self.vertex_markers is None else {"marker": self.vertex_markers}
+        surface = _export.to_meshio(self, {**own, **(point_data or {})}, cell_data)
+        # Edges that were left out with their triangles are no lines.
+        place = np.array([max(len(self.points), 1), 1])
+        kept = self._edges_where(self.constrained) @ place
+        is_line = np.isin(np.sort(self.constraint_edges, axis=1) @ place, kept)
+        ones = np.ones(len(is_line), np.int32)
+        markers = (ones if self.edge_markers is None else self.edge_markers)[is_line]
+        groups = self._groups()
+
+        def with_lines(values: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
+            nothing = np.nan if np.issubdtype(values.dtype, np.inexact) else 0
+            return [values, np.full((len(markers), *values.shape[1:]), nothing, values.dtype)]
+
+        regions = groups if self.regions is None else self.regions
+        data = {
+            "gmsh:physical": [groups, markers],
+            "gmsh:geometrical": [
+                np.unique(numbers, return_inverse=True)[1].astype(np.int32) + 1
+                for numbers in (regions, markers)
+            ],
+        }
+        data.update((name, with_lines(given)) for name, (given,) in surface.cell_data.items())
+        names = {f"marker {number}": np.array([number, 1]) for number in np.unique(markers)}
+        names.update({f"part {number}": np.array([number, 2]) for number in np.unique(groups)})
+        # Some writers take no empty blocks.
+        blocks = [*surface.cells, ("line", self.constraint_edges[is_line])][: 1 + is_line.any()]
+        mesh: meshio.Mesh = type(surface)(
+            surface.points,
+            blocks,
+            point_data=surface.point_data,
+            cell_data={name: of_blocks[: len(blocks)] for name, of_blocks in data.items()},
+            field_data=names,
+        )
+        return mesh
+
+    def _groups(self) -> Indices:
+        """A number for what each triangle is a part of: an attribute, or a region from 1 on."""
+        attributes = self.triangle_attributes
+        if attributes is not None:
+            limit = np.iinfo(np.int32).max
+            if (np.rint(attributes).clip(-limit, limit) == attributes).all():
+                return attributes.astype(np.int32)
+        regions = np.zeros(len(self.triangles), np.int32) if self.regions is None else self.regions
+        return regions + np.int32(1)
 
     @property
     def simplices(self) -> Indices:

@@ -70,6 +70,10 @@ class PolygonTriangulation(ConstrainedTriangulation):
         sizes = np.diff(self.triangle_offsets)
         return np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
 
+    def _groups(self) -> Indices:
+        """The polygon of each triangle, from 1 on; 0 for none."""
+        return self.polygon_of + np.int32(1)
+
     @property
     def polygon_areas(self) -> Doubles:
         """The sum of the areas of each polygon's triangles, float64, shape (k,).
