@@ -432,6 +432,26 @@ TEST_F(BenchTest, ConstrainedIsBesideCgal) {
   EXPECT_EQ(record["results"][0]["segments"], 600);
 }
 
+TEST_F(BenchTest, RefinementIsBesideOthers) {
+  const auto record = run_well("refinement --quick --device host");
+  std::map<std::string, std::size_t> rows;
+  for (const auto& row : record["results"]) {
+    const std::string implementation = row["implementation"];
+    ++rows[implementation];
+    expect_times(row);
+    EXPECT_GT(row.value("triangles", 0), 900) << row;
+    // One corner of the hull of kuzmin has a smaller angle; Triangle puts a point there.
+    EXPECT_LE(row.value("below_angle", 9), 2) << row;
+    if (implementation != "flaunay") continue;
+    EXPECT_GT(row.value("rounds_of_99_percent", 0), 5) << row;
+    EXPECT_LE(row.value("rounds_of_99_percent", 0), row.value("rounds", 0)) << row;
+  }
+  EXPECT_EQ(rows["flaunay"], 7u);
+  EXPECT_EQ(rows["flaunay, 1 thread"], 7u);
+  // CGAL has the points at the first angle alone.
+  if (rows.count("cgal") > 0) EXPECT_EQ(rows["cgal"], 2u);
+}
+
 TEST_F(BenchTest, TuningsAreBesideEachOther) {
   // Those of kuzmin fit into fixed point when they are rounded.
   const auto record = run_well(

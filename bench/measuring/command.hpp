@@ -1,24 +1,18 @@
-// What all subcommands share: how they register, their options, the tables that they print, and the records
-// that they write.
+// What all subcommands share: how they register, and their options.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
 
-#include "flaunay/flaunay.hpp"
+#include "bench/measuring/result.hpp"
 
 namespace flaunay::bench {
-
-/// Objects keep the order in which their keys were added.
-using Json = nlohmann::ordered_json;
 
 /// How often and on what to measure, and where the record goes. Each subcommand has options for some of it;
 /// those with options of their own derive from it.
@@ -29,17 +23,6 @@ struct Request {
   std::vector<std::string> distributions, modes;
   double limit = 60;
   bool quick = false;
-};
-
-/// What a subcommand has measured.
-struct Result {
-  explicit Result(DeviceInfo of_device = {}) : device(std::move(of_device)) {}
-  DeviceInfo device;
-  /// Tables: each key has a list of rows, and each row is an object. Numbers are rounded when it is written.
-  Json tables = Json::object();
-  std::set<std::string> not_printed = {};  ///< tables that only the record has
-  Json facts = Json::object();             ///< more about all of the record
-  bool agree = true;                       ///< whether all implementations agree; if not, the exit code is 1
 };
 
 /// The names that --modes takes: every mode, the default first.
@@ -130,21 +113,5 @@ struct Subcommand {
     };
   }
 };
-
-// ---- Rows
-
-/// Adds seconds_median, seconds_min and seconds_max.
-void add_seconds(Json& row, const std::vector<double>& seconds);
-
-/// The value, or null.
-Json json_of(const std::optional<double>& value);
-
-/// a / b, if both are there.
-std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
-
-/// A row of the table "targets". Where less is better, the goal is less than `at_least`, which then is the
-/// most that is allowed.
-Json target(const std::string& what, const std::string& implementation, double at_least, double goal,
-            const std::optional<double>& measured);
 
 }  // namespace flaunay::bench

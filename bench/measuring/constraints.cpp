@@ -60,19 +60,38 @@ std::vector<double> rough_heights(std::size_t steps, std::mt19937_64& random) {
   return heights;
 }
 
-/// A closed curve about a place, which sees all of it: no two segments of it cross.
-void add_ring(ConstrainedInput& input, Place centre, double radius, std::size_t points,
-              std::mt19937_64& random) {
-  constexpr double kVaries = 0.25, kPi = 3.14159265358979323846;
-  const std::size_t first = input.points.n;
-  const std::vector<double> heights = rough_heights(points, random);
+/// A closed curve about a place, which sees all of it, by its distances: no two segments of it cross.
+void add_curve(ConstrainedInput& input, Place centre, const std::vector<double>& distances) {
+  constexpr double kPi = 3.14159265358979323846;
+  const std::size_t first = input.points.n, points = distances.size();
   for (std::size_t k = 0; k < points; ++k) {
     const double angle = 2 * kPi * static_cast<double>(k) / static_cast<double>(points);
-    const double distance = radius * (1 + kVaries * heights[k]);
-    add_point(input, centre + distance * Place{std::cos(angle), std::sin(angle)});
+    add_point(input, centre + distances[k] * Place{std::cos(angle), std::sin(angle)});
     add_segment(input, first + k, first + (k + 1) % points);
   }
   input.ring_offsets.push_back(input.points.n);
+}
+
+void add_ring(ConstrainedInput& input, Place centre, double radius, std::size_t points,
+              std::mt19937_64& random) {
+  constexpr double kVaries = 0.25;
+  std::vector<double> distances = rough_heights(points, random);
+  distances.pop_back();
+  for (double& height : distances) height = radius * (1 + kVaries * height);
+  add_curve(input, centre, distances);
+}
+
+/// Five waves, and steps that are off them by up to an eighth of their length.
+void add_waves(ConstrainedInput& input, Place centre, double radius, std::size_t points,
+               std::mt19937_64& random) {
+  constexpr double kHeight = 0.25, kTwoPi = 6.28318530717958647692, kWaves = 5, kRough = 0.125;
+  std::vector<double> distances;
+  for (std::size_t k = 0; k < points; ++k) {
+    const double step = 1 / static_cast<double>(points);
+    const double wave = kHeight * std::sin(kWaves * kTwoPi * static_cast<double>(k) * step);
+    distances.push_back(radius * (1 + wave + kRough * kTwoPi * step * random_sign(random)));
+  }
+  add_curve(input, centre, distances);
 }
 
 Place corner_of(std::size_t k, std::size_t side) {
@@ -167,6 +186,32 @@ ConstrainedInput polygons_with_holes(std::size_t polygons, std::size_t points) {
     input.polygon_offsets.push_back(input.ring_offsets.size() - 1);
     end_set(input);
   }
+  return input;
+}
+
+ConstrainedInput wavy_polygon(std::size_t n) {
+  constexpr std::size_t kHolesOnASide = 3;
+  constexpr double kDistance = 0.4, kRadius = 0.1;
+  const std::size_t of_hole = n * 3 / 100;
+  ConstrainedInput input = empty_input(fmt::format("a polygon of {} points", n));
+  input.ring_offsets = {0};
+  std::mt19937_64 random(5);
+  add_waves(input, {0, 0}, 1, n - kHolesOnASide * kHolesOnASide * of_hole, random);
+  for (std::size_t k = 0; k < kHolesOnASide * kHolesOnASide; ++k) {
+    add_waves(input, kDistance * (corner_of(k, kHolesOnASide) + Place{-1, -1}), kRadius, of_hole, random);
+  }
+  input.polygon_offsets = {0, input.ring_offsets.size() - 1};
+  end_set(input);
+  return input;
+}
+
+ConstrainedInput square() {
+  ConstrainedInput input = empty_input("a square");
+  for (const Place corner : {Place{0, 0}, {1, 0}, {1, 1}, {0, 1}}) add_point(input, corner);
+  input.segments = {0, 1, 1, 2, 2, 3, 3, 0};
+  input.ring_offsets = {0, input.points.n};
+  input.polygon_offsets = {0, 1};
+  end_set(input);
   return input;
 }
 

@@ -1,4 +1,4 @@
-// Points with segments that do not cross, for the subcommand constrained.
+// Points with segments that do not cross, for the subcommands constrained and refinement.
 #pragma once
 
 #include <cstddef>
@@ -35,5 +35,11 @@ ConstrainedInput islands(std::size_t n);
 
 /// Polygons, each a set of its own: a rough ring with a hole, which has 3 of 10 points.
 ConstrainedInput polygons_with_holes(std::size_t polygons, std::size_t points);
+
+/// About n points: a ring of waves with nine such holes, whose angles between segments are large.
+ConstrainedInput wavy_polygon(std::size_t n);
+
+/// The unit square, as a polygon.
+ConstrainedInput square();
 
 }  // namespace flaunay::bench

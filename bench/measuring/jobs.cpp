@@ -10,9 +10,6 @@
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::bench {
-namespace {
-
-/// Of all threads of this process, and of its children that have ended.
 double processor_seconds() {
   double sum = 0;
   for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -24,6 +21,8 @@ double processor_seconds() {
   }
   return sum;
 }
+
+namespace {
 
 /// Runs it until the clock and a cold cache do not matter; means of one run.
 void run_once(Job& job) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/measuring/command.hpp"
 #include "bench/measuring/inputs.hpp"
+#include "bench/measuring/result.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::bench {
@@ -29,6 +29,9 @@ double seconds_of(const Work& work) {
   work();
   return watch.seconds();
 }
+
+/// What processors have spent on all threads of this process, and on its children that have ended.
+double processor_seconds();
 
 /// Tells standard error every ten seconds what is running, and how far all of it is.
 class Progress {
@@ -55,7 +58,7 @@ struct Outcome {
   Outcome(double of_run, std::size_t triangles) : Outcome(of_run, {{"triangles", triangles}}) {}
   double seconds;
   Json details;  ///< more keys for the job's row
-  /// If not those of all threads of this process and of its children.
+  /// If not those of the whole run.
   std::optional<double> processor_seconds = {};
 };
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/peers/peer.hpp"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/measuring/command.hpp"
 #include "bench/measuring/inputs.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "flaunay/research.hpp"

@@ -74,4 +74,42 @@ inline std::unique_ptr<CgalQueries> (*make_cgal_queries)(const std::vector<doubl
 /// manual has it.
 inline Outcome (*run_cgal_constrained)(const ConstrainedInput& input) = nullptr;
 
+// ---- Refined meshes
+
+/// What a mesh is refined to: a smallest angle in degrees, and a largest area; 0 for any.
+struct Wanted {
+  double min_angle, max_area;
+};
+
+/// A refined mesh of all sets of an input, for looking at, and the times until there was one.
+struct Refined {
+  double seconds = 0, processor_seconds = 0;
+  std::vector<double> coordinates;      ///< x and y per point
+  std::vector<std::int32_t> triangles;  ///< three points each
+};
+
+/// For each set of polygons a place in each of their holes, which are seen from the mean of their points.
+inline std::vector<std::vector<double>> places_in_holes(const ConstrainedInput& input) {
+  std::vector<std::vector<double>> places;
+  for (std::size_t p = 0; p + 1 < input.polygon_offsets.size(); ++p) {
+    places.emplace_back();
+    for (std::size_t ring = input.polygon_offsets[p] + 1; ring < input.polygon_offsets[p + 1]; ++ring) {
+      double sums[2] = {0, 0};
+      const std::size_t first = input.ring_offsets[ring], last = input.ring_offsets[ring + 1];
+      for (std::size_t i = 2 * first; i < 2 * last; ++i) sums[i % 2] += input.points.coordinates[i];
+      for (const double sum : sums) places.back().push_back(sum / static_cast<double>(last - first));
+    }
+  }
+  places.resize(input.points.sets());
+  return places;
+}
+
+// From points, segments and places in holes to meshes, the sets of an input in a loop; of points without
+// segments, their hull is meshed. Null if this build is without them.
+
+/// CGAL's Delaunay_mesher_2 on a Constrained_Delaunay_triangulation_2; it knows no areas.
+inline Refined (*refine_by_cgal)(const ConstrainedInput& input, const Wanted& wanted) = nullptr;
+/// Triangle 1.6.
+inline Refined (*refine_by_triangle)(const ConstrainedInput& input, const Wanted& wanted) = nullptr;
+
 }  // namespace flaunay::bench

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/triangulators.hpp"
 #include "host/runtime.hpp"
 #include "launchers/call/probe.cl.hpp"

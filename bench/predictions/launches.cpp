@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/measuring/triangulators.hpp"
 

@@ -1,6 +1,7 @@
 // flaunay-bench batches: many sets in one call, beside loops of small calls over the same sets.
 #include <algorithm>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/triangulators.hpp"
 
 namespace flaunay::bench::batches {

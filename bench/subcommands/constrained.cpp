@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/constraints.hpp"
 #include "bench/peers/peer.hpp"
 

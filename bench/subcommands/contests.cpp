@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/measuring/triangulators.hpp"
 #include "bench/peers/peer.hpp"

@@ -6,6 +6,7 @@
 #include <deque>
 #include <numeric>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "bench/peers/peer.hpp"
 

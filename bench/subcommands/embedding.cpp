@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "bench/measuring/command.hpp"
 #include "bench/peers/peer.hpp"
 #include "tests/support/embedder.hpp"
 

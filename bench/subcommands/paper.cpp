@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/triangulators.hpp"
 
 namespace flaunay::bench::paper {

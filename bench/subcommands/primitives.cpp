@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "host/error.hpp"
 #include "host/launch/vector_operations.hpp"

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "bench/measuring/command.hpp"
+
 namespace flaunay::bench::processes {
 namespace {
 

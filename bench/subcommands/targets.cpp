@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/measuring/triangulators.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/measuring/triangulators.hpp"
 
