@@ -2185,6 +2185,144 @@ static void test_bad_streams(void) {
 
 // ---- Without double precision
 
+// ---- Triangulations that change
+
+static flaunay_dynamic* make_dynamic(const double* coordinates, size_t n,
+                                     const flaunay_constraints* constraints, const flaunay_options* options) {
+  flaunay_dynamic* result = NULL;
+  REQUIRE(flaunay_dynamic_create(triangulator, coordinates, n, constraints, options, &result) ==
+          FLAUNAY_SUCCESS);
+  return result;
+}
+
+static void test_dynamic(void) {
+  const flaunay_options options = {.parts = FLAUNAY_PART_HALFEDGES};
+  flaunay_dynamic* dynamic = make_dynamic(kSquare, 4, NULL, &options);
+  CHECK(flaunay_dynamic_changes(dynamic)->made_count == 0);
+  const double inserted[] = {1, 2, 4, 3}, moved[] = {2, 1};
+  REQUIRE(flaunay_dynamic_insert(dynamic, inserted, 2) == FLAUNAY_SUCCESS);
+  const flaunay_changes* changes = flaunay_dynamic_changes(dynamic);
+  const int32_t representatives[] = {4, 2};
+  CHECK(changes->first_point == 4 && changes->representative_count == 2);
+  CHECK(same(changes->representatives, representatives, 2) && changes->removed_count >= 2);
+  CHECK(changes->made_count >= 4 && changes->seconds >= 0);
+  const int32_t fourth = 4, first = 0;
+  REQUIRE(flaunay_dynamic_move(dynamic, &fourth, moved, 1) == FLAUNAY_SUCCESS);
+  CHECK(changes->representative_count == 1 && changes->representatives[0] == 4);
+  REQUIRE(flaunay_dynamic_remove(dynamic, &first, 1) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_dynamic_numbers(dynamic) == 6 && flaunay_dynamic_point_count(dynamic) == 5);
+  CHECK(flaunay_dynamic_has_point(dynamic, 5) == 1 && flaunay_dynamic_has_point(dynamic, 0) == 0);
+  CHECK(flaunay_dynamic_has_point(dynamic, 6) == 0);
+
+  double all[12];
+  CHECK(flaunay_dynamic_coordinates(dynamic, all) == FLAUNAY_SUCCESS);
+  CHECK(isnan(all[0]) && isnan(all[1]) && all[8] == 2 && all[9] == 1 && all[10] == 4);
+  // What is left is triangle 1, 2, 3, with point 4 on the edge from 1 to 3, or beside it.
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_dynamic_triangulation(dynamic, &mesh) == FLAUNAY_SUCCESS);
+  const size_t triangles = flaunay_triangulation_triangle_count(mesh);
+  CHECK(triangles == 2 && flaunay_dynamic_triangle_count(dynamic) == 2);
+  CHECK(flaunay_triangulation_halfedges(mesh) != NULL && flaunay_triangulation_neighbors(mesh) == NULL);
+  const int32_t expected[] = {-1, 1, 2, 3, 4, 2};
+  CHECK(same(flaunay_triangulation_representatives(mesh), expected, 6));
+  flaunay_triangulation_destroy(mesh);
+
+  const size_t rows = flaunay_dynamic_row_count(dynamic);
+  REQUIRE(rows >= 2);
+  int32_t* const corners = malloc(6 * rows * sizeof *corners);
+  REQUIRE(corners != NULL);
+  CHECK(flaunay_dynamic_rows(dynamic, corners, corners + 3 * rows) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_dynamic_rows(dynamic, NULL, NULL) == FLAUNAY_SUCCESS);
+  for (size_t k = 0; k < changes->made_count; ++k) {
+    CHECK(same(corners + 3 * changes->made[k], changes->made_corners + 3 * k, 3));
+  }
+  size_t used = 0, hull = 0;
+  for (size_t k = 0; k < rows; ++k) {
+    if (corners[3 * k] < 0) continue;
+    ++used;
+    for (size_t side = 3 * k; side < 3 * k + 3; ++side) hull += corners[3 * rows + side] < 0;
+  }
+  CHECK(used == 2 && hull == 4);
+  free(corners);
+  CHECK(flaunay_dynamic_constraints(dynamic)->edge_count == 0);
+  flaunay_dynamic_destroy(dynamic);
+}
+
+static void test_dynamic_constraints(void) {
+  const int32_t diagonal[] = {1, 3};
+  const flaunay_constraints constraints = {.segments = diagonal, .segment_count = 1};
+  flaunay_dynamic* dynamic = make_dynamic(kSquare, 4, &constraints, NULL);
+  const double on_it[] = {2, 2}, beside[] = {3, 2};
+  REQUIRE(flaunay_dynamic_insert(dynamic, on_it, 1) == FLAUNAY_SUCCESS);
+  const flaunay_living_constraints* edges = flaunay_dynamic_constraints(dynamic);
+  REQUIRE(edges != NULL && edges->edge_count == 2);
+  CHECK(edges->segments[0] == 0 && edges->segments[1] == 0);
+  int32_t sum = 0;
+  for (int k = 0; k < 4; ++k) sum += edges->edges[k];
+  CHECK(sum == 1 + 3 + 4 + 4);
+  const int32_t first = 1;
+  const flaunay_status input = FLAUNAY_ERROR_INPUT;
+  CHECK(fails(flaunay_dynamic_remove(dynamic, &first, 1), input, "point 1 cannot be removed"));
+  CHECK(fails(flaunay_dynamic_move(dynamic, &first, beside, 1), input, "point 1 cannot be moved"));
+  CHECK(flaunay_dynamic_changes(dynamic)->first_point == 4);
+  flaunay_dynamic_destroy(dynamic);
+}
+
+static void test_dynamic_from_device(void) {
+  flaunay_device_points input = {.memory = make_buffer(context, sizeof points, points), .count = 1000};
+  flaunay_dynamic* dynamic = NULL;
+  REQUIRE(flaunay_dynamic_create_device(triangulator, &input, NULL, &dynamic) == FLAUNAY_SUCCESS);
+  input.first = 1000;
+  REQUIRE(flaunay_dynamic_insert_device(dynamic, &input) == FLAUNAY_SUCCESS);
+  flaunay_triangulation* expected = on_host(points, 2000, NULL, 0, 0);
+  flaunay_triangulation* mesh = NULL;
+  REQUIRE(flaunay_dynamic_triangulation(dynamic, &mesh) == FLAUNAY_SUCCESS);
+  const size_t count = flaunay_triangulation_triangle_count(expected);
+  REQUIRE(flaunay_triangulation_triangle_count(mesh) == count);
+  CHECK(row_sum(flaunay_triangulation_triangles(mesh), flaunay_triangulation_neighbors(mesh), count) ==
+        row_sum(flaunay_triangulation_triangles(expected), flaunay_triangulation_neighbors(expected), count));
+  flaunay_triangulation_destroy(mesh);
+  flaunay_triangulation_destroy(expected);
+  flaunay_dynamic_destroy(dynamic);
+  clReleaseMemObject(input.memory);
+}
+
+static void test_bad_dynamic(void) {
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE, input = FLAUNAY_ERROR_INPUT;
+  flaunay_dynamic* none = NULL;
+  const flaunay_options other = {.mode = FLAUNAY_MODE_DWYER};
+  CHECK(fails(flaunay_dynamic_create(triangulator, kSquare, 4, NULL, &other, &none), usage, "mode dwyer"));
+  const flaunay_constraints inside = {.outside = FLAUNAY_OUTSIDE_HOLES}, later = {.reserved = {1}};
+  CHECK(fails(flaunay_dynamic_create(triangulator, kSquare, 4, &inside, NULL, &none), usage, "left out"));
+  CHECK(fails(flaunay_dynamic_create(triangulator, kSquare, 4, &later, NULL, &none), usage, "later version"));
+  CHECK(flaunay_dynamic_create(NULL, kSquare, 4, NULL, NULL, &none) == usage);
+  CHECK(flaunay_dynamic_create(triangulator, kSquare, 4, NULL, NULL, NULL) == usage);
+  CHECK(flaunay_dynamic_create_device(triangulator, NULL, NULL, &none) == usage && none == NULL);
+
+  flaunay_dynamic* dynamic = make_dynamic(kSquare, 4, NULL, NULL);
+  const double wrong[] = {0, 1, NAN, 0};
+  const int32_t twice[] = {1, 1}, far = 4;
+  CHECK(fails(flaunay_dynamic_insert(dynamic, wrong, 2), input, "point 1"));
+  CHECK(fails(flaunay_dynamic_insert(dynamic, NULL, 2), usage, "2 points"));
+  CHECK(fails(flaunay_dynamic_remove(dynamic, twice, 2), input, "is there twice"));
+  CHECK(fails(flaunay_dynamic_move(dynamic, &far, kSquare, 1), input, "point 4, which does not exist"));
+  CHECK(flaunay_dynamic_remove(dynamic, NULL, 1) == usage);
+  CHECK(flaunay_dynamic_coordinates(dynamic, NULL) == usage);
+  CHECK(flaunay_dynamic_triangulation(dynamic, NULL) == usage);
+  CHECK(flaunay_dynamic_numbers(dynamic) == 4 && flaunay_dynamic_triangle_count(dynamic) == 2);
+  flaunay_dynamic_destroy(dynamic);
+
+  CHECK(flaunay_dynamic_insert(NULL, kSquare, 4) == usage &&
+        flaunay_dynamic_insert_device(NULL, NULL) == usage);
+  CHECK(flaunay_dynamic_remove(NULL, &far, 1) == usage &&
+        flaunay_dynamic_move(NULL, &far, kSquare, 1) == usage);
+  CHECK(flaunay_dynamic_changes(NULL) == NULL && flaunay_dynamic_constraints(NULL) == NULL);
+  CHECK(flaunay_dynamic_numbers(NULL) == 0 && flaunay_dynamic_point_count(NULL) == 0);
+  CHECK(flaunay_dynamic_triangle_count(NULL) == 0 && flaunay_dynamic_row_count(NULL) == 0);
+  CHECK(flaunay_dynamic_has_point(NULL, 0) == 0 && flaunay_dynamic_rows(NULL, NULL, NULL) == usage);
+  flaunay_dynamic_destroy(NULL);
+}
+
 static void test_no_fp64(void) {
   flaunay_device_list* list = NULL;
   REQUIRE(flaunay_device_list_create(1, &list) == FLAUNAY_SUCCESS);
@@ -2279,6 +2417,10 @@ static void test_all(void) {
   test_clipped_voronoi();
   test_clipped_voronoi_on_device();
   test_constrained_on_device();
+  test_dynamic();
+  test_dynamic_constraints();
+  test_dynamic_from_device();
+  test_bad_dynamic();
   test_relax();
   test_locator();
   test_derived_on_device();

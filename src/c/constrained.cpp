@@ -69,26 +69,6 @@ static_assert(FLAUNAY_EXCUSE_INPUT_ANGLE == static_cast<int>(Excuse::input_angle
               FLAUNAY_EXCUSE_MOST_ROUNDS == static_cast<int>(Excuse::most_rounds));
 static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
 
-Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
-  Constraints result;
-  result.segments = given.segments;
-  result.segment_count = given.segment_count;
-  result.holes = given.holes;
-  result.hole_count = given.hole_count;
-  if (given.hole_offsets != nullptr) {
-    result.hole_offsets.assign(given.hole_offsets, given.hole_offsets + sets + 1);
-  }
-  result.segment_markers = given.segment_markers;
-  result.point_markers = given.point_markers;
-  result.seeds = given.seeds;
-  result.seed_attributes = given.seed_attributes;
-  result.seed_count = given.seed_count;
-  if (given.seed_offsets != nullptr) {
-    result.seed_offsets.assign(given.seed_offsets, given.seed_offsets + sets + 1);
-  }
-  return result;
-}
-
 Refinement to_refinement(const flaunay_refinement* wanted) {
   Refinement result;
   if (wanted == nullptr) return result;
@@ -113,7 +93,7 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
 
 // The options that are the same for segments and for polygons, without the defaults that differ.
 template <typename Result, typename Given>
-Result to_options(const Given& given, const flaunay_options* options) {
+Result to_common_options(const Given& given, const flaunay_options* options) {
   const research::Options plain = c::to_options(options);
   if (plain.mode != research::Mode::blocks) {
     throw Error(ErrorKind::usage, fmt::format("mode {} has no constraints; mode {} has",
@@ -134,15 +114,8 @@ FillRule to_fill_rule(int rule) {
   return c::to_enum<FillRule>(rule, FLAUNAY_FILL_RULE_WINDING, "flaunay_fill_rule");
 }
 
-ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
-  auto result = to_options<ConstrainedOptions>(given, options);
-  result.outside = to_outside(given.outside);
-  result.fill_rule = to_fill_rule(given.fill_rule);
-  return result;
-}
-
 PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_options* options) {
-  auto result = to_options<PolygonOptions>(given, options);
+  auto result = to_common_options<PolygonOptions>(given, options);
   if (given.has_outside != 0) result.outside = to_outside(given.outside);
   if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
   result.map = given.map != 0;
@@ -172,6 +145,37 @@ Polygons to_polygons(const flaunay_polygons& given) {
 
 }  // namespace
 
+namespace flaunay::c {
+
+Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
+  Constraints result;
+  result.segments = given.segments;
+  result.segment_count = given.segment_count;
+  result.holes = given.holes;
+  result.hole_count = given.hole_count;
+  if (given.hole_offsets != nullptr) {
+    result.hole_offsets.assign(given.hole_offsets, given.hole_offsets + sets + 1);
+  }
+  result.segment_markers = given.segment_markers;
+  result.point_markers = given.point_markers;
+  result.seeds = given.seeds;
+  result.seed_attributes = given.seed_attributes;
+  result.seed_count = given.seed_count;
+  if (given.seed_offsets != nullptr) {
+    result.seed_offsets.assign(given.seed_offsets, given.seed_offsets + sets + 1);
+  }
+  return result;
+}
+
+ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
+  auto result = to_common_options<ConstrainedOptions>(given, options);
+  result.outside = to_outside(given.outside);
+  result.fill_rule = to_fill_rule(given.fill_rule);
+  return result;
+}
+
+}  // namespace flaunay::c
+
 struct flaunay_constrained {
   explicit flaunay_constrained(ConstrainedTriangulation computed) : cpp(std::move(computed)) {
     statistics.show(cpp.statistics);
@@ -200,8 +204,8 @@ flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulato
     c::check_reserved(given, "flaunay_constraints");
     const std::vector<std::size_t> sets_of_points = c::to_offsets(offsets, sets, n);
     return std::make_unique<flaunay_constrained>(
-        cpp.constrained(coordinates, sets_of_points, to_constraints(given, c::set_count(sets_of_points)),
-                        to_constrained_options(given, options)));
+        cpp.constrained(coordinates, sets_of_points, c::to_constraints(given, c::set_count(sets_of_points)),
+                        c::to_constrained_options(given, options)));
   });
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "c/errors.hpp"
+#include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/research.hpp"
@@ -59,6 +60,10 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
 
 /// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
 research::Options to_options(const flaunay_options* options);
+
+Constraints to_constraints(const flaunay_constraints& given, std::size_t sets);
+/// Throws Error(usage) for unknown enumerators, and for another mode than blocks.
+ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options);
 
 /// Null: the defaults. Throws Error(usage) for an unknown method and for reserved members that are not 0.
 InterpolationOptions to_interpolation(const flaunay_interpolation_options* options);

@@ -197,6 +197,8 @@ typedef enum flaunay_excuse {
 typedef struct flaunay_constrained flaunay_constrained;
 /// Constraint edges in device memory.
 typedef struct flaunay_device_constraints flaunay_device_constraints;
+/// A triangulation to which batches of points are inserted, removed and moved.
+typedef struct flaunay_dynamic flaunay_dynamic;
 /// The triangulations of one or more point sets, in device memory.
 typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 /// The dual of a triangulation, in host memory.
@@ -564,6 +566,28 @@ typedef struct flaunay_constrained_arrays {
   const double* triangle_attributes;
 } flaunay_constrained_arrays;
 
+/// What a batch has changed in a flaunay_dynamic. Arrays are NULL if they are empty.
+typedef struct flaunay_changes {
+  size_t first_point;           ///< the number of the first point that was inserted; the others follow it
+  size_t representative_count;  ///< number of points that were inserted or moved
+  size_t removed_count;         ///< number of rows in `removed`
+  size_t made_count;            ///< number of rows in `made`
+  /// For each point that was inserted or moved the smallest number of a point in its place.
+  const int32_t* representatives;
+  const int32_t* removed;       ///< the rows whose triangles are gone, each once
+  const int32_t* made;          ///< the rows that have new triangles, each once; some may be in both lists
+  const int32_t* made_corners;  ///< 3 per row of `made`: the corners, counter-clockwise
+  int is_anew;                  ///< 1 if all points were triangulated anew
+  double seconds;               ///< how long the call took
+} flaunay_changes;
+
+/// The edges that segments of a flaunay_dynamic are made of. Arrays are NULL if they are empty.
+typedef struct flaunay_living_constraints {
+  size_t edge_count;        ///< number of edges
+  const int32_t* edges;     ///< 2 points per edge, the lexicographically smaller one first
+  const int32_t* segments;  ///< one per edge: the smallest index of a segment that has it
+} flaunay_living_constraints;
+
 /// A round of chunks.
 typedef struct flaunay_chunk_round {
   uint64_t points;     ///< distinct points of the round; of the first one, with duplicates
@@ -845,6 +869,71 @@ FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
 /// How its refinement went.
 FLAUNAY_API const flaunay_refinement_report* flaunay_constrained_refinement(
     const flaunay_constrained* result);
+
+// ---- Triangulations that change
+
+/// Makes a triangulation to which points are inserted, removed and moved. After every call its triangles are
+/// those of flaunay_triangulate, or flaunay_triangulate_constrained, for all points that it has; so are the
+/// errors. coordinates, n: as there, for one set. constraints: NULL for none; nothing can be left out,
+/// labelled or refined. If crossing segments are split, the points that this adds come after the n. options:
+/// NULL for the defaults, of which `parts` holds for flaunay_dynamic_triangulation; the mode must be
+/// FLAUNAY_MODE_BLOCKS. It may outlive its triangulator, whose turns it takes.
+///
+/// Points have numbers: those it is made from come first, then those inserted, in their order. A number stays
+/// the same as long as the point is there, and is not used again. Of points in one place, the one with the
+/// smallest number is in triangles. Triangles are in rows of an array, some of which have none. A triangle
+/// stays in its row as long as nothing changes it. Rows are the same on every device, for the same calls.
+FLAUNAY_API flaunay_status flaunay_dynamic_create(flaunay_triangulator* triangulator,
+                                                  const double* coordinates, size_t n,
+                                                  const flaunay_constraints* constraints,
+                                                  const flaunay_options* options, flaunay_dynamic** dynamic);
+/// flaunay_dynamic_create for points of one set in device memory, which are copied. They must be there when
+/// the call is made.
+FLAUNAY_API flaunay_status flaunay_dynamic_create_device(flaunay_triangulator* triangulator,
+                                                         const flaunay_device_points* points,
+                                                         const flaunay_options* options,
+                                                         flaunay_dynamic** dynamic);
+/// Releases its memory.
+FLAUNAY_API void flaunay_dynamic_destroy(flaunay_dynamic* dynamic);
+/// Inserts m points, x0 y0 x1 y1 ... One that lies on a constraint splits it. The errors of this and the next
+/// functions are those of flaunay_triangulate, and: FLAUNAY_ERROR_INPUT for a number that no point has, one
+/// that is there twice, and a vertex of a constraint that is to be removed or moved; the message names it.
+/// Such an error changes nothing. After another one, the handle can only be destroyed.
+FLAUNAY_API flaunay_status flaunay_dynamic_insert(flaunay_dynamic* dynamic, const double* coordinates,
+                                                  size_t m);
+/// flaunay_dynamic_insert for points of one set in device memory.
+FLAUNAY_API flaunay_status flaunay_dynamic_insert_device(flaunay_dynamic* dynamic,
+                                                         const flaunay_device_points* points);
+/// Removes the points of these m numbers.
+FLAUNAY_API flaunay_status flaunay_dynamic_remove(flaunay_dynamic* dynamic, const int32_t* points, size_t m);
+/// Moves the points of these m numbers to these places, all at once.
+FLAUNAY_API flaunay_status flaunay_dynamic_move(flaunay_dynamic* dynamic, const int32_t* points,
+                                                const double* coordinates, size_t m);
+/// What the last of these calls has changed that did not fail. Valid until the next one.
+FLAUNAY_API const flaunay_changes* flaunay_dynamic_changes(const flaunay_dynamic* dynamic);
+/// One more than the largest number that a point has had. This and the next three functions take O(1).
+FLAUNAY_API size_t flaunay_dynamic_numbers(const flaunay_dynamic* dynamic);
+/// The number of points that there are, with duplicates.
+FLAUNAY_API size_t flaunay_dynamic_point_count(const flaunay_dynamic* dynamic);
+/// The number of triangles.
+FLAUNAY_API size_t flaunay_dynamic_triangle_count(const flaunay_dynamic* dynamic);
+/// The number of rows, with those that have no triangle.
+FLAUNAY_API size_t flaunay_dynamic_row_count(const flaunay_dynamic* dynamic);
+/// 1 if there is a point of this number, otherwise 0. O(1).
+FLAUNAY_API int flaunay_dynamic_has_point(const flaunay_dynamic* dynamic, size_t number);
+/// Copies x and y per number; NaN for points that were removed. coordinates: room for 2 values per number.
+FLAUNAY_API flaunay_status flaunay_dynamic_coordinates(const flaunay_dynamic* dynamic, double* coordinates);
+/// Copies the corners of the triangle in each row, counter-clockwise from any of them on, and the rows of the
+/// triangles opposite to them; -1 in rows without a triangle and beyond the hull. Each has room for 3 values
+/// per row, or is NULL.
+FLAUNAY_API flaunay_status flaunay_dynamic_rows(flaunay_dynamic* dynamic, int32_t* triangles,
+                                                int32_t* neighbors);
+/// Makes the result of a call on all points, with their numbers: triangles in the order of their rows, which
+/// have the smallest number first. Representatives of points that were removed are -1. O(rows).
+FLAUNAY_API flaunay_status flaunay_dynamic_triangulation(flaunay_dynamic* dynamic,
+                                                         flaunay_triangulation** result);
+/// The edges that segments are made of now; NULL after an error. Valid until this is called again. O(rows).
+FLAUNAY_API const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* dynamic);
 
 // ---- Points and results in device memory
 

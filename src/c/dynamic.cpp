@@ -1,0 +1,171 @@
+// The C interface to triangulations that change.
+#include "flaunay/dynamic.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::elements;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_dynamic {
+  explicit flaunay_dynamic(DynamicTriangulation made) : cpp(std::move(made)) {}
+
+  void show(Changes made) {
+    changes = std::move(made);
+    view.first_point = changes.first_point;
+    view.representative_count = changes.representatives.size();
+    view.removed_count = changes.removed.size();
+    view.made_count = changes.made.size();
+    view.representatives = elements(changes.representatives);
+    view.removed = elements(changes.removed);
+    view.made = elements(changes.made);
+    view.made_corners = elements(changes.made_corners);
+    view.is_anew = changes.is_anew;
+    view.seconds = changes.seconds;
+  }
+
+  DynamicTriangulation cpp;
+  Changes changes;
+  flaunay_changes view{};
+  LivingConstraints constraints;
+  flaunay_living_constraints constraints_view{};
+};
+
+namespace {
+
+constexpr const char* kName = "the triangulation";
+
+Options to_plain_options(const flaunay_options* options) {
+  const research::Options all = c::to_options(options);
+  if (all.mode != research::Mode::blocks) {
+    throw Error(ErrorKind::usage, fmt::format("mode {} has no triangulations that change; mode {} has",
+                                              to_string(all.mode), to_string(research::Mode::blocks)));
+  }
+  return all;
+}
+
+// work(triangulation) returns the changes.
+template <typename Work>
+flaunay_status change(flaunay_dynamic* dynamic, const Work& work) {
+  return guarded([&] {
+    flaunay_dynamic& handle = required(dynamic, kName);
+    handle.show(work(handle.cpp));
+  });
+}
+
+}  // namespace
+
+flaunay_status flaunay_dynamic_create(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                                      const flaunay_constraints* constraints, const flaunay_options* options,
+                                      flaunay_dynamic** dynamic) {
+  return create(dynamic, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    if (constraints == nullptr) {
+      return std::make_unique<flaunay_dynamic>(
+          DynamicTriangulation(cpp, coordinates, n, to_plain_options(options)));
+    }
+    c::check_reserved(*constraints, "flaunay_constraints");
+    return std::make_unique<flaunay_dynamic>(
+        DynamicTriangulation(cpp, coordinates, n, c::to_constraints(*constraints, 1),
+                             c::to_constrained_options(*constraints, options)));
+  });
+}
+
+flaunay_status flaunay_dynamic_create_device(flaunay_triangulator* triangulator,
+                                             const flaunay_device_points* points,
+                                             const flaunay_options* options, flaunay_dynamic** dynamic) {
+  return create(dynamic, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_dynamic>(
+        DynamicTriangulation(cpp, c::to_points(points), to_plain_options(options)));
+  });
+}
+
+void flaunay_dynamic_destroy(flaunay_dynamic* dynamic) { delete dynamic; }
+
+flaunay_status flaunay_dynamic_insert(flaunay_dynamic* dynamic, const double* coordinates, size_t m) {
+  return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.insert(coordinates, m); });
+}
+
+flaunay_status flaunay_dynamic_insert_device(flaunay_dynamic* dynamic, const flaunay_device_points* points) {
+  return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.insert(c::to_points(points)); });
+}
+
+flaunay_status flaunay_dynamic_remove(flaunay_dynamic* dynamic, const int32_t* points, size_t m) {
+  return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.remove(points, m); });
+}
+
+flaunay_status flaunay_dynamic_move(flaunay_dynamic* dynamic, const int32_t* points,
+                                    const double* coordinates, size_t m) {
+  return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.move(points, coordinates, m); });
+}
+
+const flaunay_changes* flaunay_dynamic_changes(const flaunay_dynamic* dynamic) {
+  return read(dynamic, [](const auto& handle) { return &handle.view; });
+}
+
+size_t flaunay_dynamic_numbers(const flaunay_dynamic* dynamic) {
+  return read(dynamic, [](const auto& handle) { return handle.cpp.numbers(); });
+}
+
+size_t flaunay_dynamic_point_count(const flaunay_dynamic* dynamic) {
+  return read(dynamic, [](const auto& handle) { return handle.cpp.point_count(); });
+}
+
+size_t flaunay_dynamic_triangle_count(const flaunay_dynamic* dynamic) {
+  return read(dynamic, [](const auto& handle) { return handle.cpp.triangle_count(); });
+}
+
+size_t flaunay_dynamic_row_count(const flaunay_dynamic* dynamic) {
+  return read(dynamic, [](const auto& handle) { return handle.cpp.row_count(); });
+}
+
+int flaunay_dynamic_has_point(const flaunay_dynamic* dynamic, size_t number) {
+  return read(dynamic, [&](const auto& handle) { return static_cast<int>(handle.cpp.has_point(number)); });
+}
+
+flaunay_status flaunay_dynamic_coordinates(const flaunay_dynamic* dynamic, double* coordinates) {
+  return guarded([&] {
+    const std::vector<double> all = required(dynamic, kName).cpp.coordinates();
+    if (!all.empty()) required(coordinates, "the array of coordinates");
+    std::copy(all.begin(), all.end(), coordinates);
+  });
+}
+
+flaunay_status flaunay_dynamic_rows(flaunay_dynamic* dynamic, int32_t* triangles, int32_t* neighbors) {
+  return guarded([&] {
+    const TriangleRows all = required(dynamic, kName).cpp.rows();
+    if (triangles != nullptr) std::copy(all.triangles.begin(), all.triangles.end(), triangles);
+    if (neighbors != nullptr) std::copy(all.neighbors.begin(), all.neighbors.end(), neighbors);
+  });
+}
+
+flaunay_status flaunay_dynamic_triangulation(flaunay_dynamic* dynamic, flaunay_triangulation** result) {
+  return create(result, [&] {
+    return std::make_unique<flaunay_triangulation>(required(dynamic, kName).cpp.triangulation());
+  });
+}
+
+const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* dynamic) {
+  const flaunay_living_constraints* found = nullptr;
+  guarded([&] {
+    flaunay_dynamic& handle = required(dynamic, kName);
+    handle.constraints = handle.cpp.constraints();
+    handle.constraints_view = {handle.constraints.segments.size(), elements(handle.constraints.edges),
+                               elements(handle.constraints.segments)};
+    found = &handle.constraints_view;
+  });
+  return found;
+}
