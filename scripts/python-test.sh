@@ -32,10 +32,10 @@ fi
 rm -rf build/python-wheel
 "${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel "${settings[@]}" .
 "${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
-# What triangulations are handed over to, in versions for the system's NumPy. The test of PyVista runs where that is
-# installed: it brings all of VTK.
+# What triangulations are handed over to, in versions for the system's NumPy. The tests of PyVista and Gmsh run where
+# these are installed: they are large.
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
-"${pip[@]}" install --quiet meshio networkx shapely mypy "numpy==$numpy"
+"${pip[@]}" install --quiet meshio networkx scikit-fem shapely mypy "numpy==$numpy"
 
 # The annotations of the package, as it is installed, and of what its users are shown.
 "$python" -m mypy --strict --package flaunay
