@@ -1220,12 +1220,37 @@ static void test_refined(void) {
   CHECK(flaunay_constrained_refinement(result)->smallest_angle >= 20 - 1e-9);
   flaunay_constrained_destroy(result);
 
+  // A mesh that is refined further, and is Delaunay.
+  const int32_t triangles[] = {0, 1, 2, 0, 3, 2};
+  const double areas[] = {0, 0.01}, attributes[] = {3, 5};
+  const flaunay_given_triangles given = {
+      .triangles = triangles, .count = 2, .areas = areas, .attributes = attributes};
+  refinement = (flaunay_refinement){.mesh = &given, .conforming = 1};
+  constraints = (flaunay_constraints){.refinement = &refinement};
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, &options,
+                                          &result) == FLAUNAY_SUCCESS);
+  mesh = flaunay_constrained_mesh(result);
+  arrays = flaunay_constrained_get_arrays(result);
+  CHECK(mesh->triangle_offsets[1] == mesh->triangle_count && arrays->segment_count == 5);
+  size_t small = 0;
+  for (size_t t = 0; t < mesh->triangle_count; ++t) {
+    const int is_small = arrays->triangle_attributes[t] == 5;
+    CHECK(is_small || arrays->triangle_attributes[t] == 3);
+    CHECK(!is_small || mesh->areas[t] <= 0.01);
+    small += (size_t)is_small;
+  }
+  CHECK(small > 20 && small < mesh->triangle_count);
+  flaunay_constrained_destroy(result);
+  const flaunay_given_triangles wrong = {.triangles = triangles, .count = 2, .reserved = {1}};
+
   const flaunay_refinement bad[] = {{.min_angle = 35},
                                     {.max_area = -1},
                                     {.min_angle = 20, .kept = 3},
-                                    {.min_angle = 20, .reserved = {0, 1}}};
-  const char* const texts[] = {"35", "-1", "flaunay_kept_edges", "flaunay_refinement"};
-  for (int k = 0; k < 4; ++k) {
+                                    {.min_angle = 20, .reserved = {0, 1}},
+                                    {.mesh = &wrong}};
+  const char* const texts[] = {"35", "-1", "flaunay_kept_edges", "flaunay_refinement",
+                               "flaunay_given_triangles"};
+  for (int k = 0; k < 5; ++k) {
     constraints.refinement = &bad[k];
     CHECK(fails(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
                                                 &result),

@@ -1695,6 +1695,37 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   expect_error(kUsage, {"no regions with areas"}, {"triangulate", data("star.poly"), "--region-areas"});
 }
 
+TEST_F(CommandConstraintsTest, MeshesAreRefinedFurther) {
+  const std::string poly = data("letter.poly"), coarse = path("a.ele"), node = path("a.node");
+  run_well({"triangulate", poly, "--outside", "holes", "--min-angle", "20", "-o", coarse}, kNoPlatform);
+  const std::size_t triangles = std::stoul(contents(coarse));
+  std::string areas = std::to_string(triangles) + "\n";
+  for (std::size_t t = 1; t <= triangles; ++t) areas += std::to_string(t) + (t == 3 ? " 0.0001\n" : " -1\n");
+  const Arguments again = {"triangulate", node, "--mesh", coarse, "--mesh-areas", write("a.area", areas)};
+  const auto refine = [&](const Arguments& options) {
+    Arguments arguments = again;
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_well(arguments, kNoPlatform);
+  };
+  refine({"--min-angle", "20", "--conforming", "--points", path("p.npy"), "--triangles", path("t.npy"),
+          "--constraint-edges", path("e.npy"), "--areas", path("f.npy")});
+  EXPECT_GT(sorted_rows(path("t.npy")).size(), triangles + 20);
+  const Arguments check = {"verify",      path("p.npy"), path("t.npy"), "--constraints",
+                           path("e.npy"), "--outside",   "holes",       "--min-angle",
+                           "20",          "--conforming"};
+  run_well(check, kNoPlatform);
+  // The mesh as it is.
+  EXPECT_NEAR(area(node, {"--mesh", coarse}), area(poly, {"--outside", "holes"}), 1e-12);
+  expect_error(kUsage, {"--mesh-areas", "--mesh"}, {"triangulate", node, "--mesh-areas", path("a.area")});
+  expect_error(kUsage, {"--outside", "--mesh"}, {"triangulate", node, "--mesh", coarse, "--outside", "hull"});
+  expect_error(kBadInput, {"1 areas"},
+               {"triangulate", node, "--mesh", coarse, "--mesh-areas", write("b.area", "1\n1 2\n")});
+  expect_error(kBadInput, {"line 3", "expected triangle number 2, found 3"},
+               {"triangulate", node, "--mesh", coarse, "--mesh-areas", write("b.area", "2\n1 2\n3 2\n")});
+  expect_error(kBadInput, {"expected an area"},
+               {"triangulate", node, "--mesh", coarse, "--mesh-areas", write("b.area", "1\n1 x\n")});
+}
+
 TEST_F(CommandConstraintsTest, ALetterIsWhatTriangleMakesOfIt) {
   // The outline is a trapezium without the gap between the legs; the opening is a hole.
   const double gap = (0.52 + 0.30) / 2 * 0.28, opening = 0.16 * 0.24 / 2, trapezium = (1 + 0.24) / 2;

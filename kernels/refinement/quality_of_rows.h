@@ -111,9 +111,11 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_ru
   return length < 4.0 * rules.min_edge ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 
+// With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.
 static inline int encroaches(const seen_mesh* mesh, int corner, double2 p, refinement_rules rules) {
-  return is_encroached(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)), p,
-                       rules.squared_cosine);
+  const double2 from = point_at(mesh, next_halfedge(corner)), to = point_at(mesh, previous_halfedge(corner));
+  return rules.squared_cosine > 0.0 ? is_encroached(from, to, p, rules.squared_cosine)
+                                    : cosine_sign(from, p, p, to, 0.0) > 0;
 }
 
 END_SHARED

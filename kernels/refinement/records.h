@@ -27,7 +27,7 @@ ASSERT_SIZE(edge_place, 24);
 typedef struct {
   double squared_sine;                   // of the smallest angle
   double off_centre;                     // how far off-centres are from the shortest edge
-  double squared_cosine;                 // of the angle under which a point encroaches an edge
+  double squared_cosine;                 // of the angle under which a point encroaches an edge; 0: conforming
   double area;                           // the largest, or 0
   double min_edge;                       // squared
   double coarse;                         // new coordinates below it are rounded to its last binary place

@@ -135,6 +135,16 @@ kernel void set_areas(int n, int has_parents, global const int2* restrict made, 
   }
 }
 
+// Why constraints of a row that an angle opposite to them encroaches were not split; EXCUSED_NOT without such.
+static inline int why_encroaching(const seen_mesh* mesh, int row, refinement_rules rules) {
+  for (int corner = 3 * row; corner < 3 * row + 3; ++corner) {
+    if (edge_at(mesh, corner) < 0 || !encroaches(mesh, corner, point_at(mesh, corner), rules)) continue;
+    const int reason = why_not_split(mesh, corner, rules);
+    return reason == EXCUSED_NOT ? EXCUSED_LIMIT : reason;
+  }
+  return EXCUSED_NOT;
+}
+
 // n rows: EXCUSED_NOT of those that are good enough.
 kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global const uchar* restrict refused,
                         global uchar* restrict excuses) {
@@ -153,6 +163,7 @@ kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global co
         excuse = excuse_of(&mesh, &triangle, places, rules.vertices);
         if (excuse == EXCUSED_NOT) excuse = reason;
       }
+      if (excuse == EXCUSED_NOT && rules.squared_cosine == 0.0) excuse = why_encroaching(&mesh, row, rules);
     }
     excuses[row] = (uchar)excuse;
   }

@@ -319,14 +319,23 @@ class _Refinement:
         self._given = given  # the arrays, which the struct refers to
         self._error: Optional[BaseException] = None
         self._function = given.get("areas_at")
-        members = {
-            name: _address_of(value) if isinstance(value, _ARRAY) else value
-            for name, value in given.items()
-        }
+        members = self._members(given)
+        mesh = members.pop("mesh", None)
+        if mesh:
+            self._mesh = _declarations.GivenTriangles(**self._members(mesh))
+            members["mesh"] = ctypes.pointer(self._mesh)
         if self._function is not None:
             members["areas_at"] = _declarations.RefinementAreasAt(self._write_areas)
         self._struct = _declarations.Refinement(**members)
         self.pointer = ctypes.pointer(self._struct) if given else None
+
+    @staticmethod
+    def _members(given: dict[str, Any]) -> dict[str, Any]:
+        """Members of a struct, with addresses in the place of arrays."""
+        return {
+            name: _address_of(value) if isinstance(value, _ARRAY) else value
+            for name, value in given.items()
+        }
 
     def _write_areas(self, places: int, count: int, areas: int, _: Any) -> None:
         """Nothing passes on exceptions here, so the first one is kept, and areas are any from then on."""
@@ -500,7 +509,8 @@ def triangulate_constrained(
         *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
     )
     refining.check()
-    asked_by = names_of(labels=bool(rules["labels"]), seeds=counts["seed_count"] > 0)
+    has_attributes = counts["seed_count"] > 0 or "attributes" in refinement.get("mesh", {})
+    asked_by = names_of(labels=bool(rules["labels"]), seeds=has_attributes)
     arrays = result.arrays(
         parts, asked_by | {name for name in carried if carried[name] is not None}
     )

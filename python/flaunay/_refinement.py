@@ -9,7 +9,7 @@ from typing import Any, Optional, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_floats, frozen
+from flaunay._arrays import as_floats, as_integers, frozen
 from flaunay._declarations import EXCUSE, KEPT_EDGES
 from flaunay._errors import UsageError
 
@@ -24,6 +24,10 @@ class Refining(TypedDict, total=False):
     max_area: float
     seed_areas: Optional[npt.ArrayLike]
     areas_at: Optional[Callable[[Doubles], npt.ArrayLike]]
+    triangles: Optional[npt.ArrayLike]
+    triangle_areas: Optional[npt.ArrayLike]
+    triangle_attributes: Optional[npt.ArrayLike]
+    conforming: bool
     keep_edges: str
     kept_segments: Optional[npt.ArrayLike]
     min_edge: Optional[float]
@@ -85,8 +89,32 @@ def _row(given: Any, name: str, size: int, dtype: npt.DTypeLike) -> npt.NDArray[
     return np.ascontiguousarray(array, dtype)
 
 
+def _mesh(wanted: dict[str, Any]) -> dict[str, Any]:
+    """The members of flaunay_given_triangles, taken from all members; nothing if there are none."""
+    values = {name: wanted.pop(f"triangle_{name}", None) for name in ("areas", "attributes")}
+    if "triangles" not in wanted:
+        for name, value in values.items():
+            if value is not None:
+                raise UsageError(f"triangle_{name} needs triangles")
+        return {}
+    rows = as_integers(wanted.pop("triangles"), "triangles")
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise UsageError(f"triangles must have the shape (m, 3), not {rows.shape}")
+    mesh: dict[str, Any] = {
+        "triangles": np.ascontiguousarray(rows, np.int32),
+        "count": len(rows),
+    }
+    for name, value in values.items():
+        if value is not None:
+            mesh[name] = _row(value, f"triangle_{name}", len(rows), np.float64)
+    return mesh
+
+
 def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
-    """The members of flaunay_refinement, arrays and a function among them. Nothing if nothing is asked for."""
+    """The members of flaunay_refinement, arrays and a function among them. Nothing if nothing is asked for.
+
+    The member `mesh` has those of flaunay_given_triangles.
+    """
     if not given:
         return {}
     names = Refining.__annotations__
@@ -100,6 +128,8 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
             f"keep_edges must be one of {', '.join(map(repr, KEPT_EDGES))}, not {kept!r}"
         )
     wanted["kept"] = KEPT_EDGES[kept]
+    wanted["conforming"] = int(bool(wanted.get("conforming", False)))
+    wanted["mesh"] = _mesh(wanted)
     for name in ("min_angle", "max_area", "min_edge"):
         if name in wanted:
             wanted[name] = _number(wanted[name], name)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
 from flaunay._calls import TRIANGULATION
 from flaunay._constrained import ConstrainedTriangulation, arrays_of_constrained, rules_of
+from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._refinement import Doubles, Refining
 from flaunay._triangulation import Triangulation, arrays_of_mesh
@@ -271,14 +272,34 @@ def triangulate(
     return Triangulation(**result) if segments is None else ConstrainedTriangulation(**result)
 
 
+def _given_mesh(mesh: Union[ConstrainedTriangulation, Delaunay]) -> dict[str, Any]:
+    """The arguments of `refine` for a mesh that is refined further."""
+    if isinstance(mesh, Delaunay):
+        return {"points": mesh.points, "triangles": mesh.simplices}
+    if len(mesh.triangle_offsets) != 2:
+        raise UsageError("a mesh that is refined must be of one set")
+    return {
+        "points": mesh.points,
+        "segments": mesh.constraint_edges,
+        "triangles": mesh.triangles,
+        "triangle_attributes": mesh.triangle_attributes,
+        "segment_markers": mesh.edge_markers,
+        "point_markers": mesh.vertex_markers,
+    }
+
+
 def refine(
-    points: ArrayLike,
+    points: Union[ArrayLike, ConstrainedTriangulation, Delaunay],
     segments: Optional[npt.ArrayLike] = None,
     *,
     min_angle: float = 20,
     max_area: float = 0,
     seed_areas: Optional[npt.ArrayLike] = None,
     areas_at: Optional[Callable[[Doubles], npt.ArrayLike]] = None,
+    triangles: Optional[npt.ArrayLike] = None,
+    triangle_areas: Optional[npt.ArrayLike] = None,
+    triangle_attributes: Optional[npt.ArrayLike] = None,
+    conforming: bool = False,
     keep_edges: str = "none",
     kept_segments: Optional[npt.ArrayLike] = None,
     min_edge: Optional[float] = None,
@@ -292,7 +313,8 @@ def refine(
     ----------
     points, segments, **others
         As of `triangulate`. What is left out, such as holes, is not refined. Without segments, the domain is
-        the convex hull.
+        the convex hull. A `ConstrainedTriangulation` of one set or a `Delaunay` in the place of points is
+        refined further: it has the segments, triangles, markers and attributes, unless they are given.
     min_angle : float
         In degrees, from 0 to 34. Above 30, many more points are needed.
     max_area : float
@@ -302,6 +324,17 @@ def refine(
     areas_at : callable, optional
         Takes places, an array of shape (k, 2), and returns the areas that triangles may have there, of shape
         (k,); 0 for any. It is called once a round.
+    triangles : array_like of int, shape (m, 3), optional
+        A mesh of the points that is refined further. They are triangulated anew, with its border as segments
+        after the given ones, and without what no triangle covers.
+    triangle_areas : array_like, shape (m,), optional
+        For each of these the area that triangles with their centroid in it, and their parts, may have; 0 for
+        any.
+    triangle_attributes : array_like, shape (m,), optional
+        For each of these an attribute. Edges between different ones are segments, and the result has
+        `triangle_attributes`.
+    conforming : bool
+        Whether to split segments until no angle opposite to them is obtuse: then all triangles are Delaunay.
     keep_edges : {"none", "border", "all"}
         Where no points may be put: on edges with triangles on one side only, or on no segment at all.
     kept_segments : array_like of bool, shape (k,), optional
@@ -323,16 +356,35 @@ def refine(
 
     Examples
     --------
-    >>> import flaunay
+    >>> import flaunay, numpy as np
     >>> mesh = flaunay.refine([[0, 0], [9, 0], [9, 1], [0, 1]], min_angle=30, max_area=0.5)
     >>> mesh.areas.max() <= 0.5, mesh.refinement.smallest_angle >= 30 - 1e-9
     (True, True)
     >>> len(mesh.refinement.bad_triangles)
     0
+
+    The triangles on the left, once more:
+
+    >>> x = mesh.points[mesh.triangles, 0].mean(axis=1)
+    >>> finer = flaunay.refine(mesh, triangle_areas=np.where(x < 3, 0.01, 0))
+    >>> len(finer.triangles) > 2 * len(mesh.triangles)
+    True
     """
+    if isinstance(points, (ConstrainedTriangulation, Delaunay)):
+        given = {"segments": segments, "triangles": triangles, **others}
+        given["triangle_attributes"] = triangle_attributes
+        own = _given_mesh(points)
+        own |= {name: value for name, value in given.items() if value is not None}
+        points, segments = own.pop("points"), own.pop("segments", None)
+        triangles, triangle_attributes = own.pop("triangles"), own.pop("triangle_attributes", None)
+        others = own
     result = triangulate(
         points,
         np.empty((0, 2), np.int32) if segments is None else segments,
+        triangles=triangles,
+        triangle_areas=triangle_areas,
+        triangle_attributes=triangle_attributes,
+        conforming=conforming,
         min_angle=min_angle,
         max_area=max_area,
         seed_areas=seed_areas,

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _triangulate
+from flaunay import _triangulate
 from flaunay._arrays import ArrayLike
 from flaunay._constrained import ConstrainedTriangulation
-from flaunay._delaunay import Delaunay
-from flaunay._errors import InputError, UsageError
+from flaunay._errors import UsageError
 from flaunay._interpolate import LinearInterpolator
 from flaunay._voronoi import Voronoi
 
@@ -120,8 +119,8 @@ def _of_drawing(given: Members, letters: Counter[str]) -> tuple[Array, Array, Op
 
 
 def _of_mesh(given: Members, letters: Counter[str]) -> tuple[Array, Array, Options, Array]:
-    """The same for triangles, and the different rows of their attributes, which seeds number from 1 on."""
-    points, n = given["vertices"], len(given["vertices"])
+    """The same for triangles, and the different rows of their attributes, which are numbered."""
+    n = len(given["vertices"])
     triangles = given.get("triangles", np.empty((0, 3), np.intc))
     if not len(triangles) or triangles.min() < 0 or triangles.max() >= n:
         raise UsageError("switch 'r' needs triangles, and these must be of the vertices")
@@ -133,89 +132,21 @@ def _of_mesh(given: Members, letters: Counter[str]) -> tuple[Array, Array, Optio
     sides = np.stack([_keys(ends, n), np.repeat(kind, 3)], axis=1)
     _, first, counts = np.unique(sides, axis=0, return_index=True, return_counts=True)
     border = ends[first[counts == 1]]
-    centroids = points[triangles].mean(axis=1)
-    seeds = np.column_stack([centroids, kind + 1])
-    # What no seed reaches is no part of the mesh: a hole in the largest triangle of each such region.
-    whole = _triangulate.triangulate(points, border, seeds=seeds, labels=True)
-    assert whole.regions is not None
-    beyond = np.flatnonzero(whole.triangle_attributes == 0)
-    beyond = beyond[np.argsort(whole.areas[beyond])]
-    largest = dict(zip(whole.regions[beyond].tolist(), beyond.tolist()))
-    holes = whole.points[whole.triangles[list(largest.values())]].mean(axis=1)
-    options: Options = {"seeds": seeds, "holes": holes}
+    options: Options = {"triangles": triangles, "triangle_attributes": kind}
     if letters["areas"] and "triangle_max_area" in given:
-        bounds = np.maximum(given["triangle_max_area"].ravel(), 0)
-        # On a triangulator of its own, since that of the call is at work.
-        host = _calls.Triangulator.of_name("host")
-        nearest = _calls.Locator(host, Delaunay(centroids)).nearest
-        options["areas_at"] = lambda places: bounds[nearest(places)]
+        options["triangle_areas"] = np.maximum(given["triangle_max_area"].ravel(), 0)
     if "triangle_attributes" not in given:
         kinds = kinds[:, :0]
     return *_segments_of(given, letters, border), options, kinds
 
 
-def _split_places(
-    mesh: ConstrainedTriangulation, segments: Array, owners: Array
-) -> tuple[Array, Array]:
-    """The constraint edges with an obtuse angle opposite to them, and a place on each of them.
-
-    A whole segment is split in the middle, and a part of one near the middle, at the roundest binary number
-    of the distances from the nearer end: so segments that meet at a small angle have points at equal
-    distances from there, and do not split each other again and again.
-    """
-    points, n = mesh.points, len(mesh.points)
-    corners = np.stack([np.roll(mesh.triangles, -k, axis=1)[mesh.constrained] for k in range(3)])
-    apex, a, b = points[corners]
-    hit = _keys(corners[1:, ((a - apex) * (b - apex)).sum(axis=1) < 0].T, n)
-    edges = np.flatnonzero(np.isin(_keys(mesh.constraint_edges, n), hit))
-    ends, (a, b) = points[mesh.constraint_edges[edges]], points[segments[owners[edges]].T]
-    nearer = np.hypot(*(ends.mean(axis=1) - b).T) < np.hypot(*(ends.mean(axis=1) - a).T)
-    a, b = np.where(nearer[:, None], (b, a), (a, b))
-    length = np.hypot(*(b - a).T)
-    near, far = np.sort([np.hypot(*(end - a).T) for end in (ends[:, 0], ends[:, 1])], axis=0)
-    low, high = near + (far - near) / 3, far - (far - near) / 3
-    step = np.exp2(np.floor(np.log2(high - low)))
-    place = high
-    while True:
-        rounder = np.floor(high / step) * step
-        if not (rounder >= low).any():
-            break
-        place = np.where(rounder >= low, rounder, place)
-        step = 2 * step
-    place = np.where((near == 0) & (far >= length), length / 2, place)
-    return edges, a + (place / length)[:, None] * (b - a)
-
-
-def _refined(
-    points: Array, segments: Array, markers: Array, options: Options, conforming: bool
-) -> tuple[ConstrainedTriangulation, Array, Array]:
-    """The mesh, and of its constraint edges the markers and the segments."""
-    count, first, owners = len(points), segments, np.arange(len(segments))
-    budget = options.get("most_points")
-    for _ in range(60):
-        if budget is not None:
-            options["most_points"] = budget - (len(points) - count)
-        # The border is of segments, also where it is the hull, whose parts are rounded.
-        options.update(segment_markers=markers, crossings="split", outside="hull")
-        mesh = _triangulate.triangulate(points, segments, **options)
-        assert mesh.edge_markers is not None
-        n, pairs = len(mesh.points), mesh.constraint_edges
-        markers, owners = mesh.edge_markers, owners[mesh.edge_segments]
-        if not conforming:
-            return mesh, markers, owners
-        edges, places = _split_places(mesh, first, owners)
-        if budget is not None:
-            edges, places = (of[: max(budget - (n - count), 0)] for of in (edges, places))
-        if not len(edges):
-            return mesh, markers, owners
-        if mesh.refinement is not None and len(mesh.refinement.bad_triangles):
-            # What cannot be better next to small angles is known of segments, not of their pieces.
-            options.update(min_angle=0, max_area=0, seed_areas=None, areas_at=None)
-        points = np.concatenate([mesh.points, places])
-        segments = np.concatenate([pairs, pairs[edges]])
-        segments[edges, 1] = segments[len(pairs) :, 0] = n + np.arange(len(edges))
-        markers, owners = (np.concatenate([of, of[edges]]) for of in (markers, owners))
-    raise InputError("switch 'D': segments are too close together to be split")
+def _refined(points: Array, segments: Array, markers: Array, options: Options) -> ConstrainedTriangulation:
+    # The border is of segments, also where it is the hull, whose parts are rounded.
+    outside = "keep" if "triangles" in options else "hull"
+    mesh = _triangulate.triangulate(
+        points, segments, segment_markers=markers, crossings="split", outside=outside, **options
+    )
+    return mesh
 
 
 def _attributes(points: Array, values: Array, segments: Array, owners: Array) -> Array:
@@ -231,14 +162,11 @@ def _attributes(points: Array, values: Array, segments: Array, owners: Array) ->
 
 
 def _result(
-    mesh: ConstrainedTriangulation,
-    segments: Array,
-    markers: Array,
-    owners: Array,
-    given: Members,
-    letters: Counter[str],
+    mesh: ConstrainedTriangulation, segments: Array, given: Members, letters: Counter[str]
 ) -> Members:
-    """The members for a mesh. markers, owners: the markers and segments of its constraint edges."""
+    """The members for a mesh."""
+    assert mesh.edge_markers is not None
+    markers, owners = mesh.edge_markers, mesh.edge_segments
     n, count, pairs = len(mesh.points), len(given["vertices"]), mesh.constraint_edges
     all_keys, keys = _keys(mesh.edges, n), _keys(pairs, n)
     # As in Triangle, the border and its vertices have the marker 1 unless they are given others.
@@ -300,16 +228,15 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
     UsageError
         A ValueError. For other switches, such as o2, u and w, and for members of other names or shapes.
     InputError, DeviceError
-        As `flaunay.triangulate`. InputError if segments are too close together for D.
+        As `flaunay.triangulate`.
 
     Notes
     -----
     Attributes of vertices that are added are linear between the ends of their segment, or else in the
     Delaunay triangles of the given vertices. With r, triangles are made anew of all vertices, of segments (with
-    p), of the border, and of edges between triangles of different attributes; the largest area at a place
-    is that of the given triangle with the nearest centroid. With D, segments are split until no angle opposite
-    to them is obtuse. If some triangles cannot have the angles that q asks for, others next to these splits
-    may not have them either.
+    p), of the border, and of edges between triangles of different attributes; the largest area of a triangle
+    is that of the given one with its centroid, and its parts inherit it. With D, segments are split until no
+    angle opposite to them is obtuse.
 
     Examples
     --------
@@ -330,12 +257,12 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
     options["keep_edges"] = ("none", "border", "all")[min(letters["Y"], 2)]
     if letters["S"]:
         options["most_points"] = int(numbers.get("S", 0))
-    conforming = letters["D"] > 0
-    mesh, markers, owners = _refined(given["vertices"], segments, markers, options, conforming)
-    result = _result(mesh, segments, markers, owners, given, letters)
+    options["conforming"] = letters["D"] > 0
+    mesh = _refined(given["vertices"], segments, markers, options)
+    result = _result(mesh, segments, given, letters)
     of_seeds = mesh.triangle_attributes
     if of_seeds is not None and kinds is not None and kinds.size:
-        result["triangle_attributes"] = kinds[of_seeds.astype(np.intp) - 1]
+        result["triangle_attributes"] = kinds[of_seeds.astype(np.intp)]
     elif of_seeds is not None and kinds is None and letters["A"]:
         result["triangle_attributes"] = of_seeds[:, None]
     if letters["j"]:

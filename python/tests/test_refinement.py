@@ -99,6 +99,37 @@ def test_a_function_of_places():
     assert len(flaunay.refine(SQUARE, RING, max_area=1).triangles) >= 16
 
 
+def test_a_mesh_is_refined_further():
+    coarse = flaunay.refine(
+        [*SQUARE, [2, 0], [2, 4]],
+        [*RING, [4, 5]],
+        seeds=[[1, 1, 7], [3, 3, 8]],
+        segment_markers=[1, 2, 3, 4, 5],
+        point_markers=[9] * 6,
+    )
+    assert flaunay.refine(coarse).triangles.tolist() == coarse.triangles.tolist()
+    bounds = np.where(coarse.triangle_attributes == 7, 0.05, 0)
+    mesh = flaunay.refine(coarse, triangle_areas=bounds, min_angle=25)
+    left = mesh.triangle_attributes == 7
+    assert mesh.areas[left].max() <= 0.05 < mesh.areas[~left].max()
+    assert mesh.areas[left].sum() == pytest.approx(8)
+    assert set(mesh.edge_markers) == {1, 2, 3, 4, 5} and set(mesh.vertex_markers) >= {0, 4, 5, 9}
+    assert flaunay.refine(flaunay.Delaunay(SQUARE), triangle_areas=[0.1, 0.2]).areas.max() <= 0.2
+    with pytest.raises(flaunay.UsageError, match="needs triangles"):
+        flaunay.refine(SQUARE, triangle_areas=[1, 2])
+    with pytest.raises(flaunay.UsageError, match="one set"):
+        flaunay.refine(flaunay.refine(SQUARE, offsets=[0, 4, 4]))
+
+
+def test_conforming_meshes_are_delaunay():
+    points = [[0, 0], [4, 0], [4, 3], [0, 3], [1, 1], [3, 1.1], [2, 1.2], [2, 0.9]]
+    mesh = flaunay.triangulate(points, [[4, 5]], conforming=True)
+    assert len(mesh.added_points) > 0
+    assert {frozenset(t) for t in mesh.triangles.tolist()} == {
+        frozenset(t) for t in flaunay.Delaunay(mesh.points).simplices.tolist()
+    }
+
+
 def test_regions_kept_edges_and_limits():
     wall = [*SQUARE, [2, 0], [2, 4]]
     segments = [*RING, [4, 5]]

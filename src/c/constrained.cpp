@@ -83,6 +83,11 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
       call(places, count, areas, data);
     };
   }
+  result.conforming = given.conforming != 0;
+  if (given.mesh != nullptr) {
+    c::check_reserved(*given.mesh, "flaunay_given_triangles");
+    result.mesh = {given.mesh->triangles, given.mesh->count, given.mesh->areas, given.mesh->attributes};
+  }
   result.kept = c::to_enum<KeptEdges>(given.kept, FLAUNAY_KEPT_EDGES_ALL, "flaunay_kept_edges");
   result.kept_segments = given.kept_segments;
   if (given.has_min_edge != 0) result.min_edge = given.min_edge;

@@ -8,6 +8,7 @@
 
 #include "call/areas.hpp"
 #include "call/domains.hpp"
+#include "call/given_mesh.hpp"
 #include "call/groups.hpp"
 #include "call/insert_segments.hpp"
 #include "call/refine.hpp"
@@ -210,7 +211,8 @@ std::optional<ConstrainedTriangulation> constrain_by_groups(
     call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
     const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
   const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
-  if (has_places || options.profile || options.crossings == Crossings::split) return {};
+  const bool has_mesh = options.refinement.mesh.count > 0;
+  if (has_places || has_mesh || options.profile || options.crossings == Crossings::split) return {};
   if (!self.is_named() && offsets.back() <= self.host_tuning().host_points) return {};
   call::Engine& engine = self.for_host_memory();
   const std::vector<call::Group> groups = call::groups_of(engine, offsets);
@@ -226,16 +228,13 @@ std::optional<ConstrainedTriangulation> constrain_by_groups(
   });
 }
 
-}  // namespace
-
-ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
-                                                   const std::vector<std::size_t>& offsets,
-                                                   const Constraints& constraints,
-                                                   const ConstrainedOptions& options,
-                                                   const DomainRequest& request) {
-  geometry::check_offsets(offsets);
-  geometry::check_coordinates(coordinates, offsets.back());
-  check(constraints, options.refinement);
+// mesh: what the constraints and options are those of, or null.
+ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const double* coordinates,
+                                              const std::vector<std::size_t>& offsets,
+                                              const Constraints& constraints,
+                                              const ConstrainedOptions& options,
+                                              const call::DomainRequest& request,
+                                              const call::GivenMesh* mesh) {
   const bool is_refined = options.refinement.is_wanted();
   // What is made of the triangles that are left comes after their refinement.
   ConstrainedOptions first = options;
@@ -253,16 +252,34 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
   const auto points = [&] { return all.empty() ? coordinates : all.data(); };
   Ids seeds;
-  if (!grouped) seeds = apply_domains(self, points(), offsets, constraints, request, result);
+  if (!grouped) seeds = call::apply_domains(self, points(), offsets, constraints, request, result);
+  std::vector<double> areas;
+  if (mesh != nullptr) areas = mesh->leave(points(), result, seeds);
   if (is_refined) {
     if (!grouped) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
-    refine(self, points(), offsets, options, seeds, result);
+    call::refine(self, points(), offsets, options, seeds, areas, result);
     all = with_added(coordinates, offsets.back(), result.added_points);
   }
   carry_markers(constraints, offsets.back(), result);
   finish(self, points(), options, result);
   end_phase(is_refined ? "refine" : "domains", begin, result.statistics);
   return result;
+}
+
+}  // namespace
+
+ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const double* coordinates,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Constraints& constraints,
+                                                   const ConstrainedOptions& options,
+                                                   const DomainRequest& request) {
+  geometry::check_offsets(offsets);
+  geometry::check_coordinates(coordinates, offsets.back());
+  check(constraints, options.refinement);
+  if (options.refinement.mesh.count == 0)
+    return constrain_and_refine(self, coordinates, offsets, constraints, options, request, nullptr);
+  const GivenMesh mesh(coordinates, offsets.back(), constraints, options);
+  return constrain_and_refine(self, coordinates, offsets, mesh.constraints(), mesh.options(), request, &mesh);
 }
 
 ConstrainedTriangulation Triangulator::constrained(const double* coordinates,

@@ -106,18 +106,19 @@ std::vector<std::uint8_t> kept_edges(const Refinement& wanted, const FixedEdges&
   return kept;
 }
 
-// The smaller one of the largest area of all triangles and that of their region. Empty if there is none.
-std::vector<double> largest_areas(const Refinement& wanted, const Ids& seeds, std::size_t triangles) {
-  const bool has_areas = wanted.seed_areas != nullptr && !seeds.empty();
-  if (!has_areas) return std::vector<double>(wanted.max_area > 0 ? triangles : 0, wanted.max_area);
-  std::vector<double> areas;
-  areas.reserve(triangles);
-  for (const std::int32_t seed : seeds) {
-    const double own = seed >= 0 ? wanted.seed_areas[seed] : 0;
-    areas.push_back(own > 0 && wanted.max_area > 0 ? std::min(own, wanted.max_area)
-                                                   : std::max(own, wanted.max_area));
+// Of the areas that all triangles, those of a region, and each may have, the smallest one. Empty if there is
+// none.
+std::vector<double> largest_areas(const Refinement& wanted, const Ids& seeds,
+                                  const std::vector<double>& areas, std::size_t triangles) {
+  const bool has_seeds = wanted.seed_areas != nullptr && !seeds.empty();
+  if (!has_seeds && areas.empty() && !(wanted.max_area > 0)) return {};
+  const auto smaller = [](double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); };
+  std::vector<double> all(triangles, wanted.max_area);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    if (has_seeds && seeds[t] >= 0) all[t] = smaller(all[t], wanted.seed_areas[seeds[t]]);
+    if (!areas.empty()) all[t] = smaller(all[t], areas[t]);
   }
-  return areas;
+  return all;
 }
 
 // Corners relative to the first one, for what needs no exactness.
@@ -404,11 +405,14 @@ void check_refinement(const Refinement& wanted, std::size_t seeds) {
   constrained::quality_bounds(wanted.min_angle);
   constrained::check_areas(&wanted.max_area, 1, "all triangles");
   if (wanted.seed_areas != nullptr) constrained::check_areas(wanted.seed_areas, seeds, "seed");
+  if (wanted.mesh.areas != nullptr)
+    constrained::check_areas(wanted.mesh.areas, wanted.mesh.count, "triangle of the mesh");
   expect(!std::isnan(wanted.min_edge), "the smallest edge is not a number");
 }
 
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-            const ConstrainedOptions& options, const Ids& seeds, ConstrainedTriangulation& result) {
+            const ConstrainedOptions& options, const Ids& seeds, const std::vector<double>& areas,
+            ConstrainedTriangulation& result) {
   const Refinement& wanted = options.refinement;
   const std::size_t n = offsets.back(), points = n + result.added_points.size() / 2;
   FixedEdges edges = fixed_edges(result, points);
@@ -420,7 +424,7 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   mesh.edges = edges.of_corners;
   mesh.edge_ends = edges.ends;
   mesh.kept_edges = kept_edges(wanted, edges, result);
-  mesh.largest_areas = largest_areas(wanted, seeds, result.triangles.size() / 3);
+  mesh.largest_areas = largest_areas(wanted, seeds, areas, result.triangles.size() / 3);
 
   const bool may_stay = !self.is_named() && !options.profile &&
                         expected_points(mesh) <= static_cast<double>(self.host_tuning().host_points);

@@ -16,9 +16,10 @@ void check_refinement(const Refinement& wanted, std::size_t seeds);
 /// Refines the result, which must have neighbours: on the engine for host memory or, if little is expected
 /// and no device was named, on the calling thread. All arrays but half-edges, areas and markers are extended.
 /// coordinates: of all points, those that splitting added too; offsets: without those; seeds: for each
-/// triangle that of its region, or -1; empty if there are none. Throws what constrained::refine throws.
+/// triangle that of its region, or -1; empty if there are none; areas: for each triangle the area that it and
+/// its parts may have, 0 for any, or empty. Throws what constrained::refine throws.
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
             const ConstrainedOptions& options, const std::vector<std::int32_t>& seeds,
-            ConstrainedTriangulation& result);
+            const std::vector<double>& areas, ConstrainedTriangulation& result);
 
 }  // namespace flaunay::call

@@ -267,6 +267,20 @@ class Check {
     return area > 0 && exact_.compare_area(corner(3 * t), corner(3 * t + 1), corner(3 * t + 2), area) > 0;
   }
 
+  /// Whether the angle at a corner encroaches the edge opposite to it.
+  bool sees_flat(std::size_t c) {
+    const double *p = corner(c), *a = corner(after(c)), *b = corner(after(after(c)));
+    return wanted_.conforming ? exact_.compare_cosine(p, a, b, 0) < 0
+                              : exact_.compare_cosine(p, a, b, -bounds_.squared_cosine) <= 0;
+  }
+  /// Whether a triangle has to be better for a conforming mesh.
+  bool encroaches(std::size_t t) {
+    for (std::size_t c = 3 * t; wanted_.conforming && c < 3 * t + 3; ++c) {
+      if (refined_.edges[c] >= 0 && sees_flat(c)) return true;
+    }
+    return false;
+  }
+
   // Exactly the triangles that are bad are listed, each with a reason that holds.
   void check_quality() {
     const RefinementReport& report = refined_.report;
@@ -291,9 +305,10 @@ class Check {
       if (!is_listed) {
         if (has_small_angle) return wrong(name + " has a smaller angle and no excuse");
         if (is_large) return wrong(name + " is larger and has no excuse");
+        if (encroaches(t)) return wrong(name + " encroaches an edge and has no excuse");
         continue;
       }
-      if (!has_small_angle && !may_be_large) return wrong(name + " is not bad, but listed");
+      if (!has_small_angle && !may_be_large && !encroaches(t)) return wrong(name + " is not bad, but listed");
       const Excuse excuse = report.excuses[next++];
       if (is_large && (excuse == Excuse::input_angle || excuse == Excuse::near_apex))
         return wrong(name + " is larger, which no angle excuses");
@@ -457,7 +472,7 @@ class Check {
       if (refined_.edges[c] < 0 || is_kept(refined_.edges[c])) continue;
       const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];
       if (length(u, v) <= 2 * min_edge_ * (1 + kLengthSlack) || is_piece_coarse(c)) continue;
-      if (exact_.compare_cosine(corner(c), at(u), at(v), -bounds_.squared_cosine) <= 0)
+      if (sees_flat(c))
         return wrong("the piece of edge " + std::to_string(refined_.edges[c]) + " from " + place(u) + " to " +
                      place(v) + " is encroached by " + place(refined_.triangles[c]));
     }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 #include <string>
@@ -510,6 +511,101 @@ TEST(SmallRefined, AreasOfRegionsAndPlaces) {
   });
   EXPECT_GT(calls, 0U);
   EXPECT_LE(calls, by_place.refinement.rounds + 2);
+}
+
+// What is refined again has the triangles and attributes of before, in any direction, and smaller areas on
+// one side.
+TEST(SmallRefined, AMeshIsRefinedFurther) {
+  const Domain drawing = one(plate(0));
+  ConstrainedOptions options = refined_to(25, 1);
+  options.outside = Outside::holes;
+  const ConstrainedTriangulation coarse = refine(triangulator(), drawing, options);
+  Domain domain;
+  domain.points = all_points(drawing, coarse);
+  domain.offsets = {0, domain.points.size() / 2};
+  domain.seed_offsets = {0, 0};
+  std::vector<std::int32_t> triangles = coarse.triangles;
+  std::vector<double> areas;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const double x = domain.points[2 * triangles[t]] + domain.points[2 * triangles[t + 1]] +
+                     domain.points[2 * triangles[t + 2]];
+    areas.push_back(x / 3 < 5 ? 0.02 : 0);
+    if (t % 2 == 0) std::swap(triangles[t], triangles[t + 1]);
+  }
+  options = refined_to(0, 0);
+  GivenTriangles& mesh = options.refinement.mesh;
+  mesh = {triangles.data(), areas.size(), nullptr, coarse.triangle_attributes.data()};
+  const auto attributes_of = [](const Domain& of, const ConstrainedTriangulation& from) {
+    std::map<double, double> sums;
+    for (std::size_t t = 0; t < from.areas.size(); ++t) sums[from.triangle_attributes[t]] += from.areas[t];
+    return std::pair(shapes(of, from).size(), sums);
+  };
+  const ConstrainedTriangulation same = refine(triangulator(), domain, options);
+  EXPECT_EQ(shapes(domain, same), shapes(drawing, coarse));
+  EXPECT_EQ(same.added_points.size(), 0U);
+  EXPECT_EQ(attributes_of(domain, same).second.size(), 2U);
+
+  mesh.areas = areas.data();
+  options.refinement.min_angle = 25;
+  const ConstrainedTriangulation fine = refine(triangulator(), domain, options);
+  EXPECT_NEAR(sum(fine.areas), sum(coarse.areas), 1e-9);
+  for (const auto& [attribute, area] : attributes_of(domain, same).second)
+    EXPECT_NEAR(attributes_of(domain, fine).second[attribute], area, 1e-9);
+  expect_quality(domain, fine, 25, [](std::size_t) { return 1; });
+  const Coordinates points = all_points(domain, fine);
+  double largest = 0;
+  for (std::size_t t = 0; t < fine.areas.size(); ++t) {
+    double x = 0;
+    for (std::size_t k = 0; k < 3; ++k) x += points[2 * fine.triangles[3 * t + k]] / 3;
+    EXPECT_TRUE(x > 4 || fine.areas[t] <= 0.02) << x << ", " << fine.areas[t];
+    if (x > 6) largest = std::max(largest, fine.areas[t]);
+  }
+  EXPECT_GT(largest, 0.2);
+
+  const auto expect_named = [&](const std::string& part, ErrorKind kind) {
+    try {
+      refine(triangulator(), domain, options);
+      ADD_FAILURE() << part;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  const std::int32_t first = triangles[0];
+  triangles[0] = triangles[1];
+  expect_named("triangle 0 of the mesh", ErrorKind::input);
+  triangles[0] = static_cast<std::int32_t>(domain.point_count());
+  expect_named("no point", ErrorKind::usage);
+  std::copy_n(&triangles[3], 3, &triangles[0]);
+  expect_named("triangles 0 and 1 of the mesh", ErrorKind::input);
+  triangles[0] = first;
+  areas[1] = -1;
+  expect_named("triangle of the mesh 1", ErrorKind::usage);
+  areas[1] = 1;
+  options.outside = Outside::hull;
+  expect_named("outside", ErrorKind::usage);
+}
+
+// Triangles that are not those of the points: areas are where they were given.
+TEST(SmallRefined, AreasOfOtherTriangles) {
+  Domain domain;
+  // A strip whose diagonals are the long ones.
+  domain.points = {0, 0, 4, 0, 8, 0, 12, 0, 3, 1, 7, 1, 11, 1};
+  domain.offsets = {0, 7};
+  domain.seed_offsets = {0, 0};
+  const std::vector<std::int32_t> triangles = {0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 6};
+  const std::vector<double> areas = {0.01, 0, 0, 0, 0};
+  ConstrainedOptions options = refined_to(0, 0);
+  options.refinement.mesh = {triangles.data(), 5, areas.data(), nullptr};
+  const ConstrainedTriangulation mesh = refine(triangulator(), domain, options);
+  const ConstrainedTriangulation plain = triangulator().constrained(
+      domain.points.data(), domain.offsets, domain.constraints(), ConstrainedOptions());
+  EXPECT_NE(plain.triangles, triangles);
+  EXPECT_NEAR(sum(mesh.areas), 10, 1e-12);
+  // One of the triangles has its centroid in the small one.
+  const auto small = std::count_if(mesh.areas.begin(), mesh.areas.end(), [](double a) { return a <= 0.01; });
+  EXPECT_GT(small, 150);
+  EXPECT_GT(*std::max_element(mesh.areas.begin(), mesh.areas.end()), 0.5);
 }
 
 TEST(SmallRefined, KeptEdgesAreNotSplit) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/nasty_domains.hpp"
@@ -260,6 +261,37 @@ TEST(SmallRefinement, KeptEdges) {
   EXPECT_GT(excused_for(refined, Excuse::kept), 0);
   mesh.kept_edges.assign(mesh.edge_ends.size() / 2, 0);
   EXPECT_EQ(excused_for(expect_right(mesh, angle_of(30)), Excuse::kept), 0);
+}
+
+// No edge that is left is needed: the triangles are those of the points alone.
+TEST(SmallRefinement, Conforming) {
+  DomainToRefine domain = unit_square();
+  domain.segment(0.2, 0.5, 0.8, 0.5);
+  domain.point(0.5, 0.55);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.conforming = true;
+  const RefinedMesh refined = expect_right(mesh, wanted);
+  EXPECT_EQ(refined.report.bad_triangles.size(), 0);
+  EXPECT_GT(refined.report.split_points, 0);
+  EXPECT_EQ(refined.report.split_points, refined.report.added_points);
+  Coordinates points = domain.points;
+  points.insert(points.end(), refined.added.begin(), refined.added.end());
+  ExactPredicates exact;
+  for (std::size_t c = 0; c < refined.neighbors.size(); ++c) {
+    if (refined.neighbors[c] < 0) continue;
+    const double* corners[3];
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = &points[2 * refined.triangles[c - c % 3 + k]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* const p = &points[2 * refined.triangles[3 * refined.neighbors[c] + k]];
+      EXPECT_LE(exact.incircle(corners[0], corners[1], corners[2], p), 0);
+    }
+  }
+  wanted.min_angle = 25;
+  expect_right(mesh, wanted);
+  MeshToRefine kept = mesh;
+  kept.kept_edges.assign(mesh.edge_ends.size() / 2, 1);
+  EXPECT_GT(excused_for(expect_right(kept, wanted), Excuse::kept), 0);
 }
 
 // Segments so close to each other that only the smallest edge ends the refinement.

@@ -38,6 +38,7 @@ struct Case {
   FillRule fill_rule = FillRule::nesting;
   std::vector<double> holes;
   double min_angle = 0, max_area = 0;
+  bool conforming = false;
 
   Case() = default;
   Case(Coordinates coordinates, Segments ends) : points(std::move(coordinates)), segments(std::move(ends)) {
@@ -67,6 +68,7 @@ struct Case {
     if (!holes.empty()) constraints.holes = &holes;
     constraints.min_angle = min_angle;
     constraints.max_area = max_area;
+    constraints.conforming = conforming;
     return constraints;
   }
   // Leaves out rows.
@@ -329,6 +331,17 @@ TEST(SmallVerifyRefined, EncroachedEdges) {
             << problem;
       }
     }
+  }
+}
+
+// Right angles are not obtuse.
+TEST(SmallVerifyRefined, ConformingMeshes) {
+  for (const double y : {1.5, 2.0, 2.5}) {
+    Case mesh({0, 0, 4, 0, 2, y, 2, -5}, {1, 0});
+    EXPECT_EQ(mesh.problem(), "");
+    mesh.conforming = true;
+    EXPECT_EQ(mesh.problem().find("is encroached") != std::string::npos, y < 2)
+        << y << ": " << mesh.problem();
   }
 }
 

@@ -43,9 +43,9 @@ struct Demands {
   std::string text() const {
     return fmt::format(
         "min_angle {}, max_area {}, areas_at {}, min_edge {}, most_points {}, most_rounds {}, "
-        "kept_salt {}, region_area {}",
+        "conforming {}, kept_salt {}, region_area {}",
         wanted.min_angle, wanted.max_area, static_cast<bool>(wanted.areas_at), wanted.min_edge,
-        wanted.most_points, wanted.most_rounds, kept_salt, region_area);
+        wanted.most_points, wanted.most_rounds, wanted.conforming, kept_salt, region_area);
   }
 };
 
@@ -79,6 +79,7 @@ Demands any_demands(FixtureRandom& random, const DomainToRefine& domain) {
   if (once_in(random, 5)) wanted.min_edge = extent * std::pow(10.0, -1 - 6 * random.unit());
   wanted.most_points = static_cast<std::size_t>(once_in(random, 8) ? random.integer(0, 300) : 3000);
   wanted.most_rounds = once_in(random, 10) ? static_cast<std::size_t>(random.integer(0, 30)) : 2000;
+  wanted.conforming = once_in(random, 8);
   if (once_in(random, 6)) demands.kept_salt = static_cast<std::uint64_t>(random.integer(1, 1 << 30));
   return demands;
 }

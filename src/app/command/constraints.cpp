@@ -33,7 +33,8 @@ const NamedChoices<KeptEdges> kKeptEdges = {
     {"none", KeptEdges::none}, {"border", KeptEdges::border}, {"all", KeptEdges::all}};
 
 // Those that ask for refinement, and those that say how.
-const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas"};
+const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas", "--mesh-areas",
+                                            "--conforming"};
 const std::vector<std::string> kRefinementLimits = {"--keep-edges", "--min-edge", "--most-points"};
 
 const std::vector<std::string> kChoices = {"--crossings", "--outside",  "--fill",
@@ -86,7 +87,7 @@ io::Map read_input(const std::string& input, const ConstraintRequest& request) {
 /// what none of them covers.
 void choose_for(const io::Map& map, const std::string& input, ConstraintRequest& request) {
   const bool has_polygons = map.polygon_count() > 0;
-  if (!request.chose_outside && io::is_map(input)) {
+  if (!request.chose_outside && io::is_map(input) && request.mesh.empty()) {
     request.outside = has_polygons                      ? Outside::holes
                       : io::ending_of(input) == ".poly" ? Outside::hull
                                                         : Outside::keep;
@@ -113,7 +114,7 @@ void check_carried(const io::Map& map, const std::string& input, const Constrain
     };
     check(AskedBy::segment_markers, !map.segment_markers.empty(), "markers of segments");
     check(AskedBy::point_markers, !map.points.markers.empty(), "markers of points");
-    check(AskedBy::seeds, !map.regions.empty(), "regions with attributes");
+    check(AskedBy::seeds, !map.regions.empty() || !request.mesh.empty(), "regions with attributes");
   });
   const auto has_area = [](const io::PolyRegion& region) { return region.area.has_value(); };
   if (request.region_areas && std::none_of(map.regions.begin(), map.regions.end(), has_area)) {
@@ -125,8 +126,8 @@ void check_carried(const io::Map& map, const std::string& input, const Constrain
 /// Whether the map is given to the library as polygons, which knows then which triangle is in which of them.
 /// Throws if the request needs that and it is not possible.
 bool are_polygons(const io::Map& map, const Task& task, const ConstraintRequest& request) {
-  const bool possible =
-      map.polygon_count() > 0 && !map.has_others && map.holes.empty() && request.fill != FillRule::nesting;
+  const bool possible = map.polygon_count() > 0 && !map.has_others && map.holes.empty() &&
+                        request.fill != FillRule::nesting && request.mesh.empty();
   if (!possible && (request.separate || request.chose_overlaps || wants(request, AskedBy::map))) {
     throw Error(
         ErrorKind::usage,
@@ -179,6 +180,27 @@ ConstrainedTriangulation triangulate_polygons(Triangulator& triangulator, const 
   return mesh;
 }
 
+// The mesh that is refined further, from its files.
+struct MeshFiles {
+  explicit MeshFiles(const ConstraintRequest& request) {
+    if (request.mesh.empty()) return;
+    triangles = io::read_triangles(request.mesh);
+    attributes = io::read_triangle_attributes(request.mesh);
+    if (request.areas.empty()) return;
+    areas = io::read_areas(request.areas);
+    if (3 * areas.size() == triangles.size()) return;
+    throw Error(ErrorKind::input,
+                fmt::format("{} has {} areas, but {} has {} triangles", io::printable(request.areas),
+                            areas.size(), io::printable(request.mesh), triangles.size() / 3));
+  }
+  GivenTriangles view() const {
+    return {triangles.data(), triangles.size() / 3, areas.empty() ? nullptr : areas.data(),
+            attributes.empty() ? nullptr : attributes.data()};
+  }
+  std::vector<std::int32_t> triangles;
+  std::vector<double> areas, attributes;
+};
+
 ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const io::Map& map,
                                               const ConstraintRequest& request, ConstrainedOptions options) {
   const std::vector<std::int32_t> segments = all_segments(map);
@@ -198,9 +220,14 @@ ConstrainedTriangulation triangulate_segments(Triangulator& triangulator, const 
     areas.push_back(std::max(region.area.value_or(0), 0.0));
   }
   if (request.region_areas) options.refinement.seed_areas = areas.data();
-  constraints.seeds = seeds.data();
-  constraints.seed_attributes = attributes.data();
-  constraints.seed_count = attributes.size();
+  const MeshFiles mesh(request);
+  options.refinement.mesh = mesh.view();
+  // The attributes of a mesh count before those of regions.
+  if (mesh.attributes.empty()) constraints.seed_attributes = attributes.data();
+  if (mesh.attributes.empty() || request.region_areas) {
+    constraints.seeds = seeds.data();
+    constraints.seed_count = attributes.size();
+  }
   return triangulator.constrained(map.points.coordinates.data(), map.points.size(), constraints, options);
 }
 
@@ -306,6 +333,15 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
       ->type_name("AREA");
   command->add_flag("--region-areas", request.region_areas,
                     ".poly: add points until no triangle is larger than its region allows");
+  command->add_flag("--conforming", refinement.conforming,
+                    "Split constraints until all triangles are Delaunay without them, too");
+  add_path(
+      command, "--mesh", request.mesh,
+      fmt::format("Triangles of the points, such as those of a mesh that is refined further: only what they "
+                  "cover is kept. {}",
+                  io::endings_for(io::Use::read_triangles)));
+  add_path(command, "--mesh-areas", request.areas,
+           "With --mesh: the largest area within each of its triangles, in an .area file of Triangle");
   add_named_choice(command, "--keep-edges", refinement.kept,
                    "Which edges points must not be put on: none, those at the border, or all constraints",
                    kKeptEdges)
@@ -357,7 +393,13 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   const auto was_given = [&command](const std::string& option) { return command.count(option) > 0; };
   const bool is_refined = std::any_of(kRefining.begin(), kRefining.end(), was_given);
   if (!is_refined) refuse_all(command, kRefinementLimits, "needs --min-angle, --max-area or --region-areas");
-  const bool has_segments = is_map || !request.segments.empty();
+  if (request.mesh.empty()) {
+    refuse(command, "--mesh-areas", "needs the triangles: --mesh");
+  } else {
+    io::format_of(request.mesh, io::Use::read_triangles);
+    refuse_all(command, {"--outside", "--separate", "--overlaps", "--polygons"}, "--mesh says what is kept");
+  }
+  const bool has_segments = is_map || !request.segments.empty() || !request.mesh.empty();
   if (!has_segments) {
     const char* const reason = "needs segments: --constraints, or a .poly or .geojson file as input";
     refuse_all(command, kChoices, reason);
@@ -367,7 +409,7 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
     }
   }
   if (io::ending_of(input) != ".poly") refuse(command, "--region-areas", "needs regions, from a .poly file");
-  if (has_segments) check_domain_options(command, input, request);
+  if (is_map || !request.segments.empty()) check_domain_options(command, input, request);
   const char* const needing = has_segments ? "constraints need" : "refinement needs";
   if (io::ending_of(input) == ".poly" || !is_map) {
     refuse_all(command, {"--separate", "--overlaps", "--polygons"}, "needs polygons, from a .geojson file");
@@ -387,8 +429,11 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
 
 int triangulate_with_constraints(const Task& task, const ConstraintRequest& asked) {
   ConstraintRequest request = asked;
-  OutputFiles outputs(io::is_map(task.input) ? io::files_of_map(task.input)
-                                             : std::vector<std::string>{task.input, request.segments});
+  std::vector<std::string> inputs = io::is_map(task.input)
+                                        ? io::files_of_map(task.input)
+                                        : std::vector<std::string>{task.input, request.segments};
+  inputs.insert(inputs.end(), {request.mesh, request.areas});
+  OutputFiles outputs(std::move(inputs));
   announce(outputs, task.results, true);
   announce_constraints(outputs, request);
 

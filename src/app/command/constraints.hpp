@@ -20,13 +20,14 @@ struct ConstraintRequest {
   bool separate = false;
   Refinement refinement;
   bool region_areas = false;  ///< seed areas are those of the input
+  std::string mesh, areas;    ///< files with the triangles that are refined further, and their areas
   Overlaps overlaps = Overlaps::first;
   ArrayPaths<decltype(kConstrainedArrays)> arrays;
   std::string points;  ///< the file for input and added points
   // Whether the user chose these; otherwise the input decides.
   bool chose_outside = false, chose_fill = false, chose_overlaps = false;
 
-  bool is_refined() const { return refinement.is_wanted() || region_areas; }
+  bool is_refined() const { return refinement.is_wanted() || region_areas || !areas.empty(); }
 };
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);

@@ -41,11 +41,12 @@ struct VerifyRequest {
   std::string scratch;
   bool has_constraints = false;
   double min_angle = 0, max_area = 0;
+  bool conforming = false;
   bool quiet = false;
   ConstraintRequest constraints;
   std::string constraint_edges;
 
-  bool is_refined() const { return min_angle > 0 || max_area > 0; }
+  bool is_refined() const { return min_angle > 0 || max_area > 0 || conforming; }
 };
 
 /// 0 if it is no regular file.
@@ -149,6 +150,7 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
   if (!map.holes.empty()) constraints.holes = &map.holes;
   constraints.min_angle = request.min_angle;
   constraints.max_area = request.max_area;
+  constraints.conforming = request.conforming;
   if (!request.constraint_edges.empty()) {
     edges = io::read_npy_segments(request.constraint_edges, map.points.size());
     constraints.edges = &edges;
@@ -236,6 +238,8 @@ void add_verify(CLI::App& app, Action& action) {
       "--min-angle", request->min_angle,
       "Check that no angle is smaller, in degrees, but where the input has such angles: 0 to 34");
   command->add_option("--max-area", request->max_area, "Check that no triangle is larger");
+  command->add_flag("--conforming", request->conforming,
+                    "Check that no angle opposite to a constraint, or to the border, is obtuse");
   add_memory(command, request->memory_bytes,
              "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
              "triangles. Default: hold everything if it fits");

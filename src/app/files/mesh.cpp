@@ -215,45 +215,87 @@ void write_msh(OutputFile& file, const MeshContents& contents) {
   file.print("$EndElements\n");
 }
 
-std::vector<std::int32_t> read_ele(const std::string& path) {
-  const std::string text = read_file(path, "Triangle's .ele format");
-  Lines lines(path, text, Lines::Separator::blanks);
-  if (!lines.next()) fail(path, "has no header line; expected \"triangles 3 attributes\"");
-  const std::size_t header_line = lines.number();
-  const std::size_t header_fields = lines.count_fields();
-  const long long count = lines.integer("the number of triangles");
-  const long long corners = header_fields > 1 ? lines.integer("the number of nodes per triangle") : 3;
-  const long long attributes = header_fields > 2 ? attribute_count(lines) : 0;
-  if (count < 0) lines.fail_line("{} triangles; expected 0 or more", count);
-  if (corners != 3) lines.fail_line("{} nodes per triangle; expected 3", corners);
+// Lines that a header counts, numbered from 0 or 1.
+class NumberedLines {
+  std::string path_, text_;
 
-  std::vector<std::int32_t> triangles;
-  long long base = 0, read = 0;
-  for (; lines.next(); ++read) {
-    if (read == count)
-      lines.fail_line("more triangles than the {} of the header (line {})", count, header_line);
-    const std::size_t fields = lines.count_fields();
-    if (fields != static_cast<std::size_t>(4 + attributes)) {
-      lines.fail_line("expected {} fields (triangle number, 3 vertices, {} attributes), found {}",
-                      4 + attributes, attributes, fields);
+ public:
+  NumberedLines(const std::string& path, const char* format, const char* header)
+      : path_(path), text_(read_file(path, format)), lines(path, text_, Lines::Separator::blanks) {
+    if (!lines.next()) fail(path, "has no header line; expected \"{}\"", header);
+    header_line_ = lines.number();
+    header_fields = lines.count_fields();
+    count_ = lines.integer("the number of triangles");
+    if (count_ < 0) lines.fail_line("{} triangles; expected 0 or more", count_);
+  }
+
+  NumberedLines(const NumberedLines&) = delete;
+  NumberedLines& operator=(const NumberedLines&) = delete;
+
+  Lines lines;
+  std::size_t header_fields = 0;
+  long long base = 0;  // the number of the first line
+
+  /// Goes to the next line, behind its number; false at the end. columns: what a line has besides, so many
+  /// fields.
+  bool next(std::size_t fields, const std::string& columns) {
+    if (!lines.next()) {
+      if (read_ == count_) return false;
+      fail(path_, "line {}: the header says {} triangles, but the file ends after {}", header_line_, count_,
+           read_);
+    }
+    if (read_ == count_)
+      lines.fail_line("more triangles than the {} of the header (line {})", count_, header_line_);
+    const std::size_t found = lines.count_fields();
+    if (found != fields + 1) {
+      lines.fail_line("expected {} fields (triangle number, {}), found {}", fields + 1, columns, found);
     }
     const long long number = lines.integer("a triangle number");
-    if (read == 0) {
+    if (read_ == 0) {
       if (number != 0 && number != 1)
         lines.fail_line("expected triangle number 0 or 1 first, found {}", number);
       base = number;
     }
-    if (number != base + read) lines.fail_line("expected triangle number {}, found {}", base + read, number);
+    if (number != base + read_)
+      lines.fail_line("expected triangle number {}, found {}", base + read_, number);
+    ++read_;
+    return true;
+  }
+
+ private:
+  std::size_t header_line_ = 0;
+  long long count_ = 0, read_ = 0;
+};
+
+double finite_number(Lines& lines, const char* what) {
+  std::string_view text;
+  double value = 0;
+  if (!lines.field(text) || parse_number(text, value) != ParsedNumber::fine || !std::isfinite(value))
+    lines.fail_field(text, "expected {} (a number), found {}", what, quoted_number(text));
+  return value;
+}
+
+// attributes: where the first attribute of each triangle goes, if there are some; null for none.
+std::vector<std::int32_t> read_ele_with(const std::string& path, std::vector<double>* first_attributes) {
+  NumberedLines rows(path, "Triangle's .ele format", "triangles 3 attributes");
+  Lines& lines = rows.lines;
+  const long long corners = rows.header_fields > 1 ? lines.integer("the number of nodes per triangle") : 3;
+  const long long attributes = rows.header_fields > 2 ? attribute_count(lines) : 0;
+  if (corners != 3) lines.fail_line("{} nodes per triangle; expected 3", corners);
+  std::vector<std::int32_t> triangles;
+  while (rows.next(static_cast<std::size_t>(3 + attributes),
+                   fmt::format("3 vertices, {} attributes", attributes))) {
     for (int corner = 0; corner < 3; ++corner) {
       triangles.push_back(
-          checked_index(lines, "vertex", lines.integer("a vertex number"), base, kIndexLimit));
+          checked_index(lines, "vertex", lines.integer("a vertex number"), rows.base, kIndexLimit));
     }
-  }
-  if (read != count) {
-    fail(path, "line {}: the header says {} triangles, but the file ends after {}", header_line, count, read);
+    if (attributes > 0 && first_attributes != nullptr)
+      first_attributes->push_back(finite_number(lines, "an attribute"));
   }
   return triangles;
 }
+
+std::vector<std::int32_t> read_ele(const std::string& path) { return read_ele_with(path, nullptr); }
 
 std::vector<std::int32_t> read_off(const std::string& path) {
   const std::string text = read_file(path, "the OFF format");
@@ -468,6 +510,20 @@ bool shows_labels(const std::string& path) {
 
 std::vector<std::int32_t> read_triangles(const std::string& path) {
   return format_of(path, Use::read_triangles).triangles(path);
+}
+
+std::vector<double> read_triangle_attributes(const std::string& path) {
+  std::vector<double> attributes;
+  if (ending_of(path) == ".ele") read_ele_with(path, &attributes);
+  return attributes;
+}
+
+std::vector<double> read_areas(const std::string& path) {
+  NumberedLines rows(path, "Triangle's .area format", "triangles");
+  std::vector<double> areas;
+  // As for Triangle, negative areas are none.
+  while (rows.next(1, "area")) areas.push_back(std::max(finite_number(rows.lines, "an area"), 0.0));
+  return areas;
 }
 
 }  // namespace flaunay::io

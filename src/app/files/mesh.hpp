@@ -59,6 +59,11 @@ void write_npy(Outputs& outputs, const std::string& path, const std::vector<doub
 /// Reads triangles, 0-based, from .npy (int32 or int64, m x 3), .ele (either index base), .off, .obj (faces),
 /// .ply as write_mesh writes it. Throws Error(input) that names the place.
 std::vector<std::int32_t> read_triangles(const std::string& path);
+/// Reads the first attribute of each triangle; empty if the file has none, or is no .ele file.
+std::vector<double> read_triangle_attributes(const std::string& path);
+/// Reads an .area file of Triangle: the number of triangles, and for each its number, from 0 or 1 on, and the
+/// largest area of its parts, 0 for any. Throws Error(input) that names the line.
+std::vector<double> read_areas(const std::string& path);
 
 /// Reads neighbours, as write_npy writes Triangulation::neighbors: .npy (int32 or int64, m x 3),
 /// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.

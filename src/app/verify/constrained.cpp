@@ -313,7 +313,9 @@ class ConstrainedChecker : public Checker {
       if (hull_piece[f] != kNoPiece && widths[f] <= verification::kRoundedOff * largest) covered_[f] = 0;
     }
   }
-  bool is_refined() const { return constraints_.min_angle > 0 || constraints_.max_area > 0; }
+  bool is_refined() const {
+    return constraints_.min_angle > 0 || constraints_.max_area > 0 || constraints_.conforming;
+  }
 
   /// Rules other than nesting need closed curves.
   void check_closed() {
@@ -739,7 +741,9 @@ class ConstrainedChecker : public Checker {
     for (std::size_t h = 0; h < corners_.size(); ++h) {
       if (piece_of_[h] == kNoPiece) continue;
       const double *a = point(origin(h)), *b = point(target(h)), *c = point(corners_[h]);
-      if (predicates_.compare_cosine(c, a, b, -bounds.squared_cosine) > 0) continue;
+      const double cosine = constraints_.conforming ? 0 : -bounds.squared_cosine;
+      const int sign = predicates_.compare_cosine(c, a, b, cosine);
+      if (sign > 0 || (sign == 0 && constraints_.conforming)) continue;
       violate("{} is encroached: {} of triangle {} sees it at {} degrees",
               describe_piece(sweep_.pieces()[piece_of_[h]]), describe_point(corners_[h]), h / 3, angle_at(h));
     }

@@ -29,6 +29,7 @@ struct VerifyConstraints {
   const std::vector<std::int32_t>* edge_segments = nullptr;
   /// If not 0: what a refined mesh has been asked for, in degrees and as an area.
   double min_angle = 0, max_area = 0;
+  bool conforming = false;  ///< whether it has been asked to be Delaunay without constraints, too
   /// If given: per triangle its depth by the fill rule, and the number of its region.
   const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
 };
@@ -43,9 +44,10 @@ struct VerifyConstraints {
 /// largest area, no triangle may be worse than that, but those whose angle the input makes unavoidable: their
 /// smallest angle lies between two constraints, or their shortest edge joins points on two, equally far from
 /// where these meet at less than 60 degrees; and no corner may see an edge of its triangle that is a
-/// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more. Slivers
-/// between such edges and the hull need no triangle, because points on edges are rounded. O((n + s)
-/// log (n + s)) for n points and s segments, whatever overlaps and whatever meets at a point.
+/// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more; in
+/// conforming meshes, at more than 90 degrees. Slivers between such edges and the hull need no triangle,
+/// because points on edges are rounded. O((n + s) log (n + s)) for n points and s segments, whatever overlaps
+/// and whatever meets at a point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,
                                 const std::vector<std::int32_t>* neighbors,

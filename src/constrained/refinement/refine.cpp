@@ -173,7 +173,7 @@ class Rounds {
     check_areas(mesh_.largest_areas.data(), mesh_.largest_areas.size(), "largest areas");
     rules_.squared_sine = bounds.squared_sine;
     rules_.off_centre = bounds.off_centre;
-    rules_.squared_cosine = bounds.squared_cosine;
+    rules_.squared_cosine = wanted_.conforming ? 0 : bounds.squared_cosine;
     rules_.area = std::ldexp(wanted_.max_area, 2 * shift_);
     const double min_edge =
         wanted_.min_edge >= 0 ? std::ldexp(wanted_.min_edge, shift_) : std::ldexp(extent_, kMinEdgeExponent);

@@ -434,6 +434,20 @@ typedef struct flaunay_mesh {
   const double* areas;                   ///< t values; NULL if not asked for
 } flaunay_mesh;
 
+/// The triangles of a mesh that is refined further. All points are triangulated anew, with the border of
+/// these triangles, and edges between two of different attributes, as further segments, which come after
+/// those of flaunay_constraints in the order of triangles. What no triangle covers is left out.
+typedef struct flaunay_given_triangles {
+  const int32_t* triangles;  ///< 3 points of the same set per triangle, in any direction
+  size_t count;              ///< number of triangles
+  /// NULL, or one per triangle: the area that triangles with their centroid in it may have, 0 for any, and
+  /// those that they are refined to.
+  const double* areas;
+  /// NULL, or one per triangle: become triangle_attributes, in the place of those of seeds.
+  const double* attributes;
+  uintptr_t reserved[4];  ///< 0
+} flaunay_given_triangles;
+
 /// What a mesh is refined to. {0}: nothing is added.
 typedef struct flaunay_refinement {
   double min_angle;  ///< in degrees, from 0 to 34: no angle of a triangle is smaller; 0 for any
@@ -451,7 +465,11 @@ typedef struct flaunay_refinement {
   int has_most_points;           ///< other than 0: `most_points` counts; 0: there is no limit
   size_t most_points;            ///< no more points are added
   size_t most_rounds;            ///< no more rounds are made; 0: 10,000
-  uintptr_t reserved[4];         ///< 0
+  /// Other than 0: constraints and the border are split until no angle opposite to them is obtuse; then all
+  /// triangles are Delaunay without constraints, too.
+  int conforming;
+  const flaunay_given_triangles* mesh;  ///< NULL, or a mesh that is refined further
+  uintptr_t reserved[2];                ///< 0
 } flaunay_refinement;
 
 /// How a refinement went.

@@ -20,6 +20,20 @@ enum class KeptEdges {
 /// centroids of `count` triangles. It is called once a round.
 using AreasAt = std::function<void(const double* places, std::size_t count, double* areas)>;
 
+/// The triangles of a mesh that is refined further. All points are triangulated anew, with the border of
+/// these triangles, and edges between two of different attributes, as further segments, which come after
+/// those of Constraints in the order of triangles. What no triangle covers is left out.
+struct GivenTriangles {
+  const std::int32_t* triangles = nullptr;  ///< 3 points of the same set per triangle, in any direction
+  std::size_t count = 0;                    ///< number of triangles; 0: no such mesh
+  /// One per triangle, or null: the area that triangles with their centroid in it may have, 0 for any, and
+  /// those that they are refined to.
+  const double* areas = nullptr;
+  /// One per triangle, or null: become ConstrainedTriangulation::triangle_attributes, in the place of those
+  /// of seeds.
+  const double* attributes = nullptr;
+};
+
 /// What a mesh is refined to. By default, nothing is added.
 struct Refinement {
   /// In degrees, from 0 to 34: no angle of a triangle is smaller, except where docs/refinement.md says that
@@ -29,8 +43,12 @@ struct Refinement {
   double max_area = 0;  ///< no triangle is larger; 0 for any
   /// One per seed of Constraints, or null: the largest area of a triangle in its region, 0 for any.
   const double* seed_areas = nullptr;
-  AreasAt areas_at;                  ///< the areas that triangles may have by their places, or nothing
-  KeptEdges kept = KeptEdges::none;  ///< which constraints must not be split
+  GivenTriangles mesh;  ///< a mesh that is refined further, instead of points
+  AreasAt areas_at;     ///< the areas that triangles may have by their places, or nothing
+  /// Splits constraints, and the border, until no angle opposite to them is obtuse: then all triangles are
+  /// Delaunay without constraints, too, as far as there are triangles.
+  bool conforming = false;
+  KeptEdges kept = KeptEdges::none;             ///< which constraints must not be split
   const std::uint8_t* kept_segments = nullptr;  ///< one per segment: 1 if it must not be split, or null
   /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
   /// bounding box.
@@ -39,7 +57,10 @@ struct Refinement {
   std::size_t most_rounds = 10000;                         ///< no more rounds are made
 
   /// Whether anything is asked for.
-  bool is_wanted() const { return min_angle > 0 || max_area > 0 || seed_areas != nullptr || areas_at; }
+  bool is_wanted() const {
+    return min_angle > 0 || max_area > 0 || seed_areas != nullptr || mesh.areas != nullptr || areas_at ||
+           conforming;
+  }
 };
 
 /// Why a triangle is worse than it should be.
