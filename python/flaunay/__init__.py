@@ -9,7 +9,8 @@ for one set of points or many at once, also with segments that are to be edges, 
 number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
-arrays that are mapped from files, and writes files. The module ``triangle`` has the calls of the package of
+arrays that are mapped from files, and writes files. ``Delaunay(points, incremental=True)`` and
+``DynamicTriangulation`` have points that are added, removed and moved. The module ``triangle`` has the calls of the package of
 that name.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
@@ -29,6 +30,7 @@ from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
+from flaunay._dynamic import Changes, DynamicTriangulation, LivingConstraints, TriangleRows
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._calls import __version__
 from flaunay._interpolate import (
@@ -48,6 +50,7 @@ from flaunay._voronoi import Voronoi
 
 __all__ = [
     "AlphaShape",
+    "Changes",
     "ChunkedTriangulation",
     "ClippedVoronoi",
     "CloughTocherInterpolator",
@@ -58,14 +61,17 @@ __all__ = [
     "DeviceLocator",
     "DeviceTriangulation",
     "DeviceVoronoi",
+    "DynamicTriangulation",
     "Error",
     "InputError",
     "InternalError",
     "LinearInterpolator",
+    "LivingConstraints",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
     "PolygonTriangulation",
     "RefinementReport",
+    "TriangleRows",
     "Triangulation",
     "UsageError",
     "Voronoi",

@@ -42,9 +42,15 @@ class Triangles(Protocol):
 class Mesh(Triangles, Protocol):
     """A Delaunay triangulation, as functions below its class see it."""
 
-    neighbors: Indices
-    hull: Indices
-    representatives: Indices
+    @property
+    def neighbors(self) -> Indices: ...
+    @property
+    def hull(self) -> Indices: ...
+    @property
+    def representatives(self) -> Indices: ...
+    @property
+    def _stand_ins(self) -> tuple[FloatArray, Indices]: ...
+
     edges: Indices
     edge_lengths: Doubles
     edge_simplices: Indices

@@ -13,7 +13,7 @@ import queue
 import sys
 import threading
 from collections.abc import Callable
-from typing import Any, Optional, cast
+from typing import Any, Optional, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -436,6 +436,18 @@ class Triangulator(DeviceHandle):
             check(function(*_as_arguments(arguments)))
 
 
+class _InTurns(DeviceHandle):
+    """A handle that takes the turns of its triangulator."""
+
+    def __init__(self, triangulator: Triangulator) -> None:
+        super().__init__()
+        self._triangulator = triangulator
+
+    def _release(self) -> None:
+        with self._triangulator.turn:
+            super()._release()
+
+
 def triangulate(
     triangulator: Optional[Triangulator],
     points: FloatArray,
@@ -557,6 +569,111 @@ def triangulate_polygons(
     refining.check()
     arrays = result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
     return {**arrays, "refinement": result.report() if refinement else None}
+
+
+class Dynamic(_InTurns):
+    """A triangulation that changes."""
+
+    _destroy = library.dynamic_destroy
+    _PARTS = PART["triangles"] | PART["neighbors"]
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: Union[_Doubles, DevicePoints],
+        segments: Optional[_Indices],
+        crossings: int,
+    ) -> None:
+        super().__init__(triangulator)
+        options = _options_for("blocks", self._PARTS)
+        if isinstance(points, DevicePoints):
+            triangulator.call(
+                library.dynamic_create_device,
+                *(triangulator.pointer, points.struct, options, self.place),
+            )
+            return
+        points, constraints = _as_doubles(points), None
+        if segments is not None:
+            constraints = _declarations.Constraints(
+                segments=_address_of(segments), segment_count=len(segments), crossings=crossings
+            )
+        triangulator.call(
+            library.dynamic_create,
+            *(triangulator.pointer, points, len(points), constraints, options, self.place),
+        )
+
+    def _call(self, function: Any, *arguments: Any) -> None:
+        if self._process != self._process_id():
+            raise UsageError(
+                "the triangulation is that of the process that was forked: make one of its points here"
+            )
+        self._triangulator.call(function, self.pointer, *arguments)
+
+    def _change(self, function: Any, *arguments: Any) -> dict[str, Any]:
+        """What a batch has changed: the members of `Changes`."""
+        with self._triangulator.turn:
+            self._call(function, *arguments)
+            changes = library.dynamic_changes(self.pointer)[0]
+            return {
+                "first_point": changes.first_point,
+                "representatives": self._copy(
+                    changes.representatives, changes.representative_count
+                ),
+                "removed": self._copy(changes.removed, changes.removed_count),
+                "made": self._copy(changes.made, changes.made_count),
+                "made_corners": self._copy(changes.made_corners, changes.made_count, 3),
+                "is_anew": bool(changes.is_anew),
+                "seconds": changes.seconds,
+            }
+
+    def _copy(self, address: Optional[int], *shape: int) -> _Indices:
+        """Of an array that is valid until the next call."""
+        return _view(self, address, shape, _INT32).copy()
+
+    def insert(self, points: _Doubles) -> dict[str, Any]:
+        return self._change(library.dynamic_insert, _as_doubles(points), len(points))
+
+    def insert_device(self, points: DevicePoints) -> dict[str, Any]:
+        return self._change(library.dynamic_insert_device, points.struct)
+
+    def remove(self, numbers: _Indices) -> dict[str, Any]:
+        return self._change(library.dynamic_remove, numbers, len(numbers))
+
+    def move(self, numbers: _Indices, points: _Doubles) -> dict[str, Any]:
+        return self._change(library.dynamic_move, numbers, _as_doubles(points), len(numbers))
+
+    def count(self, name: str) -> int:
+        """A number by the name of the function that has it."""
+        return cast(int, getattr(library, f"dynamic_{name}")(self.pointer))
+
+    def coordinates(self) -> _Doubles:
+        """The places of points by their numbers; NaN for those that were removed."""
+        with self._triangulator.turn:
+            places = np.empty((self.count("numbers"), 2))
+            self._call(library.dynamic_coordinates, places)
+        return places
+
+    def rows(self) -> tuple[_Indices, _Indices]:
+        """The corners and the neighbours in each row."""
+        with self._triangulator.turn:
+            triangles, neighbors = (np.empty((self.count("row_count"), 3), _INT32) for _ in "12")
+            self._call(library.dynamic_rows, triangles, neighbors)
+        return triangles, neighbors
+
+    def arrays(self) -> dict[str, Any]:
+        """The result of a call on all points."""
+        result = _Triangulation()
+        self._call(library.dynamic_triangulation, result.place)
+        return _arrays_of(result, library.triangulation_mesh(result.pointer)[0], self._PARTS)
+
+    def constraints(self) -> tuple[_Indices, _Indices]:
+        """The edges that segments are made of, and a segment of each."""
+        with self._triangulator.turn:
+            found = library.dynamic_constraints(self.pointer)
+            if not found:
+                raise _library.error_of(library.last_error_status())
+            count = found[0].edge_count
+            return self._copy(found[0].edges, count, 2), self._copy(found[0].segments, count)
 
 
 def _encoded(text: str) -> bytes:
@@ -978,11 +1095,12 @@ def triangulate_chunks(
 
 def _triangulation_of(mesh: Mesh) -> tuple[_Doubles, int, _Triangulation]:
     """The points of a mesh, how many there are, and what the library knows of it."""
-    points = np.ascontiguousarray(mesh.points, _FLOAT64)
+    given, representatives = mesh._stand_ins
+    points = np.ascontiguousarray(given, _FLOAT64)
     n, corners = _count_points(points), _as_corners(mesh.simplices)
     beyond = _as_indices(mesh.neighbors, "neighbors", (len(corners), 3))
     ring = _as_indices(mesh.hull, "hull", (-1,))
-    equal = _as_indices(mesh.representatives, "representatives", (n,))
+    equal = _as_indices(representatives, "representatives", (n,))
     result = _Triangulation()
     _call_with_mesh(
         library.triangulation_create,
@@ -1048,18 +1166,8 @@ def relax(
     return relaxed
 
 
-class _Locator(DeviceHandle):
-    """A locator, in the turns of its triangulator."""
-
+class _Locator(_InTurns):
     _destroy = library.locator_destroy
-
-    def __init__(self, triangulator: Triangulator) -> None:
-        super().__init__()
-        self._triangulator = triangulator
-
-    def _release(self) -> None:
-        with self._triangulator.turn:
-            super()._release()
 
 
 class Locator(_Locator):

@@ -352,7 +352,7 @@ def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict
     }
 
 
-def _as_segments(given: npt.ArrayLike, n: int) -> Indices:
+def as_segments(given: npt.ArrayLike, n: int) -> Indices:
     """Pairs of indices of n points; UsageError for what is none."""
     segments = as_integers(given, "segments")
     if segments.size == 0:
@@ -414,7 +414,7 @@ def arrays_of_constrained(
     given: the arguments of `triangulate` that are holes, markers and seeds. wanted: the optional arrays to compute.
     """
     coordinates = np.asarray(as_points(points), np.float64)
-    pairs = _as_segments(segments, len(coordinates))
+    pairs = as_segments(segments, len(coordinates))
     seeds = _as_places(given["seeds"], "seeds", 3)
     rows = {"hole": _as_places(given["holes"], "holes", 2), "seed": seeds[:, :2]}
     places = {}

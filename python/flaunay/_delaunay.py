@@ -23,9 +23,10 @@ from flaunay._arrays import (
     frozen,
     summary,
 )
+from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
 from flaunay._plot import draw_edges
-from flaunay._triangulation import arrays_of_mesh
+from flaunay._triangulation import Triangulation, arrays_of_mesh
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -98,18 +99,22 @@ class Delaunay:
     points : array_like, shape (npoints, 2)
         Coordinates, which are copied. float64 and float32 are taken as they are; other numbers become
         float64, and must be one exactly.
-    furthest_site, incremental : bool
-        As SciPy has them: only False is possible.
+    furthest_site : bool
+        As SciPy has it: only False is possible.
+    incremental : bool
+        Whether points can be added, removed and moved later on, by `add_points`, `remove_points` and
+        `move_points`. Arrays are then those after the last change, and float64.
     qhull_options : str, optional
         As SciPy has them. Those that are about precision, output and how Qhull works change nothing;
-        QJ is an error unless every point is a vertex, which it asks for; others are an error.
+        QJ is an error unless every point is a vertex, which it asks for of those given here; others are
+        an error.
     mode, device : str, optional
         As of `triangulate`.
 
     Attributes
     ----------
     points : ndarray of float64 or float32, shape (npoints, 2)
-        The coordinates.
+        The coordinates; NaN for points that were removed, whose indices are not used again.
     simplices : ndarray of int32, shape (nsimplex, 3)
         Three points each, counter-clockwise, the smallest index first. Fewer than three distinct
         points, and points on one line, have none; SciPy raises an exception for them.
@@ -119,7 +124,8 @@ class Delaunay:
         The convex hull with the points on its edges, counter-clockwise from the lexicographically
         smallest point. Of collinear points all distinct ones, in lexicographic order.
     representatives : ndarray of int32, shape (npoints,)
-        For each point the smallest index of an equal point. Only those are in `simplices`.
+        For each point the smallest index of an equal point. Only those are in `simplices`. -1 for points
+        that were removed.
     npoints, nsimplex, ndim : int
         Numbers of points, of simplices and of dimensions, which are 2.
 
@@ -181,18 +187,24 @@ class Delaunay:
         mode: str = "blocks",
         device: Optional[str] = None,
     ) -> None:
-        all_must_be_vertices = _scipy.check_options(furthest_site, incremental, qhull_options)
-        self.points: FloatArray = frozen(as_points(points).copy())
+        all_must_be_vertices = _scipy.check_options(furthest_site, qhull_options)
         self._device = device
+        self._living: Optional[DynamicTriangulation] = None
         # With the process that made it.
         self._locator_or_none: Optional[tuple[_calls.Locator, int]] = None
         # Two threads that ask at the same time should not both make a locator.
         self._locator_lock = threading.Lock()
-        mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
-        self.simplices: Indices = frozen(mesh["triangles"])
-        self.neighbors: Indices = frozen(mesh["neighbors"])
-        self.hull: Indices = frozen(mesh["hull"])
-        self.representatives: Indices = frozen(mesh["representatives"])
+        if incremental:
+            if mode != "blocks":
+                raise UsageError(f"mode {mode!r} cannot be incremental; mode 'blocks' can")
+            self._living = DynamicTriangulation(as_points(points), device=device)
+        else:
+            self.points = frozen(as_points(points).copy())
+            mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
+            self.simplices = frozen(mesh["triangles"])
+            self.neighbors = frozen(mesh["neighbors"])
+            self.hull = frozen(mesh["hull"])
+            self.representatives = frozen(mesh["representatives"])
         if all_must_be_vertices:
             _scipy.check_all_are_vertices(self)
 
@@ -201,28 +213,79 @@ class Delaunay:
             self, points=self.npoints, triangles=self.nsimplex, hull_vertices=len(self.hull)
         )
 
+    # Those of a triangulation that changes are read when they are asked for after a change.
+
+    def _dynamic(self) -> DynamicTriangulation:
+        if self._living is None:
+            raise UsageError(
+                "points cannot be added, removed or moved: the triangulation is not incremental, was "
+                "closed, or is a copy; make another one with incremental=True"
+            )
+        return self._living
+
+    @cached_property
+    def _arrays(self) -> Triangulation:
+        return self._dynamic().triangulation()
+
+    @cached_property
+    def points(self) -> FloatArray:
+        return frozen(self._dynamic().points)
+
+    @cached_property
+    def simplices(self) -> Indices:
+        return frozen(self._arrays.triangles)
+
+    @cached_property
+    def neighbors(self) -> Indices:
+        beyond = self._arrays.neighbors
+        assert beyond is not None
+        return frozen(beyond)
+
+    @cached_property
+    def hull(self) -> Indices:
+        return frozen(self._arrays.hull)
+
+    @cached_property
+    def representatives(self) -> Indices:
+        return frozen(self._arrays.representatives)
+
     @property
     def npoints(self) -> int:
-        return len(self.points)
+        return len(self.points) if self._living is None else self._living.numbers
 
     @property
     def nsimplex(self) -> int:
-        return len(self.simplices)
+        return len(self.simplices) if self._living is None else self._living.triangle_count
+
+    @property
+    def _removed(self) -> npt.NDArray[np.bool_]:
+        removed: npt.NDArray[np.bool_] = np.isnan(self.points[:, 0])
+        return removed
+
+    @property
+    def _stand_ins(self) -> tuple[FloatArray, Indices]:
+        """Points and representatives for what knows no removed points: they are like one that is there."""
+        removed = self._removed
+        if not removed.any():
+            return self.points, self.representatives
+        first = int(np.argmin(removed))
+        place = 0 if removed[first] else self.points[first]
+        points: FloatArray = np.where(removed[:, None], place, self.points)
+        return points, np.where(removed, first, self.representatives).astype(np.int32)
 
     @cached_property
     def min_bound(self) -> FloatArray:
         """The smallest coordinates, shape (2,); NaN if there are no points."""
-        bound: FloatArray = np.full(2, np.nan)
-        if self.npoints:
-            bound = self.points.min(axis=0)
-        return frozen(bound)
+        return self._bound(np.min)
 
     @cached_property
     def max_bound(self) -> FloatArray:
         """The largest coordinates, shape (2,); NaN if there are no points."""
-        bound: FloatArray = np.full(2, np.nan)
-        if self.npoints:
-            bound = self.points.max(axis=0)
+        return self._bound(np.max)
+
+    def _bound(self, choose: Callable[..., FloatArray]) -> FloatArray:
+        there = self.points[~self._removed]
+        bound: FloatArray = choose(there, axis=0) if len(there) else np.full(2, np.nan)
         return frozen(bound)
 
     @cached_property
@@ -243,9 +306,10 @@ class Delaunay:
         In each row the point, a simplex that has the equal point (-1 if none has), and the equal
         point. SciPy lists these points likewise, and can list further ones, which it lost.
         """
-        _check_points(self.representatives, self.npoints, "representatives")
-        points = np.flatnonzero(self.representatives != np.arange(self.npoints))
-        equal = self.representatives[points]
+        _, equal_points = self._stand_ins
+        _check_points(equal_points, self.npoints, "representatives")
+        points = np.flatnonzero((equal_points != np.arange(self.npoints)) & ~self._removed)
+        equal = equal_points[points]
         simplices = _calls.first_triangles(self.simplices, self.npoints)[equal]
         rows: Indices = np.stack([points, simplices, equal], axis=1).astype(np.int32)
         return frozen(rows)
@@ -255,13 +319,16 @@ class Delaunay:
         """For each point a simplex that has it, int32, shape (npoints,).
 
         Of several the one of the smallest index. For a point that another represents, the other's; -1
-        if there are no simplices.
+        if there are no simplices, and for a point that was removed.
         """
-        _check_points(self.representatives, self.npoints, "representatives")
-        return frozen(_calls.first_triangles(self.simplices, self.npoints)[self.representatives])
+        _, equal_points = self._stand_ins
+        _check_points(equal_points, self.npoints, "representatives")
+        simplices = _calls.first_triangles(self.simplices, self.npoints)[equal_points]
+        simplices[self._removed] = -1
+        return frozen(simplices)
 
     def _doubles(self) -> Doubles:
-        return np.asarray(self.points, np.float64)
+        return np.asarray(self._stand_ins[0], np.float64)
 
     @cached_property
     def transform(self) -> Doubles:
@@ -373,18 +440,136 @@ class Delaunay:
         return draw_edges(self.points, self.edges, ax, style)
 
     def close(self) -> None:
-        """Gives back what queries hold in device memory; the next query makes it again."""
+        """Ends an incremental triangulation: its arrays stay, but its points cannot change any more.
+
+        Gives back what queries hold in device memory; the next query makes it again.
+        """
+        self._settle()
+        self._living = None
+        self._drop_locator()
+
+    def _drop_locator(self) -> None:
         with self._locator_lock:
             if self._locator_or_none is not None and self._locator_or_none[1] != os.getpid():
                 _triangulators.keep(self._locator_or_none)
             self._locator_or_none = None
 
-    def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Raises UsageError, as SciPy raises a RuntimeError without `incremental`: make a new triangulation."""
-        raise UsageError(
-            "points cannot be added: triangulate all of them again, "
-            "Delaunay(numpy.concatenate([tri.points, points]))"
-        )
+    def _settle(self) -> None:
+        """Reads what would need the living triangulation later on."""
+        for name in ("points", "simplices", "neighbors", "hull", "representatives"):
+            getattr(self, name)
+        self.__dict__.pop("_arrays", None)
+
+    def _forget(self) -> None:
+        """Drops what was computed before a change."""
+        for name in list(self.__dict__):
+            if isinstance(getattr(type(self), name, None), cached_property):
+                del self.__dict__[name]
+        self._drop_locator()
+
+    def add_points(self, points: ArrayLike, restart: bool = False) -> Optional[Changes]:
+        """Adds points to an incremental triangulation, as SciPy does.
+
+        Parameters
+        ----------
+        points : array_like, shape (m, 2)
+            They have the next indices.
+        restart : bool
+            Whether to triangulate all points anew. The simplices are the same ones, in another order. Points
+            that were removed have no indices then.
+
+        Returns
+        -------
+        Changes, or None with `restart`
+            In terms of `rows`.
+
+        Raises
+        ------
+        UsageError
+            Without `incremental`, and after `close`. It is a RuntimeError, as SciPy raises.
+        UsageError, InputError
+            For points as in a new triangulation. Nothing is changed then.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]], incremental=True)
+        >>> changes = tri.add_points([[1, 1], [4, 4]])
+        >>> len(tri.points), len(tri.simplices)
+        (5, 4)
+        >>> changes = tri.remove_points([0])
+        >>> changes = tri.move_points([3], [[3, 3]])
+        >>> sorted(tri.simplices.tolist())
+        [[1, 3, 2], [1, 4, 3], [2, 3, 4]]
+        """
+        living, given = self._dynamic(), as_points(points)
+        if restart:
+            there = self.points[~self._removed]
+            self._living = DynamicTriangulation(
+                np.concatenate([there, given]), device=self._device
+            )
+            changes = None
+        else:
+            changes = living.insert(given)
+        self._forget()
+        return changes
+
+    def remove_points(self, indices: npt.ArrayLike) -> Changes:
+        """Removes points of an incremental triangulation, by their indices, shape (m,).
+
+        The indices of others stay the same: `points` has NaN for those that were removed.
+
+        Returns
+        -------
+        Changes
+            In terms of `rows`.
+
+        Raises
+        ------
+        UsageError
+            As of `add_points`.
+        InputError
+            For an index that no point has, or that is there twice. Nothing is changed then.
+        """
+        changes = self._dynamic().remove(indices)
+        self._forget()
+        return changes
+
+    def move_points(self, indices: npt.ArrayLike, points: ArrayLike) -> Changes:
+        """Moves points of an incremental triangulation, all at once.
+
+        Parameters
+        ----------
+        indices : array_like of int, shape (m,)
+            Which points.
+        points : array_like, shape (m, 2)
+            Their new places.
+
+        Returns
+        -------
+        Changes
+            In terms of `rows`.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `add_points` and `remove_points`.
+        """
+        changes = self._dynamic().move(indices, points)
+        self._forget()
+        return changes
+
+    def rows(self) -> TriangleRows:
+        """The triangles of an incremental triangulation by their rows, which `Changes` mean.
+
+        `simplices` has those of the rows that have one, in their order.
+
+        Raises
+        ------
+        UsageError
+            As of `add_points`.
+        """
+        return self._dynamic().rows()
 
     def to_scipy(self) -> scipy.spatial.Delaunay:
         """The same triangulation as a `scipy.spatial.Delaunay`, without a run of Qhull.
@@ -422,8 +607,9 @@ class Delaunay:
             return self._locator_or_none[0]
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is in device memory is made again where it is needed; a lock is the object's own.
-        state = {**self.__dict__, "_locator_or_none": None}
+        # What is in device memory is made again where it is needed; a lock and what lives are the object's own.
+        self._settle()
+        state = {**self.__dict__, "_locator_or_none": None, "_living": None}
         del state["_locator_lock"]
         return state
 
@@ -519,7 +705,11 @@ class Delaunay:
         queries, shape = _as_queries(xi)
         if out is not None:
             check_out(out, np.int32, shape, "out")
-        return _given(_answers(self._locator.nearest, queries, -1).reshape(shape), out)
+        if len(self.hull):
+            found = _answers(self._locator.nearest, queries, -1)
+        else:
+            found = np.full(len(queries), -1, np.int32)
+        return _given(found.reshape(shape), out)
 
     def interpolate(
         self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None

@@ -263,7 +263,7 @@ def is_gabriel(tri: Mesh) -> Mask:
     if len(tri.simplices) == 0:
         return frozen(np.ones(len(tri.edges), np.bool_))
     # Of all points, a corner opposite to the edge is first in its disc, if any is.
-    acute = _calls.angles(tri.points, tri.simplices) > 0
+    acute = _calls.angles(tri._stand_ins[0], tri.simplices) > 0
     triangle, corner = tri._edge_order
     beyond = tri.neighbors[triangle, corner]
     is_back = tri.neighbors[beyond] == triangle[:, None]
@@ -298,7 +298,7 @@ def areas(tri: Mesh) -> Doubles:
     >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).areas
     array([6.])
     """
-    return frozen(_calls.areas(tri.points, tri.simplices))
+    return frozen(_calls.areas(tri._stand_ins[0], tri.simplices))
 
 
 def circumradii(tri: Mesh) -> Doubles:
@@ -312,7 +312,7 @@ def circumradii(tri: Mesh) -> Doubles:
     >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).circumradii
     array([2.5])
     """
-    return frozen(_calls.circumradii(tri.points, tri.simplices))
+    return frozen(_calls.circumradii(tri._stand_ins[0], tri.simplices))
 
 
 def minimum_spanning_forest(

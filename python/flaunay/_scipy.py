@@ -30,17 +30,12 @@ _HEIGHT_OF_INFINITY = 1.1
 _LARGEST_CONDITION = 1 / (1000 * np.finfo(np.float64).eps)
 
 
-def check_options(furthest_site: bool, incremental: bool, qhull_options: Optional[str]) -> bool:
+def check_options(furthest_site: bool, qhull_options: Optional[str]) -> bool:
     """UsageError for what flaunay cannot do. Returns whether every point must be a vertex."""
     if furthest_site:
         raise UsageError(
             "furthest_site=True is not possible: the furthest-site diagram is that of the convex hull's "
             "points alone, for which scipy.spatial is fast enough"
-        )
-    if incremental:
-        raise UsageError(
-            "incremental=True is not possible: make a new triangulation of the old points and the new, which "
-            "takes less time than SciPy takes to add a point"
         )
     if qhull_options is None:
         return False
@@ -201,11 +196,12 @@ def to_scipy(tri: Mesh) -> scipy.spatial.Delaunay:
     made._points = np.array(tri.points, np.float64)
     for name in ("simplices", "neighbors", "coplanar"):
         setattr(made, name, np.array(getattr(tri, name), np.intc))
+    for name in ("min_bound", "max_bound"):
+        setattr(made, name, np.array(getattr(tri, name), np.float64))
     for name in ("equations", "good"):
         setattr(made, name, np.array(getattr(tri, name)))
     for name in ("paraboloid_scale", "paraboloid_shift", "ndim", "npoints", "nsimplex"):
         setattr(made, name, getattr(tri, name))
-    made.min_bound, made.max_bound = made._points.min(axis=0), made._points.max(axis=0)
     made.furthest_site = False
     # As SciPy's, which calls LAPACK for each simplex.
     made._transform = barycentric_transforms(made._points, tri.simplices)

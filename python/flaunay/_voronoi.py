@@ -12,7 +12,6 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
-from flaunay._errors import UsageError
 from flaunay._plot import Bounds, draw_voronoi
 
 if TYPE_CHECKING:
@@ -102,17 +101,25 @@ class Voronoi:
         mode: str = "blocks",
         device: Optional[str] = None,
     ) -> None:
-        self.delaunay = tri = Delaunay(
+        self.delaunay = Delaunay(
             points, furthest_site, incremental, qhull_options, mode=mode, device=device
         )
+        self._merge, self._device = merge, device
+        self._compute()
+
+    def _compute(self) -> None:
+        """Computes the dual of `delaunay`, as it is now."""
+        tri = self.delaunay
+        for name in ("_ridges", "ridge_dict", "regions", "point_region"):
+            self.__dict__.pop(name, None)
         self.points: FloatArray = tri.points
-        arrays = _calls.voronoi(_triangulators.of_device(device), tri)
+        arrays = _calls.voronoi(_triangulators.of_device(self._device), tri)
         vertices, cells = arrays["circumcentres"], arrays["cells"]
         offsets = arrays["cell_offsets"]
         self.unbounded: npt.NDArray[np.bool_] = frozen(arrays["unbounded"])
         # The vertex of each triangle; None if it has its triangle's index.
         self._vertex_of: Optional[Indices] = None
-        if merge:
+        if self._merge:
             first = _calls.same_circles(tri.points, tri.simplices, tri.neighbors)
             distinct, numbers = np.unique(first, return_inverse=True)
             vertices = vertices[distinct]
@@ -283,15 +290,16 @@ class Voronoi:
         return draw_voronoi(self.points, self.delaunay.hull, *ridges, ax, bounds, style)
 
     def close(self) -> None:
-        """Gives back what `delaunay` holds in device memory for queries."""
+        """Ends an incremental diagram: its arrays stay. Gives back what queries hold in device memory."""
         self.delaunay.close()
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
-        """Raises UsageError, as SciPy raises a RuntimeError without `incremental`: make a new diagram."""
-        raise UsageError(
-            "points cannot be added: make a new diagram of all of them, "
-            "Voronoi(numpy.concatenate([voronoi.points, points]))"
-        )
+        """Adds points to an incremental diagram, as `Delaunay.add_points` does.
+
+        The triangulation is mended; the diagram is computed anew, in O(n) work.
+        """
+        self.delaunay.add_points(points, restart)
+        self._compute()
 
 
 def _merge_cells(

@@ -225,7 +225,6 @@ def test_what_is_asked_of_qhull_and_changes_nothing(random):
     "given, message",
     [
         ({"furthest_site": True}, "furthest_site=True is not possible"),
-        ({"incremental": True}, "incremental=True is not possible: make a new triangulation"),
         ({"qhull_options": "Qbb Qu"}, "Qu is furthest_site=True"),
         ({"qhull_options": "C-0.1"}, "option C-0.1 is not known"),
         ({"qhull_options": "QG4"}, "option QG4 is not known"),
@@ -254,9 +253,12 @@ def test_joggled_input_where_a_point_is_no_vertex(points, message):
 
 
 def test_points_cannot_be_added_as_in_scipy_without_incremental():
-    for tri in flaunay.Delaunay(FOUR), flaunay.Voronoi(FOUR), scipy.spatial.Delaunay(FOUR):
-        with pytest.raises(RuntimeError):
-            tri.add_points([[3.0, 3.0]])
+    for kind in flaunay.Delaunay, flaunay.Voronoi, scipy.spatial.Delaunay:
+        closed = kind(FOUR, incremental=True)
+        closed.close()
+        for tri in kind(FOUR), closed:
+            with pytest.raises(RuntimeError):
+                tri.add_points([[3.0, 3.0]])
 
 
 def test_closing_leaves_everything_usable(random):

@@ -1,0 +1,287 @@
+"""Triangulations to which batches of points are inserted, removed and moved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _calls, _triangulators
+from flaunay._arrays import ArrayLike, as_integers, as_points, summary
+from flaunay._constrained import as_segments, number_of
+from flaunay._declarations import CROSSINGS
+from flaunay._device_arrays import DeviceCall, is_on_device, queue_for
+from flaunay._errors import UsageError
+from flaunay._triangulation import Triangulation
+
+if TYPE_CHECKING:
+    import pyopencl.array
+
+Indices = npt.NDArray[np.int32]
+Doubles = npt.NDArray[np.float64]
+Points = Union[ArrayLike, "pyopencl.array.Array"]
+
+
+class Changes(NamedTuple):
+    """What a batch of points has changed.
+
+    Attributes
+    ----------
+    first_point : int
+        The number of the first point that was inserted; the others follow it.
+    representatives : ndarray of int32, shape (m,)
+        For each point that was inserted or moved the smallest number of a point in its place.
+    removed : ndarray of int32, shape (k,)
+        The rows whose triangles are gone, each once.
+    made : ndarray of int32, shape (t,)
+        The rows that have new triangles, each once. Some may be in `removed`, too.
+    made_corners : ndarray of int32, shape (t, 3)
+        The corners of these, counter-clockwise.
+    is_anew : bool
+        Whether all points were triangulated anew.
+    seconds : float
+        How long the call took.
+    """
+
+    first_point: int
+    representatives: Indices
+    removed: Indices
+    made: Indices
+    made_corners: Indices
+    is_anew: bool
+    seconds: float
+
+
+class TriangleRows(NamedTuple):
+    """Triangles by their rows, which stay where they are as long as nothing changes them.
+
+    Attributes
+    ----------
+    triangles : ndarray of int32, shape (rows, 3)
+        The corners, counter-clockwise from any of them on; -1 in rows without a triangle.
+    neighbors : ndarray of int32, shape (rows, 3)
+        The row of the triangle opposite to each corner; -1 beyond the hull and in rows without one.
+    """
+
+    triangles: Indices
+    neighbors: Indices
+
+
+class LivingConstraints(NamedTuple):
+    """The edges that segments are made of now.
+
+    Attributes
+    ----------
+    edges : ndarray of int32, shape (e, 2)
+        Two points each, the lexicographically smaller one first.
+    segments : ndarray of int32, shape (e,)
+        For each of these the smallest index of a segment that has it.
+    """
+
+    edges: Indices
+    segments: Indices
+
+
+def as_numbers(given: npt.ArrayLike) -> Indices:
+    """Numbers of points, as the library takes them."""
+    numbers = as_integers(given, "indices")
+    if numbers.ndim != 1:
+        raise UsageError(f"indices must have one dimension, not the shape {numbers.shape}")
+    kept = np.ascontiguousarray(numbers, np.int32)
+    if (kept != numbers).any():
+        raise UsageError(f"indices[{np.flatnonzero(kept != numbers)[0]}] is the number of no point")
+    return kept
+
+
+class DynamicTriangulation:
+    """A triangulation to which batches of points are inserted, removed and moved, each in one call.
+
+    After every call its triangles are those of a call of `triangulate` on all points that it has.
+    `Delaunay` with ``incremental=True`` has the interface of SciPy; this class takes segments and points in
+    device memory, too.
+
+    Points have numbers: those it is made from come first, then those inserted, in their order. A number
+    stays the same as long as the point is there, and is not used again. Of points in one place, the one
+    with the smallest number is in triangles.
+
+    Parameters
+    ----------
+    points : array_like or pyopencl.array.Array, shape (n, 2)
+        As of `triangulate`, or of `triangulate_device`; copied.
+    segments : array_like of int, shape (k, 2), optional
+        As of `triangulate`. Points on one split it, and its vertices cannot be removed or moved. With points
+        in host memory.
+    crossings : {"error", "split"}
+        As of `triangulate`. Points that splitting adds come after the n.
+    device : str, optional
+        As of `triangulate`, for points in host memory.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of `triangulate`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.DynamicTriangulation([[0, 0], [4, 0], [4, 3], [0, 4]])
+    >>> changes = tri.insert([[1, 2], [2, 2]])
+    >>> changes.first_point, tri.triangle_count
+    (4, 6)
+    >>> changes = tri.remove([0, 4])
+    >>> tri
+    <flaunay.DynamicTriangulation: 4 points, 2 triangles>
+    >>> tri.points[:2]
+    array([[nan, nan],
+           [ 4.,  0.]])
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        segments: Optional[npt.ArrayLike] = None,
+        *,
+        crossings: str = "error",
+        device: Optional[str] = None,
+    ) -> None:
+        rule = number_of(CROSSINGS, crossings, "crossings")
+        pairs: Optional[Indices] = None
+        if is_on_device(points):
+            if segments is not None or device is not None:
+                raise UsageError("segments and device are for points in host memory")
+            queue = queue_for(points, None, "points")
+            triangulator = _triangulators.of_queue(queue)
+            given: Any = self._in_device_memory(points)
+        else:
+            given = np.asarray(as_points(points), np.float64)
+            if segments is not None:
+                pairs = as_segments(segments, len(given))
+            triangulator = _triangulators.of_device(device)
+        self._handle = _calls.Dynamic(triangulator, given, pairs, rule)
+
+    @staticmethod
+    def _in_device_memory(points: Any) -> _calls.DevicePoints:
+        """Points as the library takes them, when they are there."""
+        call = DeviceCall(queue_for(points, None, "points"), None)
+        given = call.points(points, None, "points")
+        for event in points.events:
+            event.wait()
+        return given
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.point_count, triangles=self.triangle_count)
+
+    def insert(self, points: Points) -> Changes:
+        """Inserts points.
+
+        Parameters
+        ----------
+        points : array_like or pyopencl.array.Array, shape (m, 2)
+            In device memory only if the first ones were, too.
+
+        Returns
+        -------
+        Changes
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `triangulate`. Nothing is changed then.
+        """
+        if is_on_device(points):
+            return Changes(**self._handle.insert_device(self._in_device_memory(points)))
+        return Changes(**self._handle.insert(np.asarray(as_points(points), np.float64)))
+
+    def remove(self, indices: npt.ArrayLike) -> Changes:
+        """Removes points.
+
+        Parameters
+        ----------
+        indices : array_like of int, shape (m,)
+            The numbers of the points.
+
+        Returns
+        -------
+        Changes
+
+        Raises
+        ------
+        InputError
+            For a number that no point has, one that is there twice, and a vertex of a constraint. Nothing
+            is changed then.
+        """
+        return Changes(**self._handle.remove(as_numbers(indices)))
+
+    def move(self, indices: npt.ArrayLike, points: ArrayLike) -> Changes:
+        """Moves points, all at once.
+
+        Parameters
+        ----------
+        indices : array_like of int, shape (m,)
+            The numbers of the points.
+        points : array_like, shape (m, 2)
+            Their new places.
+
+        Returns
+        -------
+        Changes
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `insert` and `remove`.
+        """
+        numbers, places = as_numbers(indices), np.asarray(as_points(points), np.float64)
+        if len(numbers) != len(places):
+            raise UsageError(f"{len(numbers)} points cannot be moved to {len(places)} places")
+        return Changes(**self._handle.move(numbers, places))
+
+    @property
+    def numbers(self) -> int:
+        """One more than the largest number that a point has had."""
+        return self._handle.count("numbers")
+
+    @property
+    def point_count(self) -> int:
+        """The number of points that there are, with duplicates."""
+        return self._handle.count("point_count")
+
+    @property
+    def triangle_count(self) -> int:
+        return self._handle.count("triangle_count")
+
+    @property
+    def row_count(self) -> int:
+        """The number of rows, with those that have no triangle."""
+        return self._handle.count("row_count")
+
+    @property
+    def points(self) -> Doubles:
+        """A copy of the places of all numbers, shape (numbers, 2): NaN for points that were removed."""
+        return self._handle.coordinates()
+
+    def rows(self) -> TriangleRows:
+        """A copy of the triangles by their rows, which `Changes` mean."""
+        return TriangleRows(*self._handle.rows())
+
+    def triangulation(self) -> Triangulation:
+        """The result of a call of `triangulate` on all points, with their numbers.
+
+        Triangles are in the order of their rows. Representatives of points that were removed are -1.
+        """
+        return Triangulation(**self._handle.arrays())
+
+    def constraints(self) -> LivingConstraints:
+        """The edges that segments are made of now.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        >>> tri = flaunay.DynamicTriangulation(square, segments=[[1, 3]])
+        >>> changes = tri.insert([[0.5, 0.5]])
+        >>> sorted(tri.constraints().edges.tolist())
+        [[3, 4], [4, 1]]
+        """
+        return LivingConstraints(*self._handle.constraints())
