@@ -65,9 +65,11 @@ kernel void find_new(int n, global const ulong* restrict keys, global const int*
 // What is inserted
 
 // Rows that are set aside for a point have no triangle as long as it is not inserted.
-static inline void clear_row(int row, global mesh_row* rows, global ulong* row_keys) {
+static inline void clear_row(int row, global mesh_row* rows, global ulong* row_keys, global uint* claims,
+                             global uint* visits) {
   rows[row].corner[0] = NO_TRIANGLE;
   row_keys[row] = NO_KEY;
+  claims[row] = visits[row] = UNCLAIMED_ROW;
 }
 
 // n constraints, in the order of their ranks, at these positions of corners.
@@ -75,8 +77,8 @@ kernel void start_splits(int n, refinement_rules rules, int first_vertex, int fi
                          global const int* restrict positions, global const int* restrict corners,
                          global const int* restrict ends, global mesh_row* restrict rows,
                          global double2* restrict points, global edge_place* restrict places,
-                         global ulong* restrict row_keys, global insertion* restrict insertions,
-                         global uchar* restrict states) {
+                         global ulong* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
+                         global insertion* restrict insertions, global uchar* restrict states) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
@@ -94,7 +96,7 @@ kernel void start_splits(int n, refinement_rules rules, int first_vertex, int fi
                                              ends, rules.vertices, rules.coarse);
     points[v] = split.point;
     places[v] = split.at;
-    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys);
+    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys, claims, visits);
     insertions[i] = made;
     states[i] = POINT_WAITS;
   }
@@ -106,13 +108,22 @@ kernel void list_places(int n, global const int* restrict positions, global cons
   if (i < n) places_of[order[positions[i]]] = i;
 }
 
-// n proposals, of which the points are inserted; places_of: their places in the order of ranks, behind those of `first`
-// constraints. Of these at most `most` are inserted. Vertices and rows are numbered in the order of the list, which is
+// Spreads numbers up to a mask, which is one less than a power of two.
+static inline uint shuffled(uint x, uint mask) {
+  x = (x * 0x9e3779b1u) & mask;
+  x ^= x >> 7;
+  return (x * 0x85ebca6bu) & mask;
+}
+
+// n proposals, of which the points are inserted; places_of: their places in the order of keys. At most `most` are
+// inserted. Ranks are behind those of `first` constraints, and shuffled: points whose cavities overlap one after the
+// other would wait for each other in long chains. Vertices and rows are numbered in the order of the list, which is
 // that of places in the plane, more or less.
-kernel void start_points(int n, int first, int most, int first_vertex, int first_row, global const int* restrict list,
-                         global const int* restrict places_of, global const proposal* restrict proposals,
-                         global mesh_row* restrict rows, global double2* restrict points,
-                         global edge_place* restrict places, global ulong* restrict row_keys,
+kernel void start_points(int n, int first, uint mask, int most, int first_vertex, int first_row,
+                         global const int* restrict list, global const int* restrict places_of,
+                         global const proposal* restrict proposals, global mesh_row* restrict rows,
+                         global double2* restrict points, global edge_place* restrict places,
+                         global ulong* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
                          global insertion* restrict insertions, global uchar* restrict states) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -122,11 +133,11 @@ kernel void start_points(int n, int first, int most, int first_vertex, int first
     made.vertex = first_vertex + i;
     made.corner = of.start;
     made.known = list[i];
-    made.rank = (uint)(first + at);
+    made.rank = (uint)first + shuffled((uint)at, mask);
     made.from = made.to = -1;
     made.count = of.count;
     made.first_row = first_row + 2 * i;
-    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys);
+    for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys, claims, visits);
     const edge_place nowhere = {0.0, 0.0, -1, -1};
     points[made.vertex] = VECTOR(double2, of.x, of.y);
     places[made.vertex] = nowhere;
@@ -292,12 +303,15 @@ static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, ui
   return found;
 }
 
-// offsets: the scanned sizes. visits: per row the last claim by which gather_stars met it.
+// offsets: the scanned sizes. visits: per row the last claim by which gather_stars met it. made_sizes: of points that
+// are inserted, the sizes.
 kernel void gather_stars(int n, uint first, global const int* restrict list, global const uint* restrict offsets,
                          global const insertion* restrict insertions, REFINED_MESH(),
                          global const uint* restrict claims, global uint* restrict visits,
-                         global star_side* restrict sides, global uchar* restrict states) {
+                         global star_side* restrict sides, global uchar* restrict states,
+                         global uint* restrict made_sizes) {
   const int i = get_global_id(0);
+  if (i < n) made_sizes[i] = 0;
   if (i < n && states[list[i]] == POINT_WAITS) {
     const seen_mesh mesh = {rows, points};
 #if FETCH_AHEAD
@@ -327,20 +341,24 @@ kernel void gather_stars(int n, uint first, global const int* restrict list, glo
         found = gather_tour(&mesh, next_halfedge(other), other, claim, claims, visits, star, found);
       }
     }
-    if (found.holds) states[list[i]] = POINT_INSERTED;
+    if (found.holds) {
+      states[list[i]] = POINT_INSERTED;
+      made_sizes[i] = offsets[i + 1] - offsets[i];
+    }
   }
 }
 
 // A constraint that rounding did not allow to split is tried again when a triangle there is another one.
 static inline int thawed(int edge) { return edge < 0 ? edge : edge & ~EDGE_FROZEN; }
 
-// made: from element first_made on, per side the row of the triangle that was made of it, and its first vertex, or -1.
-// waits: 1 for points that wait for the next step.
+// made: from element first_made on, the rows of the triangles that were made and their first vertices; made_at: the
+// scanned sizes. waits: 1 for points that wait for the next step.
 kernel void insert_stars(int n, int first_made, global const int* restrict list, global const uint* restrict offsets,
-                         global const insertion* restrict insertions, global const uchar* restrict states,
-                         global const star_side* restrict sides, global const edge_place* restrict places,
-                         global mesh_row* restrict rows, global ulong* restrict row_keys,
-                         global uchar* restrict refused, global int2* restrict made, global uchar* restrict waits) {
+                         global const uint* restrict made_at, global const insertion* restrict insertions,
+                         global const uchar* restrict states, global const star_side* restrict sides,
+                         global const edge_place* restrict places, global mesh_row* restrict rows,
+                         global ulong* restrict row_keys, global uchar* restrict refused, global int2* restrict made,
+                         global uchar* restrict waits) {
   const int i = get_global_id(0);
   if (i < n) {
 #if FETCH_AHEAD
@@ -354,9 +372,7 @@ kernel void insert_stars(int n, int first_made, global const int* restrict list,
     const uint first = offsets[i];
     const int count = (int)(offsets[i + 1] - first), state = states[list[i]];
     waits[i] = state == POINT_WAITS;
-    if (state != POINT_INSERTED) {
-      for (int k = 0; k < count; ++k) made[first_made + (int)first + k] = VECTOR(int2, -1, -1);
-    } else {
+    if (state == POINT_INSERTED) {
       const insertion of = insertions[list[i]];
       global const star_side* const star = sides + first;
       // Where a constraint on the border is split, the triangles do not go all the way round.
@@ -388,7 +404,7 @@ kernel void insert_stars(int n, int first_made, global const int* restrict list,
         }
         row_keys[row] = NO_KEY;
         refused[row] = EXCUSED_NOT;
-        made[first_made + (int)first + k] = VECTOR(int2, row, of.vertex);
+        made[first_made + (int)made_at[i] + k] = VECTOR(int2, row, of.vertex);
         before = row;
         row = after;
       }

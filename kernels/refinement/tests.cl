@@ -2,9 +2,8 @@
 //
 // load_rows: the rows of the mesh, from the arrays of the host. test_rows, over those that the last round has made:
 // whether triangles are bad, with their keys, and which of their constraints they encroach. find_unchanged, over the
-// list of bad triangles: which are as they were. make_again: those that are tried once more. append_made and
-// append_unchanged: make the next list. write_centroids: places at which the host asks for areas. report_rows: why
-// triangles are bad in the end.
+// list of bad triangles: which are as they were. make_again: those that are tried once more. append_made: makes the
+// next list. write_centroids: places at which the host asks for areas. report_rows: why triangles are bad in the end.
 
 #include "refinement/arguments.h"
 #include "refinement/quality_of_rows.h"
@@ -102,8 +101,8 @@ kernel void append_made(int n, int first, global const int* restrict positions, 
   const int i = get_global_id(0);
   if (i < n) list[first + i] = made[positions[i]].x;
 }
-kernel void append_unchanged(int n, global const int* restrict positions, global const int* restrict from,
-                             global int* restrict list) {
+kernel void gather_elements(int n, global const int* restrict positions, global const int* restrict from,
+                            global int* restrict list) {
   const int i = get_global_id(0);
   if (i < n) list[i] = from[positions[i]];
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -34,6 +35,7 @@ static_assert(static_cast<int>(Excuse::most_points) == kernel::EXCUSED_LIMIT);
 namespace {
 
 using host::Arena;
+using host::Buffer;
 using kernel::double2;
 using kernel::edge_place;
 using kernel::insertion;
@@ -231,6 +233,7 @@ class Rounds {
     }
     ends_ = runtime_.upload(arena_, ordered_ends());
     reserve(rows_, vertices_);
+    clear_claims();
     reserve_made(rows_);
     made_count_ = rows_;
     runtime_.fill(arrays_.refused, rows_, cl_uchar{kernel::EXCUSED_NOT});
@@ -262,10 +265,14 @@ class Rounds {
     array = larger;
   }
   void reserve_made(std::size_t count) {
-    if (count > made_.size()) grow(made_, made_count_, count + count / 2);
+    if (count > made_.size()) grow(made_, made_count_, with_spare(count));
   }
 
-  // Makes room, with more than is needed now.
+  // With what is likely to be needed later. Natively, memory that is not used costs nothing.
+  std::size_t with_spare(std::size_t count) const {
+    return runtime_.is_native() ? 3 * count : count + count / 2;
+  }
+
   void reserve(std::size_t rows, std::size_t vertices) {
     if (rows > row_room_) {
       if (rows > kMostTriangles) {
@@ -274,20 +281,19 @@ class Rounds {
                                 "or set a limit of points",
                                 kMostTriangles));
       }
-      const std::size_t size = std::min(kMostTriangles, rows + rows / 2);
+      const std::size_t size = std::min(kMostTriangles, with_spare(rows));
       grow(arrays_.rows, rows_, size);
       grow(arrays_.keys, rows_, size);
-      grow(arrays_.claims, 0, size);
-      grow(arrays_.visits, 0, size);
+      grow(arrays_.claims, rows_, size);
+      grow(arrays_.visits, rows_, size);
       grow(arrays_.refused, rows_, size);
       if (rules_.area_kind == kernel::AREAS_BY_ROW) grow(arrays_.areas, rows_, size);
       grow(arrays_.bad, bad_count_, size);
       grow(arrays_.next_bad, 0, size);
       row_room_ = size;
-      clear_claims();
     }
     if (vertices > vertex_room_) {
-      const std::size_t size = vertices + vertices / 2;
+      const std::size_t size = with_spare(vertices);
       grow(arrays_.points, vertices_, size);
       grow(arrays_.places, vertices_, size);
       vertex_room_ = size;
@@ -296,8 +302,8 @@ class Rounds {
 
   // Claims of later steps are smaller than those before, so that nobody has to clear them.
   void clear_claims() {
-    runtime_.fill(arrays_.claims, row_room_, cl_uint{UNCLAIMED_ROW});
-    runtime_.fill(arrays_.visits, row_room_, cl_uint{UNCLAIMED_ROW});
+    runtime_.fill(arrays_.claims, rows_, cl_uint{UNCLAIMED_ROW});
+    runtime_.fill(arrays_.visits, rows_, cl_uint{UNCLAIMED_ROW});
     next_claim_ = UNCLAIMED_ROW;
   }
   // The first of so many claims.
@@ -343,7 +349,7 @@ class Rounds {
     const auto [kept_at, kept_count] = host::pack_positions(runtime_, unchanged, bad_count_, 1);
     const auto [bad_at, bad_count] = host::pack_positions(runtime_, bad, count, 1);
     const auto [encroached_at, encroached_count] = host::pack_positions(runtime_, encroached, count, 1);
-    runtime_.map(kept_count, kernels::append_unchanged{
+    runtime_.map(kept_count, kernels::gather_elements{
                                  .positions = kept_at, .from = arrays_.bad, .list = arrays_.next_bad});
     runtime_.map(bad_count, kernels::append_made{.first = static_cast<int>(kept_count),
                                                  .positions = bad_at,
@@ -428,7 +434,7 @@ class Rounds {
     made.count = count;
     if (count == 0) return made;
     const auto list = arena_.allocate<cl_int>(count);
-    runtime_.map(count, kernels::append_unchanged{.positions = active_at, .from = arrays_.bad, .list = list});
+    runtime_.map(count, kernels::gather_elements{.positions = active_at, .from = arrays_.bad, .list = list});
     made.all = arena_.allocate<proposal>(count);
     made.cavities = arena_.allocate<cl_int>(kernel::LISTED_ROWS * count);
     made.order = arena_.allocate<cl_int>(count);
@@ -550,8 +556,11 @@ class Rounds {
                                                     .points = arrays_.points,
                                                     .places = arrays_.places,
                                                     .row_keys = arrays_.keys,
+                                                    .claims = arrays_.claims,
+                                                    .visits = arrays_.visits,
                                                     .insertions = insertions,
                                                     .states = states});
+    const cl_uint mask = std::bit_ceil(proposals.winners) - 1;
     if (proposals.winners > 0) {
       const auto places_of = arena_.allocate<cl_int>(proposals.count);
       runtime_.map(proposals.winners,
@@ -561,6 +570,7 @@ class Rounds {
           host::pack_positions(runtime_, proposals.outcomes, proposals.count, kernel::PROPOSAL_INSERTS);
       runtime_.map(winners,
                    kernels::start_points{.first = static_cast<int>(split_count),
+                                         .mask = mask,
                                          .most = static_cast<int>(point_count),
                                          .first_vertex = first_vertex + static_cast<int>(split_count),
                                          .first_row = first_row + 2 * static_cast<int>(split_count),
@@ -571,25 +581,29 @@ class Rounds {
                                          .points = arrays_.points,
                                          .places = arrays_.places,
                                          .row_keys = arrays_.keys,
+                                         .claims = arrays_.claims,
+                                         .visits = arrays_.visits,
                                          .insertions = insertions,
                                          .states = states});
     }
     rows_ += 2 * count;
     vertices_ += count;
     tried_ += split_count + point_count;
-    insert_in_steps(insertions, states, count, split_count > 0, proposals.cavities);
+    insert_in_steps(insertions, states, split_count, proposals, split_count + mask + 1);
     // Those that were dropped do not count.
     added_ += host::pack_positions(runtime_, states, count, kernel::POINT_INSERTED).second;
   }
 
-  void insert_in_steps(const Buffer<insertion>& insertions, const Buffer<cl_uchar>& states, std::size_t count,
-                       bool has_splits, const Buffer<cl_int>& cavities) {
+  // Ranks of points are below `ranks`.
+  void insert_in_steps(const Buffer<insertion>& insertions, const Buffer<cl_uchar>& states,
+                       std::size_t split_count, const Proposals& proposals, std::size_t ranks) {
+    const std::size_t count = split_count + proposals.winners;
     std::vector<std::int32_t> all(count);
     std::iota(all.begin(), all.end(), 0);
     auto list = runtime_.upload(arena_, std::move(all));
     auto next = arena_.allocate<cl_int>(count);
-    const Buffer<cl_int> known = cavities.size() > 0 ? cavities : arena_.allocate<cl_int>(1);
-    const std::size_t ranks = count;
+    const Buffer<cl_int> known =
+        proposals.winners > 0 ? proposals.cavities : arena_.allocate<cl_int>(1);  // nobody reads it
     for (std::size_t waiting = count; waiting > 0;) {
       Arena::Scope scope(arena_);
       const auto sizes = arena_.allocate<cl_uint>(waiting + 1);
@@ -607,7 +621,7 @@ class Rounds {
       host::exclusive_scan(runtime_, sizes, waiting, sizes);
       const std::size_t all_sides = runtime_.read_one(sizes, waiting);
       const auto sides = arena_.allocate<star_side>(all_sides);
-      reserve_made(made_count_ + all_sides);
+      const auto made_at = arena_.allocate<cl_uint>(waiting + 1);
       runtime_.map(waiting, kernels::gather_stars{.first = first,
                                                   .list = list,
                                                   .offsets = sizes,
@@ -616,10 +630,15 @@ class Rounds {
                                                   .claims = arrays_.claims,
                                                   .visits = arrays_.visits,
                                                   .sides = sides,
-                                                  .states = states});
+                                                  .states = states,
+                                                  .made_sizes = made_at});
+      host::exclusive_scan(runtime_, made_at, waiting, made_at);
+      const std::size_t made_count = runtime_.read_one(made_at, waiting);
+      reserve_made(made_count_ + made_count);
       runtime_.map(waiting, kernels::insert_stars{.first_made = static_cast<int>(made_count_),
                                                   .list = list,
                                                   .offsets = sizes,
+                                                  .made_at = made_at,
                                                   .insertions = insertions,
                                                   .states = states,
                                                   .sides = sides,
@@ -629,16 +648,16 @@ class Rounds {
                                                   .refused = arrays_.refused,
                                                   .made = made_,
                                                   .waits = waits});
-      if (has_splits) {
+      if (split_count > 0) {
         runtime_.map(waiting, kernels::freeze_constraints{.list = list,
                                                           .insertions = insertions,
                                                           .states = states,
                                                           .points = arrays_.points,
                                                           .rows = arrays_.rows});
       }
-      made_count_ += all_sides;
+      made_count_ += made_count;
       const auto [at, left] = host::pack_positions(runtime_, waits, waiting, 1);
-      runtime_.map(left, kernels::append_unchanged{.positions = at, .from = list, .list = next});
+      runtime_.map(left, kernels::gather_elements{.positions = at, .from = list, .list = next});
       std::swap(list, next);
       if (left == waiting) {
         throw Error(ErrorKind::internal,
