@@ -150,10 +150,13 @@ static inline split_place place_of_split(int a, int b, int edge, GLOBAL const do
                                          double coarse) {
   const int first = ends[2 * edge], last = ends[2 * edge + 1];
   const double length = sqrt(squared_distance(points[first], points[last]));
-  const edge_place of_a = places[a], of_b = places[b];
+  const int is_apex_a = a < vertices && places[a].apex == a, is_apex_b = b < vertices && places[b].apex == b;
+  // That of a vertex of the input is where it is on one of its edges, perhaps another one.
+  const edge_place nowhere = {0.0, 0.0, -1, -1};
+  const edge_place of_a = a < vertices && !is_apex_a ? nowhere : places[a],
+                   of_b = b < vertices && !is_apex_b ? nowhere : places[b];
   const double part_a = a == first ? 0.0 : a == last ? 1.0 : of_a.part;
   const double part_b = b == first ? 0.0 : b == last ? 1.0 : of_b.part;
-  const int is_apex_a = a < vertices && of_a.apex == a, is_apex_b = b < vertices && of_b.apex == b;
   split_place split;
   split.at.edge = edge;
   split.at.apex = -1;

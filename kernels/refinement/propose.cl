@@ -136,7 +136,7 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
       cavity_tour tour;
       start_tour(&tour, made.start, made.start);
       cavities[LISTED_ROWS * i] = row_of(made.start);
-      int sides = 0, listed = 1;
+      int sides = 0, listed = 1, refused = PROPOSAL_OPEN;
       for (int next = next_in_tour(&tour, &mesh, p); next != NO_MORE; next = next_in_tour(&tour, &mesh, p)) {
         if (next < 0) {
           if (listed < LISTED_ROWS) cavities[LISTED_ROWS * i + listed] = ~next;
@@ -145,11 +145,16 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
           ++sides;
           if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, p, rules)) {
             const int reason = why_not_split(&mesh, next, rules);
-            if (reason != EXCUSED_NOT) outcome = min(outcome, reason);
-            ++made.splits;
+            if (reason == EXCUSED_NOT) {
+              ++made.splits;
+            } else {
+              refused = min(refused, reason);
+            }
           }
         }
       }
+      // Constraints that may be split are, whatever others are encroached.
+      if (made.splits == 0) outcome = refused;
       made.count = listed <= LISTED_ROWS ? listed : max(sides - 2, LISTED_ROWS + 1);
     }
     proposals[i] = made;
@@ -211,6 +216,12 @@ static inline void claim_split(const seen_mesh* mesh, int corner, double2 p, uin
       if (next < 0) atomic_min(&claims[~next], claim);
     }
   }
+}
+
+// Whether there is a constraint opposite to a corner that a proposal's point encroaches and that may be split.
+static inline int is_to_split(const seen_mesh* mesh, int corner, double2 p, refinement_rules rules) {
+  return edge_at(mesh, corner) >= 0 && encroaches(mesh, corner, p, rules) &&
+         why_not_split(mesh, corner, rules) == EXCUSED_NOT;
 }
 
 static inline double2 place_of(const proposal* made) { return VECTOR(double2, made->x, made->y); }
@@ -287,7 +298,7 @@ kernel void claim_cavities(int n, refinement_rules rules, uint first, global con
            next = next_in_tour(&tour, &mesh, place_of(&made))) {
         if (next < 0) {
           atomic_min(&claims[~next], claim);
-        } else if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, place_of(&made), rules)) {
+        } else if (made.hit < 0 && is_to_split(&mesh, next, place_of(&made), rules)) {
           claim_split(&mesh, next, place_of_constraint(&mesh, next, places, ends, rules).point, claim, claims);
         }
       }
@@ -384,8 +395,7 @@ kernel void list_wanted(int n, refinement_rules rules, int first, global const p
       start_tour(&tour, made.start, made.start);
       for (int next = next_in_tour(&tour, &mesh, place_of(&made)); next != NO_MORE;
            next = next_in_tour(&tour, &mesh, place_of(&made))) {
-        if (next >= 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, place_of(&made), rules))
-          corners[to++] = next;
+        if (next >= 0 && is_to_split(&mesh, next, place_of(&made), rules)) corners[to++] = next;
       }
     }
   }

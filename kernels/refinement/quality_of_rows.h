@@ -101,6 +101,15 @@ static inline ulong key_of(const ordered_triangle* triangle, int is_large) {
 }
 static inline int is_key_of_large(ulong key) { return (int)(key >> 63 == 0); }
 
+// Whether a corner is nearer to the line opposite to it, of this squared length, than points may be to each other. Such
+// triangles are between constraints that are straight but for rounding, and splits would go on to make more of them.
+static inline int is_flat_above(const seen_mesh* mesh, int corner, double length, refinement_rules rules) {
+  const double2 from = point_at(mesh, next_halfedge(corner));
+  const double2 u = point_at(mesh, previous_halfedge(corner)) - from, v = point_at(mesh, corner) - from;
+  const double cross = u.x * v.y - u.y * v.x;
+  return cross * cross < rules.min_edge * length;
+}
+
 // Of a constraint or a part of one, opposite to a corner: whether it may be split, EXCUSED_NOT, or why not.
 static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_rules rules) {
   const int edge = edge_at(mesh, corner);
@@ -108,7 +117,11 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_ru
   if (edge & EDGE_FROZEN) return EXCUSED_FROZEN;
   const double length =
       squared_distance(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)));
-  return length < 4.0 * rules.min_edge ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
+  if (length < 4.0 * rules.min_edge || is_flat_above(mesh, corner, length, rules)) return EXCUSED_MIN_EDGE;
+  const int beyond = neighbor_at(mesh, corner);
+  return beyond >= 0 && is_flat_above(mesh, corner_facing(mesh, beyond, row_of(corner)), length, rules)
+             ? EXCUSED_MIN_EDGE
+             : EXCUSED_NOT;
 }
 
 // With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.

@@ -139,10 +139,11 @@ struct Shape {
   std::array<std::array<double, 2>, 3> sides;  // opposite to the corners
 };
 
-// About how many points there will be. Only what is far more than there are changes where the work is done.
-double expected_points(const MeshToRefine& mesh) {
-  double expected = 4.0 * static_cast<double>(mesh.triangles.size() / 6);
-  for (std::size_t t = 0; t < mesh.largest_areas.size(); ++t) {
+// About how many points some triangles will have. Only what is far more than there are changes where the work
+// is done.
+double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t end) {
+  double expected = 2.0 * static_cast<double>(end - first);
+  for (std::size_t t = first; t < end && !mesh.largest_areas.empty(); ++t) {
     if (mesh.largest_areas[t] <= 0) continue;
     expected += Shape(mesh.coordinates, &mesh.triangles[3 * t]).doubled_area() / 2 / mesh.largest_areas[t];
   }
@@ -383,20 +384,149 @@ void renumber_regions(Ids& regions) {
   }
 }
 
-RefinedMesh refine_on(Engine& engine, const MeshToRefine& mesh, const Options& options,
-                      const Refinement& wanted, Statistics& statistics) {
+RefinedMesh refine_on(Engine& engine, const MeshToRefine& mesh, bool profile, const Refinement& wanted,
+                      Statistics& statistics) {
   RefinedMesh refined;
   {
-    Frame call(engine, options.profile);
-    const statistics::Phases phases(options);
-    const host::Runtime::BeforeCompiling announce(engine.runtime,
-                                                  [&] { phases.interrupt("compiling kernels"); });
-    phases.progress("refine", 0);
+    Frame call(engine, profile);
     refined = constrained::refine(engine.runtime, mesh, wanted);
     call.end();
   }
   if (&engine != &Engine::of_thread()) add_accounts(engine, statistics);
   return refined;
+}
+
+// The numbers of one set's points, triangles and edges in the mesh of all sets.
+struct SetNumbers {
+  std::size_t first_point = 0, points = 0, first_split = 0, splits = 0, first_triangle = 0, triangles = 0,
+              first_edge = 0, edges = 0;
+
+  // Those of its own: its points, and then those that splitting added.
+  std::int32_t own(std::int32_t v) const {
+    const auto i = static_cast<std::size_t>(v);
+    return static_cast<std::int32_t>(i >= first_split ? i - first_split + points : i - first_point);
+  }
+  // first_added: of the points that were added to this set, in all sets.
+  std::int32_t of_all(std::int32_t v, std::size_t first_added) const {
+    const auto i = static_cast<std::size_t>(v);
+    return static_cast<std::int32_t>(i < points            ? first_point + i
+                                     : i < points + splits ? first_split + i - points
+                                                           : first_added + i - points - splits);
+  }
+};
+
+std::vector<SetNumbers> numbers_of_sets(const MeshToRefine& mesh, const std::vector<std::size_t>& offsets,
+                                        const ConstrainedTriangulation& result) {
+  std::vector<SetNumbers> sets(offsets.size() - 1);
+  std::size_t edges = 0;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    SetNumbers& set = sets[s];
+    set.first_point = offsets[s];
+    set.points = offsets[s + 1] - offsets[s];
+    set.first_split = offsets.back();
+    if (!result.added_offsets.empty()) {
+      set.first_split += result.added_offsets[s];
+      set.splits = result.added_offsets[s + 1] - result.added_offsets[s];
+    }
+    set.first_triangle = result.triangle_offsets[s];
+    set.triangles = result.triangle_offsets[s + 1] - set.first_triangle;
+    // They are numbered in the order of triangles.
+    set.first_edge = edges;
+    for (std::size_t c = 3 * set.first_triangle; c < 3 * (set.first_triangle + set.triangles); ++c)
+      edges = std::max(edges, static_cast<std::size_t>(mesh.edges[c] + 1));
+    set.edges = edges - set.first_edge;
+  }
+  return sets;
+}
+
+template <typename T>
+std::vector<T> part_of(const std::vector<T>& all, std::size_t first, std::size_t count) {
+  if (all.empty()) return {};
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+}
+
+// The mesh of one set, by numbers of its own. coordinates: where those of its points go.
+MeshToRefine mesh_of_set(const MeshToRefine& all, const SetNumbers& set, std::vector<double>& coordinates) {
+  const auto append = [&](std::size_t first, std::size_t count) {
+    coordinates.insert(coordinates.end(), all.coordinates + 2 * first, all.coordinates + 2 * (first + count));
+  };
+  append(set.first_point, set.points);
+  append(set.first_split, set.splits);
+  MeshToRefine mesh;
+  mesh.coordinates = coordinates.data();
+  mesh.points = set.points + set.splits;
+  mesh.triangles = part_of(all.triangles, 3 * set.first_triangle, 3 * set.triangles);
+  mesh.neighbors = part_of(all.neighbors, 3 * set.first_triangle, 3 * set.triangles);
+  mesh.edges = part_of(all.edges, 3 * set.first_triangle, 3 * set.triangles);
+  mesh.edge_ends = part_of(all.edge_ends, 2 * set.first_edge, 2 * set.edges);
+  mesh.kept_edges = part_of(all.kept_edges, set.first_edge, set.edges);
+  mesh.largest_areas = part_of(all.largest_areas, set.first_triangle, set.triangles);
+  for (Ids* vertices : {&mesh.triangles, &mesh.edge_ends}) {
+    for (std::int32_t& v : *vertices) v = set.own(v);
+  }
+  const auto shift = [](Ids& values, std::size_t by) {
+    for (std::int32_t& value : values) value = value < 0 ? value : value - static_cast<std::int32_t>(by);
+  };
+  shift(mesh.neighbors, set.first_triangle);
+  shift(mesh.edges, set.first_edge);
+  return mesh;
+}
+
+// Adds the result of a set to that of all sets, of which there were so many points before.
+void append_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points, RefinedMesh& all) {
+  const std::size_t first_added = points + all.added_edges.size(), first_triangle = all.parents.size();
+  const auto append = [](auto& to, const auto& from, std::size_t by) {
+    for (const auto value : from) to.push_back(value < 0 ? value : value + static_cast<std::int32_t>(by));
+  };
+  for (const std::int32_t v : own.triangles) all.triangles.push_back(set.of_all(v, first_added));
+  append(all.neighbors, own.neighbors, first_triangle);
+  append(all.edges, own.edges, set.first_edge);
+  append(all.parents, own.parents, set.first_triangle);
+  append(all.added_edges, own.added_edges, set.first_edge);
+  append(all.report.bad_triangles, own.report.bad_triangles, first_triangle);
+  all.added.insert(all.added.end(), own.added.begin(), own.added.end());
+  all.added_places.insert(all.added_places.end(), own.added_places.begin(), own.added_places.end());
+  all.report.excuses.insert(all.report.excuses.end(), own.report.excuses.begin(), own.report.excuses.end());
+  all.report.rounds = std::max(all.report.rounds, own.report.rounds);
+  all.report.added_points += own.report.added_points;
+  all.report.split_points += own.report.split_points;
+}
+
+// Refines sets one by one, small ones on threads, so that each is as if it were alone.
+RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine& all,
+                        const std::vector<SetNumbers>& sets, bool profile, const Refinement& wanted,
+                        Statistics& statistics) {
+  std::vector<RefinedMesh> parts(sets.size());
+  std::vector<std::size_t> small;
+  const auto refine_set = [&](std::size_t s, Engine& by) {
+    std::vector<double> coordinates;
+    const MeshToRefine mesh = mesh_of_set(all, sets[s], coordinates);
+    parts[s] = refine_on(by, mesh, profile, wanted, statistics);
+  };
+  const auto most = static_cast<double>(self.host_tuning().host_points);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const std::size_t first = sets[s].first_triangle, end = first + sets[s].triangles;
+    if (first == end) continue;
+    if (!profile && expected_points(all, first, end) <= most) {
+      small.push_back(s);
+    } else {
+      refine_set(s, engine);
+    }
+  }
+  const auto on_thread = [&](std::size_t k) { refine_set(small[k], Engine::of_thread()); };
+  // The caller's function has one thread.
+  if (wanted.areas_at || &engine == &Engine::of_thread()) {
+    for (std::size_t k = 0; k < small.size(); ++k) on_thread(k);
+  } else {
+    self.native().runtime.share(small.size(), on_thread);
+  }
+  RefinedMesh joined;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    append_set(parts[s], sets[s], all.points, joined);
+    parts[s] = {};
+  }
+  return joined;
 }
 
 }  // namespace
@@ -427,11 +557,19 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   mesh.largest_areas = largest_areas(wanted, seeds, areas, result.triangles.size() / 3);
 
   const bool may_stay = !self.is_named() && !options.profile &&
-                        expected_points(mesh) <= static_cast<double>(self.host_tuning().host_points);
+                        expected_points(mesh, 0, mesh.triangles.size() / 3) <=
+                            static_cast<double>(self.host_tuning().host_points);
   Engine& asked = may_stay ? Engine::of_thread() : self.for_host_memory();
   Engine& engine = self.with_doubles(asked);
   add_note(asked, engine, "refinement", "refined", result.statistics);
-  RefinedMesh refined = refine_on(engine, mesh, options, wanted, result.statistics);
+  const statistics::Phases phases(options);
+  const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                [&] { phases.interrupt("compiling kernels"); });
+  phases.progress("refine", 0);
+  RefinedMesh refined = offsets.size() > 2
+                            ? refine_sets(self, engine, mesh, numbers_of_sets(mesh, offsets, result),
+                                          options.profile, wanted, result.statistics)
+                            : refine_on(engine, mesh, options.profile, wanted, result.statistics);
 
   write_mesh(edges, EdgeChains(edges, refined, points), refined, result);
   sort_by_sets(n, refined.parents, result);

@@ -14,10 +14,11 @@ namespace flaunay::call {
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
 /// Refines the result, which must have neighbours: on the engine for host memory or, if little is expected
-/// and no device was named, on the calling thread. All arrays but half-edges, areas and markers are extended.
-/// coordinates: of all points, those that splitting added too; offsets: without those; seeds: for each
-/// triangle that of its region, or -1; empty if there are none; areas: for each triangle the area that it and
-/// its parts may have, 0 for any, or empty. Throws what constrained::refine throws.
+/// and no device was named, on the calling thread. Several sets are refined one by one, so that each is as if
+/// it were alone; small ones on threads of the host. All arrays but half-edges, areas and markers are
+/// extended. coordinates: of all points, those that splitting added too; offsets: without those; seeds: for
+/// each triangle that of its region, or -1; empty if there are none; areas: for each triangle the area that
+/// it and its parts may have, 0 for any, or empty. Throws what constrained::refine throws.
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
             const ConstrainedOptions& options, const std::vector<std::int32_t>& seeds,
             const std::vector<double>& areas, ConstrainedTriangulation& result);

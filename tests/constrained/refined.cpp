@@ -405,7 +405,27 @@ class Check {
       shortest = std::min(shortest, length(rows[c], rows[after(c)]));
     // Where coordinates are coarse, points would be put on others.
     if (shortest <= 4 * min_edge_ || is_coarse(t)) return true;
-    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack);
+    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack) || has_flat_piece();
+  }
+
+  /// Whether a corner is nearer to the piece of an edge opposite to it than points may be to each other.
+  bool is_flat_above(std::size_t c) const {
+    const double *p = corner(c), *a = corner(after(c)), *b = corner(after(after(c)));
+    const double cross = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    return std::fabs(cross) <= min_edge_ * (1 + kLengthSlack) * std::hypot(b[0] - a[0], b[1] - a[1]);
+  }
+  bool is_piece_flat(std::size_t c) const {
+    if (is_flat_above(c)) return true;
+    if (refined_.neighbors[c] < 0) return false;
+    auto opposite = 3 * static_cast<std::size_t>(refined_.neighbors[c]);
+    while (refined_.neighbors[opposite] != static_cast<Index>(c / 3)) ++opposite;
+    return is_flat_above(opposite);
+  }
+  bool has_flat_piece() const {
+    for (std::size_t c = 0; c < refined_.edges.size(); ++c) {
+      if (refined_.edges[c] >= 0 && is_piece_flat(c)) return true;
+    }
+    return false;
   }
 
   double shortest_piece() {
@@ -471,7 +491,8 @@ class Check {
     for (std::size_t c = 0; c < refined_.edges.size(); ++c) {
       if (refined_.edges[c] < 0 || is_kept(refined_.edges[c])) continue;
       const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];
-      if (length(u, v) <= 2 * min_edge_ * (1 + kLengthSlack) || is_piece_coarse(c)) continue;
+      if (length(u, v) <= 2 * min_edge_ * (1 + kLengthSlack) || is_piece_coarse(c) || is_piece_flat(c))
+        continue;
       if (sees_flat(c))
         return wrong("the piece of edge " + std::to_string(refined_.edges[c]) + " from " + place(u) + " to " +
                      place(v) + " is encroached by " + place(refined_.triangles[c]));

@@ -450,6 +450,35 @@ TEST(SmallRefined, SetsAreAsByThemselves) {
   EXPECT_EQ(together.refinement.added_points, added);
 }
 
+// Smallest edges and limits are those of each set.
+TEST(SmallRefined, SetsOfDifferentSizes) {
+  const double gap = 1.0 / 64;
+  const Domain large = one(cloud(20, 1));
+  Domain small;
+  close_ring(small, {0, 0, 1, 0, 1, 1, 0, 1}, 1);
+  close_ring(small, {0.25, 0.5, 0.75, 0.5, 0.75, 0.5 + gap}, 11);
+  Domain domain;
+  domain.add(large);
+  for (double& value : domain.points) value *= 0x1p36;
+  const Domain scaled = domain;
+  for (int k = 0; k < 3; ++k) domain.add(small);
+  ConstrainedOptions options = refined_to(30, 0);
+  options.refinement.most_points = 400;
+  const ConstrainedTriangulation mesh = refine(triangulator(), domain, options);
+  std::size_t rounds = 0;
+  std::vector<Shape> all;
+  for (const Domain& set : {scaled, one(small), one(small), one(small)}) {
+    const ConstrainedTriangulation alone = refine(triangulator(), set, options);
+    rounds = std::max(rounds, alone.refinement.rounds);
+    const std::vector<Shape> own = shapes(set, alone);
+    EXPECT_GT(own.size(), 20U);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(shapes(domain, mesh), all);
+  EXPECT_EQ(mesh.refinement.rounds, rounds);
+}
+
 TEST(SmallRefined, ShuffledInputHasTheSameTriangles) {
   const Domain domain = one(plate(0.1));
   const ConstrainedOptions options = refined_to(30, 0.3);

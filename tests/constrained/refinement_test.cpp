@@ -263,6 +263,21 @@ TEST(SmallRefinement, KeptEdges) {
   EXPECT_EQ(excused_for(expect_right(mesh, angle_of(30)), Excuse::kept), 0);
 }
 
+// A border of rounded points is not straight: between it and the hull are triangles of a height of 2^-54.
+TEST(SmallRefinement, PocketsOfRoundedBorders) {
+  DomainToRefine domain;
+  for (int k = 0; k <= 10; ++k) domain.point(k / 10.0, k / 30.0);
+  domain.point(0.3, 1);
+  domain.chain(0, true);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  EXPECT_GT(mesh.triangles.size() / 3, 10);
+  const RefinedMesh refined = expect_right(mesh, angle_of(30));
+  EXPECT_LT(refined.added_edges.size(), 200);
+  EXPECT_GT(excused_for(refined, Excuse::min_edge), 0);
+  EXPECT_EQ(excused_for(refined, Excuse::min_edge) + excused_for(refined, Excuse::input_angle),
+            refined.report.excuses.size());
+}
+
 // No edge that is left is needed: the triangles are those of the points alone.
 TEST(SmallRefinement, Conforming) {
   DomainToRefine domain = unit_square();

@@ -46,6 +46,7 @@ using kernel::star_side;
 // Up to this angle, bad triangles wait for better neighbours; above the second one, a point must hold all
 // rows around its cavity. Measured: docs/refinement.md.
 constexpr double kWaitsUpTo = 30, kRingAbove = 32;
+constexpr std::size_t kMostWithoutWaiting = 4000;
 // Of the larger side of the bounding box: the smallest edge unless the caller has one.
 constexpr int kMinEdgeExponent = -40;
 // New coordinates have no binary places below that of the largest coordinate by so many.
@@ -184,7 +185,8 @@ class Rounds {
                        : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
                                                       : kernel::AREAS_NONE;
     rules_.rule = wanted_.min_angle > kRingAbove ? kernel::RULE_RING : kernel::RULE_NEIGHBORS;
-    rules_.waits = wanted_.min_angle <= kWaitsUpTo;
+    // Of few triangles, most are near the border, where those that wait cost points.
+    rules_.waits = wanted_.min_angle <= kWaitsUpTo && mesh_.triangles.size() / 3 > kMostWithoutWaiting;
     rules_.vertices = static_cast<int>(mesh_.points);
   }
 
@@ -197,6 +199,21 @@ class Rounds {
       }
     }
     return ends;
+  }
+
+  // The other ends of edges at apexes. Of several apexes that a vertex has, the first one counts, by
+  // coordinates. ends: 2 per edge.
+  void add_far_ends(const std::vector<std::int32_t>& ends, std::vector<edge_place>& places) const {
+    const auto is_apex = [&](std::int32_t v) { return places[v].apex == v; };
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      const std::int32_t v = ends[i], apex = ends[i ^ 1];
+      edge_place& place = places[v];
+      if (is_apex(v) || !is_apex(apex)) continue;
+      if (place.apex >= 0 && !kernel::comes_before(points_[apex], points_[place.apex])) continue;
+      place.apex = apex;
+      place.edge = static_cast<int>(i / 2);
+      place.distance = std::sqrt(kernel::squared_length(points_[v] - points_[apex]));
+    }
   }
 
   // Where input vertices are: those at which two edges meet at less than 60 degrees are apexes.
@@ -221,6 +238,7 @@ class Rounds {
       }
       if (is_apex) places[v].apex = static_cast<int>(v);
     }
+    add_far_ends(ends, places);
     return places;
   }
 

@@ -463,7 +463,7 @@ typedef struct flaunay_refinement {
   int has_min_edge;              ///< other than 0: `min_edge` counts; 0: 2^-40 of the bounding box
   double min_edge;               ///< no two points are put nearer to each other
   int has_most_points;           ///< other than 0: `most_points` counts; 0: there is no limit
-  size_t most_points;            ///< no more points are added
+  size_t most_points;            ///< no more points are added to a set
   size_t most_rounds;            ///< no more rounds are made; 0: 10,000
   /// Other than 0: constraints and the border are split until no angle opposite to them is obtuse; then all
   /// triangles are Delaunay without constraints, too.
@@ -474,7 +474,7 @@ typedef struct flaunay_refinement {
 
 /// How a refinement went.
 typedef struct flaunay_refinement_report {
-  size_t rounds;                 ///< in which points were added
+  size_t rounds;                 ///< in which points were added; of several sets the most
   size_t added_points;           ///< on constraints or not
   size_t split_points;           ///< those of them that are on constraints
   double smallest_angle;         ///< of all triangles, in degrees, rounded

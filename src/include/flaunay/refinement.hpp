@@ -53,7 +53,7 @@ struct Refinement {
   /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
   /// bounding box.
   double min_edge = -1;
-  std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added
+  std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set
   std::size_t most_rounds = 10000;                         ///< no more rounds are made
 
   /// Whether anything is asked for.
@@ -78,7 +78,7 @@ enum class Excuse : std::uint8_t {
 
 /// How a refinement went.
 struct RefinementReport {
-  std::size_t rounds = 0;                   ///< in which points were added
+  std::size_t rounds = 0;                   ///< in which points were added; of several sets the most
   std::size_t added_points = 0;             ///< on constraints or not
   std::size_t split_points = 0;             ///< those of them that are on constraints
   double smallest_angle = 0;                ///< of all triangles, in degrees, rounded; 0 if there are none
