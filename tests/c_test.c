@@ -1171,17 +1171,22 @@ static const flaunay_polygons kPolygons = {.coordinates = kRings,
                                            .polygon_offsets = kPolygonOffsets,
                                            .polygon_count = 2};
 
-// 0 on the left of x = 1, and on the right an area that halves it.
+// 0 on the left of x = 1, and on the right a quarter of the largest one.
 static void areas_at(const double* places, size_t count, double* areas, void* data) {
   ++*(int*)data;
-  for (size_t k = 0; k < count; ++k) areas[k] = places[2 * k] < 1 ? 0 : 0.125;
+  for (size_t k = 0; k < count; ++k) areas[k] = places[2 * k] < 1 ? 0 : 0.0125;
+}
+
+static void no_areas_at(const double* places, size_t count, double* areas, void* data) {
+  (void)places, (void)data;
+  for (size_t k = 0; k < count; ++k) areas[k] = NAN;
 }
 
 static void test_refined(void) {
   int calls = 0;
   const uint8_t kept_segments[] = {1, 0, 0, 0};
   flaunay_refinement refinement = {
-      .min_angle = 25, .max_area = 0.5, .areas_at = areas_at, .areas_data = &calls};
+      .min_angle = 25, .max_area = 0.05, .areas_at = areas_at, .areas_data = &calls, .smoothing_steps = 2};
   flaunay_constraints constraints = {.segments = kDiagonals, .segment_count = 4, .refinement = &refinement};
   const flaunay_options options = {.parts = FLAUNAY_PART_AREAS};
   flaunay_constrained* result = NULL;
@@ -1195,8 +1200,9 @@ static void test_refined(void) {
   CHECK(report->split_points > 0 && report->smallest_angle >= 25 - 1e-9 &&
         report->largest_angle <= 130 + 1e-9);
   CHECK(report->bad_count == 0 && report->bad_triangles == NULL && report->excuses == NULL);
-  for (size_t t = 0; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.5);
-  for (size_t t = mesh->triangle_offsets[1]; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.125);
+  CHECK(report->mean_angle > report->mean_angle_before && report->mean_angle_before > 25);
+  for (size_t t = 0; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.05);
+  for (size_t t = mesh->triangle_offsets[1]; t < mesh->triangle_count; ++t) CHECK(mesh->areas[t] <= 0.0125);
   CHECK(arrays->piece_edges[1] > 1);
   flaunay_constrained_destroy(result);
 
@@ -1246,11 +1252,12 @@ static void test_refined(void) {
   const flaunay_refinement bad[] = {{.min_angle = 35},
                                     {.max_area = -1},
                                     {.min_angle = 20, .kept = 3},
-                                    {.min_angle = 20, .reserved = {0, 1}},
+                                    {.areas_at = no_areas_at},
+                                    {.min_angle = 20, .reserved = {1}},
                                     {.mesh = &wrong}};
-  const char* const texts[] = {"35", "-1", "flaunay_kept_edges", "flaunay_refinement",
-                               "flaunay_given_triangles"};
-  for (int k = 0; k < 5; ++k) {
+  const char* const texts[] = {
+      "35", "-1", "flaunay_kept_edges", "nan", "flaunay_refinement", "flaunay_given_triangles"};
+  for (int k = 0; k < 6; ++k) {
     constraints.refinement = &bad[k];
     CHECK(fails(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
                                                 &result),

@@ -1676,6 +1676,13 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   const Outcome few = refine({"--max-area", "0.01", "--most-points", "5"});
   EXPECT_NE(few.out.find("for --most-points"), std::string::npos) << few.out;
   EXPECT_LE(nlohmann::json::parse(contents(path("s.json")))["refinement"]["added_points"], 5);
+  const Outcome smooth = refine({"--max-area", "0.05", "--smooth", "3", "-o", path("b.ele")});
+  EXPECT_NE(smooth.out.find("before smoothing"), std::string::npos) << smooth.out;
+  const auto smoothed = nlohmann::json::parse(contents(path("s.json")))["refinement"];
+  EXPECT_GE(smoothed["mean_angle"], 30);
+  EXPECT_GE(smoothed["mean_angle_before"], 30);
+  EXPECT_GE(smoothed["smallest_angle_before"], 30 - 1e-9);
+  run_well({"verify", path("b.poly"), path("b.ele"), "--min-angle", "30", "--max-area", "0.05"}, kNoPlatform);
 
   // Points alone are refined inside of their hull.
   const std::string square = write("q.xy", "0 0\n1 0\n1 1\n0 1\n");
@@ -1687,6 +1694,7 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   expect_error(kUsage, {"--min-angle", "34"}, {"triangulate", poly, "--min-angle", "40"});
   expect_error(kUsage, {"--max-area"}, {"triangulate", poly, "--max-area", "-1"});
   expect_error(kUsage, {"--keep-edges", "needs --min-angle"}, {"triangulate", poly, "--keep-edges", "all"});
+  expect_error(kUsage, {"--smooth", "needs --min-angle"}, {"triangulate", poly, "--smooth", "1"});
   expect_error(kUsage, {"--region-areas", ".poly"}, {"triangulate", square, "--region-areas"});
   expect_error(kUsage, {"--crossings", "needs segments"},
                {"triangulate", square, "--max-area", "1", "--crossings", "split"});

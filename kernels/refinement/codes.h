@@ -42,6 +42,12 @@ INTEGER_CONSTANT(AREAS_NONE, 0);
 INTEGER_CONSTANT(AREAS_BY_PARENT, 1);
 INTEGER_CONSTANT(AREAS_BY_ROW, 2);
 
+// What a vertex does: it moves, it never did, or the pass in which its move was cancelled, from 1 on.
+INTEGER_CONSTANT(MOVES, 0x7fffffff);
+INTEGER_CONSTANT(STAYS, 0);
+// The star of a vertex without triangles.
+INTEGER_CONSTANT(NO_STAR, 0x7fffffff);
+
 // The key of a row that is not bad, or whose badness is not known yet.
 #define NO_KEY 0xffffffffffffffffUL
 // A row that was not claimed. Claims are above the last ones of all steps before.

@@ -338,12 +338,10 @@ class _Refinement:
         }
 
     def _write_areas(self, places: int, count: int, areas: int, _: Any) -> None:
-        """Nothing passes on exceptions here, so the first one is kept, and areas are any from then on."""
+        """Nothing passes on exceptions here, so one is kept, and areas that are no numbers end the call."""
         written: _Doubles = np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))
-        written[...] = 0
-        if self._error is not None or self._function is None:
-            return
         try:
+            assert self._function is not None
             there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
             given = there.copy()
             found = np.asarray(self._function(given), _FLOAT64)
@@ -360,11 +358,15 @@ class _Refinement:
             written[...] = found
         except BaseException as error:
             self._error = error
+            written[...] = np.nan
 
-    def check(self) -> None:
-        """Raises what the caller's function has raised."""
+    def __enter__(self) -> _Refinement:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Raises what the caller's function has raised, instead of what the library says about it."""
         if self._error is not None:
-            raise self._error
+            raise self._error from None
 
 
 class _Constrained(Handle):
@@ -511,16 +513,15 @@ def triangulate_constrained(
         arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
         counts[f"{name}_count"] = len(rows)
     addresses = {name: _address_or_none(array) for name, array in arrays.items()}
-    refining = _Refinement(refinement)
-    constraints = _declarations.Constraints(
-        **addresses, **counts, **rules, refinement=refining.pointer
-    )
     result, options = _Constrained(), _options_for("blocks", parts)
-    triangulator.call(
-        library.triangulate_constrained,
-        *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
-    )
-    refining.check()
+    with _Refinement(refinement) as refining:
+        constraints = _declarations.Constraints(
+            **addresses, **counts, **rules, refinement=refining.pointer
+        )
+        triangulator.call(
+            library.triangulate_constrained,
+            *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
+        )
     has_attributes = counts["seed_count"] > 0 or "attributes" in refinement.get("mesh", {})
     asked_by = names_of(labels=bool(rules["labels"]), seeds=has_attributes)
     arrays = result.arrays(
@@ -548,25 +549,24 @@ def triangulate_polygons(
     outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
     inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
     points = _as_doubles(points)
-    refining = _Refinement(refinement)
-    polygons = _declarations.Polygons(
-        coordinates=_address_of(points),
-        ring_offsets=_address_or_none(rings),
-        ring_count=ring_count,
-        polygon_offsets=_address_or_none(outer),
-        polygon_count=count,
-        part_offsets=_address_or_none(inner),
-        part_count=part_count,
-        has_outside=1,
-        has_fill_rule=1,
-        refinement=refining.pointer,
-        **rules,
-    )
     result, options = _Constrained(), _options_for("blocks", parts)
-    triangulator.call(
-        library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
-    )
-    refining.check()
+    with _Refinement(refinement) as refining:
+        polygons = _declarations.Polygons(
+            coordinates=_address_of(points),
+            ring_offsets=_address_or_none(rings),
+            ring_count=ring_count,
+            polygon_offsets=_address_or_none(outer),
+            polygon_count=count,
+            part_offsets=_address_or_none(inner),
+            part_count=part_count,
+            has_outside=1,
+            has_fill_rule=1,
+            refinement=refining.pointer,
+            **rules,
+        )
+        triangulator.call(
+            library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
+        )
     arrays = result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
     return {**arrays, "refinement": result.report() if refinement else None}
 

@@ -33,6 +33,7 @@ class Refining(TypedDict, total=False):
     min_edge: Optional[float]
     most_points: Optional[int]
     most_rounds: Optional[int]
+    smoothing_steps: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +48,10 @@ class RefinementReport:
         How many points were added, and how many of them on segments or on the border.
     smallest_angle, largest_angle : float
         Of all triangles, in degrees; 0 if there are none.
+    mean_angle : float
+        Of the smallest angle of each triangle, if there was smoothing; otherwise 0.
+    smallest_angle_before, mean_angle_before : float
+        What these were before smoothing; 0 without.
     bad_triangles : ndarray of int32, shape (b,)
         The triangles that are worse than asked for, ascending.
     excuses : ndarray of str, shape (b,)
@@ -59,6 +64,9 @@ class RefinementReport:
     split_points: int
     smallest_angle: float
     largest_angle: float
+    mean_angle: float
+    smallest_angle_before: float
+    mean_angle_before: float
     bad_triangles: Indices
     excuses: npt.NDArray[np.str_]
 
@@ -133,7 +141,7 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     for name in ("min_angle", "max_area", "min_edge"):
         if name in wanted:
             wanted[name] = _number(wanted[name], name)
-    for name in ("most_points", "most_rounds"):
+    for name in ("most_points", "most_rounds", "smoothing_steps"):
         if name in wanted:
             wanted[name] = _count(wanted[name], name)
     for name in ("min_edge", "most_points"):

@@ -305,6 +305,7 @@ def refine(
     min_edge: Optional[float] = None,
     most_points: Optional[int] = None,
     most_rounds: Optional[int] = None,
+    smoothing_steps: int = 0,
     **others: Any,
 ) -> ConstrainedTriangulation:
     """Triangulates, and adds points until no triangle has a small angle or is too large.
@@ -343,6 +344,8 @@ def refine(
         No two points are put nearer to each other. Without it, 2^-40 of the extent.
     most_points, most_rounds : int, optional
         No more points are added, and no more rounds made.
+    smoothing_steps : int
+        So often, added points that are not on segments move to where triangles are more regular.
 
     Returns
     -------
@@ -394,6 +397,7 @@ def refine(
         min_edge=min_edge,
         most_points=most_points,
         most_rounds=most_rounds,
+        smoothing_steps=smoothing_steps,
         **others,
     )
     return result

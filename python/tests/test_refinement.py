@@ -72,6 +72,40 @@ def test_many_domains_in_one_call():
         assert (meshes.points[own] >= 10 * k).all() and (meshes.points[own] <= 10 * k + 4).all()
 
 
+def test_a_function_of_places_for_many_domains():
+    points = np.concatenate([np.array(SQUARE) + 10 * k for k in range(3)])
+    segments = np.concatenate([np.array(RING) + 4 * k for k in range(3)])
+    calls = []
+
+    def areas_at(places):
+        calls.append(len(places))
+        return np.where(places[:, 0] < 12, 0.1, 1)
+
+    meshes = flaunay.refine(points, segments, offsets=np.arange(0, 13, 4), areas_at=areas_at)
+    # Once a round of each domain.
+    assert 0 < len(calls) <= 3 * (meshes.refinement.rounds + 2)
+    for k, wanted in enumerate([0.1, None, 1]):
+        own = meshes.areas[meshes.triangle_offsets[k] : meshes.triangle_offsets[k + 1]]
+        assert own.sum() == pytest.approx(16) and (wanted is None or wanted / 4 < own.max() <= wanted)
+    with pytest.raises(ZeroDivisionError):
+        flaunay.refine(points, segments, offsets=[0, 4, 8, 12], areas_at=lambda places: 1 / 0)
+
+
+def test_smoothing():
+    options = {"min_angle": 25, "max_area": 0.03}
+    wheel = np.stack([np.cos(np.arange(50) * np.pi / 25), np.sin(np.arange(50) * np.pi / 25)], axis=1)
+    rim = [[k, (k + 1) % 50] for k in range(50)]
+    plain = flaunay.refine(wheel * 3, rim, **options)
+    mesh = flaunay.refine(wheel * 3, rim, smoothing_steps=5, **options)
+    report = mesh.refinement
+    assert angles(mesh).min(axis=1).mean() == pytest.approx(report.mean_angle)
+    assert angles(plain).min(axis=1).mean() == pytest.approx(report.mean_angle_before)
+    assert angles(plain).min() == pytest.approx(report.smallest_angle_before)
+    assert report.mean_angle > report.mean_angle_before + 2 and plain.refinement.mean_angle == 0
+    assert angles(mesh).min() >= 25 - 1e-9 and mesh.areas.max() <= 0.03
+    assert mesh.areas.sum() == pytest.approx(plain.areas.sum())
+
+
 def test_a_function_of_places():
     calls = []
 
@@ -87,10 +121,20 @@ def test_a_function_of_places():
     assert 0 < len(calls) <= mesh.refinement.rounds + 2
 
     def fails(places):
-        raise KeyError("mine")
+        calls.append(len(places))
+        if len(calls) == 3:
+            raise KeyError("mine")
+        return np.full(len(places), 1e-3)
 
+    # It ends the call at once.
+    calls.clear()
     with pytest.raises(KeyError, match="mine"):
         flaunay.refine(SQUARE, RING, areas_at=fails)
+    assert len(calls) == 3
+    calls.clear()
+    with pytest.raises(KeyError, match="mine"):
+        flaunay.polygons([[SQUARE]], areas_at=fails)
+    assert len(calls) == 3
     with pytest.raises(flaunay.UsageError, match=r"shape \(\d+,\)"):
         flaunay.refine(SQUARE, RING, areas_at=lambda places: places)
     with pytest.raises(flaunay.UsageError, match="has returned nan"):
@@ -171,6 +215,7 @@ def test_regions_kept_edges_and_limits():
         ({"seed_areas": [1]}, "seed_areas"),
         ({"most_points": -3}, "most_points"),
         ({"most_points": 2.5}, "most_points"),
+        ({"smoothing_steps": -1}, "smoothing_steps"),
         ({"areas_at": 3}, "areas_at"),
     ],
 )

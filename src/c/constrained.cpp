@@ -59,6 +59,9 @@ flaunay_refinement_report view_of(const RefinementReport& report) {
   view.largest_angle = report.largest_angle;
   view.bad_count = report.bad_triangles.size();
   view.bad_triangles = elements(report.bad_triangles);
+  view.mean_angle = report.mean_angle;
+  view.smallest_angle_before = report.smallest_angle_before;
+  view.mean_angle_before = report.mean_angle_before;
   view.excuses = reinterpret_cast<const std::uint8_t*>(elements(report.excuses));
   return view;
 }
@@ -93,6 +96,7 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
   if (given.has_min_edge != 0) result.min_edge = given.min_edge;
   if (given.has_most_points != 0) result.most_points = given.most_points;
   if (given.most_rounds != 0) result.most_rounds = given.most_rounds;
+  result.smoothing_steps = given.smoothing_steps;
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "call/frame.hpp"
+#include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "statistics/phases.hpp"
@@ -121,52 +122,25 @@ std::vector<double> largest_areas(const Refinement& wanted, const Ids& seeds,
   return all;
 }
 
-// Corners relative to the first one, for what needs no exactness.
-struct Shape {
-  Shape(const double* coordinates, const std::int32_t* corners) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double* const p = coordinates + 2 * static_cast<std::size_t>(corners[(k + 1) % 3]);
-      const double* const q = coordinates + 2 * static_cast<std::size_t>(corners[(k + 2) % 3]);
-      sides[k] = {q[0] - p[0], q[1] - p[1]};
-    }
-  }
-  double doubled_area() const { return sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]; }
-  // The product of the two sides at a corner.
-  double product(std::size_t corner) const {
-    const auto &p = sides[(corner + 1) % 3], &q = sides[(corner + 2) % 3];
-    return -(p[0] * q[0] + p[1] * q[1]);
-  }
-  std::array<std::array<double, 2>, 3> sides;  // opposite to the corners
-};
-
 // About how many points some triangles will have. Only what is far more than there are changes where the work
 // is done.
 double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t end) {
   double expected = 2.0 * static_cast<double>(end - first);
   for (std::size_t t = first; t < end && !mesh.largest_areas.empty(); ++t) {
     if (mesh.largest_areas[t] <= 0) continue;
-    expected += Shape(mesh.coordinates, &mesh.triangles[3 * t]).doubled_area() / 2 / mesh.largest_areas[t];
+    expected += constrained::Shape(mesh.coordinates, &mesh.triangles[3 * t]).doubled_area() / 2 /
+                mesh.largest_areas[t];
   }
   return expected;
 }
 
-void measure_angles(const std::vector<double>& coordinates, const Ids& triangles, RefinementReport& report) {
-  // The angles' cotangents.
-  double most = -std::numeric_limits<double>::infinity(), least = -most;
-  for (std::size_t t = 0; t < triangles.size(); t += 3) {
-    const Shape shape(coordinates.data(), &triangles[t]);
-    const double scale = 1 / shape.doubled_area();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double cotangent = shape.product(k) * scale;
-      most = std::max(most, cotangent);
-      least = std::min(least, cotangent);
-    }
-  }
-  const auto degrees = [](double cotangent) { return std::atan2(1, cotangent) * 180 / std::acos(-1.0); };
-  if (!triangles.empty()) {
-    report.smallest_angle = degrees(most);
-    report.largest_angle = degrees(least);
-  }
+void measure_angles(const std::vector<double>& coordinates, const Ids& triangles, bool with_mean,
+                    RefinementReport& report) {
+  constrained::Angles angles(with_mean);
+  for (std::size_t t = 0; t < triangles.size(); t += 3) angles.add(coordinates.data(), &triangles[t]);
+  report.smallest_angle = angles.smallest();
+  report.largest_angle = angles.largest();
+  report.mean_angle = angles.mean();
 }
 
 // The points that were added on each edge, from its first end to its second one.
@@ -491,6 +465,7 @@ void append_set(const RefinedMesh& own, const SetNumbers& set, std::size_t point
   all.report.rounds = std::max(all.report.rounds, own.report.rounds);
   all.report.added_points += own.report.added_points;
   all.report.split_points += own.report.split_points;
+  all.before_smoothing.add(own.before_smoothing);
 }
 
 // Refines sets one by one, small ones on threads, so that each is as if it were alone.
@@ -576,7 +551,9 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   renumber_regions(result.regions);
   std::vector<double> all(coordinates, coordinates + 2 * n);
   all.insert(all.end(), result.added_points.begin(), result.added_points.end());
-  measure_angles(all, result.triangles, result.refinement);
+  measure_angles(all, result.triangles, wanted.smoothing_steps > 0, result.refinement);
+  result.refinement.smallest_angle_before = refined.before_smoothing.smallest();
+  result.refinement.mean_angle_before = refined.before_smoothing.mean();
   result.statistics.points += result.refinement.added_points;
   result.statistics.hull_vertices = result.hull.size();
 }

@@ -12,6 +12,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -635,6 +636,36 @@ TEST(SmallRefined, AreasOfOtherTriangles) {
   const auto small = std::count_if(mesh.areas.begin(), mesh.areas.end(), [](double a) { return a <= 0.01; });
   EXPECT_GT(small, 150);
   EXPECT_GT(*std::max_element(mesh.areas.begin(), mesh.areas.end()), 0.5);
+}
+
+TEST(SmallRefined, ErrorsOfFunctionsOfPlacesEndTheCall) {
+  for (const Domain& domain : {one(plate(0)), several()}) {
+    ConstrainedOptions options = refined_to(20, 0.5);
+    for (int last = 1; last <= 3; ++last) {
+      int calls = 0;
+      options.refinement.areas_at = [&](const double*, std::size_t count, double* areas) {
+        if (++calls == last) throw std::domain_error("mine");
+        std::fill(areas, areas + count, 0.01);
+      };
+      EXPECT_THROW(refine(triangulator(), domain, options), std::domain_error);
+      EXPECT_EQ(calls, last);
+    }
+    options.refinement.areas_at = nullptr;
+    expect_everything(domain, refine(triangulator(), domain, options));
+  }
+}
+
+TEST(SmallRefined, SmoothedMeshes) {
+  const Domain domain = several();
+  ConstrainedOptions options = refined_to(25, 0.02);
+  const ConstrainedTriangulation plain = refine(triangulator(), domain, options);
+  options.refinement.smoothing_steps = 3;
+  const ConstrainedTriangulation mesh = refine(triangulator(), domain, options);
+  expect_everything(domain, mesh);
+  expect_quality(domain, mesh, 25, [](std::size_t) { return 0.02; });
+  EXPECT_NEAR(mesh.refinement.smallest_angle_before, plain.refinement.smallest_angle, 1e-12);
+  EXPECT_GT(mesh.refinement.mean_angle, mesh.refinement.mean_angle_before + 1);
+  EXPECT_EQ(plain.refinement.mean_angle, 0);
 }
 
 TEST(SmallRefined, KeptEdgesAreNotSplit) {

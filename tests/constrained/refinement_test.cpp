@@ -14,8 +14,10 @@
 #include <vector>
 
 #include "app/verify/exact.hpp"
+#include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "tests/constrained/domains.hpp"
+#include "tests/constrained/moved.hpp"
 #include "tests/constrained/nasty_domains.hpp"
 #include "tests/constrained/refined.hpp"
 #include "tests/support/runtimes.hpp"
@@ -347,6 +349,52 @@ TEST(SmallRefinement, SmallInputAngles) {
   EXPECT_EQ(excused, refined.report.excuses.size());
 }
 
+// Positions by the sequential twin, and then the canonical triangulation of these.
+TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
+  std::size_t moved = 0, cancelled = 0;
+  for (const double area : {0.0, 1.0}) {
+    DomainToRefine domain = nasty_detail::polygon(is_simulated() ? 8 : 60, 3);
+    if (area == 0) {
+      domain = {};
+      domain.points = make_fixture("uniform", is_simulated() ? 20 : 400, 1);
+    }
+    const MeshToRefine mesh = mesh_to_refine(domain);
+    Refinement wanted = angle_of(area > 0 ? 20 : 30);
+    wanted.most_points = 10000;
+    wanted.max_area = area;
+    const RefinedMesh before = constrained::refine(native_runtime(), mesh, wanted);
+    wanted.smoothing_steps = 1;
+    const RefinedMesh after = expect_right(mesh, wanted);
+    const Moves moves(mesh, before, wanted);
+    moved += moves.proposed();
+    cancelled += moves.cancelled();
+    const Coordinates expected = moves.added();
+    ASSERT_GE(after.added.size(), expected.size());
+    EXPECT_TRUE(same({after.added.begin(), after.added.begin() + std::ssize(expected)}, expected));
+    EXPECT_EQ(after.report.rounds == before.report.rounds, after.added.size() == expected.size());
+  }
+  EXPECT_GT(moved, 20);
+  EXPECT_TRUE(is_simulated() || cancelled > 0);
+}
+
+TEST(SmallRefinement, SmoothedDomains) {
+  const auto& all = nasty_domains();
+  const std::size_t step = all.size() / static_cast<std::size_t>(repeated(static_cast<int>(all.size())));
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    SCOPED_TRACE(all[i].name);
+    const DomainToRefine domain = all[i].make(20, 5);
+    Refinement wanted = angle_of(i % 3 == 0 ? 0 : 25);
+    if (i % 2 == 0) {
+      wanted.areas_at = [](const double* places, std::size_t count, double* areas) {
+        for (std::size_t k = 0; k < count; ++k) areas[k] = 0.01 + places[2 * k] * places[2 * k];
+      };
+    }
+    wanted.smoothing_steps = 3;
+    expect_right(mesh_to_refine(domain), wanted);
+    if (HasFailure()) return;
+  }
+}
+
 TEST(SmallRefinement, Refuses) {
   const DomainToRefine domain = unit_square();
   MeshToRefine mesh = mesh_to_refine(domain);
@@ -439,12 +487,36 @@ TEST(Refinement, NumbersOfPoints) {
   }
 }
 
+// Angles are on average better, none is below the bound, and nearly no points are added.
+TEST(Refinement, SmoothingMakesTrianglesMoreRegular) {
+  const DomainToRefine domain = nasty_detail::polygon(200, 5);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 25;
+  wanted.max_area = 0.2;
+  wanted.smoothing_steps = 5;
+  const RefinedMesh refined = constrained::refine(native_runtime(), mesh, wanted);
+  EXPECT_EQ(what_is_wrong(mesh, refined, wanted), "");
+  Coordinates points(mesh.coordinates, mesh.coordinates + 2 * mesh.points);
+  points.insert(points.end(), refined.added.begin(), refined.added.end());
+  constrained::Angles angles(true);
+  for (std::size_t t = 0; t < refined.triangles.size(); t += 3)
+    angles.add(points.data(), &refined.triangles[t]);
+  EXPECT_GT(angles.mean(), refined.before_smoothing.mean() + 2);
+  wanted.smoothing_steps = 0;
+  const RefinedMesh before = constrained::refine(native_runtime(), mesh, wanted);
+  EXPECT_EQ(before.before_smoothing.mean(), 0);
+  EXPECT_LE(static_cast<double>(refined.report.added_points),
+            1.01 * static_cast<double>(before.report.added_points));
+}
+
 // Threads and groups, with more work than one of them takes.
 TEST(Refinement, SameBytes) {
   const DomainToRefine domain = nasty_detail::polygon(2000, 5);
   const MeshToRefine mesh = mesh_to_refine(domain);
   Refinement wanted;
   wanted.min_angle = 30;
+  wanted.smoothing_steps = 2;
   const RefinedMesh refined = expect_right(mesh, wanted);
   for (const std::size_t threads : {1, 2, 3}) {
     SCOPED_TRACE(threads);

@@ -43,9 +43,10 @@ struct Demands {
   std::string text() const {
     return fmt::format(
         "min_angle {}, max_area {}, areas_at {}, min_edge {}, most_points {}, most_rounds {}, "
-        "conforming {}, kept_salt {}, region_area {}",
+        "conforming {}, smoothing_steps {}, kept_salt {}, region_area {}",
         wanted.min_angle, wanted.max_area, static_cast<bool>(wanted.areas_at), wanted.min_edge,
-        wanted.most_points, wanted.most_rounds, wanted.conforming, kept_salt, region_area);
+        wanted.most_points, wanted.most_rounds, wanted.conforming, wanted.smoothing_steps, kept_salt,
+        region_area);
   }
 };
 
@@ -80,6 +81,7 @@ Demands any_demands(FixtureRandom& random, const DomainToRefine& domain) {
   wanted.most_points = static_cast<std::size_t>(once_in(random, 8) ? random.integer(0, 300) : 3000);
   wanted.most_rounds = once_in(random, 10) ? static_cast<std::size_t>(random.integer(0, 30)) : 2000;
   wanted.conforming = once_in(random, 8);
+  if (once_in(random, 4)) wanted.smoothing_steps = static_cast<std::size_t>(random.integer(1, 4));
   if (once_in(random, 6)) demands.kept_salt = static_cast<std::uint64_t>(random.integer(1, 1 << 30));
   return demands;
 }

@@ -35,7 +35,8 @@ const NamedChoices<KeptEdges> kKeptEdges = {
 // Those that ask for refinement, and those that say how.
 const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas", "--mesh-areas",
                                             "--conforming"};
-const std::vector<std::string> kRefinementLimits = {"--keep-edges", "--min-edge", "--most-points"};
+const std::vector<std::string> kRefinementLimits = {"--keep-edges", "--min-edge", "--most-points",
+                                                    "--smooth"};
 
 const std::vector<std::string> kChoices = {"--crossings", "--outside",  "--fill",
                                            "--hole",      "--separate", "--overlaps"};
@@ -352,6 +353,10 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   command->add_option("--most-points", refinement.most_points, "Add no more points")->type_name("N");
+  command
+      ->add_option("--smooth", refinement.smoothing_steps,
+                   "So often, move added points to where triangles are more regular")
+      ->type_name("N");
   for_each_file([&](const auto& array, std::size_t k) { add_array(command, array, request.arrays[k]); });
   add_path(command, "--points", request.points,
            fmt::format("The points of the map and those that were added, to which indices refer: {}",

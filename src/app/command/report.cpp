@@ -119,7 +119,10 @@ std::array<std::size_t, kExcuses.size()> count_excuses(const RefinementReport& r
 std::string refinement_counts(const std::optional<RefinementReport>& report) {
   if (!report) return "";
   return fmt::format(", angles from {:.2f} to {:.2f} degrees after {}", report->smallest_angle,
-                     report->largest_angle, counted(report->rounds, "round", "rounds"));
+                     report->largest_angle, counted(report->rounds, "round", "rounds")) +
+         (report->mean_angle > 0 ? fmt::format(", smallest ones {:.2f} on average, {:.2f} before smoothing",
+                                               report->mean_angle, report->mean_angle_before)
+                                 : "");
 }
 
 Json refinement_json(const std::optional<RefinementReport>& report) {
@@ -132,6 +135,9 @@ Json refinement_json(const std::optional<RefinementReport>& report) {
           {"split_points", report->split_points},
           {"smallest_angle", report->smallest_angle},
           {"largest_angle", report->largest_angle},
+          {"mean_angle", report->mean_angle},
+          {"smallest_angle_before", report->smallest_angle_before},
+          {"mean_angle_before", report->mean_angle_before},
           {"bad_triangles", bad}};
 }
 

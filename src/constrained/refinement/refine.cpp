@@ -10,7 +10,9 @@
 #include <tuple>
 #include <utility>
 
+#include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
+#include "constrained/refinement/smooth.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "host/launch/vector_operations.hpp"
@@ -47,6 +49,8 @@ using kernel::star_side;
 // rows around its cavity. Measured: docs/refinement.md.
 constexpr double kWaitsUpTo = 30, kRingAbove = 32;
 constexpr std::size_t kMostWithoutWaiting = 4000;
+// Smoothing makes no smaller angles, whatever is asked for.
+constexpr double kSmoothedAngle = 20;
 // Of the larger side of the bounding box: the smallest edge unless the caller has one.
 constexpr int kMinEdgeExponent = -40;
 // New coordinates have no binary places below that of the largest coordinate by so many.
@@ -92,17 +96,27 @@ class Rounds {
 
   RefinedMesh run() {
     upload();
-    std::size_t before_retry;
-    do {
-      before_retry = added_;
-      make_rounds();
-    } while (!is_at_limit() && added_ > before_retry && retry_frozen());
+    mend();
+    if (wanted_.smoothing_steps > 0) measure_before_smoothing();
+    for (std::size_t step = 0; step < wanted_.smoothing_steps && !is_at_limit(); ++step) {
+      smooth_once();
+      mend();
+    }
     if (is_at_limit()) ask_for_areas();
     return result();
   }
 
  private:
   bool is_at_limit() const { return report_.rounds >= wanted_.most_rounds || added_ >= wanted_.most_points; }
+
+  // Makes rounds as long as they help.
+  void mend() {
+    std::size_t before_retry;
+    do {
+      before_retry = added_;
+      make_rounds();
+    } while (!is_at_limit() && added_ > before_retry && retry_frozen());
+  }
 
   void make_rounds() {
     while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
@@ -686,6 +700,36 @@ class Rounds {
   }
 
   // -------------------------------------------------------------------------------------------------------
+  // Smoothing
+
+  void smooth_once() {
+    Arena::Scope scope(arena_);
+    // With angles of 20 degrees no constraint is encroached.
+    kernel::refinement_rules rules = rules_;
+    rules.squared_sine = quality_bounds(std::max(wanted_.min_angle, kSmoothedAngle)).squared_sine;
+    const auto [changed, count] = smooth(runtime_, {.rows = rows_,
+                                                    .vertices = vertices_,
+                                                    .rules = rules,
+                                                    .mesh = refined_mesh(),
+                                                    .triangles = arrays_.rows,
+                                                    .points = arrays_.points,
+                                                    .keys = arrays_.keys,
+                                                    .refused = arrays_.refused});
+    made_count_ = 0;
+    reserve_made(count);
+    runtime_.map(count, kernels::list_changed{.positions = changed, .rows = arrays_.rows, .made = made_});
+    made_count_ = count;
+  }
+
+  void measure_before_smoothing() {
+    const Here<mesh_row> rows(runtime_, arrays_.rows, rows_);
+    const Here<double> coordinates(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
+    for (std::size_t t = 0; t < rows_; ++t) {
+      if (rows[t].corner[0] != kernel::NO_TRIANGLE) before_smoothing_.add(&coordinates[0], rows[t].corner);
+    }
+  }
+
+  // -------------------------------------------------------------------------------------------------------
   // The result
 
   RefinedMesh result() {
@@ -751,6 +795,7 @@ class Rounds {
     }
     report_.added_points = refined.added_edges.size();
     refined.report = std::move(report_);
+    refined.before_smoothing = before_smoothing_;
     return refined;
   }
 
@@ -772,6 +817,7 @@ class Rounds {
   cl_uint next_claim_ = 0;
   bool may_propose_ = false;
   RefinementReport report_;
+  Angles before_smoothing_{true};
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "constrained/refinement/angles.hpp"
 #include "flaunay/constrained.hpp"
 #include "host/runtime.hpp"
 
@@ -37,7 +38,8 @@ struct RefinedMesh {
   std::vector<std::int32_t> neighbors;  ///< as in MeshToRefine
   std::vector<std::int32_t> edges;      ///< as in MeshToRefine: of pieces of an edge, that edge
   std::vector<std::int32_t> parents;    ///< one per triangle: a triangle of MeshToRefine in the same region
-  RefinementReport report;              ///< triangles in it are those of this mesh
+  RefinementReport report;              ///< without angles; triangles in it are those of this mesh
+  Angles before_smoothing{true};        ///< of the triangles that smoothing began with
 };
 
 /// Refines a mesh on a runtime that computes with doubles. The result does not depend on the runtime, nor on

@@ -455,7 +455,8 @@ typedef struct flaunay_refinement {
   /// NULL, or one per seed of flaunay_constraints: the largest area of a triangle in its region, 0 for any.
   const double* seed_areas;
   /// If not NULL, called once a round on the calling thread: gives the areas that triangles may have, 0 or
-  /// infinity for any. places: x and y of the centroids of `count` triangles. It must return normally.
+  /// infinity for any. places: x and y of the centroids of `count` triangles. It must return normally; with a
+  /// negative area or none (NaN), the call ends with an error.
   void (*areas_at)(const double* places, size_t count, double* areas, void* areas_data);
   void* areas_data;              ///< passed to areas_at unchanged
   int kept;                      ///< a flaunay_kept_edges
@@ -469,7 +470,8 @@ typedef struct flaunay_refinement {
   /// triangles are Delaunay without constraints, too.
   int conforming;
   const flaunay_given_triangles* mesh;  ///< NULL, or a mesh that is refined further
-  uintptr_t reserved[2];                ///< 0
+  size_t smoothing_steps;               ///< so often, added points move to where triangles are more regular
+  uintptr_t reserved[1];                ///< 0
 } flaunay_refinement;
 
 /// How a refinement went.
@@ -482,6 +484,9 @@ typedef struct flaunay_refinement_report {
   size_t bad_count;              ///< number of triangles that are worse than asked for
   const int32_t* bad_triangles;  ///< these, ascending; NULL if there are none
   const uint8_t* excuses;        ///< a flaunay_excuse for each of them
+  double mean_angle;             ///< of the smallest angle of each triangle; these are 0 without smoothing
+  double smallest_angle_before;  ///< as smallest_angle, before smoothing
+  double mean_angle_before;      ///< as mean_angle, before smoothing
 } flaunay_refinement_report;
 
 /// Segments that are to be edges, what is to be left out, and what is known of segments, points and regions.

@@ -17,7 +17,7 @@ enum class KeptEdges {
 };
 
 /// Gives the areas that triangles may have: one per place, 0 or infinity for any. places: x and y of the
-/// centroids of `count` triangles. It is called once a round.
+/// centroids of `count` triangles. It is called once a round, for each set; what it throws ends the call.
 using AreasAt = std::function<void(const double* places, std::size_t count, double* areas)>;
 
 /// The triangles of a mesh that is refined further. All points are triangulated anew, with the border of
@@ -55,6 +55,9 @@ struct Refinement {
   double min_edge = -1;
   std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set
   std::size_t most_rounds = 10000;                         ///< no more rounds are made
+  /// So often, added points that are not on constraints move to where triangles are more regular, as far as
+  /// these stay as good as is asked for. It ends at a limit of points or rounds.
+  std::size_t smoothing_steps = 0;
 
   /// Whether anything is asked for.
   bool is_wanted() const {
@@ -78,11 +81,14 @@ enum class Excuse : std::uint8_t {
 
 /// How a refinement went.
 struct RefinementReport {
-  std::size_t rounds = 0;                   ///< in which points were added; of several sets the most
-  std::size_t added_points = 0;             ///< on constraints or not
-  std::size_t split_points = 0;             ///< those of them that are on constraints
-  double smallest_angle = 0;                ///< of all triangles, in degrees, rounded; 0 if there are none
-  double largest_angle = 0;                 ///< of all triangles, in degrees, rounded; 0 if there are none
+  std::size_t rounds = 0;        ///< in which points were added; of several sets the most
+  std::size_t added_points = 0;  ///< on constraints or not
+  std::size_t split_points = 0;  ///< those of them that are on constraints
+  double smallest_angle = 0;     ///< of all triangles, in degrees, rounded; 0 if there are none
+  double largest_angle = 0;      ///< of all triangles, in degrees, rounded; 0 if there are none
+  double mean_angle = 0;  ///< of the smallest angle of each triangle, in degrees, if there was smoothing
+  double smallest_angle_before = 0;         ///< as smallest_angle, before smoothing; 0 without
+  double mean_angle_before = 0;             ///< as mean_angle, before smoothing; 0 without
   std::vector<std::int32_t> bad_triangles;  ///< triangles that are worse than asked for, ascending
   std::vector<Excuse> excuses;              ///< why, for each of them
 };
