@@ -345,14 +345,14 @@ class _Refinement:
             there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
             given = there.copy()
             found = np.asarray(self._function(given), _FLOAT64)
-            if found.shape != (count,):
+            if found.shape not in ((count,), ()):
                 raise UsageError(
                     f"areas_at must return areas of the shape ({count},), not {found.shape}"
                 )
             if not (found >= 0).all():
                 first = int(np.flatnonzero(~(found >= 0))[0])
                 raise UsageError(
-                    f"areas_at has returned {found[first]} at {given[first].tolist()}; "
+                    f"areas_at has returned {found.ravel()[first]} at {given[first].tolist()}; "
                     "areas are positive, or 0 for any"
                 )
             written[...] = found

@@ -324,7 +324,7 @@ def refine(
         For each of the `seeds`, the largest area in its region; 0 for any.
     areas_at : callable, optional
         Takes places, an array of shape (k, 2), and returns the areas that triangles may have there, of shape
-        (k,); 0 for any. It is called once a round.
+        (k,), or one for all; 0 for any. It is called once a round.
     triangles : array_like of int, shape (m, 3), optional
         A mesh of the points that is refined further. They are triangulated anew, with its border as segments
         after the given ones, and without what no triangle covers.

@@ -137,6 +137,10 @@ def test_a_function_of_places():
     assert len(calls) == 3
     with pytest.raises(flaunay.UsageError, match=r"shape \(\d+,\)"):
         flaunay.refine(SQUARE, RING, areas_at=lambda places: places)
+    with pytest.raises(flaunay.UsageError, match=r"has returned -1.0 at \["):
+        flaunay.refine(SQUARE, RING, areas_at=lambda places: -1)
+    same = flaunay.refine(SQUARE, RING, areas_at=lambda places: 0.5)
+    assert np.array_equal(same.triangles, flaunay.refine(SQUARE, RING, max_area=0.5).triangles)
     with pytest.raises(flaunay.UsageError, match="has returned nan"):
         flaunay.refine(SQUARE, RING, areas_at=lambda places: np.full(len(places), np.nan))
     # The triangulator is as it was.
