@@ -373,16 +373,17 @@ def refine(
     >>> len(finer.triangles) > 2 * len(mesh.triangles)
     True
     """
+    places: Any = points
     if isinstance(points, (ConstrainedTriangulation, Delaunay)):
         given = {"segments": segments, "triangles": triangles, **others}
         given["triangle_attributes"] = triangle_attributes
-        own = _given_mesh(points)
-        own |= {name: value for name, value in given.items() if value is not None}
-        points, segments = own.pop("points"), own.pop("segments", None)
-        triangles, triangle_attributes = own.pop("triangles"), own.pop("triangle_attributes", None)
-        others = own
-    result = triangulate(
-        points,
+        others = _given_mesh(points)
+        others |= {name: value for name, value in given.items() if value is not None}
+        places, segments = others.pop("points"), others.pop("segments", None)
+        triangles = others.pop("triangles")
+        triangle_attributes = others.pop("triangle_attributes", None)
+    result: ConstrainedTriangulation = triangulate(
+        places,
         np.empty((0, 2), np.int32) if segments is None else segments,
         triangles=triangles,
         triangle_areas=triangle_areas,
