@@ -34,7 +34,7 @@ def colour(angle):
 
 
 def refined(command, name, angle, folder):
-    """Points, triangles and the edges of segments."""
+    """Points, and sorted by places triangles and the edges of segments."""
     output = folder / "mesh.obj"
     options = ["--min-angle", str(angle)] if angle else []
     drawing = DATA / f"{name}.poly"
@@ -46,8 +46,16 @@ def refined(command, name, angle, folder):
         kind, *numbers = line.split()
         rows[kind].append(numbers)
     points = [(float(x), float(y)) for x, y, _ in rows["v"]]
-    triangles, segments = ([[int(number) - 1 for number in row] for row in rows[kind]] for kind in "fl")
+    triangles, segments = (
+        sorted(rotated([points[int(number) - 1] for number in row]) for row in rows[kind]) for kind in "fl"
+    )
     return points, triangles, segments
+
+
+def rotated(corners):
+    """The same corners, from the first by x and y on."""
+    first = corners.index(min(corners))
+    return corners[first:] + corners[:first]
 
 
 def smallest_angle(corners):
@@ -69,13 +77,12 @@ class View:
         self.scale = min(WIDTH / (max(xs) - self.left), HEIGHT / (self.top - min(ys)))
         self.height = math.ceil(self.scale * (self.top - min(ys)))
 
-    def path(self, lines, points, ending=""):
+    def path(self, lines, ending=""):
         """Lines of points, each relative to the one before."""
         text, pen = "", (0, 0)
         for line in lines:
             letter = "m"
-            for index in line:
-                x, y = points[index]
+            for x, y in line:
                 place = round((x - self.left) * self.scale * UNITS), round((self.top - y) * self.scale * UNITS)
                 step = f"{place[0] - pen[0]} {place[1] - pen[1]}"
                 text += letter + (step if letter or step[0] == "-" else " " + step)
@@ -93,20 +100,13 @@ def panel(view, mesh, angle):
     shades = {}
     worst = 60.0
     for triangle in triangles:
-        smallest = smallest_angle([points[index] for index in triangle])
+        smallest = smallest_angle(triangle)
         worst = min(worst, smallest)
         shades.setdefault(int(smallest // STEP), []).append(triangle)
     yield f'<g transform="scale({1 / UNITS:g})" stroke="{EDGES}" stroke-width="{0.5 * UNITS:g}">'
     for shade, members in sorted(shades.items()):
-        yield f'<path fill="{colour((shade + 0.5) * STEP)}" d="{view.path(members, points, "z")}"/>'
-    chains = []
-    for first, second in segments:
-        if chains and chains[-1][-1] == first:
-            chains[-1].append(second)
-        else:
-            chains.append([first, second])
-    path = view.path(chains, points)
-    yield f'<path fill="none" stroke="{SEGMENTS}" stroke-width="{1.3 * UNITS:g}" d="{path}"/>'
+        yield f'<path fill="{colour((shade + 0.5) * STEP)}" d="{view.path(members, "z")}"/>'
+    yield f'<path fill="none" stroke="{SEGMENTS}" stroke-width="{1.3 * UNITS:g}" d="{view.path(segments)}"/>'
     yield "</g>"
     asked = f"at least {angle}°" if angle else "no bound"
     counts = f"{len(points):,} points, {len(triangles):,} triangles, smallest angle {worst:.1f}°"
