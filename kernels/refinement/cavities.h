@@ -75,7 +75,7 @@ static inline int is_vertex(const seen_mesh* mesh, int row, double2 p) {
   return 0;
 }
 
-#define TOUR_MEMORY 16
+#define TOUR_MEMORY 64
 
 // The side that comes next is opposite to corner k of a row. The tour is over at the corner `end`.
 typedef struct {

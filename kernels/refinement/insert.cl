@@ -8,6 +8,7 @@
 // freeze_constraints: those that could not be split. sort keys of constraints: constraint_keys; find_new: each
 // constraint once.
 
+#include "constrained/meanwhile.h"
 #include "operations/prefetch.h"
 #include "refinement/arguments.h"
 #include "refinement/limits.h"
@@ -90,7 +91,7 @@ kernel void start_splits(int n, refinement_rules rules, int first_vertex, int fi
     made.rank = (uint)i;
     made.from = vertex_at(&mesh, next_halfedge(corner));
     made.to = vertex_at(&mesh, previous_halfedge(corner));
-    made.count = 0;
+    made.count = made.seen = 0;
     made.first_row = first_row + 2 * i;
     const split_place split = place_of_split(made.from, made.to, edge_at(&mesh, corner) & EDGE_NUMBER, points, places,
                                              ends, rules.vertices, rules.coarse);
@@ -119,7 +120,7 @@ static inline uint shuffled(uint x, uint mask) {
 // inserted. Ranks are behind those of `first` constraints, and shuffled: points whose cavities overlap one after the
 // other would wait for each other in long chains. Vertices and rows are numbered in the order of the list, which is
 // that of places in the plane, more or less.
-kernel void start_points(int n, int first, uint mask, int most, int first_vertex, int first_row,
+kernel void start_points(int n, int step, int first, uint mask, int most, int first_vertex, int first_row,
                          global const int* restrict list, global const int* restrict places_of,
                          global const proposal* restrict proposals, global mesh_row* restrict rows,
                          global double2* restrict points, global edge_place* restrict places,
@@ -136,6 +137,7 @@ kernel void start_points(int n, int first, uint mask, int most, int first_vertex
     made.rank = (uint)first + shuffled((uint)at, mask);
     made.from = made.to = -1;
     made.count = of.count;
+    made.seen = step;
     made.first_row = first_row + 2 * i;
     for (int k = 0; k < 2; ++k) clear_row(made.first_row + k, rows, row_keys, claims, visits);
     const edge_place nowhere = {0.0, 0.0, -1, -1};
@@ -186,16 +188,18 @@ static inline int is_in_row(const seen_mesh* mesh, int row, double2 p) {
   return 1;
 }
 
-// Tours a cavity, or one side of it, and claims its rows. Returns the number of its sides.
+// Tours a cavity, or one side of it, claims its rows, and lists them as far as there is room. Returns the number of its
+// sides, and adds to that of rows.
 static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, uint claim,
-                             global volatile uint* claims) {
-  atomic_min(&claims[row_of(end)], claim);
+                             global volatile uint* claims, global int* cavity, int room, int* count) {
+  int sides = 0;
   cavity_tour tour;
   start_tour(&tour, start, end);
-  int sides = 0;
-  for (int next = next_in_tour(&tour, mesh, p); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
+  for (int next = ~row_of(end); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
     if (next < 0) {
       atomic_min(&claims[~next], claim);
+      if (*count < room) cavity[*count] = ~next;
+      ++*count;
     } else {
       ++sides;
     }
@@ -203,9 +207,18 @@ static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 
   return sides;
 }
 
-// n elements of the list. first: the claim of rank 0. sizes: of each point the number of triangles around it.
-kernel void claim_points(int n, int is_first, uint first, global const int* restrict list,
-                         global const int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
+// Whether the rows of a cavity and those beside them are as they were when they were listed.
+static inline int is_as_listed(const seen_mesh* mesh, const insertion* of, global const int* cavity) {
+  for (int k = 0; k < of->count; ++k) {
+    if (mesh->rows[cavity[k]].changed >= of->seen) return 0;
+  }
+  return 1;
+}
+
+// n elements of the list. first: the claim of rank 0. cavities: lists, see propose.cl, which are kept up. sizes: of
+// each point the number of triangles around it.
+kernel void claim_points(int n, int step, int is_first, uint first, int listed, global const int* restrict list,
+                         global int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
                          global insertion* restrict insertions, global uint* restrict sizes,
                          global uchar* restrict states) {
   const int i = get_global_id(0);
@@ -216,7 +229,7 @@ kernel void claim_points(int n, int is_first, uint first, global const int* rest
                     near = insertions[list[min(n - 1, i + ROWS_NEXT)]];
     if (is_first && far.known >= 0) {
       for (int k = 0; k < ROWS_NEXT; ++k) {
-        fetch((global const void*)&claims[max(0, cavities[LISTED_ROWS * far.known + min(k, far.count - 1)])]);
+        fetch((global const void*)&claims[max(0, cavities[listed * far.known + min(k, far.count - 1)])]);
       }
     } else {
       fetch_row(&mesh, row_of(max(0, far.corner)));
@@ -227,22 +240,24 @@ kernel void claim_points(int n, int is_first, uint first, global const int* rest
     insertion of = insertions[list[i]];
     const uint claim = first + of.rank;
     uint size = 0;
+    global int* const cavity = cavities + listed * max(0, of.known);
     if (states[list[i]] != POINT_WAITS) {
       // It was left out from the beginning.
-    } else if (is_first && of.known >= 0 && of.count <= LISTED_ROWS) {
-      for (int k = 0; k < of.count; ++k) atomic_min(&claims[cavities[LISTED_ROWS * of.known + k]], claim);
+    } else if (of.known >= 0 && of.count <= listed && (is_first || is_as_listed(&mesh, &of, cavity))) {
+      for (int k = 0; k < of.count; ++k) atomic_min(&claims[cavity[k]], claim);
       size = (uint)of.count + 2u;
     } else {
       const double2 p = points[of.vertex];
+      of.count = 0;
       if (of.from >= 0) {
         of.corner = find_constraint(&mesh, of.corner, of.from, of.to);
         if (of.corner >= 0 && can_split_at(&mesh, of.corner, p)) {
           const int beyond = neighbor_at(&mesh, of.corner);
-          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims);
+          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims, cavity, 0, &of.count);
           of.count = (int)size - 1;
           if (beyond >= 0) {
             const int other = corner_facing(&mesh, beyond, row_of(of.corner));
-            size += (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims);
+            size += (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims, cavity, 0, &of.count);
             of.count = (int)size - 2;
           }
         }
@@ -250,7 +265,10 @@ kernel void claim_points(int n, int is_first, uint first, global const int* rest
         int row = row_of(of.corner);
         if (!is_in_row(&mesh, row, p)) row = find_in_star(&mesh, row, p);
         of.corner = 3 * row;
-        if (!is_vertex(&mesh, row, p)) size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims);
+        if (!is_vertex(&mesh, row, p))
+          size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims, cavity, listed, &of.count);
+        // Of a long tour, which meets rows twice, there is no list that could be used again.
+        of.seen = of.count == (int)size - 2 ? step : 0;
         of.count = (int)size - 2;
       }
       if (size == 0) states[list[i]] = POINT_DROPPED;
@@ -353,12 +371,12 @@ static inline int thawed(int edge) { return edge < 0 ? edge : edge & ~EDGE_FROZE
 
 // made: from element first_made on, the rows of the triangles that were made and their first vertices; made_at: the
 // scanned sizes. waits: 1 for points that wait for the next step.
-kernel void insert_stars(int n, int first_made, global const int* restrict list, global const uint* restrict offsets,
-                         global const uint* restrict made_at, global const insertion* restrict insertions,
-                         global const uchar* restrict states, global const star_side* restrict sides,
-                         global const edge_place* restrict places, global mesh_row* restrict rows,
-                         global ulong* restrict row_keys, global uchar* restrict refused, global int2* restrict made,
-                         global uchar* restrict waits) {
+kernel void insert_stars(int n, int step, int first_made, global const int* restrict list,
+                         global const uint* restrict offsets, global const uint* restrict made_at,
+                         global const insertion* restrict insertions, global const uchar* restrict states,
+                         global const star_side* restrict sides, global const edge_place* restrict places,
+                         global mesh_row* restrict rows, global ulong* restrict row_keys,
+                         global uchar* restrict refused, global int2* restrict made, global uchar* restrict waits) {
   const int i = get_global_id(0);
   if (i < n) {
 #if FETCH_AHEAD
@@ -398,8 +416,10 @@ kernel void insert_stars(int n, int first_made, global const int* restrict list,
         written->edge[1] = to == of.from || to == of.to ? edge : NO_EDGE_THERE;
         written->edge[2] = side.from == of.from || side.from == of.to ? edge : NO_EDGE_THERE;
         written->parent = side.parent;
+        written->changed = step;
         if (side.outside >= 0) {
           rows[side.outside].neighbor[side.facing] = row;
+          write_shared((global volatile int*)&rows[side.outside].changed, step);
           if (side.edge >= 0) rows[side.outside].edge[side.facing] = thawed(side.edge);
         }
         row_keys[row] = NO_KEY;

@@ -6,8 +6,6 @@
 
 BEGIN_SHARED
 
-// The rows of cavities with at most so many are kept in a list: on average there are four.
-INTEGER_CONSTANT(LISTED_ROWS, 12);
 // A row may have so many constraints.
 INTEGER_CONSTANT(SLOTS_PER_ROW, 3);
 

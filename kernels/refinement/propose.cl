@@ -77,11 +77,11 @@ static inline int walk_to(const seen_mesh* mesh, int corner, double2 p) {
   return 3 * row;
 }
 
-// cavities: of each proposal the rows of its cavity, if they are at most LISTED_ROWS.
-kernel void propose(int n, refinement_rules rules, global const int* restrict list, REFINED_MESH(),
+// cavities: of each proposal the rows of its cavity, if they are at most `listed`; unlisted: how many have more.
+kernel void propose(int n, refinement_rules rules, int listed, global const int* restrict list, REFINED_MESH(),
                     global const ulong* restrict row_keys, global proposal* restrict proposals,
                     global int* restrict cavities, global ulong* restrict keys, global int* restrict payloads,
-                    global uchar* restrict outcomes) {
+                    global uchar* restrict outcomes, global volatile uint* restrict unlisted) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
@@ -135,12 +135,13 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
     if (outcome == PROPOSAL_OPEN) {
       cavity_tour tour;
       start_tour(&tour, made.start, made.start);
-      cavities[LISTED_ROWS * i] = row_of(made.start);
-      int sides = 0, listed = 1, refused = PROPOSAL_OPEN;
+      global int* const cavity = cavities + listed * i;
+      cavity[0] = row_of(made.start);
+      int sides = 0, refused = PROPOSAL_OPEN;
       for (int next = next_in_tour(&tour, &mesh, p); next != NO_MORE; next = next_in_tour(&tour, &mesh, p)) {
         if (next < 0) {
-          if (listed < LISTED_ROWS) cavities[LISTED_ROWS * i + listed] = ~next;
-          ++listed;
+          if (made.count < listed) cavity[made.count] = ~next;
+          ++made.count;
         } else {
           ++sides;
           if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, p, rules)) {
@@ -155,7 +156,11 @@ kernel void propose(int n, refinement_rules rules, global const int* restrict li
       }
       // Constraints that may be split are, whatever others are encroached.
       if (made.splits == 0) outcome = refused;
-      made.count = listed <= LISTED_ROWS ? listed : max(sides - 2, LISTED_ROWS + 1);
+      // Of a long tour, which meets rows twice, there is no list.
+      if (made.count > listed || made.count != sides - 2) {
+        made.count = max(sides - 2, listed + 1);
+        atomic_inc(unlisted);
+      }
     }
     proposals[i] = made;
     outcomes[i] = (uchar)outcome;
@@ -243,9 +248,9 @@ kernel void claim_splits(int n, refinement_rules rules, uint claim, global const
 }
 
 // Whether a proposal meets rows that splits have claimed.
-static inline int is_blocked(const seen_mesh* mesh, const proposal* made, global const int* cavity,
+static inline int is_blocked(const seen_mesh* mesh, const proposal* made, int listed, global const int* cavity,
                              global volatile uint* claims, uint claim) {
-  if (made->count <= LISTED_ROWS) {
+  if (made->count <= listed) {
     for (int k = 0; k < made->count; ++k) {
       if (claims[cavity[k]] <= claim) return 1;
     }
@@ -262,35 +267,35 @@ static inline int is_blocked(const seen_mesh* mesh, const proposal* made, global
 }
 
 // claim: of the constraints that are split in any case.
-kernel void find_blocked(int n, uint claim, global const proposal* restrict proposals,
+kernel void find_blocked(int n, uint claim, int listed, global const proposal* restrict proposals,
                          global const int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
                          global uchar* restrict outcomes) {
   const int i = get_global_id(0);
   if (i < n && outcomes[i] == PROPOSAL_OPEN) {
     const seen_mesh mesh = {rows, points};
     const proposal made = proposals[i];
-    if (is_blocked(&mesh, &made, cavities + LISTED_ROWS * i, claims, claim)) outcomes[i] = PROPOSAL_BLOCKED;
+    if (is_blocked(&mesh, &made, listed, cavities + listed * i, claims, claim)) outcomes[i] = PROPOSAL_BLOCKED;
   }
 }
 
 // first: the claim of the first proposal.
-kernel void claim_cavities(int n, refinement_rules rules, uint first, global const proposal* restrict proposals,
-                           global const int* restrict cavities, global const uint* restrict ranks,
-                           global const uchar* restrict outcomes, REFINED_MESH(),
+kernel void claim_cavities(int n, refinement_rules rules, uint first, int listed,
+                           global const proposal* restrict proposals, global const int* restrict cavities,
+                           global const uint* restrict ranks, global const uchar* restrict outcomes, REFINED_MESH(),
                            global volatile uint* restrict claims) {
   const int i = get_global_id(0);
   if (i < n && outcomes[i] == PROPOSAL_OPEN) {
     const seen_mesh mesh = {rows, points};
 #if FETCH_AHEAD
     const int ahead = min(n - 1, i + ROWS_AHEAD);
-    for (int k = 0; k < ROWS_NEXT; ++k) fetch((global const void*)&claims[max(0, cavities[LISTED_ROWS * ahead + k])]);
+    for (int k = 0; k < ROWS_NEXT; ++k) fetch((global const void*)&claims[max(0, cavities[listed * ahead + k])]);
 #endif
     const proposal made = proposals[i];
     const uint claim = first + ranks[i];
-    if (made.count <= LISTED_ROWS) {
-      for (int k = 0; k < made.count; ++k) atomic_min(&claims[cavities[LISTED_ROWS * i + k]], claim);
+    if (made.count <= listed) {
+      for (int k = 0; k < made.count; ++k) atomic_min(&claims[cavities[listed * i + k]], claim);
     }
-    if (made.count > LISTED_ROWS || made.splits > 0) {
+    if (made.count > listed || made.splits > 0) {
       atomic_min(&claims[row_of(made.start)], claim);
       cavity_tour tour;
       start_tour(&tour, made.start, made.start);

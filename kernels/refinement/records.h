@@ -8,11 +8,11 @@ BEGIN_SHARED
 
 // A triangle. Corners are counter-clockwise; of a triangle that was made by inserting a point, that is the first one.
 // neighbor and edge are opposite to the corners. edge: an edge that must stay, see codes.h. parent: the triangle of the
-// mesh that is refined from which this one comes.
+// mesh that is refined from which this one comes. changed: the step that made it, or one beside it.
 typedef struct {
-  int corner[3], neighbor[3], edge[3], parent;
+  int corner[3], neighbor[3], edge[3], parent, changed;
 } mesh_row;
-ASSERT_SIZE(mesh_row, 40);
+ASSERT_SIZE(mesh_row, 44);
 
 // Where a vertex is on an edge that must stay: the part of its length from its first end, and the nominal distance from
 // the apex, a vertex where edges meet at less than 60 degrees. Without an edge or an apex: -1. A vertex that is an apex
@@ -44,13 +44,14 @@ typedef struct {
 ASSERT_SIZE(proposal, 40);
 
 // A point that is inserted: its vertex; where its cavity begins, and the proposal that knows its rows, or -1; the ends
-// of the constraint that it splits, or -1. rank: the smallest goes first. count: rows in the cavity.
+// of the constraint that it splits, or -1. rank: the smallest goes first. count: rows in the cavity; seen: the step
+// before which they were found.
 typedef struct {
   int vertex, corner, known;
   uint rank;
-  int from, to, count, first_row;
+  int from, to, count, first_row, seen;
 } insertion;
-ASSERT_SIZE(insertion, 32);
+ASSERT_SIZE(insertion, 36);
 
 // A side of a cavity: the vertex at its beginning, what is beyond it and which corner there is opposite, whether it
 // must stay, and the parent of the row inside. Also one of the rows of the new triangles, which has nothing to do with

@@ -21,6 +21,7 @@ kernel void load_rows(int n, global const int* restrict triangles, global const 
       rows[t].edge[k] = edges[3 * t + k];
     }
     rows[t].parent = t;
+    rows[t].changed = 0;
     made[t] = VECTOR(int2, t, triangles[3 * t]);
   }
 }

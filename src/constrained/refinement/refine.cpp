@@ -55,6 +55,10 @@ constexpr double kSmoothedAngle = 20;
 constexpr int kMinEdgeExponent = -40;
 // New coordinates have no binary places below that of the largest coordinate by so many.
 constexpr int kBinaryPlaces = 200;
+// The rows of cavities with at most so many are kept in lists. On average there are four, but in empty
+// polygons many more: lists get longer if more than a part of all cavities does not fit.
+constexpr int kFewestListed = 12, kMostListed = 96;
+constexpr std::size_t kPartUnlisted = 16;
 // Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
 
@@ -434,7 +438,8 @@ class Rounds {
   struct Proposals {
     std::size_t count = 0, winners = 0;
     Buffer<proposal> all{};
-    Buffer<cl_int> cavities{};  // kernel::LISTED_ROWS each
+    int listed = 0;             // the rows of cavities with at most so many are in a list
+    Buffer<cl_int> cavities{};  // that many rows each
     Buffer<cl_int> order{};     // by ranks
     Buffer<cl_uchar> outcomes{};
     Buffer<cl_int> winners_at{};  // places in the order
@@ -468,11 +473,15 @@ class Rounds {
     const auto list = arena_.allocate<cl_int>(count);
     runtime_.map(count, kernels::gather_elements{.positions = active_at, .from = arrays_.bad, .list = list});
     made.all = arena_.allocate<proposal>(count);
-    made.cavities = arena_.allocate<cl_int>(kernel::LISTED_ROWS * count);
+    made.listed = std::min(listed_, std::numeric_limits<int>::max() / static_cast<int>(count));
+    made.cavities = arena_.allocate<cl_int>(static_cast<std::size_t>(made.listed) * count);
     made.order = arena_.allocate<cl_int>(count);
     made.outcomes = arena_.allocate<cl_uchar>(count);
     const auto keys = arena_.allocate<cl_ulong>(count);
+    const auto unlisted = arena_.allocate<cl_uint>(1);
+    runtime_.fill(unlisted, 1, cl_uint{0});
     runtime_.map_in_small_groups(count, kernels::propose{.rules = rules_,
+                                                         .listed = made.listed,
                                                          .list = list,
                                                          .refined_mesh = refined_mesh(),
                                                          .row_keys = arrays_.keys,
@@ -480,7 +489,9 @@ class Rounds {
                                                          .cavities = made.cavities,
                                                          .keys = keys,
                                                          .payloads = made.order,
-                                                         .outcomes = made.outcomes});
+                                                         .outcomes = made.outcomes,
+                                                         .unlisted = unlisted});
+    if (kPartUnlisted * runtime_.read_one(unlisted, 0) > count) listed_ = std::min(2 * listed_, kMostListed);
     host::sort_by_key(runtime_, keys, made.order, count);
     runtime_.map(
         count, kernels::order_equal{
@@ -495,6 +506,7 @@ class Rounds {
                                                                            .refined_mesh = refined_mesh(),
                                                                            .claims = arrays_.claims});
       runtime_.map_in_small_groups(count, kernels::find_blocked{.claim = splits_claim,
+                                                                .listed = made.listed,
                                                                 .proposals = made.all,
                                                                 .cavities = made.cavities,
                                                                 .refined_mesh = refined_mesh(),
@@ -503,6 +515,7 @@ class Rounds {
     }
     runtime_.map_in_small_groups(count, kernels::claim_cavities{.rules = rules_,
                                                                 .first = first,
+                                                                .listed = made.listed,
                                                                 .proposals = made.all,
                                                                 .cavities = made.cavities,
                                                                 .ranks = ranks,
@@ -601,7 +614,8 @@ class Rounds {
       const auto [list, winners] =
           host::pack_positions(runtime_, proposals.outcomes, proposals.count, kernel::PROPOSAL_INSERTS);
       runtime_.map(winners,
-                   kernels::start_points{.first = static_cast<int>(split_count),
+                   kernels::start_points{.step = step_,
+                                         .first = static_cast<int>(split_count),
                                          .mask = mask,
                                          .most = static_cast<int>(point_count),
                                          .first_vertex = first_vertex + static_cast<int>(split_count),
@@ -641,8 +655,10 @@ class Rounds {
       const auto sizes = arena_.allocate<cl_uint>(waiting + 1);
       const auto waits = arena_.allocate<cl_uchar>(waiting);
       const cl_uint first = take_claims(ranks);
-      runtime_.map_in_small_groups(waiting, kernels::claim_points{.is_first = waiting == count,
+      runtime_.map_in_small_groups(waiting, kernels::claim_points{.step = step_,
+                                                                  .is_first = waiting == count,
                                                                   .first = first,
+                                                                  .listed = proposals.listed,
                                                                   .list = list,
                                                                   .cavities = known,
                                                                   .refined_mesh = refined_mesh(),
@@ -667,7 +683,8 @@ class Rounds {
       host::exclusive_scan(runtime_, made_at, waiting, made_at);
       const std::size_t made_count = runtime_.read_one(made_at, waiting);
       reserve_made(made_count_ + made_count);
-      runtime_.map(waiting, kernels::insert_stars{.first_made = static_cast<int>(made_count_),
+      runtime_.map(waiting, kernels::insert_stars{.step = step_,
+                                                  .first_made = static_cast<int>(made_count_),
                                                   .list = list,
                                                   .offsets = sizes,
                                                   .made_at = made_at,
@@ -688,6 +705,7 @@ class Rounds {
                                                           .rows = arrays_.rows});
       }
       made_count_ += made_count;
+      ++step_;
       const auto [at, left] = host::pack_positions(runtime_, waits, waiting, 1);
       runtime_.map(left, kernels::gather_elements{.positions = at, .from = list, .list = next});
       std::swap(list, next);
@@ -815,7 +833,9 @@ class Rounds {
   std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
               added_ = 0, tried_ = 0;
   cl_uint next_claim_ = 0;
+  int step_ = 1;  // of all that insert points, counted from the beginning
   bool may_propose_ = false;
+  int listed_ = kFewestListed;
   RefinementReport report_;
   Angles before_smoothing_{true};
 };
