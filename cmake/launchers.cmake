@@ -235,7 +235,6 @@ if(NATIVE_OUTPUT)
   string(CONCAT HEADERS ${HEADERS} "")
   set(MADE_FROM "// Made from kernels/${FILE} when the library was built; see cmake/launchers.cmake.\n")
   string(CONCAT NATIVE
-    "#include \"launchers/${FILE}.hpp\"\n"
     "#include \"host/native/opencl.hpp\"\n"
     "${HEAD}${HEADERS}\n"
     "namespace flaunay::kernel {\n"
