@@ -59,9 +59,19 @@ FETCHING void fetch_neighbors(const seen_mesh* mesh, int row) {
 #endif
 }
 
-// Never on the circle: see planar.h.
+// Never on the circle: see planar.h. With GHOSTS, rows beyond the hull have a corner at infinity, whose number is less
+// than 0; their circle is the half-plane beyond their edge, with what is inside of the edge.
 static inline int is_in_circle(const seen_mesh* mesh, int row, double2 p) {
   GLOBAL const int* const corners = mesh->rows[row].corner;
+#ifdef GHOSTS
+  const int k = corners[0] < 0 ? 0 : corners[1] < 0 ? 1 : corners[2] < 0 ? 2 : -1;
+  if (k >= 0) {
+    const double2 from = mesh->points[corners[next_corner(k)]], to = mesh->points[corners[corner_before(k)]];
+    const int side = orient_sign(from, to, p, ORIENT_BOUND);
+    if (side != 0) return side > 0;
+    return comes_before(from, p) ? comes_before(p, to) : comes_before(to, p) && comes_before(p, from);
+  }
+#endif
   return circle_canonical(mesh->points[corners[0]], mesh->points[corners[1]], mesh->points[corners[2]], p,
                           CIRCLE_BOUND) > 0;
 }

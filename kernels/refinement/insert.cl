@@ -11,6 +11,7 @@
 #include "constrained/meanwhile.h"
 #include "operations/prefetch.h"
 #include "refinement/arguments.h"
+#include "refinement/claimed_cavities.h"
 #include "refinement/limits.h"
 #include "refinement/quality_of_rows.h"
 #include "refinement/records.h"
@@ -188,25 +189,6 @@ static inline int is_in_row(const seen_mesh* mesh, int row, double2 p) {
   return 1;
 }
 
-// Tours a cavity, or one side of it, claims its rows, and lists them as far as there is room. Returns the number of its
-// sides, and adds to that of rows.
-static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, uint claim,
-                             global volatile uint* claims, global int* cavity, int room, int* count) {
-  int sides = 0;
-  cavity_tour tour;
-  start_tour(&tour, start, end);
-  for (int next = ~row_of(end); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
-    if (next < 0) {
-      atomic_min(&claims[~next], claim);
-      if (*count < room) cavity[*count] = ~next;
-      ++*count;
-    } else {
-      ++sides;
-    }
-  }
-  return sides;
-}
-
 // Whether the rows of a cavity and those beside them are as they were when they were listed.
 static inline int is_as_listed(const seen_mesh* mesh, const insertion* of, global const int* cavity) {
   for (int k = 0; k < of->count; ++k) {
@@ -278,51 +260,7 @@ kernel void claim_points(int n, int step, int is_first, uint first, int listed, 
   }
 }
 
-// What gather_stars has found of a cavity so far.
-typedef struct {
-  int rows, sides, holds;
-} gathered;
-
-// Tours the rows that a point holds, and lists them and the sides.
-static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, uint claim, global const uint* claims,
-                                   global uint* visits, global star_side* sides, gathered found) {
-  int row = row_of(end), k;
-  found.holds = claims[row] == claim;
-  if (!found.holds) return found;
-  visits[row] = claim;
-  sides[found.rows++].row = row;
-  row = row_of(start);
-  k = start - 3 * row;
-  do {
-    global const mesh_row* const at = &mesh->rows[row];
-    const int beyond = at->neighbor[k], edge = at->edge[k];
-    const uint other = beyond < 0 ? UNCLAIMED_ROW : claims[beyond];
-    if (other < claim) {
-      found.holds = 0;
-      return found;
-    }
-    if (other == claim && edge < 0) {
-      if (visits[beyond] != claim) {
-        visits[beyond] = claim;
-        sides[found.rows++].row = beyond;
-      }
-      k = next_corner(number_facing(&mesh->rows[beyond], row));
-      row = beyond;
-    } else {
-      global star_side* const side = &sides[found.sides++];
-      side->from = at->corner[next_corner(k)];
-      side->outside = beyond;
-      side->facing = beyond < 0 ? 0 : number_facing(&mesh->rows[beyond], row);
-      side->edge = edge;
-      side->parent = at->parent;
-      k = next_corner(k);
-    }
-  } while (3 * row + k != end);
-  return found;
-}
-
-// offsets: the scanned sizes. visits: per row the last claim by which gather_stars met it. made_sizes: of points that
-// are inserted, the sizes.
+// offsets: the scanned sizes. visits: per row the last claim by which gather_stars met it.
 kernel void gather_stars(int n, uint first, global const int* restrict list, global const uint* restrict offsets,
                          global const insertion* restrict insertions, REFINED_MESH(),
                          global const uint* restrict claims, global uint* restrict visits,

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "call/areas.hpp"
@@ -16,6 +18,10 @@
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
+#include "refinement/codes.h"
+#include "tuning/tuning.hpp"
+#include "updates/codes.h"
+#include "updates/mesh.hpp"
 #include "updates/points.hpp"
 
 namespace flaunay {
@@ -32,10 +38,6 @@ void check_supported(const Constraints& constraints, const ConstrainedOptions& o
   call::expect(!options.refinement.is_wanted(), "a triangulation that changes cannot be refined");
   call::expect(constraints.segment_markers == nullptr && constraints.point_markers == nullptr,
                "a triangulation that changes has no markers");
-}
-
-Error bad_number(std::size_t at, std::int64_t number, const char* why) {
-  return Error(ErrorKind::input, fmt::format("entry {} of the batch is point {}, which {}", at, number, why));
 }
 
 // Throws unless n further points can be counted.
@@ -55,6 +57,77 @@ void check_finite(const double* coordinates, std::size_t n) {
   }
 }
 
+bool is_triangle(const kernel::mesh_row& row) {
+  return row.corner[0] >= 0 && row.corner[1] >= 0 && row.corner[2] >= 0;
+}
+
+// The hull from its lexicographically smallest vertex on. A ghost has its edge between its other corners.
+Ids hull_of(const std::vector<kernel::mesh_row>& rows, const std::vector<double>& coordinates) {
+  const auto end_of = [](const kernel::mesh_row& row) {
+    return static_cast<std::size_t>(std::find(row.corner, row.corner + 3, kernel::INFINITE_VERTEX) -
+                                    row.corner);
+  };
+  const auto place = [&](std::int32_t v) {
+    const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
+    return std::pair(p[0], p[1]);
+  };
+  std::size_t first = rows.size();
+  const auto from = [&](std::size_t t) { return rows[t].corner[(end_of(rows[t]) + 2) % 3]; };
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    if (rows[t].corner[0] == kernel::NO_TRIANGLE || is_triangle(rows[t])) continue;
+    if (first == rows.size() || place(from(t)) < place(from(first))) first = t;
+  }
+  Ids hull;
+  std::size_t at = first;
+  do {
+    hull.push_back(from(at));
+    at = static_cast<std::size_t>(rows[at].neighbor[(end_of(rows[at]) + 2) % 3]);
+  } while (at != first);
+  return hull;
+}
+
+// The edges of constraints in the rows of a mesh, each once.
+LivingConstraints constraints_in(const std::vector<kernel::mesh_row>& rows,
+                                 const std::vector<double>& coordinates) {
+  LivingConstraints found;
+  const auto place = [&](std::int32_t v) {
+    const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
+    return std::pair(p[0], p[1]);
+  };
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    if (!is_triangle(rows[t])) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto beyond = static_cast<std::size_t>(rows[t].neighbor[k]);
+      if (rows[t].edge[k] < 0 || (beyond < t && is_triangle(rows[beyond]))) continue;
+      std::int32_t a = rows[t].corner[(k + 1) % 3], b = rows[t].corner[(k + 2) % 3];
+      if (place(b) < place(a)) std::swap(a, b);
+      found.edges.insert(found.edges.end(), {a, b});
+      found.segments.push_back(rows[t].edge[k]);
+    }
+  }
+  return found;
+}
+
+// Per corner of a triangulation the segment of the edge opposite, or -1.
+Ids segments_of_corners(const ConstrainedTriangulation& mesh) {
+  const auto key = [](std::int32_t a, std::int32_t b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+  };
+  std::unordered_map<std::uint64_t, std::int32_t> segments(mesh.edge_segments.size());
+  for (std::size_t e = 0; e < mesh.edge_segments.size(); ++e) {
+    segments.emplace(key(mesh.constraint_edges[2 * e], mesh.constraint_edges[2 * e + 1]),
+                     mesh.edge_segments[e]);
+  }
+  Ids of_corners(mesh.triangles.size(), -1);
+  for (std::size_t c = 0; c < of_corners.size(); ++c) {
+    if (mesh.constrained[c] == 0) continue;
+    const std::size_t first = c - c % 3;
+    of_corners[c] =
+        segments.at(key(mesh.triangles[first + (c + 1) % 3], mesh.triangles[first + (c + 2) % 3]));
+  }
+  return of_corners;
+}
+
 }  // namespace
 
 struct DynamicTriangulation::Implementation {
@@ -66,15 +139,24 @@ struct DynamicTriangulation::Implementation {
     return call::take_turn(*owner, work);
   }
 
+  // Where the mesh is.
+  void choose_engine() {
+    engine = &owner->with_doubles(owner->for_host_memory());
+    mesh.emplace(engine->runtime);
+  }
+
   void make(const double* coordinates, std::size_t n) {
+    choose_engine();
     check_count(0, n);
     check_finite(coordinates, n);
+    points.check_range(coordinates, nullptr, n);
     points.append(coordinates, n);
-    triangulate_anew();
+    triangulate_anew({});
   }
 
   void make(const double* coordinates, std::size_t n, const Constraints& constraints,
             const ConstrainedOptions& wanted) {
+    choose_engine();
     check_supported(constraints, wanted);
     check_count(0, n);
     check_finite(coordinates, n);
@@ -84,131 +166,246 @@ struct DynamicTriangulation::Implementation {
                                                                     all, call::request_of(all, false));
     points.append(coordinates, n);
     points.append(made.added_points.data(), made.added_points.size() / 2);
-    constrained.edges = made.constraint_edges;
-    constrained.segments = made.edge_segments;
-    triangulate_anew();
+    is_constrained = true;
+    triangulate_anew({made.constraint_edges, made.edge_segments});
   }
 
-  // Triangulates all living points.
-  void triangulate_anew() {
+  // Triangulates all points, with these edges.
+  void triangulate_anew(const LivingConstraints& edges) {
     const updates::Living living = points.living();
-    const std::size_t n = living.numbers.size();
+    const std::size_t n = points.count();
+    const double* const coordinates = living.coordinates.data();
     Options plain = options;
     plain.neighbors = true;
     plain.halfedges = plain.areas = plain.profile = false;
-    Triangulation made;
-    std::vector<std::uint8_t> has_edge;
-    if (constrained.edges.empty()) {
-      made = call::triangulate(*owner, {living.coordinates.data(), nullptr, n}, {0, n}, plain);
+    ConstrainedTriangulation made;
+    Ids of_corners;
+    if (edges.segments.empty()) {
+      static_cast<Triangulation&>(made) = call::triangulate(
+          *owner, {living.are_all ? points.coordinates().data() : coordinates, nullptr, n}, {0, n}, plain);
     } else {
-      Ids segments(constrained.edges.size());
-      for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = living.places[constrained.edges[i]];
+      Ids segments = edges.edges;
+      if (!living.are_all) {
+        for (std::int32_t& v : segments) v = living.places[v];
+      }
       Constraints constraints;
       constraints.segments = segments.data();
       constraints.segment_count = segments.size() / 2;
       ConstrainedOptions all;
       static_cast<Options&>(all) = plain;
-      ConstrainedTriangulation result = call::constrain_and_leave(
-          *owner, living.coordinates.data(), {0, n}, constraints, all, call::request_of(all, false));
-      for (std::int32_t& v : result.constraint_edges) v = living.numbers[v];
-      for (std::int32_t& edge : result.edge_segments) edge = constrained.segments[edge];
-      constrained.edges = std::move(result.constraint_edges);
-      constrained.segments = std::move(result.edge_segments);
-      made = std::move(result);
+      made = call::constrain_and_leave(*owner, living.are_all ? points.coordinates().data() : coordinates,
+                                       {0, n}, constraints, all, call::request_of(all, false));
+      for (std::int32_t& edge : made.edge_segments) edge = edges.segments[edge];
+      of_corners = segments_of_corners(made);
     }
-    for (std::int32_t& v : made.triangles) v = living.numbers[v];
+    if (!living.are_all) {
+      for (Ids* vertices : {&made.triangles, &made.hull, &made.constraint_edges}) {
+        for (std::int32_t& v : *vertices) v = living.numbers[v];
+      }
+    }
     points.set_representatives(living, made.representatives);
-    triangles = std::move(made.triangles);
-    neighbors = std::move(made.neighbors);
-    hull.resize(made.hull.size());
-    for (std::size_t i = 0; i < hull.size(); ++i) hull[i] = living.numbers[made.hull[i]];
+    on_constraint.assign(points.numbers(), 0);
+    for (const std::int32_t v : made.constraint_edges) on_constraint[v] = 1;
+    flat_hull = made.triangles.empty() ? made.hull : Ids();
+    flat_edges = {};
+    if (made.triangles.empty()) flat_edges = {made.constraint_edges, made.edge_segments};
+    const call::Frame frame(*engine);
+    mesh->load(points.coordinates(), points.shift(), made, of_corners);
   }
 
-  // Ends a batch that leaves these points.
-  void update(Changes& changes) {
-    changes.removed.resize(triangles.size() / 3);
-    std::iota(changes.removed.begin(), changes.removed.end(), 0);
-    triangulate_anew();
-    changes.made.resize(triangles.size() / 3);
+  LivingConstraints edges_now() {
+    if (!is_constrained) return {};
+    if (mesh->triangles() == 0) return flat_edges;
+    const call::Frame frame(*engine);
+    return constraints_in(mesh->read_rows(), points.coordinates());
+  }
+
+  // What a batch is to do with the mesh. Points leave their old places before others come.
+  struct Batch {
+    Ids removed, moved, inserted;
+    bool is_large = false;
+  };
+
+  // Changes the mesh, of points that are where they are to be. Returns whether it could.
+  bool change(Batch batch, Changes& changes) {
+    if (!mesh->remove(batch.removed)) return false;
+    const std::size_t most = share(tuning_of(engine->runtime).removed_percent, mesh->triangles() / 2);
+    std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), most);
+    if (!out) return false;
+    batch.inserted.insert(batch.inserted.end(), out->begin(), out->end());
+    Ids split;
+    auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), split);
+    // Points with smaller numbers take the places of others.
+    Ids leaving, coming;
+    for (const auto& [v, other] : found) {
+      const std::int32_t representative = points.representative(other);
+      if (v > representative) {
+        points.join(v, representative);
+      } else {
+        leaving.push_back(representative);
+        coming.push_back(v);
+        points.join(representative, v);
+      }
+    }
+    if (!leaving.empty()) {
+      if (is_constrained || !mesh->remove(leaving)) return false;
+      mesh->insert(coming, points.coordinates(), split);
+    }
+    if (is_constrained) {
+      on_constraint.resize(points.numbers(), 0);
+      for (const std::int32_t v : split) on_constraint[v] = 1;
+    }
+    mesh->end_batch(changes);
+    mesh->update_hints(points.coordinates(), [&](std::size_t n) { return points.sample(n); });
+    return true;
+  }
+
+  static std::size_t share(std::size_t percent, std::size_t n) { return n * percent / 100; }
+
+  void update(Batch batch, Changes& changes) {
+    bool is_done = false;
+    {
+      const call::Frame frame(*engine);
+      mesh->begin_batch();
+      if (!mesh->must_be_loaded() && mesh->shift() == points.shift() && !batch.is_large) {
+        is_done = change(std::move(batch), changes);
+      }
+      if (!is_done) changes.removed = mesh->old_triangles();
+    }
+    if (is_done) return;
+    triangulate_anew(edges_now());
+    changes.made.resize(mesh->triangles());
     std::iota(changes.made.begin(), changes.made.end(), 0);
-    changes.made_corners = triangles;
+    const call::Frame frame(*engine);
+    for (const kernel::mesh_row& row : mesh->read_rows()) {
+      if (is_triangle(row)) {
+        changes.made_corners.insert(changes.made_corners.end(), row.corner, row.corner + 3);
+      }
+    }
     changes.is_anew = true;
+  }
+
+  // A batch of m points.
+  template <typename Prepare>
+  Changes run(std::size_t m, const Prepare& prepare) {
+    const double begin = host::now();
+    Changes changes;
+    changes.first_point = points.numbers();
+    if (m == 0) return changes;
+    update(prepare(), changes);
+    changes.seconds = host::now() - begin;
+    return changes;
+  }
+
+  // Takes a point from its place, for good or for another place.
+  void leave(std::int32_t v, Batch& batch) {
+    const bool is_vertex = points.representative(v) == v;
+    const std::int32_t next = points.leave(v);
+    if (!is_vertex) return;
+    const auto at = std::find(batch.inserted.begin(), batch.inserted.end(), v);
+    if (at != batch.inserted.end()) {
+      batch.inserted.erase(at);
+    } else {
+      batch.removed.push_back(v);
+    }
+    if (next >= 0) batch.inserted.push_back(next);
   }
 
   Changes insert(const double* coordinates, std::size_t m) {
     check_count(points.numbers(), m);
     check_finite(coordinates, m);
-    const double begin = host::now();
-    Changes changes;
-    changes.first_point = points.numbers();
-    if (m == 0) return changes;
-    points.check_range(coordinates, nullptr, m);
-    points.append(coordinates, m);
-    update(changes);
+    Changes changes = run(m, [&] {
+      points.check_range(coordinates, nullptr, m);
+      Batch batch;
+      batch.is_large = m > share(tuning_of(engine->runtime).inserted_percent, points.count());
+      const std::size_t first = points.numbers();
+      points.append(coordinates, m);
+      batch.inserted.resize(m);
+      std::iota(batch.inserted.begin(), batch.inserted.end(), static_cast<std::int32_t>(first));
+      return batch;
+    });
+    changes.representatives.reserve(m);
     for (std::size_t i = 0; i < m; ++i) {
-      changes.representatives.push_back(points.representative(changes.first_point + i));
+      changes.representatives.push_back(
+          points.representative(static_cast<std::int32_t>(changes.first_point + i)));
     }
-    changes.seconds = host::now() - begin;
     return changes;
   }
 
   Changes remove(const std::int32_t* numbers, std::size_t m) {
     check_numbers(numbers, m, "removed");
-    const double begin = host::now();
-    Changes changes;
-    changes.first_point = points.numbers();
-    if (m == 0) return changes;
-    for (std::size_t i = 0; i < m; ++i) points.remove(numbers[i]);
-    update(changes);
-    changes.seconds = host::now() - begin;
-    return changes;
+    return run(m, [&] {
+      Batch batch;
+      batch.is_large = m > share(tuning_of(engine->runtime).removed_percent, points.count());
+      for (std::size_t i = 0; i < m; ++i) {
+        leave(numbers[i], batch);
+        points.remove(numbers[i]);
+      }
+      return batch;
+    });
   }
 
   Changes move(const std::int32_t* numbers, const double* coordinates, std::size_t m) {
     check_numbers(numbers, m, "moved");
     check_finite(coordinates, m);
-    const double begin = host::now();
-    Changes changes;
-    changes.first_point = points.numbers();
-    if (m == 0) return changes;
-    points.check_range(coordinates, numbers, m);
-    for (std::size_t i = 0; i < m; ++i) points.move(numbers[i], coordinates + 2 * i);
-    update(changes);
-    for (std::size_t i = 0; i < m; ++i) {
-      changes.representatives.push_back(points.representative(numbers[i]));
-    }
-    changes.seconds = host::now() - begin;
+    Changes changes = run(m, [&] {
+      points.check_range(coordinates, numbers, m);
+      Batch batch;
+      Ids coming;
+      for (std::size_t i = 0; i < m; ++i) {
+        const std::int32_t v = numbers[i];
+        if (points.is_alone(v) &&
+            std::find(batch.inserted.begin(), batch.inserted.end(), v) == batch.inserted.end()) {
+          batch.moved.push_back(v);
+        } else {
+          leave(v, batch);
+          coming.push_back(v);
+        }
+        points.move(v, coordinates + 2 * i);
+      }
+      batch.inserted.insert(batch.inserted.end(), coming.begin(), coming.end());
+      return batch;
+    });
+    changes.representatives.reserve(m);
+    for (std::size_t i = 0; i < m; ++i) changes.representatives.push_back(points.representative(numbers[i]));
     return changes;
   }
 
   // Throws unless these are living points, each once, that may leave their places.
   void check_numbers(const std::int32_t* numbers, std::size_t m, const char* what) {
     call::expect(m == 0 || numbers != nullptr, "points, but no numbers: the pointer is null");
-    const auto throw_bad = [&](std::size_t i) {
-      const std::int32_t v = numbers[i];
-      const bool is_known = v >= 0 && static_cast<std::size_t>(v) < points.numbers();
-      throw bad_number(i, v,
-                       !is_known            ? "does not exist"
-                       : points.is_alive(v) ? "is there twice"
-                                            : "was removed before");
-    };
     const std::size_t bad = points.mark(numbers, m);
-    if (bad < m) throw_bad(bad);
-    for (std::size_t i = 0; i < constrained.edges.size(); ++i) {
-      const std::int32_t v = constrained.edges[i];
-      if (!points.is_marked(v)) continue;
-      throw Error(ErrorKind::input,
-                  fmt::format("point {} cannot be {}: it is on segment {} ({} to {})", v, what,
-                              constrained.segments[i / 2], constrained.edges[i & ~std::size_t{1}],
-                              constrained.edges[i | 1]));
+    if (bad < m) {
+      const std::int32_t v = numbers[bad];
+      const bool is_known = v >= 0 && static_cast<std::size_t>(v) < points.numbers();
+      throw Error(ErrorKind::input, fmt::format("entry {} of the batch is point {}, which {}", bad, v,
+                                                !is_known            ? "does not exist"
+                                                : points.is_alive(v) ? "is there twice"
+                                                                     : "was removed before"));
+    }
+    if (!is_constrained) return;
+    for (std::size_t i = 0; i < m; ++i) {
+      const std::int32_t v = numbers[i];
+      if (on_constraint[v] == 0) continue;
+      const LivingConstraints edges = edges_now();
+      const auto at = static_cast<std::size_t>(std::find(edges.edges.begin(), edges.edges.end(), v) -
+                                               edges.edges.begin());
+      throw Error(ErrorKind::input, fmt::format("point {} cannot be {}: it is on segment {} ({} to {})", v,
+                                                what, edges.segments[at / 2],
+                                                edges.edges[at & ~std::size_t{1}], edges.edges[at | 1]));
     }
   }
 
   std::shared_ptr<call::Implementation> owner;
   Options options;
+  call::Engine* engine = nullptr;
   updates::Points points;
-  LivingConstraints constrained;
-  Ids triangles, neighbors, hull;
+  std::optional<updates::Mesh> mesh;
+  bool is_constrained = false;
+  std::vector<std::uint8_t> on_constraint;  // per number, if there are constraints
+  // If all points are on one line: as in Triangulation::hull, and the edges of constraints.
+  Ids flat_hull;
+  LivingConstraints flat_edges;
 };
 
 DynamicTriangulation::DynamicTriangulation(Triangulator& triangulator, const double* coordinates,
@@ -259,9 +456,9 @@ Changes DynamicTriangulation::move(const std::int32_t* points, const double* coo
 std::size_t DynamicTriangulation::numbers() const noexcept { return implementation_->points.numbers(); }
 std::size_t DynamicTriangulation::point_count() const noexcept { return implementation_->points.count(); }
 std::size_t DynamicTriangulation::triangle_count() const noexcept {
-  return implementation_->triangles.size() / 3;
+  return implementation_->mesh->triangles();
 }
-std::size_t DynamicTriangulation::row_count() const noexcept { return implementation_->triangles.size() / 3; }
+std::size_t DynamicTriangulation::row_count() const noexcept { return implementation_->mesh->rows(); }
 bool DynamicTriangulation::has_point(std::size_t number) const noexcept {
   return number < numbers() && implementation_->points.is_alive(static_cast<std::int32_t>(number));
 }
@@ -270,21 +467,54 @@ std::vector<double> DynamicTriangulation::coordinates() const {
   return implementation_->points.coordinates();
 }
 
-TriangleRows DynamicTriangulation::rows() { return {implementation_->triangles, implementation_->neighbors}; }
+TriangleRows DynamicTriangulation::rows() {
+  Implementation& self = *implementation_;
+  return self.take_turn([&] {
+    TriangleRows result;
+    if (self.mesh->rows() == 0) return result;
+    const call::Frame frame(*self.engine);
+    const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
+    result.triangles.assign(3 * rows.size(), -1);
+    result.neighbors.assign(3 * rows.size(), -1);
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      if (!is_triangle(rows[t])) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t beyond = rows[t].neighbor[k];
+        result.triangles[3 * t + k] = rows[t].corner[k];
+        if (is_triangle(rows[static_cast<std::size_t>(beyond)])) result.neighbors[3 * t + k] = beyond;
+      }
+    }
+    return result;
+  });
+}
 
 Triangulation DynamicTriangulation::triangulation() {
   Implementation& self = *implementation_;
   return self.take_turn([&] {
     Triangulation result;
-    result.triangles = self.triangles;
-    result.neighbors = self.neighbors;
-    result.hull = self.hull;
-    for (std::size_t t = 0; t < result.triangles.size(); t += 3) {
-      const auto row = result.triangles.begin() + static_cast<std::ptrdiff_t>(t);
-      const std::ptrdiff_t smallest = std::min_element(row, row + 3) - row;
-      std::rotate(row, row + smallest, row + 3);
-      const auto own = result.neighbors.begin() + static_cast<std::ptrdiff_t>(t);
-      std::rotate(own, own + smallest, own + 3);
+    if (self.mesh->triangles() == 0) {
+      result.hull = self.flat_hull;
+    } else {
+      const call::Frame frame(*self.engine);
+      const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
+      result.hull = hull_of(rows, self.points.coordinates());
+      Ids triangle_of(rows.size(), -1);
+      std::int32_t count = 0;
+      for (std::size_t t = 0; t < rows.size(); ++t) {
+        if (is_triangle(rows[t])) triangle_of[t] = count++;
+      }
+      result.triangles.resize(3 * static_cast<std::size_t>(count));
+      result.neighbors.resize(result.triangles.size());
+      for (std::size_t t = 0; t < rows.size(); ++t) {
+        if (triangle_of[t] < 0) continue;
+        const std::int32_t* const corner = rows[t].corner;
+        const auto smallest = static_cast<std::size_t>(std::min_element(corner, corner + 3) - corner);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t to = 3 * static_cast<std::size_t>(triangle_of[t]) + k, at = (smallest + k) % 3;
+          result.triangles[to] = corner[at];
+          result.neighbors[to] = triangle_of[static_cast<std::size_t>(rows[t].neighbor[at])];
+        }
+      }
     }
     result.representatives = self.points.representatives();
     result.triangle_offsets = {0, result.triangles.size() / 3};
@@ -306,6 +536,8 @@ Triangulation DynamicTriangulation::triangulation() {
   });
 }
 
-LivingConstraints DynamicTriangulation::constraints() { return implementation_->constrained; }
+LivingConstraints DynamicTriangulation::constraints() {
+  return implementation_->take_turn([&] { return implementation_->edges_now(); });
+}
 
 }  // namespace flaunay

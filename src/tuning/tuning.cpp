@@ -382,6 +382,18 @@ constexpr Row kTable[] = {
      {16},
      {16},
      "The largest of so many blocks holds less than twice its share of the points, as a rule."},
+    {"inserted_percent",
+     &Tuning::inserted_percent,
+     {25},
+     {25},
+     {25},
+     "Where inserting takes as long as triangulating anew."},
+    {"removed_percent",
+     &Tuning::removed_percent,
+     {15},
+     {15},
+     {15},
+     "Where removing takes as long as triangulating anew."},
 };
 
 struct CapabilityRow {

@@ -115,6 +115,10 @@ struct Tuning : host::Sizes {
   std::size_t region_points = 1;
   /// Samples per block, for the tree of cuts.
   std::size_t samples_per_block = 1;
+  /// If a batch inserts, or removes, more than so many percent of the points that there are, all points are
+  /// triangulated anew.
+  std::size_t inserted_percent = 0;
+  std::size_t removed_percent = 0;
 
   const Tuning& tuning() const override { return *this; }
   std::shared_ptr<host::Sizes> copy() const override { return std::make_shared<Tuning>(*this); }

@@ -15,6 +15,26 @@ void Points::append(const double* coordinates, std::size_t n) {
   count_ += n;
 }
 
+std::int32_t Points::leave(std::int32_t v) {
+  const std::int32_t representative = this->representative(v);
+  const auto group = others_.find(representative);
+  representatives_[static_cast<std::size_t>(v)] = v;
+  if (group == others_.end()) return -1;
+  std::set<std::int32_t> others = std::move(group->second);
+  others_.erase(group);
+  if (representative != v) {
+    others.erase(v);
+    if (!others.empty()) others_[representative] = std::move(others);
+    return -1;
+  }
+  const std::int32_t next = *others.begin();
+  others.erase(others.begin());
+  representatives_[static_cast<std::size_t>(next)] = next;
+  for (const std::int32_t other : others) representatives_[static_cast<std::size_t>(other)] = next;
+  if (!others.empty()) others_[next] = std::move(others);
+  return next;
+}
+
 void Points::remove(std::int32_t v) {
   const auto i = static_cast<std::size_t>(v);
   representatives_[i] = -1;
@@ -24,6 +44,27 @@ void Points::remove(std::int32_t v) {
 
 void Points::move(std::int32_t v, const double* coordinates) {
   std::copy(coordinates, coordinates + 2, &coordinates_[2 * static_cast<std::size_t>(v)]);
+}
+
+void Points::join(std::int32_t v, std::int32_t representative) {
+  std::set<std::int32_t>& others = others_[representative];
+  others.insert(v);
+  if (const auto own = others_.find(v); own != others_.end()) {
+    others.insert(own->second.begin(), own->second.end());
+    others_.erase(own);
+  }
+  for (const std::int32_t other : others) representatives_[static_cast<std::size_t>(other)] = representative;
+}
+
+std::vector<std::int32_t> Points::sample(std::size_t n) const {
+  std::vector<std::int32_t> chosen;
+  const std::size_t step = std::max<std::size_t>(1, count_ / std::max<std::size_t>(1, n));
+  std::size_t skip = 0;
+  for (std::size_t v = 0; v < representatives_.size(); ++v) {
+    if (static_cast<std::size_t>(representatives_[v]) != v || skip++ % step != 0) continue;
+    chosen.push_back(static_cast<std::int32_t>(v));
+  }
+  return chosen;
 }
 
 void Points::check_range(const double* coordinates, const std::int32_t* numbers, std::size_t m) {
@@ -68,6 +109,8 @@ std::size_t Points::mark(const std::int32_t* numbers, std::size_t m) {
 
 Living Points::living() const {
   Living living;
+  living.are_all = count_ == representatives_.size();
+  if (living.are_all) return living;
   living.places.assign(representatives_.size(), -1);
   living.numbers.reserve(count_);
   living.coordinates.reserve(2 * count_);
@@ -81,9 +124,15 @@ Living Points::living() const {
 }
 
 void Points::set_representatives(const Living& living, const std::vector<std::int32_t>& representatives) {
+  others_.clear();
   for (std::size_t i = 0; i < representatives.size(); ++i) {
-    representatives_[static_cast<std::size_t>(living.numbers[i])] =
-        living.numbers[static_cast<std::size_t>(representatives[i])];
+    auto v = static_cast<std::int32_t>(i), by = representatives[i];
+    if (!living.are_all) {
+      v = living.numbers[i];
+      by = living.numbers[static_cast<std::size_t>(by)];
+    }
+    representatives_[static_cast<std::size_t>(v)] = by;
+    if (by != v) others_[by].insert(v);
   }
 }
 

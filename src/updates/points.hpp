@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <unordered_map>
 #include <vector>
 
 #include "geometry/magnitudes.hpp"
@@ -11,6 +13,7 @@ namespace flaunay::updates {
 
 /// The points that there are, without gaps.
 struct Living {
+  bool are_all = false;  ///< whether these are all numbers; the other members are empty then
   std::vector<double> coordinates;
   std::vector<std::int32_t> numbers;  ///< per point
   std::vector<std::int32_t> places;   ///< per number: the point, or -1
@@ -20,8 +23,17 @@ class Points {
  public:
   /// Adds n points. They represent themselves until it is known whether others do.
   void append(const double* coordinates, std::size_t n);
+  /// Whether a point represents itself and no other.
+  bool is_alone(std::int32_t v) const { return representative(v) == v && others_.count(v) == 0; }
+  /// Takes a point from its place. Returns the one that represents those that are left there, if that was
+  /// this one; otherwise -1.
+  std::int32_t leave(std::int32_t v);
+  /// Takes a point away that has left its place.
   void remove(std::int32_t v);
+  /// Puts a point that has left its place, or is alone there, to another one.
   void move(std::int32_t v, const double* coordinates);
+  /// Makes a point, with those that it represents, represented by one in its place.
+  void join(std::int32_t v, std::int32_t representative);
 
   /// Throws Error(input) if m further points, or these ones in new places, differ too much in magnitude from
   /// all others. numbers: of the points, which must be marked; null for further ones.
@@ -37,8 +49,11 @@ class Points {
 
   std::size_t numbers() const { return representatives_.size(); }
   std::size_t count() const { return count_; }
+  int shift() const { return geometry::scaling_for(magnitudes_).shift; }
   bool is_alive(std::int32_t v) const { return representatives_[static_cast<std::size_t>(v)] >= 0; }
-  std::int32_t representative(std::size_t v) const { return representatives_[v]; }
+  std::int32_t representative(std::int32_t v) const { return representatives_[static_cast<std::size_t>(v)]; }
+  /// About n points that represent themselves, evenly from the first number to the last one.
+  std::vector<std::int32_t> sample(std::size_t n) const;
   /// Per number; -1 if there is no such point any more.
   const std::vector<std::int32_t>& representatives() const { return representatives_; }
   const std::vector<double>& coordinates() const { return coordinates_; }
@@ -47,7 +62,8 @@ class Points {
   std::vector<double> coordinates_;
   geometry::Magnitudes magnitudes_;  // of all points that there are, and maybe of others
   std::vector<std::int32_t> representatives_;
-  std::vector<std::uint32_t> marks_;  // per number: the last batch that had it
+  std::unordered_map<std::int32_t, std::set<std::int32_t>> others_;  // that a point represents, if any
+  std::vector<std::uint32_t> marks_;                                 // per number: the last batch that had it
   std::uint32_t batch_ = 0;
   std::size_t count_ = 0;
 };

@@ -23,9 +23,11 @@ Triangulator& reference() {
   return host;
 }
 
-Mirror mirror_of(const std::vector<double>& coordinates) {
-  return {triangulator(), reference(), coordinates};
-}
+// Small meshes would be triangulated anew by nearly every batch.
+const char* const kTuning = "inserted_percent=1000000,removed_percent=90";
+Triangulator& changing() { return triangulator_with(kTuning); }
+
+Mirror mirror_of(const std::vector<double>& coordinates) { return {changing(), reference(), coordinates}; }
 
 std::vector<std::int32_t> numbers_of(const Mirror& mirror) {
   std::vector<std::int32_t> numbers;
@@ -147,7 +149,7 @@ TEST(Updates, Fixtures) {
 
 TEST(SmallUpdates, PointsSplitConstraints) {
   const std::vector<double> square = {0, 0, 8, 0, 8, 8, 0, 8, 4, 3};
-  Mirror mirror(triangulator(), reference(), square, {0, 1, 1, 2, 2, 3, 3, 0, 0, 2});
+  Mirror mirror(changing(), reference(), square, {0, 1, 1, 2, 2, 3, 3, 0, 0, 2});
   mirror.check();
   mirror.insert({4, 0, 2, 2, 6, 6, 4, 4, 1, 5, 9, 4, 8, 4, 2, 2});
   mirror.check();
@@ -184,7 +186,7 @@ TEST(Updates, RandomConstraints) {
       segments.insert(segments.end(), {0, k});
     }
     for (int i = 0; i < 60; ++i) coordinates.push_back(static_cast<double>(random.integer(-30, 30)));
-    Mirror mirror(triangulator(), reference(), coordinates, segments);
+    Mirror mirror(changing(), reference(), coordinates, segments);
     for (int batch = 0; batch < 12; ++batch) {
       SCOPED_TRACE("batch " + std::to_string(batch));
       std::set<std::int32_t> fixed;
@@ -287,6 +289,24 @@ TEST(Updates, MovingEverything) {
   }
 }
 
+// As it is for users: some of these batches change the mesh, others triangulate anew.
+TEST(Updates, LargeBatchesTriangulateAnew) {
+  FixtureRandom random(4);
+  std::vector<double> coordinates, more;
+  for (int i = 0; i < 600; ++i) coordinates.push_back(random.unit());
+  Mirror mirror(triangulator(), reference(), coordinates);
+  for (const int count : {1, 20, 600, 1}) {
+    more.clear();
+    for (int i = 0; i < 2 * count; ++i) more.push_back(2 * random.unit() - 0.5);
+    EXPECT_EQ(mirror.insert(more).is_anew, count == 600);
+    mirror.check();
+  }
+  for (const std::size_t count : {1, 20, 400, 1}) {
+    EXPECT_EQ(mirror.remove(some_of(mirror, count, random)).is_anew, count == 400);
+    mirror.check();
+  }
+}
+
 TEST(Updates, HaveTheSameRowsEverywhere) {
   const Coordinates all = all_fixtures()[0].make(4000, 5);
   const auto run = [&](Triangulator& by) {
@@ -302,9 +322,9 @@ TEST(Updates, HaveTheSameRowsEverywhere) {
     mesh.move(numbers.data(), places.data(), numbers.size());
     return mesh.rows();
   };
-  const TriangleRows expected = run(reference());
-  EXPECT_EQ(run(triangulator()).triangles, expected.triangles);
-  for (const char* threads : {"1", "3"}) {
+  const TriangleRows expected = run(changing());
+  const ScopedEnvironment tuning("FLAUNAY_TUNING", kTuning);
+  for (const char* threads : {"1", "2", "3"}) {
     const ScopedEnvironment count("FLAUNAY_THREADS", threads);
     Triangulator host("host");
     const TriangleRows rows = run(host);

@@ -1,0 +1,19 @@
+// Lists of arguments that kernels of updates have in common; PREFIX is put before their names. In launchers each list
+// is a struct.
+#ifndef FLAUNAY_UPDATES_ARGUMENTS_H
+#define FLAUNAY_UPDATES_ARGUMENTS_H
+
+// clang-format off
+
+// The mesh as it is.
+#define LIVING_MESH(PREFIX) \
+  global const mesh_row* restrict PREFIX##rows, global const double2* restrict PREFIX##points
+
+// Where walks begin. Of the points of the mesh, a sample is in cells: `slabs` along x, with as many along y in each, that
+// begin at these coordinates; each cell has a vertex. rows_of: per vertex a row that it had, of which freed ones lead to
+// others.
+#define HINTS(PREFIX) \
+  int PREFIX##slabs, global const double* restrict PREFIX##xs, global const double* restrict PREFIX##ys, \
+  global const int* restrict PREFIX##vertices, global const int* restrict PREFIX##rows_of
+
+#endif

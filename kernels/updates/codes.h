@@ -1,0 +1,38 @@
+// Codes that kernels of updates write for each other and for the host.
+#ifndef FLAUNAY_UPDATES_CODES_H
+#define FLAUNAY_UPDATES_CODES_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// The corner at infinity of a ghost: a row beyond an edge of the hull, with its ends as its other corners. With ghosts,
+// every row has three neighbours.
+INTEGER_CONSTANT(INFINITE_VERTEX, -2);
+
+// What a row holds.
+INTEGER_CONSTANT(ROW_FREE, 0);
+INTEGER_CONSTANT(ROW_GHOST, 1);
+INTEGER_CONSTANT(ROW_TRIANGLE, 2);
+
+// What is wrong with a row when vertices have moved.
+INTEGER_CONSTANT(ROW_TURNED, 1);  // it has turned over, or the hull is not convex at its end
+INTEGER_CONSTANT(ROW_WRONG, 2);   // it has an edge that is not locally Delaunay
+
+// What becomes of a vertex to be removed, or of an edge to be flipped, in a step.
+INTEGER_CONSTANT(UPDATE_WAITS, 0);
+INTEGER_CONSTANT(UPDATE_DONE, 1);
+INTEGER_CONSTANT(UPDATE_TOO_LARGE, 2);  // the star of the vertex has too many triangles
+INTEGER_CONSTANT(UPDATE_NEEDLESS, 3);   // the edge is locally Delaunay
+
+// A number up to the mask, which is a power of two less one, for each such number, each once, without their order: if
+// ranks went up along the plane, each would wait for the one before.
+static inline uint scrambled(uint i, uint mask) {
+  i = i * 0x2c1b3c6du & mask;
+  i = (i ^ i >> 3) * 0x297a2d39u & mask;
+  return (i ^ i >> 5) * 0x9e3779b1u & mask;
+}
+
+END_SHARED
+
+#endif
