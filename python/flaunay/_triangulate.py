@@ -324,7 +324,7 @@ def refine(
         For each of the `seeds`, the largest area in its region; 0 for any.
     areas_at : callable, optional
         Takes places, an array of shape (k, 2), and returns the areas that triangles may have there, of shape
-        (k,), or one for all; 0 for any. It is called once a round.
+        (k,), or one for all; 0 for any. It is called once a round of each set.
     triangles : array_like of int, shape (m, 3), optional
         A mesh of the points that is refined further. They are triangulated anew, with its border as segments
         after the given ones, and without what no triangle covers.
@@ -343,7 +343,7 @@ def refine(
     min_edge : float, optional
         No two points are put nearer to each other. Without it, 2^-40 of the extent.
     most_points, most_rounds : int, optional
-        No more points are added, and no more rounds made.
+        No more points are added to a set, and no more rounds made of it.
     smoothing_steps : int
         So often, added points that are not on segments move to where triangles are more regular.
 

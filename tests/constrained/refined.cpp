@@ -50,8 +50,8 @@ class Check {
       low[i % 2] = i < 2 ? value : std::min(low[i % 2], value);
       high[i % 2] = i < 2 ? value : std::max(high[i % 2], value);
     }
-    min_edge_ =
-        wanted.min_edge >= 0 ? wanted.min_edge : 0x1p-40 * std::max(high[0] - low[0], high[1] - low[1]);
+    extent_ = std::max(high[0] - low[0], high[1] - low[1]);
+    min_edge_ = wanted.min_edge >= 0 ? wanted.min_edge : 0x1p-40 * extent_;
   }
 
   std::string run() {
@@ -294,10 +294,12 @@ class Check {
         wanted_.areas_at(middle, 1, &by_place);
         if (!std::isfinite(by_place)) by_place = 0;
       }
-      // The place is rounded, so the area that it may have is too.
-      constexpr double kSlack = 1e-3;
-      const bool is_large = is_larger(t, largest_area(t)) || is_larger(t, by_place * (1 + kSlack));
-      const bool may_be_large = is_large || is_larger(t, by_place * (1 - kSlack));
+      // The place is rounded, so the area that it may have is too: between places as far apart as the extent,
+      // areas differ by no more than this times the smallest one.
+      constexpr double kRange = 100;
+      const double slack = 1 + 1e-3 + kRange * kOff * largest_ / extent_;
+      const bool is_large = is_larger(t, largest_area(t)) || is_larger(t, by_place * slack);
+      const bool may_be_large = is_large || is_larger(t, by_place / slack);
       const bool has_small_angle = is_thin(t);
       const std::string name = "triangle " + std::to_string(t) + " at " + place(refined_.triangles[3 * t]);
       const bool is_listed =
@@ -503,7 +505,7 @@ class Check {
   const RefinedMesh& refined_;
   const Refinement& wanted_;
   Coordinates points_;
-  double largest_ = 0, min_edge_ = 0, shortest_piece_ = -1;
+  double largest_ = 0, extent_ = 0, min_edge_ = 0, shortest_piece_ = -1;
   const constrained::QualityBounds bounds_;
   ExactPredicates exact_;
   std::vector<std::uint8_t> sides_;         // per edge
