@@ -4,6 +4,7 @@
     bench/python.py points          triangles and neighbours of points uniform in a square
     bench/python.py polygons        triangles of polygons with two holes each
     bench/python.py interpolation   interpolators, from points, values and queries to results
+    bench/python.py updates         points added to an incremental triangulation, in one call
     bench/python.py points --json bench/results/python-host-2-cores.json --runs 9
 
 All packages take turns, so that a change of the machine's speed meets all of them; the first round is not counted.
@@ -156,7 +157,23 @@ def interpolation(arguments):
                 rows["scipy"]["outside_of_one_only"] = int(outside.sum())
 
 
-EXPERIMENTS = {"points": points, "polygons": polygons, "interpolation": interpolation}
+def updates(arguments):
+    """SciPy's add_points makes all arrays; flaunay's leaves them until they are asked for."""
+    random, n = np.random.default_rng(1), arguments.points or 1_000_000
+    xy = random.random((n, 2))
+    mine = flaunay.Delaunay(xy, incremental=True, device=arguments.device)
+    theirs = function("scipy.spatial.Delaunay")(xy, incremental=True)
+    for added in (1, 100, 10_000):
+        def new():
+            return random.random((added, 2))
+        yield {"n": n, "added": added}, {
+            "flaunay, add_points": lambda: mine.add_points(new()),
+            "flaunay, add_points and neighbors": lambda: (mine.add_points(new()), mine.neighbors),
+            "flaunay, anew": lambda: flaunay.Delaunay(np.concatenate([xy, new()]), device=arguments.device),
+            "scipy, add_points": lambda: theirs.add_points(new())}
+
+
+EXPERIMENTS = {"points": points, "polygons": polygons, "interpolation": interpolation, "updates": updates}
 
 
 # ---- Measuring and records

@@ -2319,6 +2319,51 @@ static void test_dynamic_from_device(void) {
   clReleaseMemObject(input.memory);
 }
 
+static void test_dynamic_rows_on_device(void) {
+  flaunay_dynamic* dynamic = make_dynamic(kSquare, 4, NULL, NULL);
+  const int32_t first = 0;
+  const double inserted[] = {1, 2};
+  REQUIRE(flaunay_dynamic_insert(dynamic, inserted, 1) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_dynamic_remove(dynamic, &first, 1) == FLAUNAY_SUCCESS);
+  const size_t count = flaunay_dynamic_row_count(dynamic);
+  int32_t* const expected = malloc(12 * count * sizeof *expected);
+  REQUIRE(expected != NULL);
+  CHECK(flaunay_dynamic_rows(dynamic, expected, expected + 3 * count) == FLAUNAY_SUCCESS);
+
+  flaunay_device_rows* rows = NULL;
+  REQUIRE(flaunay_device_rows_create(&rows) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_TRIANGLES) == NULL);
+  cl_mem own = make_buffer(context, 12 * count, NULL), small = make_buffer(context, 1, NULL);
+  CHECK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_NEIGHBORS, own) == FLAUNAY_SUCCESS);
+  const flaunay_enqueue plain = {.queue = queue};
+  REQUIRE(flaunay_dynamic_rows_device(dynamic, &plain, rows) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_rows_row_count(rows) == count && flaunay_device_rows_numbers(rows) == 5);
+  int32_t* const found = expected + 6 * count;
+  read_buffer(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_TRIANGLES), 12 * count, found);
+  read_buffer(own, 12 * count, found + 3 * count);
+  CHECK(same(found, expected, 6 * count));
+  double places[10];
+  read_buffer(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_COORDINATES), sizeof places, places);
+  CHECK(isnan(places[0]) && isnan(places[1]) && memcmp(places + 2, kSquare + 2, 6 * sizeof *places) == 0);
+  CHECK(places[8] == 1 && places[9] == 2);
+  free(expected);
+
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  CHECK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_TRIANGLES, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_dynamic_rows_device(dynamic, &plain, rows), usage, "triangles"));
+  CHECK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_TRIANGLES, own) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_dynamic_rows_device(dynamic, &plain, rows), usage, "two things"));
+  CHECK(fails(flaunay_device_rows_set_buffer(rows, 3, NULL), usage, "not one part of rows"));
+  CHECK(flaunay_dynamic_rows_device(NULL, &plain, rows) == usage);
+  CHECK(flaunay_dynamic_rows_device(dynamic, NULL, NULL) == usage);
+  CHECK(flaunay_device_rows_row_count(NULL) == 0 && flaunay_device_rows_numbers(NULL) == 0);
+  flaunay_device_rows_destroy(rows);
+  flaunay_device_rows_destroy(NULL);
+  clReleaseMemObject(own);
+  clReleaseMemObject(small);
+  flaunay_dynamic_destroy(dynamic);
+}
+
 static void test_bad_dynamic(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE, input = FLAUNAY_ERROR_INPUT;
   flaunay_dynamic* none = NULL;
@@ -2452,6 +2497,7 @@ static void test_all(void) {
   test_dynamic();
   test_dynamic_constraints();
   test_dynamic_from_device();
+  test_dynamic_rows_on_device();
   test_bad_dynamic();
   test_relax();
   test_locator();

@@ -52,7 +52,7 @@ def main(path: str) -> None:
     figure, axes = plt.subplots(figsize=(7, 7))
     tri.plot(axes, color="#dddddd", linewidth=0.4)
     arrows = (*points.T, headings.real, headings.imag)
-    axes.quiver(*arrows, np.angle(headings), cmap="twilight", scale=60)
+    axes.quiver(*arrows, np.angle(headings), cmap="hsv", scale=60)
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_position((0, 0, 1, 1))

@@ -30,7 +30,13 @@ from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
-from flaunay._dynamic import Changes, DynamicTriangulation, LivingConstraints, TriangleRows
+from flaunay._dynamic import (
+    Changes,
+    DeviceRows,
+    DynamicTriangulation,
+    LivingConstraints,
+    TriangleRows,
+)
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._calls import __version__
 from flaunay._interpolate import (
@@ -59,6 +65,7 @@ __all__ = [
     "DeviceClippedVoronoi",
     "DeviceError",
     "DeviceLocator",
+    "DeviceRows",
     "DeviceTriangulation",
     "DeviceVoronoi",
     "DynamicTriangulation",

@@ -660,6 +660,9 @@ class Dynamic(_InTurns):
             self._call(library.dynamic_rows, triangles, neighbors)
         return triangles, neighbors
 
+    def write_rows(self, place: DeviceRows, enqueue: Enqueue) -> None:
+        self._call(library.dynamic_rows_device, enqueue.struct, place.pointer)
+
     def arrays(self) -> dict[str, Any]:
         """The result of a call on all points."""
         result = _Triangulation()
@@ -852,6 +855,31 @@ class DeviceTriangulation(DeviceHandle):
     @property
     def statistics(self) -> dict[str, Any]:
         return _statistics_of(library.device_triangulation_statistics(self.pointer)[0])
+
+
+class DeviceRows(DeviceHandle):
+    """The rows and points of a triangulation that changes, in device memory."""
+
+    _destroy = library.device_rows_destroy
+
+    def __init__(self, dynamic: Dynamic, enqueue: Enqueue) -> None:
+        super().__init__()
+        check(library.device_rows_create(self.place))
+        dynamic.write_rows(self, enqueue)
+
+    def arrays(self) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
+        """For each array the handle of its buffer, 0 if it is empty, its shape and its type."""
+        rows: int = library.device_rows_row_count(self.pointer)
+        kinds: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
+            "triangles": ((rows, 3), _INT32),
+            "neighbors": ((rows, 3), _INT32),
+            "coordinates": ((library.device_rows_numbers(self.pointer), 2), _FLOAT64),
+        }
+        parts = _declarations.ROWS_PART
+        return {
+            name: (library.device_rows_buffer(self.pointer, parts[name]) or 0, *kind)
+            for name, kind in kinds.items()
+        }
 
 
 class _DeviceArrays(DeviceHandle):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -11,11 +12,12 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_integers, as_points, summary
 from flaunay._constrained import as_segments, number_of
 from flaunay._declarations import CROSSINGS
-from flaunay._device_arrays import DeviceCall, is_on_device, queue_for
+from flaunay._device_arrays import DeviceCall, is_on_device, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
+    import pyopencl
     import pyopencl.array
 
 Indices = npt.NDArray[np.int32]
@@ -66,6 +68,25 @@ class TriangleRows(NamedTuple):
 
     triangles: Indices
     neighbors: Indices
+
+
+class DeviceRows(NamedTuple):
+    """The rows and points of a `DynamicTriangulation`, in device memory.
+
+    Attributes
+    ----------
+    triangles, neighbors : pyopencl.array.Array
+        As of `TriangleRows`.
+    points : pyopencl.array.Array
+        As `DynamicTriangulation.points`.
+    event : pyopencl.Event
+        Complete when the arrays are there, which know it.
+    """
+
+    triangles: pyopencl.array.Array
+    neighbors: pyopencl.array.Array
+    points: pyopencl.array.Array
+    event: pyopencl.Event
 
 
 class LivingConstraints(NamedTuple):
@@ -147,11 +168,12 @@ class DynamicTriangulation:
     ) -> None:
         rule = number_of(CROSSINGS, crossings, "crossings")
         pairs: Optional[Indices] = None
+        self._queue: Optional[pyopencl.CommandQueue] = None
         if is_on_device(points):
             if segments is not None or device is not None:
                 raise UsageError("segments and device are for points in host memory")
-            queue = queue_for(points, None, "points")
-            triangulator = _triangulators.of_queue(queue)
+            self._queue = queue_for(points, None, "points")
+            triangulator = _triangulators.of_queue(self._queue)
             given: Any = self._in_device_memory(points)
         else:
             given = np.asarray(as_points(points), np.float64)
@@ -264,6 +286,33 @@ class DynamicTriangulation:
     def rows(self) -> TriangleRows:
         """A copy of the triangles by their rows, which `Changes` mean."""
         return TriangleRows(*self._handle.rows())
+
+    def rows_on_device(
+        self,
+        queue: Optional[pyopencl.CommandQueue] = None,
+        wait_for: Optional[Sequence[pyopencl.Event]] = None,
+    ) -> DeviceRows:
+        """A copy of the rows and points in device memory, if the first points were given there.
+
+        Parameters
+        ----------
+        queue : pyopencl.CommandQueue, optional
+            Of their context. Without it, the one that they had.
+        wait_for : sequence of pyopencl.Event, optional
+            As of `triangulate_device`.
+
+        Raises
+        ------
+        UsageError
+            If the points were given in host memory, or for a queue of another context.
+        """
+        if self._queue is None:
+            raise UsageError("the triangulation was made of points in host memory")
+        call = DeviceCall(self._queue if queue is None else queue, wait_for)
+        made, event = call.run(_calls.DeviceRows, self._handle)
+        places = made.arrays()
+        views = {name: view(*place, call.queue, event) for name, place in places.items()}
+        return DeviceRows(points=views.pop("coordinates"), **views, event=event)
 
     def triangulation(self) -> Triangulation:
         """The result of a call of `triangulate` on all points, with their numbers.

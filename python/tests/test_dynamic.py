@@ -219,6 +219,14 @@ def test_points_in_device_memory(random):
     given = np.concatenate([points[:200], points[200:].astype(np.float32), points[:1]])
     assert np.array_equal(tri.points, given)
     assert as_set(tri.triangulation().triangles) == as_set(flaunay.Delaunay(given).simplices)
+    tri.remove([0, 7])
+    on_device, rows = tri.rows_on_device(), tri.rows()
+    assert np.array_equal(on_device.triangles.get(), rows.triangles)
+    assert np.array_equal(on_device.neighbors.get(), rows.neighbors)
+    assert np.array_equal(on_device.points.get(), tri.points, equal_nan=True)
+    on_device.event.wait()
+    with pytest.raises(flaunay.UsageError, match="made of points in host memory"):
+        flaunay.DynamicTriangulation(points).rows_on_device()
     with pytest.raises(flaunay.UsageError, match="for points in host memory"):
         flaunay.DynamicTriangulation(cl.array.to_device(queue, points), segments=[[0, 1]])
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -43,7 +44,18 @@ struct flaunay_dynamic {
   flaunay_living_constraints constraints_view{};
 };
 
+struct flaunay_device_rows {
+  DeviceRows cpp;
+};
+
 namespace {
+
+template <typename Result>
+auto& buffer_of(Result& rows, unsigned part) {
+  static constexpr std::array kBuffers = {&DeviceRows::triangles, &DeviceRows::neighbors,
+                                          &DeviceRows::coordinates};
+  return c::buffer_of(rows, kBuffers, part, "rows");
+}
 
 constexpr const char* kName = "the triangulation";
 
@@ -168,4 +180,23 @@ const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* d
     found = &handle.constraints_view;
   });
   return found;
+}
+
+FLAUNAY_DEVICE_RESULT(rows, "the rows")
+
+size_t flaunay_device_rows_row_count(const flaunay_device_rows* rows) {
+  return read(rows, [](const auto& handle) { return handle.cpp.row_count; });
+}
+
+size_t flaunay_device_rows_numbers(const flaunay_device_rows* rows) {
+  return read(rows, [](const auto& handle) { return handle.cpp.numbers; });
+}
+
+flaunay_status flaunay_dynamic_rows_device(flaunay_dynamic* dynamic, const flaunay_enqueue* enqueue,
+                                           flaunay_device_rows* rows) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    DynamicTriangulation& cpp = required(dynamic, kName).cpp;
+    cpp.rows(required(rows, "the rows").cpp, queued);
+  });
 }

@@ -488,6 +488,27 @@ TriangleRows DynamicTriangulation::rows() {
   });
 }
 
+void DynamicTriangulation::rows(DeviceRows& result, const Enqueue& enqueue) {
+  Implementation& self = *implementation_;
+  TriangleRows all = rows();
+  call::take_turn(*self.owner, enqueue, [&] {
+    std::vector<cl_double> places = self.points.coordinates();
+    call::Engine& device = self.owner->on_device();
+    call::Frame frame(*self.owner, {device, &device}, enqueue);
+    const auto triangles = frame.out<cl_int>(result.triangles, all.triangles.size(), "triangles");
+    const auto neighbors = frame.out<cl_int>(result.neighbors, all.neighbors.size(), "neighbors");
+    const auto coordinates = frame.out<cl_double>(result.coordinates, places.size(), "coordinates");
+    frame.check_distinct();
+    frame.begin();
+    result.row_count = all.triangles.size() / 3;
+    result.numbers = places.size() / 2;
+    call::write_result(frame.runtime, triangles, std::move(all.triangles));
+    call::write_result(frame.runtime, neighbors, std::move(all.neighbors));
+    call::write_result(frame.runtime, coordinates, std::move(places));
+    frame.end();
+  });
+}
+
 Triangulation DynamicTriangulation::triangulation() {
   Implementation& self = *implementation_;
   return self.take_turn([&] {

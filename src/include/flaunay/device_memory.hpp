@@ -144,4 +144,14 @@ struct DeviceClippedVoronoi {
   std::size_t vertex_count = 0;  ///< v
 };
 
+/// A DynamicTriangulation of r rows and n numbers in device memory. The caller's buffers must have the sizes
+/// given here.
+struct DeviceRows {
+  DeviceBuffer triangles;     ///< TriangleRows::triangles, int32, 12 r bytes
+  DeviceBuffer neighbors;     ///< TriangleRows::neighbors, int32, 12 r bytes
+  DeviceBuffer coordinates;   ///< DynamicTriangulation::coordinates, double2, 16 n bytes
+  std::size_t row_count = 0;  ///< r, known when the call returns
+  std::size_t numbers = 0;    ///< n, known when the call returns
+};
+
 }  // namespace flaunay

@@ -199,6 +199,8 @@ typedef struct flaunay_constrained flaunay_constrained;
 typedef struct flaunay_device_constraints flaunay_device_constraints;
 /// A triangulation to which batches of points are inserted, removed and moved.
 typedef struct flaunay_dynamic flaunay_dynamic;
+/// The rows and points of a flaunay_dynamic, in device memory.
+typedef struct flaunay_device_rows flaunay_device_rows;
 /// The triangulations of one or more point sets, in device memory.
 typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 /// The dual of a triangulation, in host memory.
@@ -957,6 +959,34 @@ FLAUNAY_API flaunay_status flaunay_dynamic_triangulation(flaunay_dynamic* dynami
                                                          flaunay_triangulation** result);
 /// The edges that segments are made of now; NULL after an error. Valid until this is called again. O(rows).
 FLAUNAY_API const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* dynamic);
+
+/// The rows and points of a flaunay_dynamic in device memory, as bits, with their types and their sizes in
+/// bytes for r rows and n numbers.
+typedef enum flaunay_rows_part {
+  FLAUNAY_ROWS_TRIANGLES = 1,   ///< int32, 12 r
+  FLAUNAY_ROWS_NEIGHBORS = 2,   ///< int32, 12 r
+  FLAUNAY_ROWS_COORDINATES = 4  ///< double2, 16 n
+} flaunay_rows_part;
+
+/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
+FLAUNAY_API flaunay_status flaunay_device_rows_create(flaunay_device_rows** rows);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_rows_destroy(flaunay_device_rows* rows);
+/// Makes later calls write one part, one bit of flaunay_rows_part, to the caller's buffer. Its size must be
+/// that given there. Otherwise see flaunay_device_triangulation_set_buffer.
+FLAUNAY_API flaunay_status flaunay_device_rows_set_buffer(flaunay_device_rows* rows, unsigned part,
+                                                          cl_mem memory);
+/// The buffer of one part; see flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_rows_buffer(const flaunay_device_rows* rows, unsigned part);
+/// r, the number of rows that the last call wrote.
+FLAUNAY_API size_t flaunay_device_rows_row_count(const flaunay_device_rows* rows);
+/// n, the number of places of points that the last call wrote.
+FLAUNAY_API size_t flaunay_device_rows_numbers(const flaunay_device_rows* rows);
+/// flaunay_dynamic_rows and flaunay_dynamic_coordinates in device memory. The work is enqueued like that of
+/// flaunay_triangulate_device, with the same errors. O(rows).
+FLAUNAY_API flaunay_status flaunay_dynamic_rows_device(flaunay_dynamic* dynamic,
+                                                       const flaunay_enqueue* enqueue,
+                                                       flaunay_device_rows* rows);
 
 // ---- Points and results in device memory
 
