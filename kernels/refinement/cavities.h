@@ -2,7 +2,7 @@
 // them. Around a point that splits a constraint, those on both of its sides.
 //
 // A cavity has no vertex inside, so its triangles are a tree. A tour around the tree meets the sides of the cavity
-// counter-clockwise and takes no memory but the way back, of which it keeps a few steps: beyond them it tests again.
+// counter-clockwise and takes no memory but the way back, of which it keeps some steps: beyond them it tests again.
 #ifndef FLAUNAY_CAVITIES_OF_POINTS_H
 #define FLAUNAY_CAVITIES_OF_POINTS_H
 

@@ -59,6 +59,8 @@ constexpr int kBinaryPlaces = 200;
 // polygons many more: lists get longer if more than a part of all cavities does not fit.
 constexpr int kFewestListed = 12, kMostListed = 96;
 constexpr std::size_t kPartUnlisted = 16;
+// Rows that a thread writes to the result at once.
+constexpr std::size_t kPartOfRows = std::size_t{1} << 14;
 // Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
 
@@ -784,12 +786,11 @@ class Rounds {
     }
     const Excuse at_limit = report_.rounds >= wanted_.most_rounds ? Excuse::most_rounds : Excuse::most_points;
     const std::size_t all = static_cast<std::size_t>(row_count);
-    refined.triangles.resize(3 * all);
-    refined.neighbors.resize(3 * all);
-    refined.edges.resize(3 * all);
-    refined.parents.resize(all);
-    for (std::size_t t = 0; t < rows_; ++t) {
-      if (row_of[t] < 0) continue;
+    for (auto* const array : {&refined.triangles, &refined.neighbors, &refined.edges}) {
+      runtime_.resize(*array, 3 * all);
+    }
+    runtime_.resize(refined.parents, all);
+    const auto write_row = [&](std::size_t t) {
       const mesh_row& row = rows[t];
       int first = 0;
       for (int k = 1; k < 3; ++k) {
@@ -803,7 +804,20 @@ class Rounds {
         refined.edges[to + k] = row.edge[from] < 0 ? -1 : row.edge[from] & kernel::EDGE_NUMBER;
       }
       refined.parents[to / 3] = row.parent;
-      if (excuses[t] != kernel::EXCUSED_NOT) {
+    };
+    const auto write_part = [&](std::size_t part) {
+      for (std::size_t t = part * kPartOfRows; t < std::min(rows_, (part + 1) * kPartOfRows); ++t) {
+        if (row_of[t] >= 0) write_row(t);
+      }
+    };
+    const std::size_t parts = (rows_ + kPartOfRows - 1) / kPartOfRows;
+    if (runtime_.is_native()) {
+      runtime_.share(parts, write_part);
+    } else {
+      for (std::size_t part = 0; part < parts; ++part) write_part(part);
+    }
+    for (std::size_t t = 0; t < rows_; ++t) {
+      if (row_of[t] >= 0 && excuses[t] != kernel::EXCUSED_NOT) {
         report_.bad_triangles.push_back(row_of[t]);
         // Without the limit, those at frozen constraints would be tried again.
         const bool is_limited =
