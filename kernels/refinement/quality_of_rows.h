@@ -117,11 +117,11 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_ru
   if (edge & EDGE_FROZEN) return EXCUSED_FROZEN;
   const double length =
       squared_distance(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)));
-  if (length < 4.0 * rules.min_edge || is_flat_above(mesh, corner, length, rules)) return EXCUSED_MIN_EDGE;
+  if (length < 4.0 * rules.min_edge) return EXCUSED_MIN_EDGE;
+  if (is_flat_above(mesh, corner, length, rules)) return EXCUSED_FROZEN;
   const int beyond = neighbor_at(mesh, corner);
-  return beyond >= 0 && is_flat_above(mesh, corner_facing(mesh, beyond, row_of(corner)), length, rules)
-             ? EXCUSED_MIN_EDGE
-             : EXCUSED_NOT;
+  return beyond >= 0 && is_flat_above(mesh, corner_facing(mesh, beyond, row_of(corner)), length, rules) ? EXCUSED_FROZEN
+                                                                                                        : EXCUSED_NOT;
 }
 
 // With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.

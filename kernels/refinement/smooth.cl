@@ -171,11 +171,13 @@ kernel void flip(int n, uint next_pass, global const int* restrict corners, glob
     const mesh_row made_of_a = {{a.corner[at.k], a.corner[a1], b.corner[at.j]},
                                 {b.neighbor[b1], at.beyond, a.neighbor[a2]},
                                 {b.edge[b1], NO_EDGE_THERE, a.edge[a2]},
-                                a.parent};
+                                a.parent,
+                                0};
     const mesh_row made_of_b = {{b.corner[at.j], b.corner[b1], a.corner[at.k]},
                                 {a.neighbor[a1], at.row, b.neighbor[b2]},
                                 {a.edge[a1], NO_EDGE_THERE, b.edge[b2]},
-                                b.parent};
+                                b.parent,
+                                0};
     rows[at.row] = made_of_a;
     rows[at.beyond] = made_of_b;
     if (at.from_row >= 0) rows[at.from_row].neighbor[wins[i] >> 1 & 3] = at.beyond;

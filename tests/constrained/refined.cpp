@@ -331,7 +331,7 @@ class Check {
       case Excuse::kept:
         return std::count(mesh_.kept_edges.begin(), mesh_.kept_edges.end(), 1) > 0 ? "" : "no edge is kept";
       case Excuse::frozen:
-        return has_coarse_piece() ? "" : "rounding would allow a split";
+        return has_coarse_piece() || has_flat_piece() ? "" : "rounding would allow a split";
       case Excuse::most_points:
         return refined_.report.added_points == wanted_.most_points ? "" : "more points were allowed";
       case Excuse::most_rounds:
@@ -407,7 +407,7 @@ class Check {
       shortest = std::min(shortest, length(rows[c], rows[after(c)]));
     // Where coordinates are coarse, points would be put on others.
     if (shortest <= 4 * min_edge_ || is_coarse(t)) return true;
-    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack) || has_flat_piece();
+    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack);
   }
 
   /// Whether a corner is nearer to the piece of an edge opposite to it than points may be to each other.

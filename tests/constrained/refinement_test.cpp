@@ -210,6 +210,8 @@ TEST(SmallRefinement, NothingIsWanted) {
   const DomainToRefine domain = nasty_detail::polygon(30, 2);
   const MeshToRefine mesh = mesh_to_refine(domain);
   EXPECT_EQ(expect_right(mesh, {}).added.size(), 0);
+  const DomainToRefine flat = nasty_detail::wedges(8, 2);
+  EXPECT_EQ(expect_right(mesh_to_refine(flat), {}).added.size(), 0);
   Refinement wanted = angle_of(30);
   wanted.most_points = 0;
   const RefinedMesh none = expect_right(mesh, wanted);
@@ -275,8 +277,8 @@ TEST(SmallRefinement, PocketsOfRoundedBorders) {
   EXPECT_GT(mesh.triangles.size() / 3, 10);
   const RefinedMesh refined = expect_right(mesh, angle_of(30));
   EXPECT_LT(refined.added_edges.size(), 200);
-  EXPECT_GT(excused_for(refined, Excuse::min_edge), 0);
-  EXPECT_EQ(excused_for(refined, Excuse::min_edge) + excused_for(refined, Excuse::input_angle),
+  EXPECT_GT(excused_for(refined, Excuse::frozen), 0);
+  EXPECT_EQ(excused_for(refined, Excuse::frozen) + excused_for(refined, Excuse::input_angle),
             refined.report.excuses.size());
 }
 

@@ -102,11 +102,12 @@ class Rounds {
 
   RefinedMesh run() {
     upload();
-    mend();
+    if (!wanted_.is_wanted() && mesh_.largest_areas.empty()) return result();
+    mend(false);
     if (wanted_.smoothing_steps > 0) measure_before_smoothing();
     for (std::size_t step = 0; step < wanted_.smoothing_steps && !is_at_limit(); ++step) {
       smooth_once();
-      mend();
+      mend(true);
     }
     if (is_at_limit()) ask_for_areas();
     return result();
@@ -115,13 +116,14 @@ class Rounds {
  private:
   bool is_at_limit() const { return report_.rounds >= wanted_.most_rounds || added_ >= wanted_.most_points; }
 
-  // Makes rounds as long as they help.
-  void mend() {
-    std::size_t before_retry;
+  // Makes rounds as long as they help. has_moved: whether constraints may have thawed before.
+  void mend(bool has_moved) {
+    bool may_thaw = has_moved;
     do {
-      before_retry = added_;
+      const std::size_t before = added_;
       make_rounds();
-    } while (!is_at_limit() && added_ > before_retry && retry_frozen());
+      may_thaw |= added_ > before;
+    } while (!is_at_limit() && std::exchange(may_thaw, false) && retry_frozen());
   }
 
   void make_rounds() {
@@ -133,7 +135,7 @@ class Rounds {
     }
   }
 
-  // Constraints that could not be split where triangles were flat may be so since these changed. Tests
+  // Constraints that could not be split beside flat triangles may be since these changed. Tests
   // triangles that were refused for such a constraint again; returns whether there are some.
   bool retry_frozen() {
     Arena::Scope scope(arena_);
