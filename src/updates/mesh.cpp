@@ -515,6 +515,9 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
   // If most rows are looked at anyway, all are.
   constexpr std::size_t kRowsAround = 6;
   const bool all = kRowsAround * vertices.size() > rows_;
+  // More passes over all rows would take longer than triangulating anew.
+  constexpr int kMostPasses = 2;
+  int passes = 0;
   Ids out;
   while (!vertices.empty()) {
     Arena::Scope scope(arena);
@@ -561,7 +564,7 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
       flip({false, list, wrong});
       return out;
     }
-    if (out.size() + leave.size() > most) return {};
+    if (out.size() + leave.size() > most || (all && ++passes == kMostPasses)) return {};
     swap_places(moved, others, count);
     if (!remove(leave)) return {};
     out.insert(out.end(), leave.begin(), leave.end());
