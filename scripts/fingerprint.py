@@ -248,6 +248,12 @@ class Fingerprint:
                 yield self.partition, (f"cli/partition/{levels}/{name}", sets[name], levels)
         for variant in "--cut=alternate", "--hull-variant=quickhull", "--hull-variant=balanced":
             yield self.partition, (f"cli/partition/3/{variant[2:]}", sets["ukraine"], 3, variant)
+        for path in sorted(FIXTURES.glob("*.poly")):
+            for angle in [20, 30] if not self.quick else [30]:
+                key = f"cli/refined/{path.stem}/{angle}"
+                yield self.triangulate, (key, path, f"--min-angle={angle}"), {"mesh": ".ele"}
+        for name in small:
+            yield self.triangulate, (f"cli/refined/{name}", sets[name], "--min-angle=30"), {"mesh": ".ele"}
         yield from self.formats()
         yield self.verifications, ()
         yield from self.wrong_requests()

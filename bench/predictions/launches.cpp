@@ -11,6 +11,9 @@
 #include "bench/measuring/command.hpp"
 #include "bench/measuring/processes.hpp"
 #include "bench/measuring/triangulators.hpp"
+#include "constrained/refinement/refine.hpp"
+#include "host/opencl/device.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::bench::launches {
 namespace {
@@ -21,6 +24,7 @@ using Launches = std::vector<LaunchStatistics>;
 
 struct LaunchesRequest : Request {
   std::string tuning;
+  double min_angle = 0;
 };
 
 // The share of the work that is done by the launches of which "work_items_of_most_work" is said.
@@ -93,6 +97,52 @@ Launches measure_call(Triangulator& triangulator, const std::string& mode, const
   return launches;
 }
 
+/// The points' triangulation, whose hull must stay.
+constrained::MeshToRefine mesh_of(const Input& input) {
+  constrained::MeshToRefine mesh;
+  mesh.coordinates = input.coordinates.data();
+  mesh.points = input.n;
+  Triangulation delaunay = Triangulator("host").triangulate(mesh.coordinates, mesh.points);
+  mesh.triangles = std::move(delaunay.triangles);
+  mesh.neighbors = std::move(delaunay.neighbors);
+  mesh.edges.assign(mesh.triangles.size(), -1);
+  for (std::size_t h = 0; h < mesh.edges.size(); ++h) {
+    if (mesh.neighbors[h] >= 0) continue;
+    mesh.edges[h] = static_cast<std::int32_t>(mesh.edge_ends.size() / 2);
+    const std::size_t t = h - h % 3;
+    append(mesh.edge_ends, {mesh.triangles[t + (h + 1) % 3], mesh.triangles[t + (h + 2) % 3]});
+  }
+  return mesh;
+}
+
+/// The refinement of the points' triangulation, from the host's memory to it.
+Launches refine(host::Runtime& runtime, const Input& input, double min_angle, Json& summary_row) {
+  const constrained::MeshToRefine mesh = mesh_of(input);
+  Refinement wanted;
+  wanted.min_angle = min_angle;
+  constrained::refine(runtime, mesh, wanted);  // compiles what it needs
+  runtime.set_profiling(true);
+  runtime.record_launches();
+  runtime.reset_accounts();
+  const Stopwatch watch;
+  constrained::refine(runtime, mesh, wanted);
+  add_seconds(summary_row, {watch.seconds()});
+  Launches launches;
+  for (const host::Launch& launch : runtime.recorded_launches()) {
+    launches.push_back(
+        {launch.kernel, launch.work_items, launch.group, launch.busy, launch.elements, launch.bytes});
+    launches.back().seconds = launch.seconds;
+  }
+  const host::Accounts& accounts = runtime.accounts();
+  summary_row.update({{"kernel_launches", accounts.launches},
+                      {"host_waits", accounts.waits},
+                      {"bytes_to_device", accounts.bytes_to_device},
+                      {"bytes_to_host", accounts.bytes_to_host}});
+  runtime.stop_recording();
+  runtime.set_profiling(false);
+  return launches;
+}
+
 Result measure_launches(const LaunchesRequest& request) {
   constexpr int kReplace = 1;
   if (!request.tuning.empty()) setenv("FLAUNAY_TUNING", request.tuning.c_str(), kReplace);
@@ -102,11 +152,17 @@ Result measure_launches(const LaunchesRequest& request) {
   result.facts = {{"tuning", variable("FLAUNAY_TUNING")},
                   {"device_type", result.device.type},
                   {"compute_units", result.device.compute_units}};
-  for (const std::string& mode : request.modes) {
+  std::unique_ptr<host::Runtime> refining;
+  if (request.min_angle > 0) {
+    const auto device = host::find_device(opencl_device(request.device));
+    refining = std::make_unique<host::Runtime>(device, settings_for(device));
+  }
+  for (const std::string& mode : refining ? std::vector<std::string>{"refinement"} : request.modes) {
     for (const Input& input : inputs) {
       const Json keys{{"mode", mode}, {"distribution", input.distribution}, {"n", input.n}};
       Json row = keys;
-      const Launches launches = measure_call(triangulator, mode, input, request.runs, row);
+      const Launches launches = refining ? refine(*refining, input, request.min_angle, row)
+                                         : measure_call(triangulator, mode, input, request.runs, row);
       const auto longest = std::max_element(
           launches.begin(), launches.end(),
           [](const auto& a, const auto& b) { return steps_of_work_item(a) < steps_of_work_item(b); });
@@ -145,12 +201,14 @@ counted in a build of the kernels of its own (docs/counting.md); elements is the
 kernel goes through. merge_chain is the sum of the longest chains of merges, one launch after the other: from the
 leaves to the result, and from solved blocks. Launches of at least work_items_of_most_work work-items do 90 % of the
 work, by time and busy cores. Times are those of calls that do not count, the least of each launch. With --device host
-the counts are those of the host's kernels, which have no work-groups.)",
+the counts are those of the host's kernels, which have no work-groups. With --min-angle, a refinement is counted in
+place of modes, from a triangulation in host memory to a mesh there, once; its kernels count no steps.)",
     measure_launches, [](Options& options, LaunchesRequest& request) {
       options.sizes({1000000})
           .distributions({"uniform", "kuzmin", "line"})
           .modes()
           .add("--tuning", request.tuning, "sizes as FLAUNAY_TUNING has them, such as gpu")
+          .add("--min-angle", request.min_angle, "degrees: counts a refinement", CLI::NonNegativeNumber)
           .runs();
     });
 
