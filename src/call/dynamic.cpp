@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -223,6 +224,7 @@ struct DynamicTriangulation::Implementation {
   // What a batch is to do with the mesh. Points leave their old places before others come.
   struct Batch {
     Ids removed, moved, inserted;
+    std::set<std::int32_t> heirs;  // inserted where those with smaller numbers left a place that they shared
     bool is_large = false;
   };
 
@@ -232,6 +234,7 @@ struct DynamicTriangulation::Implementation {
     const std::size_t most = share(tuning_of(engine->runtime).removed_percent, mesh->triangles() / 2);
     std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), most);
     if (!out) return false;
+    batch.inserted.insert(batch.inserted.end(), batch.heirs.begin(), batch.heirs.end());
     batch.inserted.insert(batch.inserted.end(), out->begin(), out->end());
     Ids split;
     auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), split);
@@ -302,13 +305,8 @@ struct DynamicTriangulation::Implementation {
     const bool is_vertex = points.representative(v) == v;
     const std::int32_t next = points.leave(v);
     if (!is_vertex) return;
-    const auto at = std::find(batch.inserted.begin(), batch.inserted.end(), v);
-    if (at != batch.inserted.end()) {
-      batch.inserted.erase(at);
-    } else {
-      batch.removed.push_back(v);
-    }
-    if (next >= 0) batch.inserted.push_back(next);
+    if (batch.heirs.erase(v) == 0) batch.removed.push_back(v);
+    if (next >= 0) batch.heirs.insert(next);
   }
 
   Changes insert(const double* coordinates, std::size_t m) {
@@ -354,8 +352,7 @@ struct DynamicTriangulation::Implementation {
       Ids coming;
       for (std::size_t i = 0; i < m; ++i) {
         const std::int32_t v = numbers[i];
-        if (points.is_alone(v) &&
-            std::find(batch.inserted.begin(), batch.inserted.end(), v) == batch.inserted.end()) {
+        if (points.is_alone(v) && batch.heirs.count(v) == 0) {
           batch.moved.push_back(v);
         } else {
           leave(v, batch);
