@@ -251,6 +251,8 @@ struct DynamicTriangulation::Implementation {
       }
     }
     if (!leaving.empty()) {
+      Changes so_far;
+      mesh->end_batch(so_far);  // counts the triangles, of which some must be left
       if (is_constrained || !mesh->remove(leaving)) return false;
       mesh->insert(coming, points.coordinates(), split);
     }

@@ -518,6 +518,8 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
   // More passes over all rows would take longer than triangulating anew.
   constexpr int kMostPasses = 2;
   int passes = 0;
+  // So would flips if one row in so many is wrong, unless there are few.
+  constexpr std::size_t kRowsPerFlip = 100, kFewRows = 5000;
   Ids out;
   while (!vertices.empty()) {
     Arena::Scope scope(arena);
@@ -552,12 +554,13 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     runtime_.map(count, kernels::mark_moved{.is_over = 1, .vertices = moved, .moved_at = moved_at_});
     std::vector<cl_uint> are_turned(count);
     runtime_.read(turned, 0, count, are_turned.data());
+    const auto [at, wrong] = host::pack_positions(runtime_, found, rows.count, kernel::ROW_WRONG);
+    if (all && kRowsPerFlip * wrong > rows_ && rows_ > kFewRows) return {};
     Ids left, leave;
     for (std::size_t i = 0; i < count; ++i) (are_turned[i] != 0 ? leave : left).push_back(vertices[i]);
     is_turned = !leave.empty();
     if (!is_turned) {
       if (all && runtime_.read_one(minima, 0) != 1) return {};
-      const auto [at, wrong] = host::pack_positions(runtime_, found, rows.count, kernel::ROW_WRONG);
       const auto list = arena.allocate<cl_int>(wrong);
       runtime_.map(wrong,
                    kernels::append_rows{.positions = at, .all = rows.all, .from = rows.list, .list = list});
