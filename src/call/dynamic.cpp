@@ -171,8 +171,8 @@ struct DynamicTriangulation::Implementation {
     triangulate_anew({made.constraint_edges, made.edge_segments});
   }
 
-  // Triangulates all points, with these edges.
-  void triangulate_anew(const LivingConstraints& edges) {
+  // Triangulates all points, with these edges. Returns the corners of rows, all of which have triangles.
+  Ids triangulate_anew(const LivingConstraints& edges) {
     const updates::Living living = points.living();
     const std::size_t n = points.count();
     const double* const coordinates = living.coordinates.data();
@@ -212,6 +212,7 @@ struct DynamicTriangulation::Implementation {
     if (made.triangles.empty()) flat_edges = {made.constraint_edges, made.edge_segments};
     const call::Frame frame(*engine);
     mesh->load(points.coordinates(), points.shift(), made, of_corners);
+    return std::move(made.triangles);
   }
 
   LivingConstraints edges_now() {
@@ -278,15 +279,9 @@ struct DynamicTriangulation::Implementation {
       if (!is_done) changes.removed = mesh->old_triangles();
     }
     if (is_done) return;
-    triangulate_anew(edges_now());
+    changes.made_corners = triangulate_anew(edges_now());
     changes.made.resize(mesh->triangles());
     std::iota(changes.made.begin(), changes.made.end(), 0);
-    const call::Frame frame(*engine);
-    for (const kernel::mesh_row& row : mesh->read_rows()) {
-      if (is_triangle(row)) {
-        changes.made_corners.insert(changes.made_corners.end(), row.corner, row.corner + 3);
-      }
-    }
     changes.is_anew = true;
   }
 
