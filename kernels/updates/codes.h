@@ -24,6 +24,7 @@ INTEGER_CONSTANT(UPDATE_WAITS, 0);
 INTEGER_CONSTANT(UPDATE_DONE, 1);
 INTEGER_CONSTANT(UPDATE_TOO_LARGE, 2);  // the star of the vertex has too many triangles
 INTEGER_CONSTANT(UPDATE_NEEDLESS, 3);   // the edge is locally Delaunay
+INTEGER_CONSTANT(UPDATE_HOLDS, 4);      // what it claims
 
 // A number up to the mask, which is a power of two less one, for each such number, each once, without their order: if
 // ranks went up along the plane, each would wait for the one before.

@@ -36,7 +36,7 @@ static inline void list_around(const seen_mesh* mesh, int corner, star_around* s
     star->vertex[count] = from;
     star->row[count] = row;
     star->outside[count] = beyond;
-    star->facing[count] = number_facing(&mesh->rows[beyond], row);
+    star->facing[count] = number_across(&mesh->rows[beyond], vertex_at(mesh, previous_halfedge(at)));
     star->edge[count] = edge_at(mesh, at);
     if (from == INFINITE_VERTEX) {
       star->infinite = count;

@@ -3,8 +3,8 @@
 // swap_points exchanges the places of vertices with others. count_around and list_around_vertices, with a scan between:
 // the rows around vertices. check_rows: which rows have turned over, where the hull is not convex, and which rows have
 // an edge that is not locally Delaunay. mark_turned: the vertices that have moved of rows that have turned over. Flips
-// are made in steps: claim_wrong_edges claims both rows of an edge by atomic minima; flip_edges_of_rows: those that
-// hold both, with no better claim beside them, flip it.
+// are made in steps: claim_wrong_edges claims both rows of an edge by atomic minima; find_holding_rows: those that
+// hold both, with no better claim beside them; flip_edges_of_rows flips it.
 
 #define GHOSTS
 
@@ -186,11 +186,24 @@ static inline int is_free_around(const seen_mesh* mesh, int row, uint claim, glo
   return 1;
 }
 
+kernel void find_holding_rows(int n, uint first, uint mask, LIVING_MESH(), global const int* restrict corners,
+                              global const uint* restrict claims, global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n && states[i] == UPDATE_WAITS) {
+    const seen_mesh mesh = {rows, points};
+    const uint claim = first + scrambled((uint)i, mask);
+    const int t = row_of(corners[i]), u = neighbor_at(&mesh, corners[i]);
+    if (claims[t] == claim && claims[u] == claim && is_free_around(&mesh, t, claim, claims) &&
+        is_free_around(&mesh, u, claim, claims)) {
+      states[i] = UPDATE_HOLDS;
+    }
+  }
+}
+
 // next: two elements each, the rows to look at again, or -1. touched: from element first_touched on, two elements each,
 // rows that this batch has changed first here, or -1.
-kernel void flip_edges_of_rows(int n, uint first, uint mask, int batch, int first_touched,
-                               global const int* restrict list, global const int* restrict corners,
-                               global const uchar* restrict states, global const uint* restrict claims,
+kernel void flip_edges_of_rows(int n, int batch, int first_touched, global const int* restrict list,
+                               global const int* restrict corners, global const uchar* restrict states,
                                global mesh_row* restrict rows, global const double2* restrict points,
                                global volatile int* restrict rows_of, global int* restrict touched,
                                global int* restrict next, global uchar* restrict is_next) {
@@ -201,47 +214,43 @@ kernel void flip_edges_of_rows(int n, uint first, uint mask, int batch, int firs
     changed[0] = changed[1] = -1;
     next[2 * i] = list[i];
     next[2 * i + 1] = -1;
-    is_next[2 * i] = states[i] == UPDATE_WAITS;
+    is_next[2 * i] = states[i] != UPDATE_NEEDLESS;
     is_next[2 * i + 1] = 0;
-    const uint claim = first + scrambled((uint)i, mask);
-    if (states[i] == UPDATE_WAITS) {
+    if (states[i] == UPDATE_HOLDS) {
       const int t = row_of(corners[i]), u = neighbor_at(&mesh, corners[i]);
-      if (claims[t] == claim && claims[u] == claim && is_free_around(&mesh, t, claim, claims) &&
-          is_free_around(&mesh, u, claim, claims)) {
-        const int other = corner_facing(&mesh, u, t);
-        const int tc = corners[i] - 3 * t, ta = next_corner(tc), tb = corner_before(tc);
-        const int ud = other - 3 * u, ub = next_corner(ud), ua = corner_before(ud);
-        global mesh_row* const left = &rows[t];
-        global mesh_row* const right = &rows[u];
-        const int c = left->corner[tc], a = left->corner[ta], b = left->corner[tb], d = right->corner[ud];
-        const int beyond_a = left->neighbor[ta], edge_a = left->edge[ta], beyond_b = right->neighbor[ub],
-                  edge_b = right->edge[ub];
-        int is_first;
-        left->parent = new_stamp(left, batch, &is_first);
-        if (is_first) changed[0] = t;
-        right->parent = new_stamp(right, batch, &is_first);
-        if (is_first) changed[1] = u;
-        rows[beyond_a].neighbor[number_facing(&rows[beyond_a], t)] = u;
-        rows[beyond_b].neighbor[number_facing(&rows[beyond_b], u)] = t;
-        // (c, a, b) and (d, b, a) become (c, a, d) and (d, b, c).
-        left->corner[tb] = d;
-        left->neighbor[tc] = beyond_b;
-        left->edge[tc] = edge_b;
-        left->neighbor[ta] = u;
-        left->edge[ta] = NO_EDGE_THERE;
-        right->corner[ua] = c;
-        right->neighbor[ud] = beyond_a;
-        right->edge[ud] = edge_a;
-        right->neighbor[ub] = t;
-        right->edge[ub] = NO_EDGE_THERE;
-        write_shared(&rows_of[c], t);
-        write_shared(&rows_of[a], t);
-        write_shared(&rows_of[d], u);
-        write_shared(&rows_of[b], u);
-        next[2 * i] = t;
-        next[2 * i + 1] = u;
-        is_next[2 * i + 1] = 1;
-      }
+      const int other = corner_facing(&mesh, u, t);
+      const int tc = corners[i] - 3 * t, ta = next_corner(tc), tb = corner_before(tc);
+      const int ud = other - 3 * u, ub = next_corner(ud), ua = corner_before(ud);
+      global mesh_row* const left = &rows[t];
+      global mesh_row* const right = &rows[u];
+      const int c = left->corner[tc], a = left->corner[ta], b = left->corner[tb], d = right->corner[ud];
+      const int beyond_a = left->neighbor[ta], edge_a = left->edge[ta], beyond_b = right->neighbor[ub],
+                edge_b = right->edge[ub];
+      int is_first;
+      left->parent = new_stamp(left, batch, &is_first);
+      if (is_first) changed[0] = t;
+      right->parent = new_stamp(right, batch, &is_first);
+      if (is_first) changed[1] = u;
+      rows[beyond_a].neighbor[number_across(&rows[beyond_a], c)] = u;
+      rows[beyond_b].neighbor[number_across(&rows[beyond_b], d)] = t;
+      // (c, a, b) and (d, b, a) become (c, a, d) and (d, b, c).
+      left->corner[tb] = d;
+      left->neighbor[tc] = beyond_b;
+      left->edge[tc] = edge_b;
+      left->neighbor[ta] = u;
+      left->edge[ta] = NO_EDGE_THERE;
+      right->corner[ua] = c;
+      right->neighbor[ud] = beyond_a;
+      right->edge[ud] = edge_a;
+      right->neighbor[ub] = t;
+      right->edge[ub] = NO_EDGE_THERE;
+      write_shared(&rows_of[c], t);
+      write_shared(&rows_of[a], t);
+      write_shared(&rows_of[d], u);
+      write_shared(&rows_of[b], u);
+      next[2 * i] = t;
+      next[2 * i + 1] = u;
+      is_next[2 * i + 1] = 1;
     }
   }
 }

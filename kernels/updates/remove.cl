@@ -1,8 +1,8 @@
 // Vertices are removed from a mesh with ghosts, those whose stars are apart at once. Segments: the stars. One work-item
-// per vertex; steps of two passes each, until no vertex waits.
+// per vertex; steps of three passes each, until no vertex waits.
 //
-// claim_stars claims the rows around each by atomic minima. fill_stars: those that hold all of these, with no better
-// claim beside them, replace them by two rows fewer.
+// claim_stars claims the rows around each by atomic minima. find_holders: those that hold all of these, with no better
+// claim beside them. fill_stars: these replace them by two rows fewer.
 
 #define GHOSTS
 
@@ -50,23 +50,34 @@ static inline int holds_star(const seen_mesh* mesh, int corner, uint claim, glob
   return 1;
 }
 
+kernel void find_holders(int n, uint first, global const int* restrict list, LIVING_MESH(),
+                         global const uint* restrict claims, global const removed_vertex* restrict removed,
+                         global uchar* restrict states) {
+  const int i = get_global_id(0);
+  if (i < n && states[list[i]] == UPDATE_WAITS) {
+    const seen_mesh mesh = {rows, points};
+    const removed_vertex of = removed[list[i]];
+    if (holds_star(&mesh, of.corner, first + of.rank, claims)) states[list[i]] = UPDATE_HOLDS;
+  }
+}
+
 // offsets: the scanned sizes. touched: from element first_touched on, per row around a vertex one that this batch has
 // changed first here, or -1. waits: 1 for vertices that wait for the next step. triangles: incremented by what there
 // are more, modulo 2^32.
-kernel void fill_stars(int n, uint first, int batch, int first_touched, global const int* restrict list,
+kernel void fill_stars(int n, int batch, int first_touched, global const int* restrict list,
                        global const uint* restrict offsets, global mesh_row* restrict rows,
-                       global const double2* restrict points, global const uint* restrict claims,
-                       global volatile int* restrict rows_of, global removed_vertex* restrict removed,
-                       global uchar* restrict states, global int* restrict touched, global uchar* restrict waits,
+                       global const double2* restrict points, global volatile int* restrict rows_of,
+                       global removed_vertex* restrict removed, global uchar* restrict states,
+                       global int* restrict touched, global uchar* restrict waits,
                        global volatile uint* restrict triangles) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
     const removed_vertex of = removed[list[i]];
     const int state = states[list[i]];
-    const int holds = state == UPDATE_WAITS && holds_star(&mesh, of.corner, first + of.rank, claims);
+    const int holds = state == UPDATE_HOLDS;
     global int* const changed = touched + first_touched + offsets[i];
-    waits[i] = state == UPDATE_WAITS && !holds;
+    waits[i] = state == UPDATE_WAITS;
     if (!holds) {
       for (uint k = 0; k < offsets[i + 1] - offsets[i]; ++k) changed[k] = -1;
     } else {

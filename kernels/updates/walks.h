@@ -25,6 +25,11 @@ static inline int infinite_corner(GLOBAL const mesh_row* row) {
 static inline int number_of_vertex(GLOBAL const mesh_row* row, int vertex) {
   return row->corner[0] == vertex ? 0 : row->corner[1] == vertex ? 1 : 2;
 }
+// The number of the corner opposite to an edge that begins at this vertex. Unlike neighbours, corners are not written
+// while rows beside are.
+static inline int number_across(GLOBAL const mesh_row* row, int from) {
+  return corner_before(number_of_vertex(row, from));
+}
 static inline int kind_of_row(GLOBAL const mesh_row* row) {
   return row->corner[0] == NO_TRIANGLE ? ROW_FREE : infinite_corner(row) >= 0 ? ROW_GHOST : ROW_TRIANGLE;
 }
