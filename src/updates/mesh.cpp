@@ -346,13 +346,14 @@ std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& c
   }
   const auto placed_there = runtime_.upload(arena, std::move(placed));
   const kernels::living_mesh mesh{.rows = row_array_, .points = points_};
-  runtime_.map(count, kernels::locate_vertices{.living_mesh = mesh,
-                                               .hints = {.slabs = static_cast<int>(hints_.slabs),
-                                                         .xs = hints_.xs,
-                                                         .ys = hints_.ys,
-                                                         .vertices = hints_.vertices,
-                                                         .rows_of = rows_of_},
-                                               .placed = placed_there});
+  runtime_.map_in_small_groups(count,
+                               kernels::locate_vertices{.living_mesh = mesh,
+                                                        .hints = {.slabs = static_cast<int>(hints_.slabs),
+                                                                  .xs = hints_.xs,
+                                                                  .ys = hints_.ys,
+                                                                  .vertices = hints_.vertices,
+                                                                  .rows_of = rows_of_},
+                                                        .placed = placed_there});
   const auto states = arena.allocate<cl_uchar>(count);
   runtime_.fill(states, count, cl_uchar{kernel::POINT_WAITS});
   auto list = runtime_.upload(arena, counted(count));
@@ -544,7 +545,7 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     const RowList rows = all ? RowList{true, moved, rows_} : rows_around(moved, count);
     const auto found = arena.allocate<cl_uchar>(rows.count);
     const auto minima = runtime_.upload(arena, std::vector<cl_int>{0});
-    runtime_.map(
+    runtime_.map_in_small_groups(
         rows.count,
         kernels::check_rows{
             .all = rows.all, .list = rows.list, .living_mesh = mesh, .found = found, .minima = minima});
@@ -590,13 +591,13 @@ void Mesh::flip(RowList wrong) {
     const auto corners = arena.allocate<cl_int>(count), next = arena.allocate<cl_int>(2 * count);
     const auto states = arena.allocate<cl_uchar>(count), is_next = arena.allocate<cl_uchar>(2 * count);
     reserve_touched(2 * count);
-    runtime_.map(count, kernels::claim_wrong_edges{.first = first,
-                                                   .mask = mask,
-                                                   .list = wrong.list,
-                                                   .living_mesh = mesh,
-                                                   .claims = claims_,
-                                                   .corners = corners,
-                                                   .states = states});
+    runtime_.map_in_small_groups(count, kernels::claim_wrong_edges{.first = first,
+                                                                   .mask = mask,
+                                                                   .list = wrong.list,
+                                                                   .living_mesh = mesh,
+                                                                   .claims = claims_,
+                                                                   .corners = corners,
+                                                                   .states = states});
     runtime_.map(count, kernels::find_holding_rows{.first = first,
                                                    .mask = mask,
                                                    .living_mesh = mesh,
