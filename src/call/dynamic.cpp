@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -47,14 +45,6 @@ void check_count(std::size_t numbers, std::size_t n) {
   if (n > kMost || numbers + n > kMost) {
     throw Error(ErrorKind::input, fmt::format("{} points are inserted to {}: more than {} are not supported",
                                               n, numbers, kMost));
-  }
-}
-
-void check_finite(const double* coordinates, std::size_t n) {
-  geometry::check_coordinates(coordinates, n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = coordinates[2 * i], y = coordinates[2 * i + 1];
-    if (!std::isfinite(x) || !std::isfinite(y)) throw geometry::not_finite(i, x, y);
   }
 }
 
@@ -149,8 +139,8 @@ struct DynamicTriangulation::Implementation {
   void make(const double* coordinates, std::size_t n) {
     choose_engine();
     check_count(0, n);
-    check_finite(coordinates, n);
-    points.check_range(coordinates, nullptr, n);
+    geometry::check_coordinates(coordinates, n);
+    points.check_coordinates(coordinates, nullptr, n);
     points.append(coordinates, n);
     triangulate_anew({});
   }
@@ -160,13 +150,16 @@ struct DynamicTriangulation::Implementation {
     choose_engine();
     check_supported(constraints, wanted);
     check_count(0, n);
-    check_finite(coordinates, n);
+    geometry::check_coordinates(coordinates, n);
+    points.check_coordinates(coordinates, nullptr, n);
     ConstrainedOptions all = wanted;
     all.neighbors = true;
     const ConstrainedTriangulation made = call::constrain_and_leave(*owner, coordinates, {0, n}, constraints,
                                                                     all, call::request_of(all, false));
     points.append(coordinates, n);
-    points.append(made.added_points.data(), made.added_points.size() / 2);
+    const std::size_t added = made.added_points.size() / 2;
+    points.check_coordinates(made.added_points.data(), nullptr, added);
+    points.append(made.added_points.data(), added);
     is_constrained = true;
     triangulate_anew({made.constraint_edges, made.edge_segments});
   }
@@ -225,7 +218,6 @@ struct DynamicTriangulation::Implementation {
   // What a batch is to do with the mesh. Points leave their old places before others come.
   struct Batch {
     Ids removed, moved, inserted;
-    std::set<std::int32_t> heirs;  // inserted where those with smaller numbers left a place that they shared
     bool is_large = false;
   };
 
@@ -235,7 +227,6 @@ struct DynamicTriangulation::Implementation {
     const std::size_t most = share(tuning_of(engine->runtime).removed_percent, mesh->triangles() / 2);
     std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), most);
     if (!out) return false;
-    batch.inserted.insert(batch.inserted.end(), batch.heirs.begin(), batch.heirs.end());
     batch.inserted.insert(batch.inserted.end(), out->begin(), out->end());
     Ids split;
     auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), split);
@@ -297,20 +288,31 @@ struct DynamicTriangulation::Implementation {
     return changes;
   }
 
+  // Of points in one place, those with larger numbers leave first: then nobody takes it over who leaves, too.
+  std::vector<std::size_t> order_of_leaving(const std::int32_t* numbers, std::size_t m) const {
+    std::vector<std::size_t> order(m);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (points.share_places()) {
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return numbers[a] > numbers[b]; });
+    }
+    return order;
+  }
+
   // Takes a point from its place, for good or for another place.
   void leave(std::int32_t v, Batch& batch) {
     const bool is_vertex = points.representative(v) == v;
     const std::int32_t next = points.leave(v);
     if (!is_vertex) return;
-    if (batch.heirs.erase(v) == 0) batch.removed.push_back(v);
-    if (next >= 0) batch.heirs.insert(next);
+    batch.removed.push_back(v);
+    if (next >= 0) batch.inserted.push_back(next);
   }
 
   Changes insert(const double* coordinates, std::size_t m) {
     check_count(points.numbers(), m);
-    check_finite(coordinates, m);
+    geometry::check_coordinates(coordinates, m);
     Changes changes = run(m, [&] {
-      points.check_range(coordinates, nullptr, m);
+      points.check_coordinates(coordinates, nullptr, m);
       Batch batch;
       batch.is_large = m > share(tuning_of(engine->runtime).inserted_percent, points.count());
       const std::size_t first = points.numbers();
@@ -332,7 +334,7 @@ struct DynamicTriangulation::Implementation {
     return run(m, [&] {
       Batch batch;
       batch.is_large = m > share(tuning_of(engine->runtime).removed_percent, points.count());
-      for (std::size_t i = 0; i < m; ++i) {
+      for (const std::size_t i : order_of_leaving(numbers, m)) {
         leave(numbers[i], batch);
         points.remove(numbers[i]);
       }
@@ -342,14 +344,14 @@ struct DynamicTriangulation::Implementation {
 
   Changes move(const std::int32_t* numbers, const double* coordinates, std::size_t m) {
     check_numbers(numbers, m, "moved");
-    check_finite(coordinates, m);
+    geometry::check_coordinates(coordinates, m);
     Changes changes = run(m, [&] {
-      points.check_range(coordinates, numbers, m);
+      points.check_coordinates(coordinates, numbers, m);
       Batch batch;
       Ids coming;
-      for (std::size_t i = 0; i < m; ++i) {
+      for (const std::size_t i : order_of_leaving(numbers, m)) {
         const std::int32_t v = numbers[i];
-        if (points.is_alone(v) && batch.heirs.count(v) == 0) {
+        if (points.is_alone(v)) {
           batch.moved.push_back(v);
         } else {
           leave(v, batch);

@@ -3,16 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
+#include "geometry/sort.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/updates/insert.cl.hpp"
 #include "launchers/updates/move.cl.hpp"
 #include "launchers/updates/remove.cl.hpp"
 #include "launchers/updates/rows.cl.hpp"
 #include "points/download.hpp"
+#include "predicates/planar.h"
 #include "refinement/codes.h"
 #include "updates/codes.h"
 #include "updates/limits.h"
@@ -31,23 +35,6 @@ namespace {
 
 // Their corners are counted by ints.
 constexpr std::size_t kMostRows = std::size_t{1} << 29;
-// The smallest power of two that is at least n, less one.
-cl_uint mask_for(std::size_t n) {
-  cl_uint mask = 0;
-  while (mask + std::size_t{1} < n) mask = 2 * mask + 1;
-  return mask;
-}
-
-// Half of the bits of x, at even places.
-std::uint64_t spread(std::uint32_t x) {
-  std::uint64_t bits = x;
-  bits = (bits | bits << 16) & 0x0000ffff0000ffff;
-  bits = (bits | bits << 8) & 0x00ff00ff00ff00ff;
-  bits = (bits | bits << 4) & 0x0f0f0f0f0f0f0f0f;
-  bits = (bits | bits << 2) & 0x3333333333333333;
-  return (bits | bits << 1) & 0x5555555555555555;
-}
-
 Ids counted(std::size_t n) {
   Ids all(n);
   std::iota(all.begin(), all.end(), 0);
@@ -268,47 +255,27 @@ Ids Mesh::old_triangles() {
 Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<Found>& doubled) const {
   if (vertices.size() < 2) return vertices;
-  double low[2], high[2];
-  for (std::size_t k = 0; k < 2; ++k) {
-    low[k] = std::numeric_limits<double>::infinity();
-    high[k] = -low[k];
-    for (const std::int32_t v : vertices) {
-      const double x = coordinates[2 * static_cast<std::size_t>(v) + k];
-      low[k] = std::min(low[k], x);
-      high[k] = std::max(high[k], x);
-    }
-  }
-  std::vector<std::pair<std::uint64_t, std::int32_t>> keys;
-  keys.reserve(vertices.size());
-  for (const std::int32_t v : vertices) {
-    std::uint64_t key = 0;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double part =
-          (coordinates[2 * static_cast<std::size_t>(v) + k] / 2 - low[k] / 2) / (high[k] / 2 - low[k] / 2);
-      key |= spread(static_cast<std::uint32_t>(part > 0 ? part * 0xfffff : 0)) << k;
-    }
-    keys.emplace_back(key, v);
-  }
-  std::sort(keys.begin(), keys.end());
   const auto place = [&](std::int32_t v) {
     const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
-    return std::pair(p[0], p[1]);
+    return double2{p[0], p[1]};
   };
+  std::vector<geometry::Keyed> keys = geometry::sort_by_place(vertices, place);
   vertices.clear();
   for (auto begin = keys.begin(); begin != keys.end();) {
     auto end = begin + 1;
-    while (end != keys.end() && end->first == begin->first) ++end;
+    while (end != keys.end() && end->key == begin->key) ++end;
     if (end - begin > 1) {
       std::sort(begin, end, [&](const auto& a, const auto& b) {
-        return place(a.second) < place(b.second) ||
-               (place(a.second) == place(b.second) && a.second < b.second);
+        const double2 p = place(a.index), q = place(b.index);
+        return std::tie(p.x, p.y, a.index) < std::tie(q.x, q.y, b.index);
       });
     }
     for (auto at = begin; at != end; ++at) {
-      if (at != begin && place(at->second) == place(vertices.back())) {
-        doubled.push_back({at->second, vertices.back()});
+      const bool is_doubled = at != begin && !kernel::comes_before(place(vertices.back()), place(at->index));
+      if (is_doubled) {
+        doubled.push_back({at->index, vertices.back()});
       } else {
-        vertices.push_back(at->second);
+        vertices.push_back(at->index);
       }
     }
     begin = end;
@@ -321,7 +288,7 @@ std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& c
   vertices = in_order_of_place(std::move(vertices), coordinates, doubled);
   const std::size_t count = vertices.size();
   if (count == 0) return {};
-  const cl_uint mask = mask_for(count);
+  const cl_uint mask = static_cast<cl_uint>(std::bit_ceil(count) - 1);
   const std::size_t rows_before = rows_;
   std::vector<placed_vertex> placed(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -422,7 +389,7 @@ std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& c
 bool Mesh::remove(const Ids& vertices) {
   const std::size_t count = vertices.size();
   if (count == 0) return true;
-  const cl_uint mask = mask_for(count);
+  const cl_uint mask = static_cast<cl_uint>(std::bit_ceil(count) - 1);
   std::vector<removed_vertex> removed(count);
   for (std::size_t i = 0; i < count; ++i) {
     removed[i].vertex = vertices[i];
@@ -587,7 +554,8 @@ void Mesh::flip(RowList wrong) {
   while (wrong.count > 0) {
     Arena::Scope scope(arena);
     const std::size_t count = wrong.count;
-    const cl_uint mask = mask_for(count), first = take_claims(std::size_t{mask} + 1);
+    const cl_uint mask = static_cast<cl_uint>(std::bit_ceil(count) - 1),
+                  first = take_claims(std::size_t{mask} + 1);
     const auto corners = arena.allocate<cl_int>(count), next = arena.allocate<cl_int>(2 * count);
     const auto states = arena.allocate<cl_uchar>(count), is_next = arena.allocate<cl_uchar>(2 * count);
     reserve_touched(2 * count);

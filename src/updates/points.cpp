@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "points/codes.h"
+
 namespace flaunay::updates {
 
 void Points::append(const double* coordinates, std::size_t n) {
-  magnitudes_ = geometry::joined(magnitudes_, geometry::inspect(coordinates, 0, n));
   coordinates_.insert(coordinates_.end(), coordinates, coordinates + 2 * n);
   for (std::size_t i = 0; i < n; ++i) {
     representatives_.push_back(static_cast<std::int32_t>(representatives_.size()));
@@ -47,13 +48,14 @@ void Points::move(std::int32_t v, const double* coordinates) {
 }
 
 void Points::join(std::int32_t v, std::int32_t representative) {
-  std::set<std::int32_t>& others = others_[representative];
-  others.insert(v);
+  std::set<std::int32_t> joining;
   if (const auto own = others_.find(v); own != others_.end()) {
-    others.insert(own->second.begin(), own->second.end());
+    joining = std::move(own->second);
     others_.erase(own);
   }
-  for (const std::int32_t other : others) representatives_[static_cast<std::size_t>(other)] = representative;
+  joining.insert(v);
+  for (const std::int32_t other : joining) representatives_[static_cast<std::size_t>(other)] = representative;
+  others_[representative].merge(joining);
 }
 
 std::vector<std::int32_t> Points::sample(std::size_t n) const {
@@ -67,8 +69,13 @@ std::vector<std::int32_t> Points::sample(std::size_t n) const {
   return chosen;
 }
 
-void Points::check_range(const double* coordinates, const std::int32_t* numbers, std::size_t m) {
-  geometry::Magnitudes all = geometry::joined(magnitudes_, geometry::inspect(coordinates, 0, m));
+void Points::check_coordinates(const double* coordinates, const std::int32_t* numbers, std::size_t m) {
+  const geometry::Magnitudes given = geometry::inspect(coordinates, 0, m);
+  if (given.bad != kernel::NO_BAD) {
+    const auto bad = static_cast<std::size_t>(given.bad);
+    throw geometry::not_finite(bad, coordinates[2 * bad], coordinates[2 * bad + 1]);
+  }
+  geometry::Magnitudes all = geometry::joined(magnitudes_, given);
   if (geometry::differ_too_much(all)) {
     // Points that are gone may have made the range larger.
     std::vector<double> others;

@@ -21,10 +21,12 @@ struct Living {
 
 class Points {
  public:
-  /// Adds n points. They represent themselves until it is known whether others do.
+  /// Adds n points, which are checked already. They represent themselves until it is known whether others do.
   void append(const double* coordinates, std::size_t n);
   /// Whether a point represents itself and no other.
   bool is_alone(std::int32_t v) const { return representative(v) == v && others_.count(v) == 0; }
+  /// Whether there are points in one place.
+  bool share_places() const { return !others_.empty(); }
   /// Takes a point from its place. Returns the one that represents those that are left there, if that was
   /// this one; otherwise -1.
   std::int32_t leave(std::int32_t v);
@@ -35,9 +37,10 @@ class Points {
   /// Makes a point, with those that it represents, represented by one in its place.
   void join(std::int32_t v, std::int32_t representative);
 
-  /// Throws Error(input) if m further points, or these ones in new places, differ too much in magnitude from
-  /// all others. numbers: of the points, which must be marked; null for further ones.
-  void check_range(const double* coordinates, const std::int32_t* numbers, std::size_t m);
+  /// Throws Error(input) if one of m further points, or of these ones in new places, is not finite, or if
+  /// they differ too much in magnitude from all others. numbers: of the points, which must be marked; null
+  /// for further ones.
+  void check_coordinates(const double* coordinates, const std::int32_t* numbers, std::size_t m);
   /// Returns the first of m entries that is no living point, or the same as one before; m if there is none.
   std::size_t mark(const std::int32_t* numbers, std::size_t m);
   /// Whether the last batch marked has this point.
