@@ -9,15 +9,16 @@
 #include <utility>
 
 #include "call/implementation.hpp"
+#include "call/refine.hpp"
+#include "geometry/halfedges.hpp"
 
 namespace flaunay::call {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
+using geometry::next_halfedge;
 using geometry::Point;
-
-std::size_t after(std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-std::size_t before(std::size_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+using geometry::previous_halfedge;
 
 std::uint64_t directed(std::int32_t from, std::int32_t to) {
   return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
@@ -32,14 +33,6 @@ void keep(const std::vector<bool>& is_left, std::size_t columns, std::vector<T>&
     if (is_left[i / columns]) values[to++] = values[i];
   }
   values.resize(to);
-}
-
-// Numbers regions by their first triangles.
-void renumber(Ids& regions) {
-  std::unordered_map<std::int32_t, std::int32_t> numbers;
-  for (std::int32_t& region : regions) {
-    region = numbers.emplace(region, static_cast<std::int32_t>(numbers.size())).first->second;
-  }
 }
 
 // Leaves out triangles of a result.
@@ -59,7 +52,7 @@ void leave_only(const std::vector<bool>& is_left, ConstrainedTriangulation& resu
   for (std::int32_t& neighbor : result.neighbors) neighbor = neighbor < 0 ? neighbor : numbers[neighbor];
   keep(is_left, 1, result.depths);
   keep(is_left, 1, result.regions);
-  renumber(result.regions);
+  renumber_regions(result.regions);
 }
 
 }  // namespace
@@ -110,7 +103,8 @@ void GivenMesh::turn_left() {
 void GivenMesh::find_neighbors() {
   std::unordered_map<std::uint64_t, std::size_t> sides(triangles_.size());
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto [side, is_new] = sides.emplace(directed(triangles_[after(c)], triangles_[before(c)]), c);
+    const auto [side, is_new] =
+        sides.emplace(directed(triangles_[next_halfedge(c)], triangles_[previous_halfedge(c)]), c);
     if (is_new) continue;
     throw Error(ErrorKind::input,
                 fmt::format("triangles {} and {} of the mesh that is to be refined lie on each other",
@@ -119,7 +113,7 @@ void GivenMesh::find_neighbors() {
   neighbors_.assign(triangles_.size(), -1);
   first_corner_.assign(points_.size() + 1, 0);
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto beyond = sides.find(directed(triangles_[before(c)], triangles_[after(c)]));
+    const auto beyond = sides.find(directed(triangles_[previous_halfedge(c)], triangles_[next_halfedge(c)]));
     if (beyond != sides.end()) neighbors_[c] = static_cast<std::int32_t>(beyond->second / 3);
     ++first_corner_[static_cast<std::size_t>(triangles_[c]) + 1];
   }
@@ -136,7 +130,7 @@ void GivenMesh::add_segments(const Constraints& constraints) {
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
     const auto t = static_cast<std::int32_t>(c / 3), beyond = neighbors_[c];
     if (beyond >= 0 && (beyond < t || have_same_attributes(t, beyond))) continue;
-    segments_.insert(segments_.end(), {triangles_[after(c)], triangles_[before(c)]});
+    segments_.insert(segments_.end(), {triangles_[next_halfedge(c)], triangles_[previous_halfedge(c)]});
     border_.push_back(static_cast<std::int32_t>(c));
   }
   constraints_.segments = segments_.data();
@@ -160,7 +154,7 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
   std::unordered_map<std::uint64_t, std::int32_t> sides;  // directed, with the triangle on the left
   for (std::size_t c = 0; c < result.triangles.size(); ++c) {
     if (result.constrained[c] == 0 && result.neighbors[c] >= 0) continue;
-    sides.emplace(directed(result.triangles[after(c)], result.triangles[before(c)]),
+    sides.emplace(directed(result.triangles[next_halfedge(c)], result.triangles[previous_halfedge(c)]),
                   static_cast<std::int32_t>(c / 3));
   }
   Ids labels(result.triangles.size() / 3, -1), open;
@@ -179,7 +173,8 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
   for (std::size_t i = 0; i < border_.size(); ++i) {
     const auto c = static_cast<std::size_t>(border_[i]);
     // Edges run from the lexicographically smaller end of the segment.
-    const Point a = point(coordinates, triangles_[after(c)]), b = point(coordinates, triangles_[before(c)]);
+    const Point a = point(coordinates, triangles_[next_halfedge(c)]),
+                b = point(coordinates, triangles_[previous_halfedge(c)]);
     const bool is_turned = kernel::comes_before(b, a);
     for (std::int32_t p = result.piece_offsets[first + i]; p < result.piece_offsets[first + i + 1]; ++p) {
       for (std::int32_t e = result.piece_edges[2 * p]; e < result.piece_edges[2 * p + 1]; ++e) {
@@ -198,8 +193,8 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
     open.pop_back();
     for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
       if (result.neighbors[c] < 0) continue;
-      if (result.constrained[c] != 0 &&
-          is_border.count(directed(result.triangles[after(c)], result.triangles[before(c)])) > 0)
+      if (result.constrained[c] != 0 && is_border.count(directed(result.triangles[next_halfedge(c)],
+                                                                 result.triangles[previous_halfedge(c)])) > 0)
         continue;
       label(result.neighbors[c], labels[t]);
     }
@@ -214,7 +209,7 @@ std::int32_t GivenMesh::triangle_with(Point place, std::int32_t vertex) const {
   const Point from = points_[vertex];
   for (std::int32_t i = first_corner_[vertex]; i < first_corner_[vertex + 1]; ++i) {
     auto corner = static_cast<std::size_t>(corners_at_[i]);
-    std::int32_t a = triangles_[after(corner)], b = triangles_[before(corner)];
+    std::int32_t a = triangles_[next_halfedge(corner)], b = triangles_[previous_halfedge(corner)];
     if (predicates.orient(from, points_[a], place) < 0 || predicates.orient(from, place, points_[b]) <= 0)
       continue;
     for (std::size_t steps = 0; steps < given_.count; ++steps) {

@@ -346,18 +346,6 @@ void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& 
   result.refinement = std::move(mesh.report);
 }
 
-// By their first triangles.
-void renumber_regions(Ids& regions) {
-  if (regions.empty()) return;
-  Ids numbers(*std::max_element(regions.begin(), regions.end()) + 1, -1);
-  std::int32_t next = 0;
-  for (std::int32_t& region : regions) {
-    std::int32_t& number = numbers[region];
-    if (number < 0) number = next++;
-    region = number;
-  }
-}
-
 RefinedMesh refine_on(Engine& engine, const MeshToRefine& mesh, bool profile, const Refinement& wanted,
                       Statistics& statistics) {
   RefinedMesh refined;
@@ -505,6 +493,17 @@ RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine
 }
 
 }  // namespace
+
+void renumber_regions(Ids& regions) {
+  if (regions.empty()) return;
+  Ids numbers(*std::max_element(regions.begin(), regions.end()) + 1, -1);
+  std::int32_t next = 0;
+  for (std::int32_t& region : regions) {
+    std::int32_t& number = numbers[region];
+    if (number < 0) number = next++;
+    region = number;
+  }
+}
 
 void check_refinement(const Refinement& wanted, std::size_t seeds) {
   constrained::quality_bounds(wanted.min_angle);

@@ -13,6 +13,9 @@ namespace flaunay::call {
 /// Throws Error(usage), which names the member, if a refinement cannot be what is meant.
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
+/// Numbers regions by their first triangles.
+void renumber_regions(std::vector<std::int32_t>& regions);
+
 /// Refines the result, which must have neighbours: on the engine for host memory or, if little is expected
 /// and no device was named, on the calling thread. Several sets are refined one by one, so that each is as if
 /// it were alone; small ones on threads of the host. All arrays but half-edges, areas and markers are
