@@ -71,6 +71,21 @@ static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, ui
   return found;
 }
 
+// Writes the triangle between a vertex and a side of its star, but for what it inherits. after, before: the rows beside
+// it. edge: what the vertex is on, between vertices a and b, or NO_EDGE_THERE.
+static inline void write_star_row(GLOBAL mesh_row* row, int vertex, star_side side, int to, int after, int before,
+                                  int edge, int a, int b) {
+  row->corner[0] = vertex;
+  row->corner[1] = side.from;
+  row->corner[2] = to;
+  row->neighbor[0] = side.outside;
+  row->neighbor[1] = after;
+  row->neighbor[2] = before;
+  row->edge[0] = side.edge;
+  row->edge[1] = to == a || to == b ? edge : NO_EDGE_THERE;
+  row->edge[2] = side.from == a || side.from == b ? edge : NO_EDGE_THERE;
+}
+
 END_SHARED
 
 #endif

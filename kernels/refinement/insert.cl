@@ -337,28 +337,21 @@ kernel void insert_stars(int n, int step, int first_made, global const int* rest
       if (!is_open) before = of.count < count - 1 ? of.first_row + count - 1 - of.count : star[count - 1].row;
       const int row_of_first = row;
       for (int k = 0; k < count; ++k) {
-        const star_side side = star[k];
+        star_side side = star[k];
+        side.edge = thawed(side.edge);
         const int is_last = k + 1 == count;
         const int to = is_last ? (is_open ? of.from : star[0].from) : star[k + 1].from;
         const int after = is_last            ? (is_open ? -1 : row_of_first)
                           : k + 1 < of.count ? star[k + 1].row
                                              : of.first_row + k + 1 - of.count;
         global mesh_row* const written = &rows[row];
-        written->corner[0] = of.vertex;
-        written->corner[1] = side.from;
-        written->corner[2] = to;
-        written->neighbor[0] = side.outside;
-        written->neighbor[1] = after;
-        written->neighbor[2] = before;
-        written->edge[0] = thawed(side.edge);
-        written->edge[1] = to == of.from || to == of.to ? edge : NO_EDGE_THERE;
-        written->edge[2] = side.from == of.from || side.from == of.to ? edge : NO_EDGE_THERE;
+        write_star_row(written, of.vertex, side, to, after, before, edge, of.from, of.to);
         written->parent = side.parent;
         written->changed = step;
         if (side.outside >= 0) {
           rows[side.outside].neighbor[side.facing] = row;
           write_shared((global volatile int*)&rows[side.outside].changed, step);
-          if (side.edge >= 0) rows[side.outside].edge[side.facing] = thawed(side.edge);
+          if (side.edge >= 0) rows[side.outside].edge[side.facing] = side.edge;
         }
         row_keys[row] = NO_KEY;
         refused[row] = EXCUSED_NOT;

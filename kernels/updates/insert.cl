@@ -167,15 +167,7 @@ kernel void insert_around(int n, int batch, int first_touched, global const int*
         global mesh_row* const written = &rows[row];
         int is_first;
         written->parent = new_stamp(written, batch, &is_first);
-        written->corner[0] = of.vertex;
-        written->corner[1] = side.from;
-        written->corner[2] = to;
-        written->neighbor[0] = side.outside;
-        written->neighbor[1] = after;
-        written->neighbor[2] = before;
-        written->edge[0] = side.edge;
-        written->edge[1] = of.edge >= 0 && (to == of.from || to == of.to) ? of.edge : NO_EDGE_THERE;
-        written->edge[2] = of.edge >= 0 && (side.from == of.from || side.from == of.to) ? of.edge : NO_EDGE_THERE;
+        write_star_row(written, of.vertex, side, to, after, before, of.edge, of.from, of.to);
         rows[side.outside].neighbor[side.facing] = row;
         if (side.from >= 0) write_shared(&rows_of[side.from], row);
         touched[first_touched + (int)first + k] = is_first ? row : -1;
