@@ -4,6 +4,7 @@
 #define FLAUNAY_CLAIMED_CAVITIES_H
 
 #include "refinement/cavities.h"
+#include "refinement/ranks.h"
 
 #ifndef FIXED_POINT
 

@@ -110,13 +110,6 @@ kernel void list_places(int n, global const int* restrict positions, global cons
   if (i < n) places_of[order[positions[i]]] = i;
 }
 
-// Spreads numbers up to a mask, which is one less than a power of two.
-static inline uint shuffled(uint x, uint mask) {
-  x = (x * 0x9e3779b1u) & mask;
-  x ^= x >> 7;
-  return (x * 0x85ebca6bu) & mask;
-}
-
 // n proposals, of which the points are inserted; places_of: their places in the order of keys. At most `most` are
 // inserted. Ranks are behind those of `first` constraints, and shuffled: points whose cavities overlap one after the
 // other would wait for each other in long chains. Vertices and rows are numbered in the order of the list, which is

@@ -8,6 +8,7 @@
 // inherit from those before. forget_changed and list_changed: what the rounds that follow test.
 
 #include "refinement/arguments.h"
+#include "refinement/flips.h"
 #include "refinement/limits.h"
 #include "refinement/moves.h"
 #include "refinement/records.h"
@@ -125,22 +126,6 @@ kernel void claim_flips(int n, global const int* restrict corners, global const 
   }
 }
 
-// The two rows beside an edge that is flipped, its corner in each, and what is beyond the two sides that change hands.
-typedef struct {
-  int row, k, beyond, j, from_row, from_beyond;
-} flip_place;
-
-static inline flip_place place_of_flip(global const mesh_row* rows, int corner) {
-  flip_place place;
-  place.row = row_of(corner);
-  place.k = corner - 3 * place.row;
-  place.beyond = rows[place.row].neighbor[place.k];
-  place.j = number_facing(&rows[place.beyond], place.row);
-  place.from_row = rows[place.row].neighbor[next_corner(place.k)];
-  place.from_beyond = rows[place.beyond].neighbor[next_corner(place.j)];
-  return place;
-}
-
 // wins: 0 for those that have a better one at or beside their rows; otherwise from bits 1 and 3 on the numbers of the
 // corners that face from_row and from_beyond.
 kernel void decide_flips(int n, global const int* restrict corners, global const mesh_row* restrict rows,
@@ -166,22 +151,7 @@ kernel void flip(int n, uint next_pass, global const int* restrict corners, glob
   const int i = get_global_id(0);
   if (i < n && wins[i]) {
     const flip_place at = place_of_flip(rows, corners[i]);
-    const mesh_row a = rows[at.row], b = rows[at.beyond];
-    const int a1 = next_corner(at.k), a2 = corner_before(at.k), b1 = next_corner(at.j), b2 = corner_before(at.j);
-    const mesh_row made_of_a = {{a.corner[at.k], a.corner[a1], b.corner[at.j]},
-                                {b.neighbor[b1], at.beyond, a.neighbor[a2]},
-                                {b.edge[b1], NO_EDGE_THERE, a.edge[a2]},
-                                a.parent,
-                                0};
-    const mesh_row made_of_b = {{b.corner[at.j], b.corner[b1], a.corner[at.k]},
-                                {a.neighbor[a1], at.row, b.neighbor[b2]},
-                                {a.edge[a1], NO_EDGE_THERE, b.edge[b2]},
-                                b.parent,
-                                0};
-    rows[at.row] = made_of_a;
-    rows[at.beyond] = made_of_b;
-    if (at.from_row >= 0) rows[at.from_row].neighbor[wins[i] >> 1 & 3] = at.beyond;
-    if (at.from_beyond >= 0) rows[at.from_beyond].neighbor[wins[i] >> 3] = at.row;
+    flip_rows(rows, at, wins[i] >> 1 & 3, wins[i] >> 3);
     atomic_max(&changes[at.beyond], next_pass);
     atomic_max(&changes[at.row], next_pass);
   } else if (i < n) {

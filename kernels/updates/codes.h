@@ -26,14 +26,6 @@ INTEGER_CONSTANT(UPDATE_TOO_LARGE, 2);  // the star of the vertex has too many t
 INTEGER_CONSTANT(UPDATE_NEEDLESS, 3);   // the edge is locally Delaunay
 INTEGER_CONSTANT(UPDATE_HOLDS, 4);      // what it claims
 
-// A number up to the mask, which is a power of two less one, for each such number, each once, without their order: if
-// ranks went up along the plane, each would wait for the one before.
-static inline uint scrambled(uint i, uint mask) {
-  i = i * 0x2c1b3c6du & mask;
-  i = (i ^ i >> 3) * 0x297a2d39u & mask;
-  return (i ^ i >> 5) * 0x9e3779b1u & mask;
-}
-
 END_SHARED
 
 #endif

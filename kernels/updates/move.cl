@@ -10,6 +10,8 @@
 
 #include "constrained/meanwhile.h"
 #include "operations/prefetch.h"
+#include "refinement/flips.h"
+#include "refinement/ranks.h"
 #include "refinement/records.h"
 #include "updates/arguments.h"
 #include "updates/records.h"
@@ -169,7 +171,7 @@ kernel void claim_wrong_edges(int n, uint first, uint mask, global const int* re
       if (is_wrong_edge(&mesh, 3 * list[i] + k)) corner = 3 * list[i] + k;
     }
     if (corner >= 0) {
-      const uint claim = first + scrambled((uint)i, mask);
+      const uint claim = first + shuffled((uint)i, mask);
       atomic_min(&claims[row_of(corner)], claim);
       atomic_min(&claims[neighbor_at(&mesh, corner)], claim);
     }
@@ -191,7 +193,7 @@ kernel void find_holding_rows(int n, uint first, uint mask, LIVING_MESH(), globa
   const int i = get_global_id(0);
   if (i < n && states[i] == UPDATE_WAITS) {
     const seen_mesh mesh = {rows, points};
-    const uint claim = first + scrambled((uint)i, mask);
+    const uint claim = first + shuffled((uint)i, mask);
     const int t = row_of(corners[i]), u = neighbor_at(&mesh, corners[i]);
     if (claims[t] == claim && claims[u] == claim && is_free_around(&mesh, t, claim, claims) &&
         is_free_around(&mesh, u, claim, claims)) {
@@ -204,12 +206,11 @@ kernel void find_holding_rows(int n, uint first, uint mask, LIVING_MESH(), globa
 // rows that this batch has changed first here, or -1.
 kernel void flip_edges_of_rows(int n, int batch, int first_touched, global const int* restrict list,
                                global const int* restrict corners, global const uchar* restrict states,
-                               global mesh_row* restrict rows, global const double2* restrict points,
-                               global volatile int* restrict rows_of, global int* restrict touched,
-                               global int* restrict next, global uchar* restrict is_next) {
+                               global mesh_row* restrict rows, global volatile int* restrict rows_of,
+                               global int* restrict touched, global int* restrict next,
+                               global uchar* restrict is_next) {
   const int i = get_global_id(0);
   if (i < n) {
-    const seen_mesh mesh = {rows, points};
     global int* const changed = touched + first_touched + 2 * i;
     changed[0] = changed[1] = -1;
     next[2 * i] = list[i];
@@ -217,37 +218,18 @@ kernel void flip_edges_of_rows(int n, int batch, int first_touched, global const
     is_next[2 * i] = states[i] != UPDATE_NEEDLESS;
     is_next[2 * i + 1] = 0;
     if (states[i] == UPDATE_HOLDS) {
-      const int t = row_of(corners[i]), u = neighbor_at(&mesh, corners[i]);
-      const int other = corner_facing(&mesh, u, t);
-      const int tc = corners[i] - 3 * t, ta = next_corner(tc), tb = corner_before(tc);
-      const int ud = other - 3 * u, ub = next_corner(ud), ua = corner_before(ud);
-      global mesh_row* const left = &rows[t];
-      global mesh_row* const right = &rows[u];
-      const int c = left->corner[tc], a = left->corner[ta], b = left->corner[tb], d = right->corner[ud];
-      const int beyond_a = left->neighbor[ta], edge_a = left->edge[ta], beyond_b = right->neighbor[ub],
-                edge_b = right->edge[ub];
+      const flip_place at = place_of_flip(rows, corners[i]);
+      const int t = at.row, u = at.beyond, c = rows[t].corner[at.k], d = rows[u].corner[at.j];
       int is_first;
-      left->parent = new_stamp(left, batch, &is_first);
+      rows[t].parent = new_stamp(&rows[t], batch, &is_first);
       if (is_first) changed[0] = t;
-      right->parent = new_stamp(right, batch, &is_first);
+      rows[u].parent = new_stamp(&rows[u], batch, &is_first);
       if (is_first) changed[1] = u;
-      rows[beyond_a].neighbor[number_across(&rows[beyond_a], c)] = u;
-      rows[beyond_b].neighbor[number_across(&rows[beyond_b], d)] = t;
-      // (c, a, b) and (d, b, a) become (c, a, d) and (d, b, c).
-      left->corner[tb] = d;
-      left->neighbor[tc] = beyond_b;
-      left->edge[tc] = edge_b;
-      left->neighbor[ta] = u;
-      left->edge[ta] = NO_EDGE_THERE;
-      right->corner[ua] = c;
-      right->neighbor[ud] = beyond_a;
-      right->edge[ud] = edge_a;
-      right->neighbor[ub] = t;
-      right->edge[ub] = NO_EDGE_THERE;
-      write_shared(&rows_of[c], t);
-      write_shared(&rows_of[a], t);
-      write_shared(&rows_of[d], u);
-      write_shared(&rows_of[b], u);
+      flip_rows(rows, at, number_across(&rows[at.from_row], c), number_across(&rows[at.from_beyond], d));
+      for (int k = 0; k < 2; ++k) {
+        write_shared(&rows_of[rows[t].corner[k]], t);
+        write_shared(&rows_of[rows[u].corner[k]], u);
+      }
       next[2 * i] = t;
       next[2 * i + 1] = u;
       is_next[2 * i + 1] = 1;

@@ -18,6 +18,7 @@
 #include "points/download.hpp"
 #include "predicates/planar.h"
 #include "refinement/codes.h"
+#include "refinement/ranks.h"
 #include "updates/codes.h"
 #include "updates/limits.h"
 
@@ -294,7 +295,7 @@ std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& c
   for (std::size_t i = 0; i < count; ++i) {
     placed[i].vertex = vertices[i];
     placed[i].found = placed[i].edge = -1;
-    placed[i].rank = kernel::scrambled(static_cast<cl_uint>(i), mask);
+    placed[i].rank = kernel::shuffled(static_cast<cl_uint>(i), mask);
     for (std::int32_t& row : placed[i].spare) row = take_row();
   }
   const std::size_t row_count = std::exchange(rows_, rows_before);
@@ -393,7 +394,7 @@ bool Mesh::remove(const Ids& vertices) {
   std::vector<removed_vertex> removed(count);
   for (std::size_t i = 0; i < count; ++i) {
     removed[i].vertex = vertices[i];
-    removed[i].rank = kernel::scrambled(static_cast<cl_uint>(i), mask);
+    removed[i].rank = kernel::shuffled(static_cast<cl_uint>(i), mask);
   }
   Arena& arena = runtime_.arena();
   Arena::Scope scope(arena);
@@ -578,7 +579,6 @@ void Mesh::flip(RowList wrong) {
                                                     .corners = corners,
                                                     .states = states,
                                                     .rows = row_array_,
-                                                    .points = points_,
                                                     .rows_of = rows_of_,
                                                     .touched = touched_,
                                                     .next = next,
