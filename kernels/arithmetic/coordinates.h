@@ -12,19 +12,19 @@ BEGIN_SHARED
 #ifdef FIXED_POINT
 
 // An unsigned number in the order of the coordinates, and back.
-static inline ulong orderable(coordinate x) { return as_ulong(x) ^ 0x8000000000000000UL; }
-static inline coordinate from_orderable(ulong key) { return as_long(key ^ 0x8000000000000000UL); }
+static inline uint64 orderable(coordinate x) { return as_ulong(x) ^ 0x8000000000000000UL; }
+static inline coordinate from_orderable(uint64 key) { return as_long(key ^ 0x8000000000000000UL); }
 
 // A coordinate of the caller's, by the bits of the double, times 2^shift.
-static inline coordinate scaled_bits(ulong bits, int shift) { return fixed_point(bits, shift); }
+static inline coordinate scaled_bits(uint64 bits, int shift) { return fixed_point(bits, shift); }
 
 // The bits of the double that is this integer, which must have at most 53 bits from the first to the last that is set.
-static inline ulong double_bits_of(coordinate x) {
+static inline uint64 double_bits_of(coordinate x) {
   if (x == 0) return 0;
-  const ulong magnitude = as_ulong(x < 0 ? -x : x);
+  const uint64 magnitude = as_ulong(x < 0 ? -x : x);
   const int leading = (int)clz(magnitude), exponent = 63 - leading;
-  const ulong mantissa = leading >= 11 ? magnitude << (leading - 11) : magnitude >> (11 - leading);
-  return (x < 0 ? 1UL << 63 : 0) | (ulong)(1023 + exponent) << 52 | (mantissa & MANTISSA_BITS);
+  const uint64 mantissa = leading >= 11 ? magnitude << (leading - 11) : magnitude >> (11 - leading);
+  return (x < 0 ? (uint64)1 << 63 : 0) | (uint64)(1023 + exponent) << 52 | (mantissa & MANTISSA_BITS);
 }
 
 // Scaled already.
@@ -36,17 +36,17 @@ static inline coordinate2 scaled_point(int i, GLOBAL const coordinate* input, sc
 #else
 
 // An unsigned number in the order of the coordinates, and back; -0 counts as +0.
-static inline ulong orderable(coordinate x) {
-  const ulong bits = as_ulong(x + 0.0);
+static inline uint64 orderable(coordinate x) {
+  const uint64 bits = as_ulong(x + 0.0);
   return bits >> 63 ? ~bits : bits | 0x8000000000000000UL;
 }
-static inline coordinate from_orderable(ulong key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
+static inline coordinate from_orderable(uint64 key) { return as_double(key >> 63 ? key ^ 0x8000000000000000UL : ~key); }
 
-static inline ulong double_bits_of(coordinate x) { return as_ulong(x); }
+static inline uint64 double_bits_of(coordinate x) { return as_ulong(x); }
 
 INTEGER_CONSTANT(DOUBLE_BITS, 53);  // of a normal number
 
-static inline double power_of_two(int exponent) { return as_double((ulong)(1023 + exponent) << 52); }
+static inline double power_of_two(int exponent) { return as_double((uint64)(1023 + exponent) << 52); }
 
 // The scale 2^shift, by factors that are doubles.
 static inline scaling scale_of(int shift) {
@@ -59,7 +59,7 @@ static inline scaling scale_of(int shift) {
 static inline coordinate scaled(coordinate x, scaling scale) { return ((x * scale.s0) * scale.s1) * scale.s2; }
 
 // A coordinate of the caller's, by the bits of the double, times 2^shift; without negative zeros.
-static inline coordinate scaled_bits(ulong bits, int shift) { return scaled(as_double(bits), scale_of(shift)) + 0.0; }
+static inline coordinate scaled_bits(uint64 bits, int shift) { return scaled(as_double(bits), scale_of(shift)) + 0.0; }
 
 // Point i of the input, scaled, without negative zeros.
 static inline coordinate2 scaled_point(int i, GLOBAL const coordinate* input, scaling scale) {

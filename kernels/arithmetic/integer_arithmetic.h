@@ -8,14 +8,14 @@ BEGIN_SHARED
 
 // Modulo 2^128 and 2^256, and so in two's complement.
 typedef struct {
-  ulong low, high;
+  uint64 low, high;
 } integer128;
 
 typedef struct {
   integer128 low, high;
 } integer256;
 
-static inline int sign_of_64(long x) { return (x > 0) - (x < 0); }
+static inline int sign_of_64(int64 x) { return (x > 0) - (x < 0); }
 
 static inline int sign_of_128(integer128 x) {
   const int sign = sign_of_64(as_long(x.high));
@@ -41,21 +41,21 @@ static inline integer128 difference_128(integer128 a, integer128 b) {
   return difference;
 }
 
-static inline integer128 widened(long x) {
+static inline integer128 widened(int64 x) {
   integer128 wide;
   wide.low = as_ulong(x);
-  wide.high = x < 0 ? ~0UL : 0UL;
+  wide.high = x < 0 ? ~(uint64)0 : (uint64)0;
   return wide;
 }
 
-static inline integer128 product_128(long a, long b) {
+static inline integer128 product_128(int64 a, int64 b) {
   integer128 product;
   product.low = as_ulong(a) * as_ulong(b);
   product.high = as_ulong(high_product(a, b));
   return product;
 }
 
-static inline integer128 unsigned_product(ulong a, ulong b) {
+static inline integer128 unsigned_product(uint64 a, uint64 b) {
   integer128 product;
   product.low = a * b;
   product.high = high_product(a, b);
@@ -69,7 +69,7 @@ static inline integer128 low_product(integer128 a, integer128 b) {
   return product;
 }
 
-static inline integer128 plus_carry(integer128 a, ulong b) {
+static inline integer128 plus_carry(integer128 a, uint64 b) {
   integer128 sum;
   sum.low = a.low + b;
   sum.high = a.high + (sum.low < b);
@@ -97,7 +97,7 @@ static inline integer256 difference_256(integer256 a, integer256 b) {
   integer256 difference;
   difference.low = difference_128(a.low, b.low);
   const int borrow = a.low.high != b.low.high ? a.low.high < b.low.high : a.low.low < b.low.low;
-  const integer128 carried = {(ulong)borrow, 0};
+  const integer128 carried = {(uint64)borrow, 0};
   difference.high = difference_128(difference_128(a.high, b.high), carried);
   return difference;
 }

@@ -13,6 +13,7 @@
 #ifdef __cplusplus
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
@@ -33,8 +34,10 @@ BEGIN_SHARED
 
 using uchar = unsigned char;
 using uint = unsigned int;
-using ulong = unsigned long;
-static_assert(sizeof(uint) == 4 && sizeof(long) == 8 && sizeof(ulong) == 8, "as in OpenCL C");
+// OpenCL's long, which has 32 bits in the C++ of some platforms: kernels write neither it nor literals of it.
+using int64 = std::int64_t;
+using uint64 = std::uint64_t;
+static_assert(sizeof(uint) == 4, "as in OpenCL C");
 
 struct uchar2 {
   uchar x, y;
@@ -58,49 +61,49 @@ inline double2 operator-(double2 a, double2 b) { return {a.x - b.x, a.y - b.y}; 
 inline double2 operator-(double2 a) { return {-a.x, -a.y}; }
 
 struct long2 {
-  long x, y;
+  int64 x, y;
 };
 struct float2 {
   float x, y;
 };
 
 inline double2 vload2(std::size_t i, const double* from) { return {from[2 * i], from[2 * i + 1]}; }
-inline long2 vload2(std::size_t i, const long* from) { return {from[2 * i], from[2 * i + 1]}; }
+inline long2 vload2(std::size_t i, const int64* from) { return {from[2 * i], from[2 * i + 1]}; }
 
 using std::fabs;
 using std::fma;
 inline int min(int a, int b) { return b < a ? b : a; }
 inline int max(int a, int b) { return a < b ? b : a; }
-inline long min(long a, long b) { return b < a ? b : a; }
-inline long max(long a, long b) { return a < b ? b : a; }
-inline ulong min(ulong a, ulong b) { return b < a ? b : a; }
-inline ulong max(ulong a, ulong b) { return a < b ? b : a; }
+inline int64 min(int64 a, int64 b) { return b < a ? b : a; }
+inline int64 max(int64 a, int64 b) { return a < b ? b : a; }
+inline uint64 min(uint64 a, uint64 b) { return b < a ? b : a; }
+inline uint64 max(uint64 a, uint64 b) { return a < b ? b : a; }
 // Of 0 the number of bits.
 inline int clz(int x) { return x == 0 ? 32 : __builtin_clz(static_cast<uint>(x)); }
-inline ulong clz(ulong x) { return x == 0 ? 64 : static_cast<ulong>(__builtin_clzl(x)); }
+inline uint64 clz(uint64 x) { return x == 0 ? 64 : static_cast<uint64>(__builtin_clzll(x)); }
 
-inline ulong as_ulong(double x) {
-  ulong bits;
+inline uint64 as_ulong(double x) {
+  uint64 bits;
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
 }
-inline double as_double(ulong bits) {
+inline double as_double(uint64 bits) {
   double x;
   std::memcpy(&x, &bits, sizeof x);
   return x;
 }
-inline ulong as_ulong(long x) { return static_cast<ulong>(x); }
-inline long as_long(ulong x) { return static_cast<long>(x); }
-inline long convert_long(double x) { return static_cast<long>(x); }
-inline float convert_float(long x) { return static_cast<float>(x); }
+inline uint64 as_ulong(int64 x) { return static_cast<uint64>(x); }
+inline int64 as_long(uint64 x) { return static_cast<int64>(x); }
+inline int64 convert_long(double x) { return static_cast<int64>(x); }
+inline float convert_float(int64 x) { return static_cast<float>(x); }
 inline float convert_float(uint x) { return static_cast<float>(x); }
-inline double convert_double(long x) { return static_cast<double>(x); }
+inline double convert_double(int64 x) { return static_cast<double>(x); }
 __extension__ using WideLong = __int128;
 __extension__ using WideUlong = unsigned __int128;
-inline long high_product(long x, long y) { return static_cast<long>(WideLong{x} * y >> 64); }
-inline ulong high_product(ulong x, ulong y) { return static_cast<ulong>(WideUlong{x} * y >> 64); }
+inline int64 high_product(int64 x, int64 y) { return static_cast<int64>(WideLong{x} * y >> 64); }
+inline uint64 high_product(uint64 x, uint64 y) { return static_cast<uint64>(WideUlong{x} * y >> 64); }
 // Compares pairs by the first number, then by the second.
-inline int is_at_least(ulong a, ulong b, ulong x, ulong y) {
+inline int is_at_least(uint64 a, uint64 b, uint64 x, uint64 y) {
   return (WideUlong{a} << 64 | b) >= (WideUlong{x} << 64 | y);
 }
 
@@ -112,6 +115,9 @@ END_SHARED
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 #pragma OPENCL FP_CONTRACT OFF
+
+typedef long int64;
+typedef ulong uint64;
 
 #define BEGIN_SHARED
 #define END_SHARED
@@ -126,15 +132,17 @@ END_SHARED
 
 // The upper half of a product. Compilers for CPUs have a type for it, which is several times as fast as their mul_hi.
 #if defined(__SIZEOF_INT128__) && (defined(__x86_64__) || defined(__aarch64__))
-static inline long __attribute__((overloadable)) high_product(long x, long y) { return (long)((__int128)x * y >> 64); }
-static inline ulong __attribute__((overloadable)) high_product(ulong x, ulong y) {
-  return (ulong)((unsigned __int128)x * y >> 64);
+static inline int64 __attribute__((overloadable)) high_product(int64 x, int64 y) {
+  return (int64)((__int128)x * y >> 64);
+}
+static inline uint64 __attribute__((overloadable)) high_product(uint64 x, uint64 y) {
+  return (uint64)((unsigned __int128)x * y >> 64);
 }
 #else
 #define high_product mul_hi
 #endif
 
-static inline int is_at_least(ulong a, ulong b, ulong x, ulong y) { return (a > x) | ((a == x) & (b >= y)); }
+static inline int is_at_least(uint64 a, uint64 b, uint64 x, uint64 y) { return (a > x) | ((a == x) & (b >= y)); }
 
 #endif
 

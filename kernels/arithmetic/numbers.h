@@ -23,10 +23,10 @@ typedef float filter_bound;
 
 // The bits of the caller's numbers.
 #ifdef __cplusplus
-using double_bits [[gnu::may_alias]] = ulong;
+using double_bits [[gnu::may_alias]] = uint64;
 using float_bits [[gnu::may_alias]] = uint;
 #else
-typedef ulong double_bits;
+typedef uint64 double_bits;
 typedef uint float_bits;
 #endif
 
@@ -35,7 +35,7 @@ INTEGER_CONSTANT(COORDINATE_BITS, 62);
 
 #ifdef FIXED_POINT
 
-typedef long coordinate;
+typedef int64 coordinate;
 typedef float real;
 #ifdef __cplusplus
 using coordinate2 = long2;
@@ -61,7 +61,7 @@ typedef float2 real_pair;
 
 // An exact difference as a real number, rounded once. By halves of 32 bits, it would take more instructions, also where
 // those are faster.
-static inline real real_of(long difference) { return convert_float(difference) * UNIT; }
+static inline real real_of(int64 difference) { return convert_float(difference) * UNIT; }
 
 static inline real difference(coordinate a, coordinate b) { return real_of(a - b); }
 static inline real2 difference2(coordinate2 a, coordinate2 b) {
@@ -71,13 +71,13 @@ static inline real2 difference2(coordinate2 a, coordinate2 b) {
 // The difference as a double would round it, to 53 bits, ties to even: on all devices the same. For coordinates that
 // are doubles, of at most 53 bits: their differences do not reach 2^63 when rounded.
 static inline coordinate rounded_difference(coordinate a, coordinate b) {
-  const long exact = a - b;
-  const ulong magnitude = as_ulong(exact < 0 ? -exact : exact);
+  const int64 exact = a - b;
+  const uint64 magnitude = as_ulong(exact < 0 ? -exact : exact);
   const int dropped = 11 - (int)clz(magnitude);
   if (dropped <= 0) return exact;
-  const ulong tie = 1UL << (dropped - 1), kept = magnitude >> dropped, rest = magnitude & (2 * tie - 1);
+  const uint64 tie = (uint64)1 << (dropped - 1), kept = magnitude >> dropped, rest = magnitude & (2 * tie - 1);
   const int is_up = rest > tie || (rest == tie && (kept & 1) != 0);
-  const long rounded = as_long((kept + (ulong)is_up) << dropped);
+  const int64 rounded = as_long((kept + (uint64)is_up) << dropped);
   return exact < 0 ? -rounded : rounded;
 }
 
@@ -90,7 +90,7 @@ using coordinate2 = double2;
 using real2 = double2;
 using coordinate_pair [[gnu::vector_size(16)]] = double;
 using real_pair [[gnu::vector_size(16)]] = double;
-using real_bits = long;
+using real_bits = int64;
 #else
 typedef double2 coordinate2;
 typedef double2 real2;

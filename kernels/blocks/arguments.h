@@ -19,7 +19,7 @@
 
 // Room for sorting the points of blocks.
 #define BLOCK_SCRATCH(PREFIX) \
-  global coordinate2* PREFIX##scratch_points, global int* PREFIX##scratch_source, global ulong* PREFIX##scratch_ranks
+  global coordinate2* PREFIX##scratch_points, global int* PREFIX##scratch_source, global uint64* PREFIX##scratch_ranks
 
 // The vertices of a round: whether it is the first one, in which all are open; their numbers among all points; those
 // that are listed; and what is open at them.

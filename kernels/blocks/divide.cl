@@ -71,14 +71,14 @@ static inline void rank(int count, block_scratch* s) {
 
 // Splits an order stably: what is below the threshold comes first.
 static inline void split_order(int count, ranks threshold, global ranks* restrict order, global ranks* restrict spare) {
-  long low = 0;
-  for (long i = 0; i < count; ++i) {
+  int64 low = 0;
+  for (int64 i = 0; i < count; ++i) {
     const ranks both = order[i];
     order[low] = both;  // low <= i
     spare[i - low] = both;
     low += both < threshold;
   }
-  for (long i = 0; i < count - low; ++i) order[low + i] = spare[i];
+  for (int64 i = 0; i < count - low; ++i) order[low + i] = spare[i];
 }
 
 // Cuts a part at its middle. The order along the axis is split by position, the other one by comparison.
@@ -132,7 +132,7 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
                          BLOCK_SCRATCH(), global uchar* scratch_axes COUNTERS) {
   const int w = get_global_id(0);
   if (w < workers) {
-    const long base = (long)w * capacity;
+    const int64 base = (int64)w * capacity;
     for (int b = atomic_inc(next); b < blocks; b = atomic_inc(next)) {
       const int first = offsets[b], count = offsets[b + 1] - first;
       if (count > capacity || count <= larger) continue;

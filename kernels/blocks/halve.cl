@@ -404,7 +404,7 @@ kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict
   block_arrays s;
   s.points = scratch_points + first;
   s.source = scratch_source + first;
-  s.by_x = scratch_ranks + 3 * (long)first;
+  s.by_x = scratch_ranks + 3 * (int64)first;
   s.by_y = s.by_x + count;
   s.spare = s.by_y + count;
   s.axes = axes + first;

@@ -11,8 +11,8 @@ BEGIN_SHARED
 
 // A point in the order of one axis: its rank in the other order, in the upper half, and in this one, in the lower half.
 // So one comparison tells on which side of a cut across the other axis it lies. Rank in x is the number of the point.
-typedef ulong ranks;
-static inline ranks ranks_of(int own, int other) { return (ulong)other << 32 | (uint)own; }
+typedef uint64 ranks;
+static inline ranks ranks_of(int own, int other) { return (uint64)other << 32 | (uint)own; }
 static inline int own_rank(ranks both) { return (int)(uint)both; }
 static inline int other_rank(ranks both) { return (int)(both >> 32); }
 
@@ -22,10 +22,10 @@ static inline int halving_depth(int count) {
 }
 
 // Where part j begins, of the 2^depth parts into which count vertices are cut.
-static inline int part_begin(int count, int depth, int j) { return (int)(((long)j * count) >> depth); }
+static inline int part_begin(int count, int depth, int j) { return (int)(((int64)j * count) >> depth); }
 
 // The first part that begins at vertex k or behind it.
-static inline int part_from(int count, int depth, int k) { return (int)((((long)k << depth) + count - 1) / count); }
+static inline int part_from(int count, int depth, int k) { return (int)((((int64)k << depth) + count - 1) / count); }
 
 // 1 if the part is longer in y, by its interquartile ranges.
 static inline int axis_of(int begin, int end, GLOBAL const coordinate2* points, GLOBAL const ranks* by_x,

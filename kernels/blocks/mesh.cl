@@ -104,8 +104,8 @@ kernel void write_triangles(int n, int chunk, int with_corners, global const coo
                             global const int* restrict source, global ring_edge* edges,
                             global const uint* restrict first_rows, global int* restrict triangles) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     for (int begin = c * chunk; begin < last; begin += PAIRS_AT_ONCE) {
       fetch_ahead(begin, last, edges, points);
       int owned[2 * PAIRS_AT_ONCE + 1];

@@ -73,7 +73,7 @@ kernel void join_boxes(int n, int sets, int step, global const int* restrict set
     if ((b - set_blocks[s]) % (JOINED_BOXES * step) == 0) {
       vertex_box box = boxes[b];
       for (int k = 1; k < JOINED_BOXES; ++k) {
-        const long other = b + (long)k * step;
+        const int64 other = b + (int64)k * step;
         if (other < set_blocks[s + 1]) box = joined_boxes(box, boxes[other]);
       }
       boxes[b] = box;

@@ -11,7 +11,7 @@ static inline double product_of(double a, double b) { return a * b; }
 static inline double sum_of(double a, double b) { return a + b; }
 static inline double difference_of(double a, double b) { return a - b; }
 
-kernel void self_test(global const double* restrict operands, global const ulong* restrict expected,
+kernel void self_test(global const double* restrict operands, global const uint64* restrict expected,
                       global uint* restrict failed) {
   if (get_global_id(0) == 0) {
     uint bits = 0;

@@ -12,14 +12,14 @@ static inline int is_near(float x, uint expected, int units) {
   return -units <= apart && apart <= units;
 }
 
-kernel void self_test_fixed(global const long* restrict operands, global const float* restrict reals,
-                            global const ulong* restrict expected, global const uint* restrict floats,
+kernel void self_test_fixed(global const int64* restrict operands, global const float* restrict reals,
+                            global const uint64* restrict expected, global const uint* restrict floats,
                             global uint* restrict failed) {
   if (get_global_id(0) == 0) {
     uint bits = 0;
-    const long a = operands[0];  // 2^62 - 1
-    const long b = operands[1];  // about -2^63 / 3
-    const long c = operands[2];  // some positive number
+    const int64 a = operands[0];  // 2^62 - 1
+    const int64 b = operands[1];  // about -2^63 / 3
+    const int64 c = operands[2];  // some positive number
     // Products of 128 bits, signed and unsigned.
     const integer128 ab = product_128(a, b), cc = unsigned_product(as_ulong(c), as_ulong(c));
     if (ab.low != expected[0] || ab.high != expected[1]) bits |= 1;

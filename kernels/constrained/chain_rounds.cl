@@ -46,7 +46,7 @@ static inline int bits_of(const polygon* g) { return 32 - clz(g->last); }
 // first: if many others went before one of them, it would take very many triangles away, and hardly ever win.
 static inline uint claim_key(const polygon* g, int vertex, int stage, int round) {
   const int bits = bits_of(g);
-  return (uint)min((ulong)stage, (1ul << (32 - bits)) - 2ul) << bits | random_key(vertex, bits, round);
+  return (uint)min((uint64)stage, ((uint64)1 << (32 - bits)) - (uint64)2) << bits | random_key(vertex, bits, round);
 }
 
 // sizes: per chain, whether it is long, and its vertices if so.
@@ -318,7 +318,7 @@ kernel void write_chain_rows(int n, filter_bound bound, global const int* restri
   if (i >= n) return;
   const int first = offsets[of[i]], v = i - first, c = chains[of[i]];
   const polygon g = polygon_at(bound, first, offsets[of[i] + 1] - first, places, vertices, edges);
-  global int* const rows = triangles + 3L * (all[c] - 2 * c);
+  global int* const rows = triangles + (int64)3 * (all[c] - 2 * c);
   if (wrong[of[i]]) {
     if (v == 0) wrap(&g, rows);
   } else if (v > 0 && v < g.last) {

@@ -29,7 +29,7 @@ kernel void triangulate_chains(int n, int wrapped_most, int alone_most, filter_b
   const int first = offsets[c], size = offsets[c + 1] - first;
   if (size < 3 || size > max(wrapped_most, alone_most)) return;
   const polygon g = polygon_at(bound, first, size, places, vertices, edges);
-  global int* const rows = triangles + 3L * (first - 2 * c);
+  global int* const rows = triangles + (int64)3 * (first - 2 * c);
   if (size > wrapped_most && insert_all(&g)) {
     write_rows(&g, rows);
   } else {

@@ -30,7 +30,7 @@ static inline polygon polygon_at(filter_bound bound, int first, int size, GLOBAL
   g.last = size - 1;
   g.places = places + first;
   g.vertices = vertices + first;
-  g.edges = edges + 3L * first;
+  g.edges = edges + (int64)3 * first;
   return g;
 }
 
@@ -227,9 +227,9 @@ static inline int edge_after(const polygon* g, int twin, int before) {
 // Random insertion by one work-item
 
 // As of a linear congruential generator (Knuth), whose low bits are bad.
-static inline int random_below(ulong* state, int end) {
+static inline int random_below(uint64* state, int end) {
   *state = *state * 6364136223846793005UL + 1442695040888963407UL;
-  return (int)((*state >> 32) * (ulong)end >> 32);
+  return (int)((*state >> 32) * (uint64)end >> 32);
 }
 
 // Where a work-item alone has the order of insertion, the vertex after another one is the next one.
@@ -244,7 +244,7 @@ static inline void choose_order(const polygon* g) {
     vertices[k].before = k - 1;
     vertices[k].ORDER = k + 1;
   }
-  ulong state = 0;
+  uint64 state = 0;
   for (int i = count - 1; i > 0; --i) {
     int v;
     do {

@@ -59,7 +59,7 @@ static inline int own_root_of(int t, global int* parents) {
 kernel void start_regions(int n, int chunk, global const int* restrict neighbors,
                           global const uchar* restrict constrained, global int* restrict parents) {
   const int c = get_global_id(0);
-  const int low = c * chunk, high = (int)min((long)n, (c + 1L) * chunk);
+  const int low = c * chunk, high = (int)min((int64)n, ((int64)c + 1) * chunk);
   for (int t = low; t < high; ++t) {
     parents[t] = t;
     int root = t;

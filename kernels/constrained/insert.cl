@@ -80,7 +80,7 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
       walk->goal = v;
       return facing;
     }
-    if (side > 0) walk->turns |= 1UL << (walk->rows & 63);
+    if (side > 0) walk->turns |= (uint64)1 << (walk->rows & 63);
     ++walk->rows;
     corner = side > 0 ? next_halfedge(facing) : previous_halfedge(facing);
   }
@@ -163,11 +163,11 @@ FETCHING void fetch_points(int row, const walked_mesh* mesh) {
 #define POINTS_AHEAD 8
 // Few segments have all in the cache.
 #define FETCHED_SEGMENTS 4096
-FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walked_mesh* mesh) {
+FETCHING void fetch_segments(int s, int n, global const uint64* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
   if (n < FETCHED_SEGMENTS) return;
-  const ulong far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
-              near = keys[min(n - 1, s + POINTS_AHEAD)];
+  const uint64 far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
+               near = keys[min(n - 1, s + POINTS_AHEAD)];
   // Those of points on a line do not come before others.
   if ((uint)far >= PLACE_ON_LINE) return;
   fetch_row((int)(far >> 32), mesh);
@@ -191,7 +191,7 @@ FETCHING void fetch_segments(int s, int n, global const ulong* keys, const walke
 // smaller one first. Stops at limits of pieces and of rows, of all segments together.
 kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound bound,
                           global const coordinate* restrict points, TRIANGULATION(), global const int* restrict hull,
-                          global const ulong* restrict keys, global volatile uint* restrict claims,
+                          global const uint64* restrict keys, global volatile uint* restrict claims,
                           global volatile uint* restrict flags, global constraint_walk* restrict walks,
                           global int* restrict ends, global uint* restrict pieces, global uint2* restrict sizes,
                           global volatile uint* restrict status) {
@@ -253,7 +253,7 @@ kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
 // claims: of which nothing is used any more.
 kernel void write_pieces(int n, filter_bound bound, global const coordinate* restrict points, TRIANGULATION(),
-                         global const int* restrict hull, global const ulong* restrict keys,
+                         global const int* restrict hull, global const uint64* restrict keys,
                          global const uint* restrict offsets, global volatile uint* restrict claims,
                          global int* restrict ends) {
   const int s = get_global_id(0);
@@ -407,7 +407,7 @@ kernel void choose_constraints(int n, filter_bound bound, global const int* rest
         lefts[i] = left;
       } else {
         walks[list[i]].rows = BLOCKED;
-        walks[list[i]].turns = (ulong)~left;
+        walks[list[i]].turns = (uint64)~left;
       }
     }
     outcomes[i] = (uchar)outcome;

@@ -17,11 +17,11 @@ static inline int first_corner(int row, global const int* triangles) {
 }
 
 kernel void row_keys(int n, global const int* restrict rows, global const int* restrict triangles,
-                     global ulong* restrict keys, global int* restrict payloads) {
+                     global uint64* restrict keys, global int* restrict payloads) {
   const int i = get_global_id(0);
   if (i < n) {
     const int corner = first_corner(rows[i], triangles);
-    keys[i] = (ulong)triangles[corner] << 32 | (ulong)triangles[next_halfedge(corner)];
+    keys[i] = (uint64)triangles[corner] << 32 | (uint64)triangles[next_halfedge(corner)];
     payloads[i] = rows[i];
   }
 }

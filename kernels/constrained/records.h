@@ -12,7 +12,7 @@ BEGIN_SHARED
 // corner.
 typedef struct {
   int origin, goal, corner, rows;
-  ulong turns;
+  uint64 turns;
 } constraint_walk;
 ASSERT_SIZE(constraint_walk, 24);
 

@@ -115,12 +115,12 @@ kernel void line_places(int n, int sets, global const int* restrict triangle_off
 
 // n pairs of ends. payloads: their numbers.
 kernel void segment_keys(int n, global const int* restrict ends, global const uint* restrict places,
-                         global ulong* restrict keys, global int* restrict payloads) {
+                         global uint64* restrict keys, global int* restrict payloads) {
   const int s = get_global_id(0);
   if (s < n) {
-    ulong key = NO_KEY;
+    uint64 key = NO_KEY;
     if (ends[2 * s] >= 0) {
-      const ulong a = places[ends[2 * s]], b = places[ends[2 * s + 1]];
+      const uint64 a = places[ends[2 * s]], b = places[ends[2 * s + 1]];
       key = min(a, b) << 32 | max(a, b);
     }
     keys[s] = key;
@@ -129,15 +129,15 @@ kernel void segment_keys(int n, global const int* restrict ends, global const ui
 }
 
 // n sorted keys. counts: 1 at the first of each.
-kernel void find_runs(int n, global const ulong* restrict keys, global uint* restrict counts) {
+kernel void find_runs(int n, global const uint64* restrict keys, global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) counts[i] = keys[i] != NO_KEY && (i == 0 || keys[i - 1] != keys[i]);
 }
 
 // ranks: the scanned counts. unique_of: per element its place among the unique keys, or -1.
-kernel void write_unique(int n, global const ulong* restrict keys, global const int* restrict payloads,
+kernel void write_unique(int n, global const uint64* restrict keys, global const int* restrict payloads,
                          global const uint* restrict ranks, global int* restrict unique_of,
-                         global ulong* restrict unique) {
+                         global uint64* restrict unique) {
   const int i = get_global_id(0);
   if (i < n) {
     const uint rank = ranks[i + 1];
@@ -187,22 +187,22 @@ kernel void measure_chains(int n, global const int* restrict next, global const 
 
 // n edges. with_chains: only the first ones of chains have keys.
 kernel void edge_keys(int n, int with_chains, global const int* restrict ends, global const int* restrict heads,
-                      global ulong* restrict keys, global int* restrict payloads) {
+                      global uint64* restrict keys, global int* restrict payloads) {
   const int e = get_global_id(0);
   if (e < n) {
-    keys[e] = with_chains && heads[e] != e ? NO_KEY : (ulong)ends[2 * e] << 32 | (ulong)ends[2 * e + 1];
+    keys[e] = with_chains && heads[e] != e ? NO_KEY : (uint64)ends[2 * e] << 32 | (uint64)ends[2 * e + 1];
     payloads[e] = e;
   }
 }
 
 // n sorted keys of edges.
-kernel void sorted_lengths(int n, global const ulong* restrict keys, global const int* restrict payloads,
+kernel void sorted_lengths(int n, global const uint64* restrict keys, global const int* restrict payloads,
                            global const uint* restrict lengths, global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) counts[i] = keys[i] == NO_KEY ? 0 : lengths[payloads[i]];
 }
 
-kernel void start_numbers(int n, global const ulong* restrict keys, global const int* restrict payloads,
+kernel void start_numbers(int n, global const uint64* restrict keys, global const int* restrict payloads,
                           global const uint* restrict counts, global uint* restrict starts) {
   const int i = get_global_id(0);
   if (i < n && keys[i] != NO_KEY) starts[payloads[i]] = counts[i];
@@ -222,7 +222,7 @@ kernel void number_chained(int n, global const int* restrict heads, global const
 }
 
 // n sorted keys of edges without chains.
-kernel void number_edges(int n, global const ulong* restrict keys, global const int* restrict payloads,
+kernel void number_edges(int n, global const uint64* restrict keys, global const int* restrict payloads,
                          global int* restrict numbers, global int* restrict edges) {
   const int i = get_global_id(0);
   if (i < n) {

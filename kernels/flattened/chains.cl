@@ -64,8 +64,8 @@ kernel void thin_lists(int n, int regions, global const int* restrict offsets, L
     const int places = thin_begin(r + 1, offsets) - place;
     const int low = offsets[r];
     const int count = offsets[r + 1] - low;
-    const int begin = low + (int)((long)count * (i - place) / places);
-    const int end = low + (int)((long)count * (i - place + 1) / places);
+    const int begin = low + (int)((int64)count * (i - place) / places);
+    const int end = low + (int)((int64)count * (i - place + 1) / places);
     int id = first_end[r];
     double2 lowest = VECTOR(double2, 0.0, 0.0);
     if (count > 0) {
@@ -190,7 +190,7 @@ kernel void merge_corner_runs(int n, int run, CORNERS_TO_JOIN(), NEW_CORNERS()) 
     const int first = own - own % MERGED_RUNS;
     int to = c;
     for (int other = first; other < first + MERGED_RUNS; ++other) {
-      if (other == own || (long)other * run >= n) continue;
+      if (other == own || (int64)other * run >= n) continue;
       const int begin = other * run;
       int low = begin, high = min(n, begin + run);
       while (low < high) {
@@ -489,10 +489,10 @@ static inline void sort_corners(sequence s, sequence spare, int count) {
     }
   }
   int in_spare = 0;
-  for (long run = CORNERS_RUN; run < count || !in_spare; run *= 2) {
+  for (int64 run = CORNERS_RUN; run < count || !in_spare; run *= 2) {
     const sequence from = in_spare ? spare : s, to = in_spare ? s : spare;
-    for (long low = 0; low < count; low += 2 * run) {
-      const int middle = (int)min((long)count, low + run), high = (int)min((long)count, low + 2 * run);
+    for (int64 low = 0; low < count; low += 2 * run) {
+      const int middle = (int)min((int64)count, low + run), high = (int)min((int64)count, low + 2 * run);
       int a = (int)low, b = middle;
       for (int k = (int)low; k < high; ++k) {
         const int i = b == high || (a < middle && from.projections[a].y <= from.projections[b].y) ? a++ : b++;

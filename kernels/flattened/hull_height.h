@@ -82,17 +82,17 @@ OUT_OF_LINE static inline int depth_by_expansions(double2 a, double2 b, double2 
 
 // The sign in integers below 2^NARROW_BITS or 2^WIDE_BITS, of pu * (bs^2 - as^2 + bu^2) - bu * (ps^2 - as^2 + pu^2):
 // the sums of squares are below 2^63, or 2^125.
-static inline int depth_narrow(long as, long bs, long bu, long ps, long pu) {
+static inline int depth_narrow(int64 as, int64 bs, int64 bu, int64 ps, int64 pu) {
   return sign_of_128(
       difference_128(product_128(pu, bs * bs - as * as + bu * bu), product_128(bu, ps * ps - as * as + pu * pu)));
 }
 
-static inline integer256 depth_term(long u, long as, long ps, long pu) {
+static inline integer256 depth_term(int64 u, int64 as, int64 ps, int64 pu) {
   return product_256(widened(u),
                      sum_128(difference_128(product_128(ps, ps), product_128(as, as)), product_128(pu, pu)));
 }
 
-static inline int depth_wide(long as, long bs, long bu, long ps, long pu) {
+static inline int depth_wide(int64 as, int64 bs, int64 bu, int64 ps, int64 pu) {
   return sign_of_256(sum_256(depth_term(pu, as, bs, bu), depth_term(-bu, as, ps, pu)));
 }
 
@@ -107,7 +107,7 @@ OUT_OF_LINE static inline int depth_exact(double2 a, double2 b, double2 p, doubl
   if (largest == 0.0) return 0;
   for (int bits = NARROW_BITS; bits <= WIDE_BITS; bits += WIDE_BITS - NARROW_BITS) {
     const double factor = unit_factor(largest, bits);
-    long asi, bsi, bui, psi, pui;
+    int64 asi, bsi, bui, psi, pui;
     if (is_integer(as, factor, &asi) & is_integer(bs, factor, &bsi) & is_integer(ps, factor, &psi) &
         is_integer(bu, factor, &bui) & is_integer(pu, factor, &pui))
       return bits == NARROW_BITS ? depth_narrow(asi, bsi, bui, psi, pui) : depth_wide(asi, bsi, bui, psi, pui);

@@ -8,7 +8,7 @@
 #include "arithmetic/records.h"
 #include "operations/search.h"
 
-kernel void keys_y(int n, global const double2* restrict input, scaling scale, global ulong* restrict keys,
+kernel void keys_y(int n, global const double2* restrict input, scaling scale, global uint64* restrict keys,
                    global int* restrict order) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -18,19 +18,19 @@ kernel void keys_y(int n, global const double2* restrict input, scaling scale, g
 }
 
 kernel void keys_x(int n, global const double2* restrict input, scaling scale, global const int* restrict order,
-                   global ulong* restrict keys) {
+                   global uint64* restrict keys) {
   const int i = get_global_id(0);
   if (i < n) keys[i] = orderable(scaled(input[order[i]].x, scale));
 }
 
 kernel void keys_set(int n, int sets, global const int* restrict offsets, global const int* restrict order,
-                     global ulong* restrict keys) {
+                     global uint64* restrict keys) {
   const int i = get_global_id(0);
   if (i < n) keys[i] = segment_of(order[i], sets, offsets);
 }
 
 // flags[i] = 1 where the sorted keys change, the first not counted; for dense ranks.
-kernel void change_flags(int n, global const ulong* restrict keys, global uint* restrict flags) {
+kernel void change_flags(int n, global const uint64* restrict keys, global uint* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) flags[i] = i > 0 && keys[i] != keys[i - 1];
 }
@@ -63,7 +63,7 @@ kernel void distinct_flags(int n, int sets, global const int* restrict offsets, 
 kernel void distinct_write(int n, global const double2* restrict input, scaling scale, global const int* restrict order,
                            global const uint* restrict ids, global const uint* restrict y_rank,
                            global double2* restrict points, global int* restrict source,
-                           global ulong* restrict y_keys) {
+                           global uint64* restrict y_keys) {
   const int i = get_global_id(0);
   if (i < n && ids[i + 1] != ids[i]) {
     const int from = order[i];
@@ -89,11 +89,11 @@ kernel void representatives(int n, global const int* restrict order, global cons
 }
 
 // Keys for the order by (set, y, x): stable from the order of ids, which is by (set, x, y).
-kernel void keys_y_order(int n, int sets, global const int* restrict point_offsets, global ulong* restrict keys,
+kernel void keys_y_order(int n, int sets, global const int* restrict point_offsets, global uint64* restrict keys,
                          global int* restrict order) {
   const int i = get_global_id(0);
   if (i < n) {
-    if (sets > 1) keys[i] |= (ulong)segment_of(i, sets, point_offsets) << 32;
+    if (sets > 1) keys[i] |= (uint64)segment_of(i, sets, point_offsets) << 32;
     order[i] = i;
   }
 }

@@ -11,7 +11,7 @@
 #include "operations/prefetch.h"
 
 static inline uint edge_hash(int low, int high) {
-  ulong z = ((ulong)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;
+  uint64 z = ((uint64)(uint)low << 32 | (uint)high) * 0x9e3779b97f4a7c15UL;
   z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93UL;
   return (uint)(z >> 32);
 }

@@ -36,7 +36,7 @@ kernel void map_ids(int n, global const int* restrict ids, global const int* res
 
 // Several sets: the triangles in the order of their sets, otherwise as they were.
 kernel void triangle_sets(int n, global const int* restrict triangles, global const int* restrict set_of_id,
-                          global ulong* restrict keys, global int* restrict order,
+                          global uint64* restrict keys, global int* restrict order,
                           global volatile uint* restrict counts) {
   const int t = get_global_id(0);
   if (t < n) {

@@ -228,13 +228,13 @@ kernel void gather_points(int n, int points_count, int regions_count, global con
 
 // Keys for a stable sort of the kept elements: the path vertex whose chord an element is below.
 kernel void chord_keys(int n, global const int* restrict positions, global const int* restrict chord,
-                       global ulong* restrict keys) {
+                       global uint64* restrict keys) {
   const int k = get_global_id(0);
   if (k < n) keys[k] = chord[positions[k]];
 }
 
 // The sorted elements as quickhull's points.
-kernel void gather_below(int n, int points_count, global const ulong* restrict keys,
+kernel void gather_below(int n, int points_count, global const uint64* restrict keys,
                          global const int* restrict elements, global const int* restrict path_region,
                          global const double* restrict element_depth, global const double2* restrict point_projections,
                          LISTS(), global const int* restrict corners, CUTS(), NEW_HULL_POINTS(),

@@ -41,9 +41,9 @@ kernel void hull_depths(int n, filter_bound bound, HULL_POINTS(), PATH_VERTICES(
   }
 }
 
-static inline ulong scramble(double u) {
+static inline uint64 scramble(double u) {
   // The finaliser of SplitMix64 (Steele, Lea and Flood, 2014).
-  ulong z = as_ulong(u) + 0x9e3779b97f4a7c15UL;
+  uint64 z = as_ulong(u) + 0x9e3779b97f4a7c15UL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9UL;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebUL;
   return z ^ (z >> 31);
@@ -51,8 +51,8 @@ static inline ulong scramble(double u) {
 
 // Whether u value p comes before q in a random order.
 static inline int comes_first(double p, double q) {
-  const ulong hp = scramble(p);
-  const ulong hq = scramble(q);
+  const uint64 hp = scramble(p);
+  const uint64 hq = scramble(q);
   return hp != hq ? hp < hq : p < q;
 }
 

@@ -152,13 +152,13 @@ static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL 
   }
   uchar emitted[3 * SMALL_REGION];
   uchar2 pending[SMALL_REGION];
-  ulong taken = 0;
+  uint64 taken = 0;
   int total = 0;
   for (int start = 0; start < count; ++start) {
     if (taken >> start & 1) continue;
     int length = 0;
     for (int v = start; !(taken >> v & 1); v = after[v]) {
-      taken |= 1UL << v;
+      taken |= (uint64)1 << v;
       g.chain[length++] = v;
     }
     if (length < 3) return REGION_BROKEN;

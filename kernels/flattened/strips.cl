@@ -33,24 +33,24 @@ kernel void large_sizes(int n, global const int* restrict large, global const in
 kernel void gather_large(int n, int regions, global const int* restrict large,
                          global const uint* restrict large_offsets, global const int* restrict offsets,
                          global const int* restrict corners, global int* restrict large_corners,
-                         global int* restrict corner_region, global ulong* restrict keys, global int* restrict order) {
+                         global int* restrict corner_region, global uint64* restrict keys, global int* restrict order) {
   const int c = get_global_id(0);
   if (c < n) {
     const int low = segment_of(c, regions, (global const int*)large_offsets);
     const int from = offsets[large[low]] + (c - (int)large_offsets[low]);
     for (int j = 0; j < 3; ++j) large_corners[3 * c + j] = corners[3 * from + j];
     corner_region[c] = low;
-    keys[c] = (ulong)low << 32 | (uint)corners[3 * from + 1];
+    keys[c] = (uint64)low << 32 | (uint)corners[3 * from + 1];
     order[c] = c;
   }
 }
 
-kernel void vertex_flags(int n, global const ulong* restrict keys, global uint* restrict flags) {
+kernel void vertex_flags(int n, global const uint64* restrict keys, global uint* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) flags[i] = i == 0 || keys[i] != keys[i - 1];
 }
 
-kernel void write_vertices(int n, int regions, global const ulong* restrict keys, global const int* restrict order,
+kernel void write_vertices(int n, int regions, global const uint64* restrict keys, global const int* restrict order,
                            global const uint* restrict scanned, global int* restrict vertices,
                            global int* restrict vertex_region, global int* restrict vertex_offsets,
                            global int* restrict corner_vertex) {
@@ -69,7 +69,7 @@ kernel void write_vertices(int n, int regions, global const ulong* restrict keys
 }
 
 // The block's first vertex, relative to the region's: block j of the 2^depth into which size vertices are cut.
-static inline int block_begin(int size, int depth, long j) { return (int)((j * size) >> depth); }
+static inline int block_begin(int size, int depth, int64 j) { return (int)((j * size) >> depth); }
 
 // places: the vertices' coordinates, written at the leaves. free_lists[v]: of the block that begins with vertex v.
 kernel void merge_strips(int n, int depth, filter_bounds bounds, global const int* restrict vertices,
@@ -83,8 +83,8 @@ kernel void merge_strips(int n, int depth, filter_bounds bounds, global const in
     const int count = vertex_offsets[region + 1] - base;
     const int relative = v - base;
     // Is v the first of a block at this depth, and of which?
-    const long blocks = 1L << depth;
-    const long j = ((long)relative * blocks + count - 1) / count;
+    const int64 blocks = (int64)1 << depth;
+    const int64 j = ((int64)relative * blocks + count - 1) / count;
     const int begins = j < blocks && block_begin(count, depth, j) == relative;
     const int size = begins ? block_begin(count, depth, j + 1) - relative : 0;
     const int parent = !begins || depth == 0

@@ -46,7 +46,7 @@ OUT_OF_LINE static inline double circle_value_exact(double2 a, double2 b, double
   const circle_differences from = differences_from(d, a, b, c);
   if (from.largest == 0.0) return 0.0;
   const double factor = unit_factor(from.largest, WIDE_BITS);
-  long x[3], y[3];
+  int64 x[3], y[3];
   if (are_integers(&from, factor, x, y)) {
     const double unit = 1.0 / factor;
     return double_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2])) * unit * unit * unit * unit;

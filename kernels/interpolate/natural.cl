@@ -358,7 +358,7 @@ typedef struct {
 #define NO_EXPONENT -100000
 
 static inline wide widened_double(double x) {
-  const ulong bits = as_ulong(fabs(x));
+  const uint64 bits = as_ulong(fabs(x));
   wide number = {0.0, NO_EXPONENT};
   if (bits != 0) {
     number.exponent = (int)(bits >> 52) - 1023;
@@ -514,7 +514,7 @@ static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int step
 }
 
 // The walk takes three steps per triangle, and once more those around the first vertex.
-static inline int most_steps(int triangles) { return (int)min((long)INT_MAX, 4L * triangles); }
+static inline int most_steps(int triangles) { return (int)min((int64)INT_MAX, (int64)4 * triangles); }
 
 // One walk for the sum of the weights, and one for the weights. triangles: of the query's set. Returns WEIGHED or
 // ASTRAY.

@@ -301,10 +301,10 @@ static inline void leaves_of_queries(int first, int last, global const coordinat
 kernel void find_query_leaves(int n, int chunk, int sets, global const int* restrict query_offsets,
                               global const mesh_set* restrict records, global const query_frame* restrict frames,
                               global const cut_node* restrict nodes, global const coordinate* restrict queries,
-                              global ulong* restrict keys, global int* restrict order) {
+                              global uint64* restrict keys, global int* restrict order) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     int s = sets > 1 ? segment_of(c * chunk, sets, query_offsets) : 0;
     int begin = c * chunk;
     while (begin < last) {
@@ -314,7 +314,7 @@ kernel void find_query_leaves(int n, int chunk, int sets, global const int* rest
       int leaf[DESCENTS];
       leaves_of_queries(begin, end, queries, frames[s], nodes + set.nodes, set.depth, leaf);
       for (int i = begin; i < end; ++i) {
-        keys[i] = (ulong)set.nodes + s + leaf[i - begin];
+        keys[i] = (uint64)set.nodes + s + leaf[i - begin];
         order[i] = i;
       }
       begin = end;
@@ -339,12 +339,12 @@ kernel void place_queries(int n, int sets, global const int* restrict query_offs
 // after as many steps as a Delaunay triangulation can need, which has no triangle visited twice, are where they began.
 kernel void find_triangles(int n, int chunk, int sets, walk_options options, global const int* restrict query_offsets,
                            QUERY_TREES(), global const query_frame* restrict frames,
-                           global const coordinate* restrict queries, global const ulong* restrict keys,
+                           global const coordinate* restrict queries, global const uint64* restrict keys,
                            global int* restrict order, global coordinate2* restrict placed, filter_bound bound,
                            WALKED_MESH(), global int* restrict found) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     int s = sets > 1 ? segment_of(c * chunk, sets, query_offsets) : 0;
     int begin = c * chunk;
     while (begin < last) {

@@ -74,7 +74,7 @@ static inline real clearance_in_frame(int bits, coordinate unit) {
 #else
 static inline int clearance_bits(real squared) { return (int)(as_ulong(squared) >> 32); }
 static inline real clearance_in_frame(int bits, coordinate unit) {
-  return as_double((ulong)(uint)bits << 32) * unit * unit;
+  return as_double((uint64)(uint)bits << 32) * unit * unit;
 }
 #define LEAST_CLEARANCE 0x1p-1000
 #endif
@@ -197,7 +197,7 @@ static inline int search_boxes(nearby* best, coordinate2 q, int first, int end, 
   int level = box_levels(vertices, counts, begins) - 1;
   const int top = level;
   int i = 0;
-  long width = BOX_FAN;  // vertices of a box
+  int64 width = BOX_FAN;  // vertices of a box
   for (int l = 0; l < level; ++l) width *= BOX_FAN;
   real squared = squared_distance(best->at, q);
   for (int seen = 0; seen < MOST_BOXES; ++seen) {

@@ -22,7 +22,7 @@ INTEGER_CONSTANT(FARTHER_PLACES, 125);
 // An integer in two's complement, with the lowest part first.
 #define WIDE_PARTS 4
 typedef struct {
-  ulong part[WIDE_PARTS];
+  uint64 part[WIDE_PARTS];
 } wide;
 typedef struct {
   wide x, y;
@@ -30,9 +30,9 @@ typedef struct {
 
 static inline wide wide_sum(wide a, wide b) {
   wide sum;
-  ulong carry = 0;
+  uint64 carry = 0;
   for (int k = 0; k < WIDE_PARTS; ++k) {
-    const ulong with_carry = a.part[k] + carry;
+    const uint64 with_carry = a.part[k] + carry;
     sum.part[k] = with_carry + b.part[k];
     carry = (with_carry < carry) | (sum.part[k] < with_carry);
   }
@@ -40,7 +40,7 @@ static inline wide wide_sum(wide a, wide b) {
 }
 
 static inline wide wide_negative(wide a) {
-  ulong carry = 1;
+  uint64 carry = 1;
   for (int k = 0; k < WIDE_PARTS; ++k) {
     a.part[k] = ~a.part[k] + carry;
     carry &= a.part[k] == 0;
@@ -50,12 +50,12 @@ static inline wide wide_negative(wide a) {
 
 static inline wide wide_difference(wide a, wide b) { return wide_sum(a, wide_negative(b)); }
 
-static inline wide wide_product(long a, wide b) {
-  const ulong factor = as_ulong(a < 0 ? -a : a);
+static inline wide wide_product(int64 a, wide b) {
+  const uint64 factor = as_ulong(a < 0 ? -a : a);
   wide product;
-  ulong carry = 0;
+  uint64 carry = 0;
   for (int k = 0; k < WIDE_PARTS; ++k) {
-    const ulong low = factor * b.part[k];
+    const uint64 low = factor * b.part[k];
     product.part[k] = low + carry;
     carry = high_product(factor, b.part[k]) + (product.part[k] < low);
   }
@@ -63,14 +63,14 @@ static inline wide wide_product(long a, wide b) {
 }
 
 static inline int wide_sign(wide a) {
-  ulong any = 0;
+  uint64 any = 0;
   for (int k = 0; k < WIDE_PARTS; ++k) any |= a.part[k];
   return as_long(a.part[WIDE_PARTS - 1]) < 0 ? -1 : any != 0;
 }
 
 // A point of the grid, as queries are.
 static inline wide wide_place(coordinate x) {
-  const ulong sign = x < 0 ? ~0UL : 0UL;
+  const uint64 sign = x < 0 ? ~(uint64)0 : (uint64)0;
   const wide place = {{0, as_ulong(x), sign, sign}};
   return place;
 }
@@ -80,8 +80,8 @@ static inline wide2 wide_point(coordinate2 p) {
 }
 
 // A coordinate of the caller's, by the bits of the double, times 2^(shift + FINER_PLACES).
-static inline wide wide_coordinate(ulong bits, int shift) {
-  const ulong magnitude = bits & MAGNITUDE_BITS, mantissa = mantissa_of(magnitude);
+static inline wide wide_coordinate(uint64 bits, int shift) {
+  const uint64 magnitude = bits & MAGNITUDE_BITS, mantissa = mantissa_of(magnitude);
   const int up = unit_of(magnitude) + shift + FINER_PLACES;
   wide x = {{0, 0, 0, 0}};
   if (mantissa == 0) return x;
@@ -103,7 +103,7 @@ static inline wide2 wide_query(int i, GLOBAL const coordinate* queries, int shif
 }
 
 static inline int is_same_wide(wide a, wide b) {
-  ulong differ = 0;
+  uint64 differ = 0;
   for (int k = 0; k < WIDE_PARTS; ++k) differ |= a.part[k] ^ b.part[k];
   return differ == 0;
 }

@@ -20,11 +20,11 @@ static inline coordinate2 in_frame(coordinate2 p, coordinate unit) {
 
 // The place of the grid nearest to a coordinate of the caller's, by the bits of the double, times 2^shift: mostly the
 // coordinate itself, otherwise a place towards 0, or the last one of the grid.
-#define LAST_PLACE ((1L << COORDINATE_BITS) - 1)
-static inline coordinate grid_place(ulong bits, int shift) {
-  const ulong mantissa = mantissa_of(bits & MAGNITUDE_BITS);
+#define LAST_PLACE (((int64)1 << COORDINATE_BITS) - 1)
+static inline coordinate grid_place(uint64 bits, int shift) {
+  const uint64 mantissa = mantissa_of(bits & MAGNITUDE_BITS);
   const int up = unit_of(bits & MAGNITUDE_BITS) + shift;
-  long place = LAST_PLACE;
+  int64 place = LAST_PLACE;
   if (up <= 0) {
     place = up > -64 ? as_long(mantissa >> -up) : 0;
   } else if (mantissa == 0 || up <= COORDINATE_BITS - 64 + (int)clz(mantissa)) {

@@ -5,6 +5,8 @@
 // column `local id` of count[][], so the order within a tile is that of the work-items and the sort is stable.
 // sort_varying finds the bits in which keys differ at all, so that the host skips the other digits.
 
+#include "arithmetic/language.h"
+
 #ifndef SORT_BITS
 #define SORT_BITS 8
 #endif
@@ -13,15 +15,15 @@
 #endif
 #define SORT_DIGITS (1 << SORT_BITS)
 
-static inline uint digit_of(ulong key, int shift) { return (uint)(key >> shift) & (SORT_DIGITS - 1); }
+static inline uint digit_of(uint64 key, int shift) { return (uint)(key >> shift) & (SORT_DIGITS - 1); }
 
-kernel void sort_varying(int n, int chunk, global const ulong* restrict keys, global volatile uint* restrict varying) {
+kernel void sort_varying(int n, int chunk, global const uint64* restrict keys, global volatile uint* restrict varying) {
   const int c = get_global_id(0);
   const int low = c * chunk;
   if (low < n) {
     const int high = min(n, low + chunk);
-    const ulong first = keys[0];
-    ulong bits = 0;
+    const uint64 first = keys[0];
+    uint64 bits = 0;
     for (int i = low; i < high; ++i) bits |= keys[i] ^ first;
     if ((uint)bits) atomic_or(&varying[0], (uint)bits);
     if ((uint)(bits >> 32)) atomic_or(&varying[1], (uint)(bits >> 32));
@@ -29,7 +31,7 @@ kernel void sort_varying(int n, int chunk, global const ulong* restrict keys, gl
 }
 
 __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) kernel void sort_count(int n, int items, int shift,
-                                                                               global const ulong* restrict keys,
+                                                                               global const uint64* restrict keys,
                                                                                global uint* restrict table) {
   local uint count[SORT_DIGITS * SORT_GROUP];
   const int me = get_local_id(0);
@@ -47,8 +49,8 @@ __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) kernel void sort_count(i
 }
 
 __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) kernel void sort_scatter(
-    int n, int items, int shift, global const ulong* restrict keys, global const int* restrict payloads,
-    global const uint* restrict table, global ulong* restrict sorted_keys, global int* restrict sorted_payloads) {
+    int n, int items, int shift, global const uint64* restrict keys, global const int* restrict payloads,
+    global const uint* restrict table, global uint64* restrict sorted_keys, global int* restrict sorted_payloads) {
   local uint place[SORT_DIGITS * SORT_GROUP];
   const int me = get_local_id(0);
   const int groups = get_num_groups(0);
@@ -69,7 +71,7 @@ __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) kernel void sort_scatter
   }
   barrier(CLK_LOCAL_MEM_FENCE);
   for (int i = low; i < high; ++i) {
-    const ulong key = keys[i];
+    const uint64 key = keys[i];
     const uint to = place[digit_of(key, shift) * SORT_GROUP + me]++;
     sorted_keys[to] = key;
     sorted_payloads[to] = payloads[i];

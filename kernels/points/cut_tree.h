@@ -13,10 +13,10 @@ static inline int cut_axis(cut_node cut) { return cut.turn != 0; }
 
 // A point as cuts of either axis compare it.
 typedef struct {
-  ulong major[2], minor[2];
+  uint64 major[2], minor[2];
 } point_keys;
 static inline point_keys keys_of(coordinate2 p) {
-  const ulong x = orderable(p.x), y = orderable(p.y);
+  const uint64 x = orderable(p.x), y = orderable(p.y);
   const point_keys keys = {{x, y}, {y, ~x}};
   return keys;
 }
@@ -48,7 +48,7 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
 // The leaves of DESCENTS points, counted from 0.
 static inline void descend(const point_keys* keys, GLOBAL const cut_node* tree, int depth, int* leaves) {
   for (int first = 0; first < DESCENTS; first += DESCENTS_AT_ONCE) {
-    long node[DESCENTS_AT_ONCE];
+    int64 node[DESCENTS_AT_ONCE];
     for (int k = 0; k < DESCENTS_AT_ONCE; ++k) node[k] = 1;
     for (int d = 0; d < depth; ++d) {
       for (int k = 0; k < DESCENTS_AT_ONCE; ++k) node[k] = 2 * node[k] + goes_high(&keys[first + k], &tree[node[k]]);

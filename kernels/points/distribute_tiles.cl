@@ -24,7 +24,7 @@
 #include "points/limits.h"
 #include "points/records.h"
 
-SCAN_IN_GROUP(scan_fields, ulong)
+SCAN_IN_GROUP(scan_fields, uint64)
 
 // A work-group's points [first, last); none, if there are fewer tiles than groups.
 typedef struct {
@@ -99,22 +99,22 @@ static inline int padded(int i) { return i + i / 32; }
 static inline int field_of(uint element, int shift) { return (int)(element >> (PLACE_BITS + shift) & 3) * 16; }
 
 // Sorts the tile's elements stably by their digits. Returns where in `elements` the result begins.
-WITH_BARRIERS int sort_digits(local uint* elements, int count, int bits, local ulong* sums) {
+WITH_BARRIERS int sort_digits(local uint* elements, int count, int bits, local uint64* sums) {
   const int share = share_of(count);
   const int first = min(count, (int)get_local_id(0) * share), last = min(count, first + share);
   int from = 0;
   for (int shift = 0; shift < bits; shift += PAIR_BITS) {
     const int to = PADDED_TILE - from;
-    ulong mine = 0, all;
-    for (int i = first; i < last; ++i) mine += 1UL << field_of(elements[from + padded(i)], shift);
-    ulong places = scan_fields(mine, sums, &all);
+    uint64 mine = 0, all;
+    for (int i = first; i < last; ++i) mine += (uint64)1 << field_of(elements[from + padded(i)], shift);
+    uint64 places = scan_fields(mine, sums, &all);
     // The elements of smaller values come first.
     places += (all << 16) + (all << 32) + (all << 48);
     for (int i = first; i < last; ++i) {
       const uint element = elements[from + padded(i)];
       const int field = field_of(element, shift);
       elements[to + padded((int)(places >> field & 0xffff))] = element;
-      places += 1UL << field;
+      places += (uint64)1 << field;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     from = to;
@@ -125,7 +125,7 @@ WITH_BARRIERS int sort_digits(local uint* elements, int count, int bits, local u
 // What a tile is sorted with: starts[d] is where its elements of digit d go, less the place of the first one in the
 // tile. So place i of the sorted tile goes to starts[d] + i.
 WITH_BARRIERS int sort_tile(point_tile tile, int shift, int bits, global const int* blocks, global const uint* scanned,
-                            local uint* elements, local int* starts, local ulong* sums) {
+                            local uint* elements, local int* starts, local uint64* sums) {
   const int me = get_local_id(0), group = get_local_size(0);
   const int count = tile.last - tile.first;
   for (int i = me; i < count; i += group) {
@@ -152,7 +152,7 @@ kernel void move_keys(int n, int size, int shift, int bits, int is_first, global
                       global int* restrict moved_blocks, global int* restrict moved_indices) {
   local uint elements[2 * PADDED_TILE];
   local int starts[1 << MOST_BLOCK_BITS];
-  local ulong sums[LARGEST_TILE_GROUP];
+  local uint64 sums[LARGEST_TILE_GROUP];
   const point_tile tile = points_of(n, size);
   const int sorted = sort_tile(tile, shift, bits, blocks, scanned, elements, starts, sums);
   for (int i = get_local_id(0); i < tile.last - tile.first; i += get_local_size(0)) {
@@ -170,7 +170,7 @@ kernel void move_tiles(int n, int size, int shift, int bits, int is_first, globa
                        global coordinate2* restrict points, global int* restrict source) {
   local uint elements[2 * PADDED_TILE];
   local int starts[1 << MOST_BLOCK_BITS];
-  local ulong sums[LARGEST_TILE_GROUP];
+  local uint64 sums[LARGEST_TILE_GROUP];
   const point_tile tile = points_of(n, size);
   const int sorted = sort_tile(tile, shift, bits, blocks, scanned, elements, starts, sums);
   for (int i = get_local_id(0); i < tile.last - tile.first; i += get_local_size(0)) {

@@ -12,12 +12,12 @@
 #include "points/codes.h"
 
 // Points of single precision from `first` on. The bits are those of doubles.
-kernel void widen_points(int n, ulong first, global const float_bits* restrict narrow,
+kernel void widen_points(int n, uint64 first, global const float_bits* restrict narrow,
                          global double_bits* restrict points) {
   const int i = get_global_id(0);
   if (i < n) {
-    points[2 * (long)i] = widened_bits(narrow[2 * (first + i)]);
-    points[2 * (long)i + 1] = widened_bits(narrow[2 * (first + i) + 1]);
+    points[2 * (int64)i] = widened_bits(narrow[2 * (first + i)]);
+    points[2 * (int64)i + 1] = widened_bits(narrow[2 * (first + i) + 1]);
   }
 }
 
@@ -59,7 +59,7 @@ kernel void scale_sets(int n, int sets, global const int* restrict offsets, glob
   const int i = get_global_id(0);
   if (i < n) {
     const int shift = shifts[segment_of(i, sets, offsets)];
-    scaled_input[2 * (long)i] = scaled_bits(input[2 * (long)i], shift);
-    scaled_input[2 * (long)i + 1] = scaled_bits(input[2 * (long)i + 1], shift);
+    scaled_input[2 * (int64)i] = scaled_bits(input[2 * (int64)i], shift);
+    scaled_input[2 * (int64)i + 1] = scaled_bits(input[2 * (int64)i + 1], shift);
   }
 }

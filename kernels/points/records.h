@@ -11,7 +11,7 @@ BEGIN_SHARED
 // A cut, across x or y. Its pivot and a point, both as orderable numbers, are compared by (x, y), or by (y, -x) if turn
 // has all bits set: a point goes high unless it comes before the pivot. Nodes are in the order of a heap, from 1 on.
 typedef struct {
-  ulong major, minor, turn;
+  uint64 major, minor, turn;
 } cut_node;
 ASSERT_SIZE(cut_node, 24);
 

@@ -9,7 +9,7 @@
 BEGIN_SHARED
 
 // Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-static inline ulong mixed(ulong x) {
+static inline uint64 mixed(uint64 x) {
   x += 0x9e3779b97f4a7c15UL;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9UL;
   x = (x ^ x >> 27) * 0x94d049bb133111ebUL;
@@ -17,9 +17,9 @@ static inline ulong mixed(ulong x) {
 }
 
 // The point that is a tree's sample k: one of as many equal parts as there are samples.
-static inline int drawn_point(sampled_tree own, ulong k) {
-  const ulong begin = k * own.points / own.samples, end = (k + 1) * own.points / own.samples;
-  return own.first_point + (int)(begin + mixed(k) % max(1UL, end - begin));
+static inline int drawn_point(sampled_tree own, uint64 k) {
+  const uint64 begin = k * own.points / own.samples, end = (k + 1) * own.points / own.samples;
+  return own.first_point + (int)(begin + mixed(k) % max((uint64)1, end - begin));
 }
 
 // A cut, at a sample.
@@ -44,11 +44,11 @@ static inline sample_cut cut_of(int begin, int size, GLOBAL const coordinate2* s
 }
 
 static inline cut_node node_of(int axis, coordinate2 pivot) {
-  const ulong x = orderable(pivot.x), y = orderable(pivot.y);
+  const uint64 x = orderable(pivot.x), y = orderable(pivot.y);
   cut_node node;
   node.major = axis ? y : x;
   node.minor = axis ? ~x : y;
-  node.turn = axis ? ~0UL : 0UL;
+  node.turn = axis ? ~(uint64)0 : (uint64)0;
   return node;
 }
 

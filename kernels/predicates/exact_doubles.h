@@ -23,21 +23,21 @@ BEGIN_SHARED
 #define WIDE_BITS 62
 static inline double unit_factor(double largest, int bits) {
   const int exponent = (int)(as_ulong(largest) >> 52);  // 1023 for [1, 2)
-  return as_double((ulong)(1023 + 1023 + bits - 1 - exponent) << 52);
+  return as_double((uint64)(1023 + 1023 + bits - 1 - exponent) << 52);
 }
 
 // Whether a difference as two_sum gives it, below 2^bits units, is an integer; it is then put into *integer.
-static inline int is_integer(double2 difference, double factor, long* integer) {
+static inline int is_integer(double2 difference, double factor, int64* integer) {
   const double high = difference.x * factor;
   const double low = difference.y * factor;
-  const long whole_high = convert_long(high);
-  const long whole_low = convert_long(low);
+  const int64 whole_high = convert_long(high);
+  const int64 whole_low = convert_long(low);
   *integer = whole_high + whole_low;
   return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
 }
 
 // Whether a difference is an integer of at most 53 bits, which a double has: then it has no rounding error.
-static inline int is_short_integer(double2 difference, double factor, long* integer) {
+static inline int is_short_integer(double2 difference, double factor, int64* integer) {
   const double high = difference.x * factor;
   *integer = convert_long(high);
   return (convert_double(*integer) == high) & (difference.y == 0.0);
@@ -67,7 +67,7 @@ OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
   const double largest = larger_magnitude(larger_magnitude(bx.x, by.x), larger_magnitude(cx.x, cy.x));
   if (largest == 0.0) return 0;
   const double factor = unit_factor(largest, WIDE_BITS);
-  long bxi, byi, cxi, cyi;
+  int64 bxi, byi, cxi, cyi;
   if (is_integer(bx, factor, &bxi) & is_integer(by, factor, &byi) & is_integer(cx, factor, &cxi) &
       is_integer(cy, factor, &cyi))
     return sign_of_128(difference_128(product_128(bxi, cyi), product_128(byi, cxi)));
@@ -119,7 +119,7 @@ static inline circle_differences differences_from(double2 d, double2 a, double2 
 }
 
 // Whether all differences are integers below 2^WIDE_BITS units, which are put into x and y.
-static inline int are_integers(const circle_differences* from, double factor, long* x, long* y) {
+static inline int are_integers(const circle_differences* from, double factor, int64* x, int64* y) {
   int integers = 1;
   for (int k = 0; k < 3; ++k) {
     integers &= is_integer(from->x[k], factor, &x[k]) & is_integer(from->y[k], factor, &y[k]);
@@ -134,7 +134,7 @@ static inline int are_integers(const circle_differences* from, double factor, lo
 OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   const circle_differences from = differences_from(d, a, b, c);
   if (from.largest == 0.0) return 0;
-  long x[3], y[3];
+  int64 x[3], y[3];
   return are_integers(&from, unit_factor(from.largest, WIDE_BITS), x, y)
              ? sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]))
              : circle_sign_by_expansions(from.x, from.y);
@@ -147,7 +147,7 @@ OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, 
   const circle_differences from = differences_from(d, a, b, c);
   if (from.largest == 0.0) return 0;
   const double factor = unit_factor(from.largest, MIDDLE_BITS);
-  long x[3], y[3], all = 0;
+  int64 x[3], y[3], all = 0;
   int integers = 1;
   for (int k = 0; k < 3; ++k) {
     integers &= is_short_integer(from.x[k], factor, &x[k]) & is_short_integer(from.y[k], factor, &y[k]);
@@ -155,7 +155,7 @@ OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, 
   }
   if (!integers) return circle_exact(a, b, c, d);
   const int spare = MIDDLE_BITS - SHORT_BITS;
-  if ((all & ((1L << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
+  if ((all & (((int64)1 << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
   return circle_short(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
 }
 

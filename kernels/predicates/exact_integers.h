@@ -23,13 +23,13 @@ OUT_OF_LINE static inline int orient_exact(coordinate2 a, coordinate2 b, coordin
 
 // Differences of three points from the fourth, without their common factor 2^k, and how many bits the largest has.
 typedef struct {
-  long x[3], y[3];
+  int64 x[3], y[3];
   int bits;
 } circle_differences;
 
 static inline circle_differences differences_from(coordinate2 d, coordinate2 a, coordinate2 b, coordinate2 c) {
   circle_differences from = {{a.x - d.x, b.x - d.x, c.x - d.x}, {a.y - d.y, b.y - d.y, c.y - d.y}, 0};
-  ulong magnitudes = 0, all = 0;
+  uint64 magnitudes = 0, all = 0;
   for (int k = 0; k < 3; ++k) {
     all |= as_ulong(from.x[k] | from.y[k]);
     magnitudes |= as_ulong(from.x[k] < 0 ? -from.x[k] : from.x[k]) | as_ulong(from.y[k] < 0 ? -from.y[k] : from.y[k]);

@@ -53,7 +53,7 @@ OUT_OF_LINE static inline int nearness_exact(double2 a, double2 b, double2 q) {
       larger_magnitude(abx.x, aby.x), larger_magnitude(larger_magnitude(qax.x, qay.x), larger_magnitude(qbx.x, qby.x)));
   if (largest == 0.0) return 0;
   const double factor = unit_factor(largest, WIDE_BITS);
-  long abxi, abyi, qaxi, qayi, qbxi, qbyi;
+  int64 abxi, abyi, qaxi, qayi, qbxi, qbyi;
   if (is_integer(abx, factor, &abxi) & is_integer(aby, factor, &abyi) & is_integer(qax, factor, &qaxi) &
       is_integer(qay, factor, &qayi) & is_integer(qbx, factor, &qbxi) & is_integer(qby, factor, &qbyi))
     return sign_of_128(sum_128(product_128(abxi, qaxi + qbxi), product_128(abyi, qayi + qbyi)));

@@ -20,7 +20,7 @@ static inline coordinate sorted_coordinate(coordinate2 p, int number) {
 
 // An element to sort: a coarse key in the upper half, the place of the point in the lower one. One number is moved
 // faster than a vector of two.
-typedef ulong keyed;
+typedef uint64 keyed;
 static inline keyed keyed_place(uint key, int place) { return (keyed)key << 32 | (uint)place; }
 static inline uint coarse_key(keyed element) { return (uint)(element >> 32); }
 static inline int place_of_keyed(keyed element) { return (int)(uint)element; }
@@ -62,7 +62,7 @@ static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* 
   for (int digit = 0; digit < digits; ++digit) {
     for (int d = 0; d < COARSE_DIGITS; ++d) counts[digit][d] = 0;
   }
-  const ulong first = orderable(least);
+  const uint64 first = orderable(least);
   const int dropped = max(0, 64 - (int)clz(orderable(most) - first) - digits * COARSE_DIGIT);
   for (int i = 0; i < n; ++i) {
     const int place = place_of_keyed(elements[i]);

@@ -34,11 +34,11 @@ kernel void list_encroached(int n, global const int* restrict positions, global 
 }
 
 // Their keys: hashes of their ends, whichever side they are seen from.
-kernel void constraint_keys(int n, global const int* restrict corners, REFINED_MESH(), global ulong* restrict keys) {
+kernel void constraint_keys(int n, global const int* restrict corners, REFINED_MESH(), global uint64* restrict keys) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
-    ulong key = NO_KEY;
+    uint64 key = NO_KEY;
     if (corners[i] >= 0) {
       const double2 a = point_at(&mesh, next_halfedge(corners[i])), b = point_at(&mesh, previous_halfedge(corners[i]));
       key = comes_before(a, b) ? hash_with(hash_with(0, a), b) : hash_with(hash_with(0, b), a);
@@ -49,7 +49,7 @@ kernel void constraint_keys(int n, global const int* restrict corners, REFINED_M
 }
 
 // corners: sorted by their keys. is_new: whether no corner before is opposite to the same constraint.
-kernel void find_new(int n, global const ulong* restrict keys, global const int* restrict corners,
+kernel void find_new(int n, global const uint64* restrict keys, global const int* restrict corners,
                      global const mesh_row* restrict rows, global uchar* restrict is_new) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -67,7 +67,7 @@ kernel void find_new(int n, global const ulong* restrict keys, global const int*
 // What is inserted
 
 // Rows that are set aside for a point have no triangle as long as it is not inserted.
-static inline void clear_row(int row, global mesh_row* rows, global ulong* row_keys, global uint* claims,
+static inline void clear_row(int row, global mesh_row* rows, global uint64* row_keys, global uint* claims,
                              global uint* visits) {
   rows[row].corner[0] = NO_TRIANGLE;
   row_keys[row] = NO_KEY;
@@ -79,7 +79,7 @@ kernel void start_splits(int n, refinement_rules rules, int first_vertex, int fi
                          global const int* restrict positions, global const int* restrict corners,
                          global const int* restrict ends, global mesh_row* restrict rows,
                          global double2* restrict points, global edge_place* restrict places,
-                         global ulong* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
+                         global uint64* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
                          global insertion* restrict insertions, global uchar* restrict states) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -118,7 +118,7 @@ kernel void start_points(int n, int step, int first, uint mask, int most, int fi
                          global const int* restrict list, global const int* restrict places_of,
                          global const proposal* restrict proposals, global mesh_row* restrict rows,
                          global double2* restrict points, global edge_place* restrict places,
-                         global ulong* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
+                         global uint64* restrict row_keys, global uint* restrict claims, global uint* restrict visits,
                          global insertion* restrict insertions, global uchar* restrict states) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -306,7 +306,7 @@ kernel void insert_stars(int n, int step, int first_made, global const int* rest
                          global const uint* restrict offsets, global const uint* restrict made_at,
                          global const insertion* restrict insertions, global const uchar* restrict states,
                          global const star_side* restrict sides, global const edge_place* restrict places,
-                         global mesh_row* restrict rows, global ulong* restrict row_keys,
+                         global mesh_row* restrict rows, global uint64* restrict row_keys,
                          global uchar* restrict refused, global int2* restrict made, global uchar* restrict waits) {
   const int i = get_global_id(0);
   if (i < n) {

@@ -15,7 +15,7 @@
 #ifndef FIXED_POINT
 
 kernel void find_active(int n, int waits, global const int* restrict list, global const mesh_row* restrict rows,
-                        global const ulong* restrict keys, global uchar* restrict active) {
+                        global const uint64* restrict keys, global uchar* restrict active) {
   const int i = get_global_id(0);
   if (i < n) {
 #if FETCH_AHEAD
@@ -26,7 +26,7 @@ kernel void find_active(int n, int waits, global const int* restrict list, globa
     for (int k = 0; k < 3; ++k) fetch(&keys[max(0, rows[near].neighbor[k])]);
 #endif
     const int row = list[i];
-    const ulong key = keys[row];
+    const uint64 key = keys[row];
     int is_active = 1;
     if (waits && !is_key_of_large(key)) {
       for (int k = 0; k < 3; ++k) {
@@ -79,8 +79,8 @@ static inline int walk_to(const seen_mesh* mesh, int corner, double2 p) {
 
 // cavities: of each proposal the rows of its cavity, if they are at most `listed`; unlisted: how many have more.
 kernel void propose(int n, refinement_rules rules, int listed, global const int* restrict list, REFINED_MESH(),
-                    global const ulong* restrict row_keys, global proposal* restrict proposals,
-                    global int* restrict cavities, global ulong* restrict keys, global int* restrict payloads,
+                    global const uint64* restrict row_keys, global proposal* restrict proposals,
+                    global int* restrict cavities, global uint64* restrict keys, global int* restrict payloads,
                     global uchar* restrict outcomes, global volatile uint* restrict unlisted) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -103,7 +103,7 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
 #endif
     const int row = list[i];
     const ordered_triangle triangle = ordered(&mesh, row);
-    const ulong key = row_keys[row];
+    const uint64 key = row_keys[row];
     proposal made;
     const double2 p = centre_of(triangle.point, is_key_of_large(key), rules);
     made.x = p.x;
@@ -184,7 +184,7 @@ static inline int comes_first(const seen_mesh* mesh, int row, int other) {
 
 // keys: sorted, with the numbers of their proposals in order. The first of equal keys sorts them by insertion: as
 // hashes are in the keys, they are few.
-kernel void order_equal(int n, global const ulong* restrict keys, global const proposal* restrict proposals,
+kernel void order_equal(int n, global const uint64* restrict keys, global const proposal* restrict proposals,
                         REFINED_MESH(), global int* restrict order) {
   const int i = get_global_id(0);
   if (i + 1 < n && keys[i] == keys[i + 1] && keys[i] != NO_KEY && (i == 0 || keys[i - 1] != keys[i])) {
@@ -331,7 +331,7 @@ static inline int holds_ring(const seen_mesh* mesh, const proposal* made, global
 }
 
 kernel void decide(int n, refinement_rules rules, uint first, global const proposal* restrict proposals,
-                   global const uint* restrict ranks, REFINED_MESH(), global const ulong* restrict row_keys,
+                   global const uint* restrict ranks, REFINED_MESH(), global const uint64* restrict row_keys,
                    global const uint* restrict claims, global uchar* restrict outcomes) {
   const int i = get_global_id(0);
   if (i < n && outcomes[i] == PROPOSAL_OPEN) {
@@ -370,7 +370,7 @@ kernel void mark_winners(int n, global const int* restrict order, global const u
 
 // Puts aside the triangles whose points were refused, until they change.
 kernel void refuse(int n, global const proposal* restrict proposals, global const uchar* restrict outcomes,
-                   global ulong* restrict row_keys, global uchar* restrict refused) {
+                   global uint64* restrict row_keys, global uchar* restrict refused) {
   const int i = get_global_id(0);
   if (i < n && outcomes[i] < PROPOSAL_OPEN) {
     row_keys[proposals[i].row] = NO_KEY;

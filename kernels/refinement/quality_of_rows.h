@@ -73,19 +73,19 @@ static inline int excuse_of(const seen_mesh* mesh, const ordered_triangle* trian
 }
 
 // Spreads the bits of a hash, by the constants of SplitMix64 (Steele, Lea and Flood, 2014).
-static inline ulong mixed(ulong hash) {
+static inline uint64 mixed(uint64 hash) {
   hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9UL;
   hash = (hash ^ hash >> 27) * 0x94d049bb133111ebUL;
   return hash ^ hash >> 31;
 }
-static inline ulong hash_with(ulong hash, double2 p) {
+static inline uint64 hash_with(uint64 hash, double2 p) {
   hash = mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.x));
   return mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.y));
 }
 
 // Triangles that are too large come first, the largest one first; then those with the shortest sides. Equal ones are
 // ordered by hashes: in the order of coordinates, long chains of them would wait for each other.
-static inline ulong key_of(const ordered_triangle* triangle, int is_large) {
+static inline uint64 key_of(const ordered_triangle* triangle, int is_large) {
   const double2* const p = triangle->point;
   uint first;
   if (is_large) {
@@ -95,11 +95,11 @@ static inline ulong key_of(const ordered_triangle* triangle, int is_large) {
     const int k = opposite_to_shortest(p);
     first = 0x80000000u | (uint)(as_ulong(squared_distance(p[(k + 1) % 3], p[(k + 2) % 3])) >> 33);
   }
-  ulong hash = 0;
+  uint64 hash = 0;
   for (int k = 0; k < 3; ++k) hash = hash_with(hash, p[k]);
-  return (ulong)first << 32 | hash >> 32;
+  return (uint64)first << 32 | hash >> 32;
 }
-static inline int is_key_of_large(ulong key) { return (int)(key >> 63 == 0); }
+static inline int is_key_of_large(uint64 key) { return (int)(key >> 63 == 0); }
 
 // Whether a corner is nearer to the line opposite to it, of this squared length, than points may be to each other. Such
 // triangles are between constraints that are straight but for rounding, and splits would go on to make more of them.

@@ -161,7 +161,7 @@ kernel void flip(int n, uint next_pass, global const int* restrict corners, glob
 
 // n rows: what is known of those that were changed is forgotten, as if they had just been made.
 kernel void forget_changed(int n, global const uint* restrict changes, global mesh_row* restrict rows,
-                           global ulong* restrict row_keys, global uchar* restrict refused,
+                           global uint64* restrict row_keys, global uchar* restrict refused,
                            global uchar* restrict is_changed) {
   const int row = get_global_id(0);
   if (row < n) {

@@ -42,7 +42,7 @@ static inline int is_encroached_from_a_side(const seen_mesh* mesh, int corner, r
 // made: rows and their first vertices, or less than 0. keys: per row. bad: 1 or 0. split_bits: a bit per corner whose
 // opposite constraint is to be split; encroached: whether there is one.
 kernel void test_rows(int n, refinement_rules rules, global const int2* restrict made, REFINED_MESH(),
-                      global ulong* restrict keys, global uchar* restrict bad, global uchar* restrict encroached,
+                      global uint64* restrict keys, global uchar* restrict bad, global uchar* restrict encroached,
                       global uchar* restrict split_bits) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -79,7 +79,7 @@ kernel void test_rows(int n, refinement_rules rules, global const int2* restrict
   }
 }
 
-kernel void find_unchanged(int n, global const int* restrict list, global const ulong* restrict keys,
+kernel void find_unchanged(int n, global const int* restrict list, global const uint64* restrict keys,
                            global uchar* restrict unchanged) {
   const int i = get_global_id(0);
   if (i < n) unchanged[i] = keys[list[i]] != NO_KEY;

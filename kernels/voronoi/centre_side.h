@@ -50,7 +50,7 @@ static inline int centre_side_filtered(const centre_terms* of, double2 v, double
   return filtered_sign(side, magnitude, bound);
 }
 
-static inline integer128 sum_of_squares(long x, long y) { return dot_product(x, y, x, y); }
+static inline integer128 sum_of_squares(int64 x, int64 y) { return dot_product(x, y, x, y); }
 static inline integer256 doubled(integer256 a) { return sum_256(a, a); }
 static inline integer128 negated(integer128 a) { return difference_128(widened(0), a); }
 
@@ -86,7 +86,7 @@ OUT_OF_LINE static inline int centre_side_exact(const centre_terms* of, double2 
   }
   if (largest == 0.0) return 0;
   const double factor = unit_factor(largest, WIDE_BITS);
-  long bi[2], ci[2], ei[2], fi[2];
+  int64 bi[2], ci[2], ei[2], fi[2];
   int integers = 1;
   for (int k = 0; k < 2; ++k) {
     integers &= is_integer(b[k], factor, &bi[k]) & is_integer(c[k], factor, &ci[k]) & is_integer(e[k], factor, &ei[k]) &

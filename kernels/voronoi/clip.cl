@@ -281,8 +281,8 @@ kernel void write_slots(int n, int chunk, global const int* restrict triangles, 
                         global const uchar* restrict flats, global const int* restrict witnesses,
                         global const uint* restrict offsets, global int* restrict slots, global uint* restrict codes) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
       const int end = min(last, begin + TRIANGLES_AT_ONCE);
       int corners[3 * TRIANGLES_AT_ONCE + 1];

@@ -223,8 +223,8 @@ kernel void measure_cells(int n, int chunk, int points, global const int* restri
                           global const int* restrict neighbors, global const int* restrict ahead,
                           global uint* restrict sizes, global uchar* restrict firsts) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
       const int end = min(last, begin + TRIANGLES_AT_ONCE);
       int corners[3 * TRIANGLES_AT_ONCE + 1];
@@ -259,8 +259,8 @@ kernel void write_cells(int n, int chunk, global const int* restrict triangles, 
                         global const uchar* restrict firsts, global const uint* restrict offsets,
                         global int* restrict cells) {
   const int c = get_global_id(0);
-  if ((long)c * chunk < n) {
-    const int last = (int)min((long)n, (c + 1L) * chunk);
+  if ((int64)c * chunk < n) {
+    const int last = (int)min((int64)n, ((int64)c + 1) * chunk);
     for (int begin = c * chunk; begin < last; begin += TRIANGLES_AT_ONCE) {
       const int end = min(last, begin + TRIANGLES_AT_ONCE);
       int corners[3 * TRIANGLES_AT_ONCE + 1];

@@ -35,7 +35,7 @@ Magnitudes inspect(const double* coordinates, std::size_t first, std::size_t las
   kernel::bit_account bits = kernel::no_bits();
   int bad = kernel::NO_BAD;
   for (std::size_t i = 2 * first; i < 2 * last && bad == kernel::NO_BAD; ++i) {
-    const kernel::ulong magnitude = kernel::as_ulong(coordinates[i]) & MAGNITUDE_BITS;
+    const kernel::uint64 magnitude = kernel::as_ulong(coordinates[i]) & MAGNITUDE_BITS;
     if (magnitude < INFINITE_BITS) {
       kernel::account_for(magnitude, &bits);
     } else {

@@ -46,7 +46,7 @@ int shift_together(const Magnitudes& points, const Magnitudes& of_queries) {
 
 kernel::query_frame fixed_point_frame(int shift, int unit) {
   kernel::query_frame frame{};
-  frame.unit = kernel::as_double(static_cast<kernel::ulong>(static_cast<long>(unit)));
+  frame.unit = kernel::as_double(static_cast<kernel::uint64>(static_cast<kernel::int64>(unit)));
   frame.shift = shift;
   return frame;
 }

@@ -27,7 +27,7 @@ double by_kernel(const Coordinates& corners) {
 
 // What devices without double precision compute.
 double by_integers(const Coordinates& corners) {
-  kernel::ulong x[3], y[3];
+  kernel::uint64 x[3], y[3];
   for (int k = 0; k < 3; ++k) {
     x[k] = kernel::as_ulong(corners[2 * k]);
     y[k] = kernel::as_ulong(corners[2 * k + 1]);
@@ -50,8 +50,8 @@ Coordinates triangle_of(const std::function<double()>& make) {
 TEST(SmallAreas, OfAllMagnitudes) {
   FixtureRandom random(1);
   const auto of_bits = [&] {
-    const auto bits = static_cast<kernel::ulong>(random.unit() * 0x1p53) << 11 |
-                      static_cast<kernel::ulong>(random.unit() * 0x1p11);
+    const auto bits = static_cast<kernel::uint64>(random.unit() * 0x1p53) << 11 |
+                      static_cast<kernel::uint64>(random.unit() * 0x1p11);
     const double number = kernel::as_double(bits);
     return std::isfinite(number) ? number : 1.0;
   };

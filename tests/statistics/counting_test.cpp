@@ -79,9 +79,9 @@ double2 magnitudes(double2 p) { return {fabs(p.x), fabs(p.y)}; }
 using kernel::as_long;
 using kernel::as_ulong;
 using kernel::high_product;
-using kernel::ulong;
-inline ulong as_ulong(Counted x) { return as_ulong(x.value); }
-inline Counted as_double(ulong bits) { return kernel::as_double(bits); }
+using kernel::uint64;
+inline uint64 as_ulong(Counted x) { return as_ulong(x.value); }
+inline Counted as_double(uint64 bits) { return kernel::as_double(bits); }
 inline long convert_long(Counted x) { return kernel::convert_long(x.value); }
 inline Counted convert_double(long x) { return kernel::convert_double(x); }
 
