@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/clock.hpp"
+#include "host/error.hpp"
 #include "host/memory/counting.hpp"
 #include "host/memory/huge_pages.hpp"
 #include "host/native/backend.hpp"
@@ -15,11 +16,16 @@ namespace flaunay::host {
 Runtime::Runtime(const boost::compute::device& device, Settings settings)
     : Runtime(boost::compute::context(device), device, std::move(settings)) {}
 
-Runtime::Runtime(const boost::compute::context& context, const boost::compute::device& device,
-                 Settings settings)
-    : Runtime(std::move(settings), [&](Accounts& accounts) {
+Runtime::Runtime([[maybe_unused]] const boost::compute::context& context,
+                 [[maybe_unused]] const boost::compute::device& device, Settings settings)
+    : Runtime(std::move(settings), [&]([[maybe_unused]] Accounts& accounts) -> std::unique_ptr<Backend> {
+#ifdef FLAUNAY_WITHOUT_OPENCL
+        throw DeviceError("this build of flaunay does not use OpenCL devices");
+#else
         return std::make_unique<OpenClBackend>(accounts, context, device);
-      }) {}
+#endif
+      }) {
+}
 
 Runtime::Runtime(std::shared_ptr<const Sizes> sizes, std::size_t threads)
     : Runtime(Settings{std::move(sizes)},

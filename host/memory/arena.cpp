@@ -49,10 +49,10 @@ MemorySource memory_of(const boost::compute::context& context, const boost::comp
   // At least a cache line, so that vector loads of one array never share a cache line with another array.
   const std::size_t alignment = device.get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8;
   return {context, (device.type() & CL_DEVICE_TYPE_CPU) != 0, std::max(kAlignment, alignment),
-          device.max_memory_alloc_size()};
+          static_cast<std::size_t>(std::min<cl_ulong>(device.max_memory_alloc_size(), kMostBytes))};
 }
 
-MemorySource native_memory() { return {{}, true, kAlignment, std::size_t{1} << 62}; }
+MemorySource native_memory() { return {{}, true, kAlignment, kMostBytes}; }
 
 Arena::Arena(MemorySource source) : source_(std::move(source)), blocks_(1) {}
 
@@ -141,7 +141,7 @@ std::shared_ptr<_cl_mem> Arena::part_of(const std::shared_ptr<_cl_mem>& memory, 
 }
 
 std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t size) {
-  if (count > (std::size_t{1} << 62) / size) {
+  if (count > kMostBytes / size) {
     throw DeviceError(
         fmt::format("a buffer of {} elements of {} bytes is more than can be addressed", count, size),
         CL_INVALID_BUFFER_SIZE);

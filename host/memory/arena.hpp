@@ -6,6 +6,7 @@
 #include <boost/compute/context.hpp>
 #include <boost/compute/device.hpp>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct MemorySource {
   std::size_t alignment;            ///< every array begins at a multiple of this many bytes
   std::size_t largest;              ///< the largest number of bytes in one piece
 };
+/// No array has more bytes. The sum of two such sizes can be computed, even when they are rounded up.
+constexpr std::size_t kMostBytes = (std::numeric_limits<std::size_t>::max() >> 1) - (std::size_t{1} << 16);
 /// The memory of an OpenCL device.
 MemorySource memory_of(const boost::compute::context& context, const boost::compute::device& device);
 /// The memory of the process, for kernels that run natively.
@@ -69,7 +72,7 @@ class Arena {
   void lend(const std::shared_ptr<_cl_mem>& memory, std::size_t offset, std::size_t bytes);
 
   /// Makes the arena count bytes only: it has no memory, and its arrays must not be accessed.
-  void count_only() { lend({std::shared_ptr<void>(), handle_of(this)}, 0, std::size_t{1} << 60); }
+  void count_only() { lend({std::shared_ptr<void>(), handle_of(this)}, 0, kMostBytes); }
 
   /// Makes every later allocation a separate OpenCL buffer of exactly its size, so that a simulator such as
   /// oclgrind detects every access out of bounds. Slow.

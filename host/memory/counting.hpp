@@ -16,7 +16,7 @@ class CountingBackend : public Backend {
   CountingBackend(Accounts& accounts, std::size_t alignment) : Backend(accounts), alignment_(alignment) {}
 
   std::string name() const override { return "counting"; }
-  MemorySource memory() const override { return {{}, true, alignment_, std::size_t{1} << 62}; }
+  MemorySource memory() const override { return {{}, true, alignment_, kMostBytes}; }
   void read(cl_mem, std::size_t, std::size_t, void*, bool) override {}
   void write(cl_mem, std::size_t, std::size_t, const void*, bool) override {}
   void fill(cl_mem, std::size_t, std::size_t, const void*, std::size_t) override {}

@@ -2,7 +2,7 @@
 // functions that are called once per work-item. It stands inside namespace flaunay::kernel and directly
 // before the kernel file; host/native/end_of_words.h stands directly behind. There is no include guard,
 // because both can come repeatedly.
-#define kernel [[maybe_unused]] static
+#define kernel __attribute__((unused)) static
 #define global
 #define restrict __restrict
 // Work-groups have one work-item each: local memory is its own, and it waits for nobody.

@@ -33,6 +33,12 @@ struct Signature<R(P...)> {
   using Parameter = std::tuple_element_t<k, std::tuple<P...>>;
 };
 
+#ifdef FLAUNAY_WITHOUT_OPENCL
+template <typename Function>
+Function* find(const char*) {
+  return nullptr;
+}
+#else
 // A library that was loaded before comes first: it may have been put there to watch the calls.
 template <typename Function>
 Function* find(const char* name) {
@@ -44,6 +50,7 @@ Function* find(const char* name) {
   if (found == nullptr && library != nullptr) found = dlsym(library, name);
   return reinterpret_cast<Function*>(found);
 }
+#endif
 
 // The driver's functions for an object, which every object of OpenCL has in its first word (cl_khr_icd); null
 // for no object.

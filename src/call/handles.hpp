@@ -28,7 +28,7 @@ struct DeviceBufferAccess {
 namespace call {
 
 /// Larger numbers of points or sets are refused, because their sums and products could overflow.
-constexpr std::size_t kMostCountable = std::size_t{1} << 40;
+constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
 
 /// How a buffer is used: kernels read it, kernels write it, the host reads it, or kernels and host do both.
 enum class Access { read, write, host, workspace };

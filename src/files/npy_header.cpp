@@ -6,14 +6,14 @@
 
 namespace flaunay::io {
 
-std::string shape_text(const std::vector<std::size_t>& shape) {
+std::string shape_text(const std::vector<std::uint64_t>& shape) {
   std::string text = "(";
   for (std::size_t i = 0; i < shape.size(); ++i) text += (i ? ", " : "") + std::to_string(shape[i]);
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
 std::string npy_header(const std::string& descr, std::uint64_t rows, std::size_t columns) {
-  std::vector<std::size_t> shape = {rows};
+  std::vector<std::uint64_t> shape = {rows};
   if (columns > 0) shape.push_back(columns);
   std::string text =
       fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", descr, shape_text(shape));
