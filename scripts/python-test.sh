@@ -41,7 +41,7 @@ numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
 "$python" -m mypy --strict --package flaunay
 "$python" -m mypy --strict examples/python
 
-# The programs in the guide.
-WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md
+# The programs in the guide and the tutorials.
+WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/tutorials/*.md
 
 exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the Markdown pages of the source tree: that links lead to files and headings that exist, that no two headings
 of a page are equal, that files named in code spans exist, and that lines have at most 120 columns, except in tables, in
-code, and on pages that programs write.
+code, and on pages that programs write; and that there are not more words than are read.
 
     pages.py SOURCE
 """
@@ -11,9 +11,11 @@ import re
 import sys
 
 COLUMNS = 120
-PATTERNS = ("*.md", "docs/*.md", "bench/results/*.md", "tests/data/*.md")
+PATTERNS = ("*.md", "docs/*.md", "docs/tutorials/*.md", "site/*.md", "bench/results/*.md", "tests/data/*.md")
+# So many words at most, code and tables included: tutorials, which are read one by one, apart from the rest.
+WORDS = {("*.md", "docs/*.md"): 42_000, ("docs/tutorials/*.md",): 4_000}
 WRITTEN_BY_PROGRAMS = "bench/results"
-FOLDERS = ("bench", "cmake", "docs", "examples", "host", "kernels", "python", "scripts", "src", "tests")
+FOLDERS = ("bench", "cmake", "docs", "examples", "host", "kernels", "python", "scripts", "site", "src", "tests")
 # A code span with a folder of the source tree, such as `src/call/parts.hpp`. Placeholders and patterns are no paths.
 PATH = re.compile(rf"`((?:{'|'.join(FOLDERS)})/[\w./-]*)`")
 # One with a source file by its name, or by the end of its path, such as `planar.h` or `blocks/merge.cl`.
@@ -94,6 +96,12 @@ def main():
             for number, problem in problems(source, page, files):
                 print(f"{page.relative_to(source)}:{number}: {problem}")
                 found += 1
+    for patterns, limit in WORDS.items():
+        pages = [page for pattern in patterns for page in source.glob(pattern)]
+        words = sum(len(page.read_text(encoding="utf-8").split()) for page in pages)
+        if words > limit:
+            print(f"{' '.join(patterns)}: {words} words, at most {limit}")
+            found += 1
     sys.exit(1 if found else 0)
 
 

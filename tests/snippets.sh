@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # The programs in the documentation, built and run:
 #
-#   snippets.sh cpp | c | python PAGE.md...
+#   snippets.sh cpp | c | python | sh PAGE.md...
 #
-# A program is a fenced block of that language that begins with #include, #define or import. If the next fenced block is
-# one of text, what the program prints must be that. In the environment: SOURCE of flaunay, LIBRARY (the shared one), WORK (a
-# folder to work in), and CXX, CC or PYTHON.
+# A program is a fenced block of that language that begins with #include, #define or import; each block of sh is one. If
+# the next fenced block is one of text, what the program prints must be that. Programs run in a folder of their own. In
+# the environment: SOURCE of flaunay, LIBRARY (the shared one), WORK (a folder to work in), and CXX, CC, PYTHON or
+# COMMAND (flaunay's).
 set -euo pipefail
 
 language=$1
@@ -14,6 +15,7 @@ case $language in
   cpp) ending=cpp ;;
   c) ending=c ;;
   python) ending=py ;;
+  sh) ending=sh ;;
   *)
     echo "snippets.sh: unknown language $language" >&2
     exit 1
@@ -21,7 +23,11 @@ case $language in
 esac
 folder="$WORK/$language"
 rm -rf "$folder"
-mkdir -p "$folder"
+mkdir -p "$folder/files"
+folder="$(realpath "$folder")"
+python="$(command -v "${PYTHON:-python3}")"
+[[ $python == /* ]] || python="$PWD/$python"
+[[ $language != sh ]] || export PATH="${COMMAND%/*}:$PATH"
 
 # extract PAGE: its programs to $folder/PAGE-K.$ending, and what they print to $folder/PAGE-K.expected.
 extract() {
@@ -33,7 +39,7 @@ extract() {
       next }
     inside && /^```$/ { inside = 0; if (file != "") close(file); next }
     inside && first { first = 0
-      if (kind == language && /^(#include|#define|import) /) { program = stem "-" ++count; file = program "." ending } }
+      if (kind == language && (kind == "sh" || /^(#include|#define|import) /)) { program = stem "-" ++count; file = program "." ending } }
     inside && file != "" { print >file }' "$1"
 }
 
@@ -45,9 +51,10 @@ run() {
       compile=("${CXX:-c++}" -std=c++17)
       [[ $language == cpp ]] || compile=("${CC:-cc}" -std=c11)
       "${compile[@]}" -Wall -Wextra -Werror -I "$SOURCE/src/include" "$1" -o "$stem" "$LIBRARY" \
-        "-Wl,-rpath,${LIBRARY%/*}" -lOpenCL -pthread && "$stem" >"$stem.printed" || return
+        "-Wl,-rpath,${LIBRARY%/*}" -lOpenCL -pthread && (cd "$folder/files" && "$stem") >"$stem.printed" || return
       ;;
-    python) "${PYTHON:-python3}" "$1" >"$stem.printed" || return ;;
+    python) (cd "$folder/files" && "$python" "$1") >"$stem.printed" || return ;;
+    sh) (cd "$folder/files" && bash -euo pipefail "$1") >"$stem.printed" || return ;;
   esac
   [[ ! -e $stem.expected ]] || diff -u "$stem.expected" "$stem.printed"
 }
