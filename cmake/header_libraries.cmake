@@ -1,9 +1,10 @@
 # The libraries that are headers alone, for builds for another system than this one. They come from this system, by
 # links, since none of its other headers may be seen by the compiler.
-set(FLAUNAY_HEADERS_OF_SYSTEM /usr/include CACHE PATH "Where fmt, Boost, CL, CLI and nlohmann are")
+# fast_float is for platforms whose standard library cannot read doubles.
+set(FLAUNAY_HEADERS_OF_SYSTEM /usr/include CACHE PATH "Where fmt, Boost, CL, CLI, nlohmann and fast_float are")
 set(HEADER_LIBRARIES ${PROJECT_BINARY_DIR}/header_libraries)
 file(MAKE_DIRECTORY ${HEADER_LIBRARIES})
-foreach(NAME fmt boost CL CLI nlohmann)
+foreach(NAME fmt boost CL CLI nlohmann fast_float)
   if(EXISTS ${FLAUNAY_HEADERS_OF_SYSTEM}/${NAME})
     file(CREATE_LINK ${FLAUNAY_HEADERS_OF_SYSTEM}/${NAME} ${HEADER_LIBRARIES}/${NAME} SYMBOLIC)
   endif()

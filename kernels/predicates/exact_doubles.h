@@ -33,7 +33,7 @@ static inline int is_integer(double2 difference, double factor, int64* integer) 
   const int64 whole_high = convert_long(high);
   const int64 whole_low = convert_long(low);
   *integer = whole_high + whole_low;
-  return (convert_double(whole_high) == high) & (convert_double(whole_low) == low);
+  return (int)(convert_double(whole_high) == high) & (int)(convert_double(whole_low) == low);
 }
 
 // Whether a difference is an integer of at most 53 bits, which a double has: then it has no rounding error.

@@ -134,7 +134,7 @@ std::string make_exact(host::Runtime& runtime) {
 }
 
 host::MemoryLeft usable_memory(const boost::compute::device& device, std::size_t held) {
-  const host::MemoryLeft whole{device.global_memory_size(),
+  const host::MemoryLeft whole{static_cast<std::size_t>(device.global_memory_size()),
                                "the driver's account (CL_DEVICE_GLOBAL_MEM_SIZE)"};
   if (!host::shares_host_memory(device)) return whole;
   const host::MemoryLeft left = host::memory_left();

@@ -14,7 +14,7 @@ namespace flaunay::io {
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 /// "(3, 2)", "(3,)": as Python writes it.
-std::string shape_text(const std::vector<std::size_t>& shape);
+std::string shape_text(const std::vector<std::uint64_t>& shape);
 
 /// The beginning of a file. descr: the dtype, such as "<f8"; columns 0: an array of one dimension, `rows`
 /// long. It is as long as NumPy's own, and NumPy's have this size for any number of rows.

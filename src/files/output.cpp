@@ -154,14 +154,14 @@ void Outputs::announce(const std::string& path) {
   }
   auto file = std::make_unique<OutputFile>(path);
   const auto is_same = [&](const auto& other) { return is_one_file(other->path_, path); };
-  if (file->target_.is_direct && std::ranges::any_of(files_, is_same)) fail_same_path(path);
+  if (file->target_.is_direct && std::any_of(files_.begin(), files_.end(), is_same)) fail_same_path(path);
   files_.push_back(std::move(file));
 }
 
 OutputFile& Outputs::open(const std::string& path) {
   const auto find = [&] {
-    return std::ranges::find_if(files_,
-                                [&](const auto& file) { return !file->is_used_ && file->path_ == path; });
+    return std::find_if(files_.begin(), files_.end(),
+                        [&](const auto& file) { return !file->is_used_ && file->path_ == path; });
   };
   if (find() == files_.end()) announce(path);
   OutputFile& file = **find();
@@ -192,7 +192,11 @@ void Outputs::write_out() {
   if (closed_in_.empty()) return;
   // Once, because there may be thousands of files.
   const int folder = ::open(closed_in_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+#ifdef __linux__
   const bool is_written = folder >= 0 && ::syncfs(folder) == 0;
+#else
+  const bool is_written = folder >= 0 && ::fsync(folder) == 0;
+#endif
   const int reason = errno;
   if (folder >= 0) ::close(folder);
   if (!is_written) fail(closed_in_, "cannot be written: {}", system_reason(reason));

@@ -72,7 +72,7 @@ void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) cons
 
 void ScratchFile::release(std::uint64_t begin, std::uint64_t count) {
   held_ -= count;
-#ifdef FALLOC_FL_PUNCH_HOLE
+#ifdef __linux__
   // If this fails, nothing is wrong but that the room is given back later.
   static_cast<void>(::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
                                 static_cast<off_t>(begin), static_cast<off_t>(count)));

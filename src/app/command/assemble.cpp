@@ -34,13 +34,13 @@ struct AssembleRequest {
 std::vector<std::string> find_solutions(const PartitionReader& reader, bool solve) {
   std::vector<std::string> paths;
   for (std::size_t r = 0; r < reader.regions(); ++r) paths.push_back(reader.solution_path(r));
-  const auto first = std::ranges::find(paths, "");
+  const auto first = std::find(paths.begin(), paths.end(), "");
   if (first != paths.end() && !solve) {
     throw Error(ErrorKind::input,
                 fmt::format("{}.npy: is missing, and so are .ele and .1.ele; {} of {} regions have no "
                             "solution (--solve computes what is missing)",
                             reader.stem(static_cast<std::size_t>(first - paths.begin())),
-                            std::ranges::count(paths, ""), paths.size()));
+                            std::count(paths.begin(), paths.end(), ""), paths.size()));
   }
   return paths;
 }

@@ -14,8 +14,8 @@ constexpr const Format* kFormats[] = {&kNpy,     &kNode, &kXy,  &kTxt, &kCsv, &k
 const Format* find_format(const std::string& path, Use::Test use) {
   const bool is_stream = path == "-" && (use == Use::read_points || use == Use::write_points);
   const std::string ending = is_stream ? ".txt" : ending_of(path);
-  const auto found =
-      std::ranges::find_if(kFormats, [&](const Format* format) { return format->ending == ending; });
+  const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                  [&](const Format* format) { return format->ending == ending; });
   if (found == std::end(kFormats)) return nullptr;
   if (use == Use::read_points && (*found)->refuse != nullptr) (*found)->refuse(path);
   return use(**found) ? *found : nullptr;

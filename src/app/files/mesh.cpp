@@ -176,7 +176,7 @@ std::vector<std::int64_t> physical_numbers(const MeshContents& contents) {
     return attribute == std::floor(attribute) && std::fabs(attribute) <= static_cast<double>(kIndexLimit);
   };
   const std::vector<double>& attributes = mesh.triangle_attributes;
-  if (!attributes.empty() && std::ranges::all_of(attributes, is_number)) {
+  if (!attributes.empty() && std::all_of(attributes.begin(), attributes.end(), is_number)) {
     return {attributes.begin(), attributes.end()};
   }
   std::vector<std::int64_t> numbers(contents.triangle_count(), 1);

@@ -17,7 +17,7 @@ namespace {
 struct Header {
   std::string descr;
   bool fortran_order = false;
-  std::vector<std::size_t> shape;
+  std::vector<std::uint64_t> shape;
   std::size_t data_begin = 0;
 };
 
@@ -91,15 +91,15 @@ class HeaderParser {
     }
     malformed("expected True or False");
   }
-  std::vector<std::size_t> parse_shape() {
-    std::vector<std::size_t> shape;
+  std::vector<std::uint64_t> parse_shape() {
+    std::vector<std::uint64_t> shape;
     expect('(');
     while (!accept(')')) {
       if (peek() < '0' || peek() > '9') malformed("expected a length of the shape");
-      std::size_t length = 0;
+      std::uint64_t length = 0;
       for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
-        const auto digit = static_cast<std::size_t>(text_[at_] - '0');
-        if (length > (std::numeric_limits<std::size_t>::max() - digit) / 10) malformed("length too large");
+        const auto digit = static_cast<std::uint64_t>(text_[at_] - '0');
+        if (length > (std::numeric_limits<std::uint64_t>::max() - digit) / 10) malformed("length too large");
         length = 10 * length + digit;
       }
       accept('L');  // the suffix of long integers in Python 2

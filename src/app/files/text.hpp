@@ -15,6 +15,11 @@
 #include <utility>
 #include <vector>
 
+#ifndef __cpp_lib_to_chars
+// The standard library of some platforms cannot read doubles.
+#include <fast_float/fast_float.h>
+#endif
+
 #include "files/file.hpp"
 
 namespace flaunay::io {
@@ -42,6 +47,7 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   const char* begin = field.data();
   const char* end = begin + field.size();
   if (field.size() > 1 && field[0] == '+' && field[1] != '-') ++begin;
+#ifdef __cpp_lib_to_chars
   const auto [stop, error] = std::from_chars(begin, end, value);
   if (error == std::errc::invalid_argument || stop != end) return ParsedNumber::unreadable;
   if (error != std::errc::result_out_of_range) return ParsedNumber::fine;
@@ -49,6 +55,13 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
   // Too large or too small: this function says which.
   value = std::strtod(std::string(begin, end).c_str(), nullptr);
   return std::isinf(value) ? ParsedNumber::infinite : ParsedNumber::fine;
+#else
+  const auto [stop, error] = fast_float::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end) return ParsedNumber::unreadable;
+  // It reads numbers that are too large as the word "inf".
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  return std::isinf(value) && std::any_of(begin, end, is_digit) ? ParsedNumber::infinite : ParsedNumber::fine;
+#endif
 }
 
 /// Throws Error(input) that names the place if the text is not UTF-8 or has control characters besides blanks

@@ -44,7 +44,7 @@ class Checker {
     if (corners_.size() % 3 != 0) {
       violate("the triangles are {} indices, which is not a multiple of 3", corners_.size());
     }
-    if (report_.triangles >= std::size_t{1} << 32) {
+    if (report_.triangles >= std::uint64_t{1} << 32) {
       violate("there are {} triangles, more than 32-bit indices of points allow", report_.triangles);
     }
     if (neighbors_ != nullptr && neighbors_->size() != corners_.size()) {

@@ -60,7 +60,7 @@ class PlaceFilter {
     std::uint64_t bits[2];
     for (int axis = 0; axis < 2; ++axis) {
       const double value = at[axis] + 0.0;  // -0 becomes 0
-      __builtin_memcpy(&bits[axis], &value, sizeof value);
+      std::memcpy(&bits[axis], &value, sizeof value);
     }
     return mixed(mixed(bits[0]) + 0x9e3779b97f4a7c15u * bits[1]) % (64 * words_.size());
   }
@@ -332,7 +332,7 @@ class ChunkChecker {
         for (std::size_t i = 0; i < segment.count; ++i) {
           places[2 * i] = coordinates[2 * std::size_t{vertices[i]}];
           places[2 * i + 1] = coordinates[2 * std::size_t{vertices[i]} + 1];
-          std::atomic_ref<unsigned char>(used[vertices[i]]).store(1, std::memory_order_relaxed);
+          __atomic_store_n(&used[vertices[i]], 1, __ATOMIC_RELAXED);
         }
         coordinate_file_->write_at((plan.coordinates_begin + before) * 2 * sizeof(double), places.data(),
                                    places.size() * sizeof(double));

@@ -76,7 +76,7 @@ class PolygonsAround {
   /// Adds the polygon of a ring to the count, or takes it from there, if it is here.
   void count_here(std::size_t ring, int amount) {
     const auto [part, polygon, is_border] = bounded_[ring];
-    const auto add_part = [&](int sign) {
+    const auto add_part = [this, part = part, polygon = polygon](int sign) {
       if (borders_[part] == 0 || holes_[part] != 0) return;
       if (parts_[polygon] > 0) --count_;
       parts_[polygon] += sign;
