@@ -30,7 +30,7 @@ if [[ -z $format ]]; then
 fi
 
 # All files that git tracks, and new ones that it does not ignore. In an exported source tree, all files.
-folders=(bench examples host kernels python src tests)
+folders=(bench examples host javascript kernels python src tests)
 if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
   mapfile -t all < <(git ls-files --cached --others --exclude-standard -- "${folders[@]}" | sort -u)
 else

@@ -451,6 +451,19 @@ static void test_measures_of_triangles(void) {
   CHECK(fabs(radii[0] - sqrt(18)) < 1e-14 && radii[1] == radii[0] && radii[2] > radii[0]);
   CHECK(flaunay_same_circles(places, 5, corners, 3, beyond, first) == FLAUNAY_SUCCESS);
   CHECK(first[0] == 0 && first[1] == 0 && first[2] == 2);
+  const int32_t halfedges[] = {-1, 8, 3, 2, -1, -1, -1, -1, 1};
+  int8_t sides[9];
+  CHECK(flaunay_edge_circles(places, 5, corners, 3, halfedges, sides) == FLAUNAY_SUCCESS);
+  const int8_t expected_sides[] = {-1, -1, 0, 0, -1, -1, -1, -1, -1};
+  CHECK(memcmp(sides, expected_sides, sizeof sides) == 0);
+  // Clockwise triangles with the wrong diagonal of a kite, and one without area.
+  const double kite[] = {0, 0, 4, 1, 8, 0, 4, -1, 4, 0};
+  const int32_t wrong_corners[] = {0, 1, 2, 0, 2, 3}, flat[] = {0, 1, 2, 0, 2, 4};
+  const int32_t wrong_halfedges[] = {-1, -1, 3, 2, -1, -1};
+  const int8_t wrong_sides[] = {-1, -1, 1, 1, -1, -1};
+  CHECK(flaunay_edge_circles(kite, 5, wrong_corners, 2, wrong_halfedges, sides) == FLAUNAY_SUCCESS);
+  CHECK(memcmp(sides, wrong_sides, sizeof wrong_sides) == 0);
+  CHECK(flaunay_edge_circles(kite, 5, flat, 2, wrong_halfedges, sides) == FLAUNAY_SUCCESS && sides[3] == 1);
 
   const int32_t others[] = {0, 2, 1, 0, 1, 1};
   CHECK(flaunay_triangle_turns(places, 5, others, 2, turns) == FLAUNAY_SUCCESS);
@@ -466,6 +479,7 @@ static void test_measures_of_triangles(void) {
   CHECK(fails(flaunay_triangle_turns(NULL, 5, corners, 3, turns), usage, "null"));
   CHECK(fails(flaunay_triangle_angles(places, 5, NULL, 3, angles), usage, "triangles"));
   CHECK(fails(flaunay_same_circles(places, 5, corners, 3, NULL, first), usage, "neighbors"));
+  CHECK(fails(flaunay_edge_circles(places, 5, corners, 3, NULL, sides), usage, "halfedges"));
   CHECK(fails(flaunay_same_circles(places, 5, corners, 2, beyond, first), usage, "neighbors: 2 is none"));
   const double wrong[] = {0, 0, NAN, 0, 6, 6};
   CHECK(fails(flaunay_triangle_angles(wrong, 3, corners, 1, angles), FLAUNAY_ERROR_INPUT, "not finite"));

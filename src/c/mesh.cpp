@@ -149,6 +149,17 @@ flaunay_status flaunay_circumradii(const double* coordinates, size_t n, const in
   });
 }
 
+flaunay_status flaunay_edge_circles(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
+                                    const int32_t* halfedges, int8_t* sides) {
+  return measure(coordinates, n, triangles, t, sides, [&](const auto& of, int8_t* results) {
+    const Indices twins = checked(halfedges, entries_of(t), -1, entries_of(t), "halfedges", "halfedges");
+    for (std::size_t h = 0; h < twins.size(); ++h) {
+      results[h] =
+          static_cast<int8_t>(twins[h] < 0 ? -1 : of.circle(h / 3, static_cast<std::size_t>(twins[h])));
+    }
+  });
+}
+
 flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
                                     const int32_t* neighbors, int32_t* first) {
   return measure(coordinates, n, triangles, t, first, [&](const auto& of, int32_t* results) {

@@ -91,6 +91,14 @@ double Triangles::circumradius(std::size_t t) const {
   return std::isnan(radius) ? std::numeric_limits<double>::infinity() : radius;
 }
 
+int Triangles::circle(std::size_t t, std::size_t halfedge) const {
+  const int direction = turn(t);
+  if (direction == 0) return 1;
+  const Point beyond = corner(halfedge / 3, static_cast<int>(halfedge % 3) + 2);
+  const int second = direction > 0 ? 1 : 2;
+  return predicates_.circle(corner(t, 0), corner(t, second), corner(t, 3 - second), beyond);
+}
+
 bool Triangles::have_same_circle(std::size_t t, std::size_t other) const {
   const std::int32_t* const mine = &corners_[3 * t];
   int k = 0;

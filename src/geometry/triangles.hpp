@@ -27,6 +27,9 @@ class Triangles {
   /// The radius of the circumcircle, with a relative error below 2^-45: infinite if it exceeds all doubles,
   /// or if the corners are collinear.
   double circumradius(std::size_t t) const;
+  /// 1 if the vertex opposite to this halfedge, 3 to a triangle, lies inside the circumcircle of triangle t,
+  /// or if the corners of t are collinear; -1 if it lies outside, 0 if on it.
+  int circle(std::size_t t, std::size_t halfedge) const;
   /// Whether two triangles with a common edge have the same circumcircle.
   bool have_same_circle(std::size_t t, std::size_t other) const;
 

@@ -853,6 +853,12 @@ FLAUNAY_API flaunay_status flaunay_triangle_angles(const double* coordinates, si
 /// they exceed all doubles, or if the corners are collinear. radii: t values of the caller's.
 FLAUNAY_API flaunay_status flaunay_circumradii(const double* coordinates, size_t n, const int32_t* triangles,
                                                size_t t, double* radii);
+/// Finds for each halfedge of t triangles whether the vertex beyond it lies inside the circumcircle of its
+/// triangle (1), on it (0) or outside (-1), exactly: of a Delaunay triangulation none is inside. The
+/// triangles may have any direction; where the corners are collinear it is 1, and where nothing is beyond it
+/// is -1. halfedges: as FLAUNAY_PART_HALFEDGES has them; sides: 3 t values of the caller's.
+FLAUNAY_API flaunay_status flaunay_edge_circles(const double* coordinates, size_t n, const int32_t* triangles,
+                                                size_t t, const int32_t* halfedges, int8_t* sides);
 /// Finds for each of t triangles of a Delaunay triangulation the first one that has the same circumcircle,
 /// exactly. neighbors: as FLAUNAY_PART_NEIGHBORS has them; first: t values of the caller's.
 FLAUNAY_API flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles,

@@ -1,0 +1,762 @@
+// The library over its WebAssembly module: flaunay.wasm, or points.wasm, which is smaller. What package.json exports makes
+// the module ready and passes on what it has.
+
+/** An error with one of flaunay's own texts. */
+export class FlaunayError extends Error {
+  /**
+   * @param {string} message
+   * @param {string} kind
+   */
+  constructor(message, kind) {
+    super(message);
+    this.name = 'FlaunayError';
+    this.kind = kind;
+  }
+}
+
+// By the values of flaunay_status.
+const KINDS = ['', 'internal', 'usage', 'input', 'device', 'memory', 'stopped'];
+
+// ---- The module
+
+let wasm; // its exports
+let heap; // views of its memory, which are made anew when it grows
+let triangulator = 0;
+let place = 0; // where calls write pointers to new handles
+
+function viewMemory() {
+  const {buffer} = wasm.memory;
+  heap = {
+    int8: new Int8Array(buffer), uint8: new Uint8Array(buffer), int32: new Int32Array(buffer),
+    uint32: new Uint32Array(buffer), float64: new Float64Array(buffer),
+  };
+}
+
+// What the C library asks of its system. There are no files, and the environment is empty.
+const NOT_SUPPORTED = 52;
+const IMPORTS = {
+  emscripten_notify_memory_growth: viewMemory,
+  clock_time_get(id, precision, to) {
+    const nanoseconds = performance.now() * 1e6;
+    heap.uint32[to >>> 2] = nanoseconds;
+    heap.uint32[(to >>> 2) + 1] = nanoseconds / 2 ** 32;
+    return 0;
+  },
+  environ_sizes_get(count, bytes) {
+    heap.uint32[count >> 2] = heap.uint32[bytes >> 2] = 0;
+    return 0;
+  },
+  environ_get: () => 0,
+  proc_exit(code) {
+    throw new FlaunayError(`the module ended itself with code ${code}; please report it`, 'internal');
+  },
+};
+
+/**
+ * Makes the library ready from a compiled module, at once.
+ * @param {WebAssembly.Module} module
+ */
+export function start(module) {
+  if (wasm) {
+    if (WebAssembly.Module.exports(module).every(({name}) => name in wasm)) return;
+    throw new FlaunayError('flaunay/points was imported before flaunay, which has more: import flaunay first', 'usage');
+  }
+  const imports = {};
+  for (const {module: from, name} of WebAssembly.Module.imports(module)) {
+    (imports[from] ??= {})[name] = IMPORTS[name] ?? (() => NOT_SUPPORTED);
+  }
+  wasm = new WebAssembly.Instance(module, imports).exports;
+  viewMemory();
+  wasm._initialize();
+  place = wasm.malloc(8);
+  triangulator = create(wasm.flaunay_triangulator_create, 0);
+}
+
+/**
+ * Loads the module and makes the library ready. source: its address; otherwise it lies beside this file.
+ * @param {string | URL} [source]
+ */
+export async function init(source = new URL('flaunay.wasm', import.meta.url)) {
+  const response = await fetch(source);
+  if (!response.ok) throw new FlaunayError(`${source}: ${response.status} ${response.statusText}`, 'usage');
+  const isWasm = response.headers.get('Content-Type')?.startsWith('application/wasm');
+  start(await (isWasm ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer())));
+}
+
+// ---- Calls
+
+function stringAt(pointer) {
+  const end = heap.uint8.indexOf(0, pointer);
+  return new TextDecoder().decode(heap.uint8.subarray(pointer, end));
+}
+
+function check(status) {
+  if (status !== 0) throw new FlaunayError(stringAt(wasm.flaunay_last_error()), KINDS[status]);
+}
+
+function allocate(bytes) {
+  const pointer = wasm.malloc(bytes) >>> 0;
+  if (pointer === 0) throw new FlaunayError(`no memory for ${bytes} bytes`, 'memory');
+  return pointer;
+}
+
+// Calls a function whose last argument is where it writes a pointer to a new handle.
+function create(make, ...given) {
+  check(make(...given, place));
+  return heap.uint32[place >> 2];
+}
+
+const SHIFTS = {int8: 0, uint8: 0, int32: 2, uint32: 2, float64: 3};
+
+function arrayAt(type, pointer, length) {
+  const first = pointer >>> SHIFTS[type];
+  return heap[type].subarray(first, first + length);
+}
+
+// Memory for the arguments of a call, which ends with it.
+class Arguments {
+  #pointers = [];
+
+  room(bytes) {
+    const pointer = allocate(bytes);
+    this.#pointers.push(pointer);
+    return pointer;
+  }
+
+  // A pointer to the values: a copy, unless they lie in the module's memory; 0 for none.
+  array(type, values) {
+    if (values === undefined || values === null) return 0;
+    if (values.buffer === wasm.memory.buffer && values.constructor === heap[type].constructor) return values.byteOffset;
+    const pointer = this.room(Math.max(values.length << SHIFTS[type], 1));
+    heap[type].set(values, pointer >>> SHIFTS[type]);
+    return pointer;
+  }
+
+  // A struct of C all of whose members have 32 bits. names: those of its members, in their order.
+  struct(names, reserved, values) {
+    const pointer = this.room(4 * (names.length + reserved));
+    const words = arrayAt('uint32', pointer, names.length + reserved).fill(0);
+    names.forEach((name, k) => {
+      words[k] = values[name] ?? 0;
+    });
+    return pointer;
+  }
+
+  end() {
+    for (const pointer of this.#pointers) wasm.free(pointer);
+  }
+}
+
+function call(work) {
+  const given = new Arguments();
+  try {
+    return work(given);
+  } finally {
+    given.end();
+  }
+}
+
+// The words of a struct that C returned, by the names of its members, in their order.
+function membersAt(pointer, names) {
+  return Object.fromEntries(names.map((name, k) => [name, heap.uint32[(pointer >>> 2) + k]]));
+}
+
+function enumerator(names, value, what) {
+  const found = names.indexOf(value);
+  if (found < 0) throw new FlaunayError(`${value} is no ${what}: ${names.join(', ')}`, 'usage');
+  return found;
+}
+
+const freed = new FinalizationRegistry(({destroy, pointer}) => wasm[destroy](pointer));
+
+// What a handle of C, or a piece of memory, belongs to.
+class Handle {
+  #pointer;
+
+  constructor(pointer, destroy) {
+    this.#pointer = pointer;
+    this.destroy = destroy;
+    freed.register(this, {destroy, pointer}, this);
+  }
+
+  get pointer() {
+    if (this.#pointer === 0) throw new FlaunayError('it was freed', 'usage');
+    return this.#pointer;
+  }
+
+  free() {
+    if (this.#pointer === 0) return;
+    freed.unregister(this);
+    wasm[this.destroy](this.#pointer);
+    this.#pointer = 0;
+  }
+}
+
+// ---- Points
+
+function coordinatesOf(points, getX, getY) {
+  const n = points.length;
+  const coords = new Float64Array(2 * n);
+  for (let i = 0; i < n; i++) {
+    const p = points[i];
+    coords[2 * i] = getX(p);
+    coords[2 * i + 1] = getY(p);
+  }
+  return coords;
+}
+
+const first = (p) => p[0];
+const second = (p) => p[1];
+
+function pointCount(coords) {
+  const n = coords.length >> 1;
+  if (n < 0) throw new RangeError(`Invalid typed array length: ${n}`);
+  if (n > 0 && typeof coords[0] !== 'number') throw new Error('Expected coords to contain numbers.');
+  return n;
+}
+
+// ---- Triangulations
+
+const OPTIONS = ['mode', 'cut', 'hull', 'parts', 'profile', 'levels', 'threads', 'finish', 'progress', 'data'];
+const OPTIONS_RESERVED = 8;
+const MESH = [
+  'pointCount', 'setCount', 'triangleCount', 'hullCount', 'triangles', 'neighbors', 'halfedges', 'hull',
+  'representatives', 'triangleOffsets', 'hullOffsets', 'statistics', 'areas',
+];
+const NEIGHBORS = 2, HALFEDGES = 4, AREAS = 32;
+
+// The points of a call and where its sets begin.
+function pointsOf(given, coords, offsets) {
+  const n = pointCount(coords);
+  return [given.array('float64', coords), n, given.array('uint32', offsets), offsets ? offsets.length - 1 : 0];
+}
+
+function optionsOf(given, parts) {
+  return given.struct(OPTIONS, OPTIONS_RESERVED, {parts});
+}
+
+function partsOf({halfedges = true, areas = false}) {
+  return NEIGHBORS | (halfedges ? HALFEDGES : 0) | (areas ? AREAS : 0);
+}
+
+/** Delaunator's class: arrays of its types, in its orientation and order, which are the caller's own. */
+export default class Delaunator {
+  static from(points, getX = first, getY = second) {
+    return new Delaunator(coordinatesOf(points, getX, getY));
+  }
+
+  constructor(coords) {
+    this.coords = coords;
+    this.update();
+  }
+
+  update() {
+    call((given) => {
+      const {coords} = this, n = pointCount(coords);
+      const handle = create(wasm.triangulate, triangulator, given.array('float64', coords), n, 0, 0, HALFEDGES);
+      // Read by number, since this takes a good part of the time for a hundred points.
+      const mesh = wasm.flaunay_triangulation_mesh(handle) >>> 2;
+      const [triangleCount, hullCount, triangles, , halfedges, hull] = heap.uint32.subarray(mesh + 2, mesh + 8);
+      wasm.turn_clockwise(triangles, halfedges, triangleCount, hull, hullCount);
+      this.trianglesLen = 3 * triangleCount;
+      this.triangles = arrayAt('uint32', triangles, this.trianglesLen).slice();
+      this.halfedges = arrayAt('int32', halfedges, this.trianglesLen).slice();
+      this.hull = arrayAt('uint32', hull, hullCount).slice();
+      wasm.flaunay_triangulation_destroy(handle);
+    });
+  }
+}
+
+// The arrays that all triangulations have. They are views of the module's memory.
+class Mesh {
+  #handle;
+  #mesh;
+
+  constructor(handle, mesh) {
+    this.#handle = handle;
+    this.#mesh = membersAt(mesh, MESH);
+  }
+
+  #array(type, name, length) {
+    void this.#handle.pointer;
+    return arrayAt(type, this.#mesh[name], this.#mesh[name] === 0 ? 0 : length);
+  }
+
+  get handle() {
+    return this.#handle.pointer;
+  }
+
+  get pointCount() {
+    return this.#mesh.pointCount;
+  }
+
+  get triangles() {
+    return this.#array('int32', 'triangles', 3 * this.#mesh.triangleCount);
+  }
+
+  get neighbors() {
+    return this.#array('int32', 'neighbors', 3 * this.#mesh.triangleCount);
+  }
+
+  get halfedges() {
+    return this.#array('int32', 'halfedges', 3 * this.#mesh.triangleCount);
+  }
+
+  get hull() {
+    return this.#array('int32', 'hull', this.#mesh.hullCount);
+  }
+
+  get representatives() {
+    return this.#array('int32', 'representatives', this.#mesh.pointCount);
+  }
+
+  get areas() {
+    return this.#array('float64', 'areas', this.#mesh.triangleCount);
+  }
+
+  get triangleOffsets() {
+    return this.#array('uint32', 'triangleOffsets', this.#mesh.setCount + 1);
+  }
+
+  get hullOffsets() {
+    return this.#array('uint32', 'hullOffsets', this.#mesh.setCount + 1);
+  }
+
+  free() {
+    this.#handle.free();
+  }
+}
+
+const METHODS = ['linear', 'nearest', 'clough-tocher', 'sibson', 'laplace'];
+
+// A copy of the caller's points that lives as long as what is computed from them.
+function keep(coords) {
+  const kept = new Handle(allocate(Math.max(8 * coords.length, 1)), 'free');
+  heap.float64.set(coords, kept.pointer >>> 3);
+  return kept;
+}
+
+export class Triangulation extends Mesh {
+  #coords;
+  #offsets;
+  #locator;
+
+  static from(points, getX = first, getY = second, given = {}) {
+    return new Triangulation(coordinatesOf(points, getX, getY), given);
+  }
+
+  /** Triangulates many sets in one call. */
+  static batch(sets, given = {}) {
+    const offsets = [0];
+    for (const coords of sets) offsets.push(offsets.at(-1) + pointCount(coords));
+    const all = new Float64Array(2 * offsets.at(-1));
+    sets.forEach((coords, s) => all.set(coords, 2 * offsets[s]));
+    return new Triangulation(all, {...given, offsets});
+  }
+
+  constructor(coords, given = {}) {
+    pointCount(coords);
+    const kept = keep(coords);
+    try {
+      const handle = call((passed) => create(wasm.triangulate, triangulator,
+        ...pointsOf(passed, arrayAt('float64', kept.pointer, coords.length), given.offsets), partsOf(given)));
+      super(new Handle(handle, 'flaunay_triangulation_destroy'), wasm.flaunay_triangulation_mesh(handle));
+    } catch (error) {
+      kept.free();
+      throw error;
+    }
+    this.#coords = kept;
+    this.#offsets = given.offsets && Uint32Array.from(given.offsets);
+  }
+
+  get coords() {
+    return arrayAt('float64', this.#coords.pointer, 2 * this.pointCount);
+  }
+
+  /** The Voronoi diagram, whose cells may be unbounded. */
+  voronoi() {
+    return new Voronoi(create(wasm.flaunay_voronoi_compute, triangulator, this.#coords.pointer, this.pointCount,
+      this.handle));
+  }
+
+  /** The Voronoi cells in [xmin, ymin, xmax, ymax], or in a convex polygon: its corners x0, y0, ..., counter-clockwise. */
+  clippedVoronoi(bounds) {
+    const [xmin, ymin, xmax, ymax] = bounds;
+    const corners = bounds.length === 4 ? [xmin, ymin, xmax, ymin, xmax, ymax, xmin, ymax] : bounds;
+    return call((given) => new ClippedVoronoi(create(wasm.flaunay_voronoi_clip, triangulator, this.#coords.pointer,
+      this.pointCount, this.handle, given.array('float64', corners), corners.length >> 1)));
+  }
+
+  // Calls a function of the locator with queries. Results are the caller's own.
+  #query(ask, type, queries, offsets, columns = 1) {
+    void this.handle;
+    return call((given) => {
+      const passed = pointsOf(given, queries, offsets);
+      this.#locator ??= new Handle(create(wasm.flaunay_locator_create, triangulator,
+        ...pointsOf(given, this.coords, this.#offsets), this.handle), 'flaunay_locator_destroy');
+      const count = passed[1] * columns;
+      const results = given.room(Math.max(count << SHIFTS[type], 1));
+      check(ask(given, this.#locator.pointer, passed, results));
+      return arrayAt(type, results, count).slice();
+    });
+  }
+
+  /** The triangle of each query, -1 outside. For a place x, y its number. */
+  locate(queries, y) {
+    if (typeof queries === 'number') return this.locate([queries, y])[0];
+    return this.#query((given, locator, passed, results) => wasm.flaunay_locator_locate(locator, ...passed, results),
+      'int32', queries, y?.offsets);
+  }
+
+  /** The point nearest to each query. For a place x, y its number. */
+  nearest(queries, y) {
+    if (typeof queries === 'number') return this.nearest([queries, y])[0];
+    return this.#query((given, locator, passed, results) => wasm.flaunay_locator_nearest(locator, ...passed, results),
+      'int32', queries, y?.offsets);
+  }
+
+  /** Values between points, one row of `columns` numbers per query. */
+  interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
+    const number = enumerator(METHODS, method, 'method of interpolation');
+    if (values.length !== columns * this.pointCount) {
+      throw new FlaunayError(`${values.length} values are not ${columns} for each of ${this.pointCount} points`,
+        'usage');
+    }
+    return this.#query((given, locator, passed, results) => wasm.interpolate(locator, given.array('float64', values),
+      ...passed, number, columns, fill, results), 'float64', queries, offsets, columns);
+  }
+
+  free() {
+    super.free();
+    this.#locator?.free();
+    this.#coords.free();
+  }
+}
+
+// Results whose accessors of C take the handle.
+class Result {
+  #handle;
+  #prefix;
+
+  constructor(pointer, prefix) {
+    this.#handle = new Handle(pointer, `${prefix}_destroy`);
+    this.#prefix = prefix;
+  }
+
+  count(name) {
+    return wasm[`${this.#prefix}_${name}_count`](this.#handle.pointer);
+  }
+
+  array(type, name, length) {
+    return arrayAt(type, wasm[`${this.#prefix}_${name}`](this.#handle.pointer), length);
+  }
+
+  free() {
+    this.#handle.free();
+  }
+}
+
+class Voronoi extends Result {
+  constructor(pointer) {
+    super(pointer, 'flaunay_voronoi');
+  }
+
+  get circumcentres() {
+    return this.array('float64', 'circumcentres', 2 * this.count('triangle'));
+  }
+
+  get offsets() {
+    return this.array('int32', 'cell_offsets', this.count('point') + 1);
+  }
+
+  get cells() {
+    return this.array('int32', 'cells', this.count('corner'));
+  }
+
+  get unbounded() {
+    return this.array('uint8', 'unbounded', this.count('point'));
+  }
+}
+
+class ClippedVoronoi extends Result {
+  constructor(pointer) {
+    super(pointer, 'flaunay_clipped_voronoi');
+  }
+
+  get vertices() {
+    return this.array('float64', 'vertices', 2 * this.count('vertex'));
+  }
+
+  get offsets() {
+    return this.array('int32', 'offsets', this.count('point') + 1);
+  }
+
+  get areas() {
+    return this.array('float64', 'areas', this.count('point'));
+  }
+
+  get centroids() {
+    return this.array('float64', 'centroids', 2 * this.count('point'));
+  }
+
+  /** The vertices of the cell of point i, counter-clockwise. */
+  cell(i) {
+    const {offsets} = this;
+    return this.vertices.subarray(2 * offsets[i], 2 * offsets[i + 1]);
+  }
+}
+
+// ---- Constraints
+
+const CONSTRAINTS = [
+  'segments', 'segmentCount', 'holes', 'holeCount', 'holeOffsets', 'crossings', 'outside', 'fillRule', 'labels',
+  'segmentMarkers', 'pointMarkers', 'seeds', 'seedAttributes', 'seedCount', 'seedOffsets', 'refinement',
+];
+const CONSTRAINTS_RESERVED = 1;
+const POLYGONS = [
+  'coordinates', 'ringOffsets', 'ringCount', 'polygonOffsets', 'polygonCount', 'crossings', 'hasOutside', 'outside',
+  'hasFillRule', 'fillRule', 'labels', 'map', 'overlaps', 'partOffsets', 'partCount', 'refinement',
+];
+const POLYGONS_RESERVED = 5;
+const CONSTRAINED = [
+  'addedCount', 'constraintCount', 'segmentCount', 'pieceCount', 'addedPoints', 'addedOffsets', 'constraintEdges',
+  'edgeSegments', 'pieceOffsets', 'pieceEdges', 'constrained', 'depths', 'regions', 'polygons', 'edgeMarkers',
+  'vertexMarkers', 'triangleAttributes',
+];
+const CROSSINGS = ['error', 'split'];
+const OUTSIDE = ['keep', 'hull', 'holes'];
+const FILL_RULES = ['nesting', 'even-odd', 'winding'];
+
+function constraintsOf(given, {segments = [], holes, holeOffsets, crossings = 'error', outside = 'keep',
+  fillRule = 'nesting', labels = false}) {
+  return given.struct(CONSTRAINTS, CONSTRAINTS_RESERVED, {
+    segments: given.array('int32', segments),
+    segmentCount: segments.length >> 1,
+    holes: given.array('float64', holes),
+    holeCount: (holes?.length ?? 0) >> 1,
+    holeOffsets: given.array('uint32', holeOffsets),
+    crossings: enumerator(CROSSINGS, crossings, 'rule for crossings'),
+    outside: enumerator(OUTSIDE, outside, 'choice of what is left out'),
+    fillRule: enumerator(FILL_RULES, fillRule, 'fill rule'),
+    labels: Number(labels),
+  });
+}
+
+/** A triangulation with segments as edges. */
+export class ConstrainedTriangulation extends Mesh {
+  #arrays;
+
+  /** The insides of polygons: each a list of rings of [x, y], as in a MultiPolygon of GeoJSON. */
+  static polygons(polygons, given = {}) {
+    const coordinates = [], ringOffsets = [0], polygonOffsets = [0];
+    for (const rings of polygons) {
+      for (const ring of rings) {
+        for (const [x, y] of ring) coordinates.push(x, y);
+        ringOffsets.push(coordinates.length >> 1);
+      }
+      polygonOffsets.push(ringOffsets.length - 1);
+    }
+    const {crossings = 'error', outside = 'holes', fillRule = 'even-odd', labels = false, map = false} = given;
+    const handle = call((passed) => create(wasm.flaunay_triangulate_polygons, triangulator,
+      passed.struct(POLYGONS, POLYGONS_RESERVED, {
+        coordinates: passed.array('float64', coordinates),
+        ringOffsets: passed.array('uint32', ringOffsets),
+        ringCount: ringOffsets.length - 1,
+        polygonOffsets: passed.array('uint32', polygonOffsets),
+        polygonCount: polygons.length,
+        crossings: enumerator(CROSSINGS, crossings, 'rule for crossings'),
+        hasOutside: 1,
+        outside: enumerator(OUTSIDE, outside, 'choice of what is left out'),
+        hasFillRule: 1,
+        fillRule: enumerator(FILL_RULES, fillRule, 'fill rule'),
+        labels: Number(labels),
+        map: Number(map),
+      }), optionsOf(passed, partsOf(given))));
+    return new ConstrainedTriangulation(handle);
+  }
+
+  constructor(coords, given = {}) {
+    const handle = typeof coords === 'number' ? coords : call((passed) => create(
+      wasm.flaunay_triangulate_constrained, triangulator, ...pointsOf(passed, coords, given.offsets),
+      constraintsOf(passed, given), optionsOf(passed, partsOf(given))));
+    super(new Handle(handle, 'flaunay_constrained_destroy'), wasm.flaunay_constrained_mesh(handle));
+    this.#arrays = membersAt(wasm.flaunay_constrained_get_arrays(handle), CONSTRAINED);
+  }
+
+  #array(type, name, length) {
+    void this.handle;
+    return arrayAt(type, this.#arrays[name], this.#arrays[name] === 0 ? 0 : length);
+  }
+
+  get addedPoints() {
+    return this.#array('float64', 'addedPoints', 2 * this.#arrays.addedCount);
+  }
+
+  get constraintEdges() {
+    return this.#array('int32', 'constraintEdges', 2 * this.#arrays.constraintCount);
+  }
+
+  get edgeSegments() {
+    return this.#array('int32', 'edgeSegments', this.#arrays.constraintCount);
+  }
+
+  get constrained() {
+    return this.#array('uint8', 'constrained', this.triangles.length);
+  }
+
+  get depths() {
+    return this.#array('int32', 'depths', this.triangles.length / 3);
+  }
+
+  get regions() {
+    return this.#array('int32', 'regions', this.triangles.length / 3);
+  }
+
+  get polygons() {
+    return this.#array('int32', 'polygons', this.triangles.length / 3);
+  }
+}
+
+// ---- Triangulations that change
+
+const CHANGES = [
+  'firstPoint', 'representativeCount', 'removedCount', 'madeCount', 'representatives', 'removed', 'made',
+  'madeCorners', 'isAnew',
+];
+const LIVING = ['edgeCount', 'edges', 'segments'];
+
+/** A triangulation whose points are inserted, removed and moved. */
+export class DynamicTriangulation {
+  #handle;
+  #room = null;
+  #roomBytes = 0;
+
+  constructor(coords, given = {}) {
+    this.#handle = new Handle(call((passed) => {
+      const [pointer, n] = pointsOf(passed, coords);
+      return create(wasm.flaunay_dynamic_create, triangulator, pointer, n,
+        given.segments ? constraintsOf(passed, given) : 0, 0);
+    }), 'flaunay_dynamic_destroy');
+  }
+
+  // Memory for the arrays of rows and of places, which is used again.
+  #results(bytes) {
+    if (bytes > this.#roomBytes) {
+      this.#room?.free();
+      this.#room = null;
+      this.#room = new Handle(allocate(2 * bytes), 'free');
+      this.#roomBytes = 2 * bytes;
+    }
+    return this.#room?.pointer ?? 0;
+  }
+
+  /** Inserts points and returns the number of the first one; the others follow it. */
+  insert(coords) {
+    call((given) => {
+      const [pointer, m] = pointsOf(given, coords);
+      check(wasm.flaunay_dynamic_insert(this.#handle.pointer, pointer, m));
+    });
+    return this.changes.firstPoint;
+  }
+
+  remove(points) {
+    call((given) => check(wasm.flaunay_dynamic_remove(this.#handle.pointer, given.array('int32', points),
+      points.length)));
+  }
+
+  move(points, coords) {
+    if (coords.length !== 2 * points.length) {
+      throw new FlaunayError(`${coords.length} coordinates are not 2 for each of ${points.length} points`, 'usage');
+    }
+    call((given) => check(wasm.flaunay_dynamic_move(this.#handle.pointer, given.array('int32', points),
+      given.array('float64', coords), points.length)));
+  }
+
+  /** What the last insertion, removal or move has changed. */
+  get changes() {
+    const found = membersAt(wasm.flaunay_dynamic_changes(this.#handle.pointer), CHANGES);
+    return {
+      firstPoint: found.firstPoint,
+      representatives: arrayAt('int32', found.representatives, found.representativeCount),
+      removed: arrayAt('int32', found.removed, found.removedCount),
+      made: arrayAt('int32', found.made, found.madeCount),
+      madeCorners: arrayAt('int32', found.madeCorners, 3 * found.madeCount),
+      isAnew: found.isAnew !== 0,
+    };
+  }
+
+  /** One more than the largest number that a point has had. */
+  get numbers() {
+    return wasm.flaunay_dynamic_numbers(this.#handle.pointer);
+  }
+
+  get pointCount() {
+    return wasm.flaunay_dynamic_point_count(this.#handle.pointer);
+  }
+
+  get triangleCount() {
+    return wasm.flaunay_dynamic_triangle_count(this.#handle.pointer);
+  }
+
+  has(point) {
+    return wasm.flaunay_dynamic_has_point(this.#handle.pointer, point) !== 0;
+  }
+
+  /** The rows: `triangles` with the corners, and `neighbors`; -1 in rows without a triangle. */
+  rows() {
+    const entries = 3 * wasm.flaunay_dynamic_row_count(this.#handle.pointer);
+    const triangles = this.#results(8 * entries);
+    const neighbors = triangles + 4 * entries;
+    check(wasm.flaunay_dynamic_rows(this.#handle.pointer, triangles, neighbors));
+    return {triangles: arrayAt('int32', triangles, entries), neighbors: arrayAt('int32', neighbors, entries)};
+  }
+
+  /** x and y per number; NaN for points that were removed. */
+  coordinates() {
+    const coords = new Float64Array(2 * this.numbers);
+    call((given) => {
+      const pointer = given.room(Math.max(8 * coords.length, 1));
+      check(wasm.flaunay_dynamic_coordinates(this.#handle.pointer, pointer));
+      coords.set(arrayAt('float64', pointer, coords.length));
+    });
+    return coords;
+  }
+
+  /** The edges that segments are made of: `edges`, two points each, and `segments`, the segment of each. */
+  constraints() {
+    const pointer = wasm.flaunay_dynamic_constraints(this.#handle.pointer);
+    if (pointer === 0) check(wasm.flaunay_last_error_status());
+    const found = membersAt(pointer, LIVING);
+    return {
+      edges: arrayAt('int32', found.edges, 2 * found.edgeCount),
+      segments: arrayAt('int32', found.segments, found.edgeCount),
+    };
+  }
+
+  free() {
+    this.#handle.free();
+    this.#room?.free();
+  }
+}
+
+// ---- Given triangulations
+
+/**
+ * Finds the edges of any triangulation that are not Delaunay, exactly: 1 for each halfedge whose triangle's circumcircle
+ * has the vertex beyond it inside.
+ */
+export function wrongEdges(coords, triangles, halfedges) {
+  return call((given) => {
+    const [pointer, n] = pointsOf(given, coords);
+    const t = Math.floor(triangles.length / 3);
+    const sides = given.room(Math.max(3 * t, 1));
+    check(wasm.flaunay_edge_circles(pointer, n, given.array('int32', triangles), t, given.array('int32', halfedges),
+      sides));
+    return Uint8Array.from(arrayAt('int8', sides, 3 * t), (side) => Number(side > 0));
+  });
+}
+
+/** The version of the library. */
+export function version() {
+  return stringAt(wasm.flaunay_version());
+}

@@ -1,0 +1,72 @@
+// What flaunay.js needs of flaunay.wasm besides flaunay.h.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+namespace {
+
+// flaunay.js reads and writes these structs as words of 32 bits, by their order.
+#define HAS_WORDS(type, last, words) \
+  static_assert(offsetof(type, last) == 4 * ((words)-1), #type " has other members in flaunay.js")
+HAS_WORDS(flaunay_options, progress_data, 10);
+HAS_WORDS(flaunay_mesh, areas, 13);
+HAS_WORDS(flaunay_constraints, refinement, 16);
+HAS_WORDS(flaunay_polygons, refinement, 16);
+HAS_WORDS(flaunay_constrained_arrays, triangle_attributes, 17);
+HAS_WORDS(flaunay_changes, is_anew, 9);
+HAS_WORDS(flaunay_living_constraints, segments, 3);
+#undef HAS_WORDS
+
+// Halfedge k of a triangle joins the same vertices as halfedge 2 - k of the triangle that is turned.
+std::int32_t turned(std::int32_t halfedge) {
+  return halfedge < 0 ? halfedge : halfedge / 3 * 6 + 2 - halfedge;
+}
+
+}  // namespace
+
+extern "C" {
+
+// flaunay_triangulate in mode blocks alone: the modes for research would double the module.
+flaunay_status triangulate(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
+                           const std::size_t* offsets, std::size_t sets, unsigned parts,
+                           flaunay_triangulation** result) {
+  return flaunay::c::create(result, [&] {
+    flaunay::Options options;
+    options.neighbors = (parts & FLAUNAY_PART_NEIGHBORS) != 0;
+    options.halfedges = (parts & FLAUNAY_PART_HALFEDGES) != 0;
+    options.areas = (parts & FLAUNAY_PART_AREAS) != 0;
+    return std::make_unique<flaunay_triangulation>(
+        triangulator->cpp.triangulate(coordinates, flaunay::c::to_offsets(offsets, sets, n), options));
+  });
+}
+
+// Makes triangles and the hull clockwise, each with the same first vertex as before. Delaunator calls that
+// counter-clockwise, because y goes down on its screens. The hull of points on one line keeps its order.
+void turn_clockwise(std::int32_t* triangles, std::int32_t* halfedges, std::size_t t, std::int32_t* hull,
+                    std::size_t h) {
+  for (std::size_t i = 0; i < 3 * t; i += 3) {
+    const std::int32_t second = triangles[i + 1], first = halfedges[i];
+    triangles[i + 1] = triangles[i + 2];
+    triangles[i + 2] = second;
+    halfedges[i] = turned(halfedges[i + 2]);
+    halfedges[i + 1] = turned(halfedges[i + 1]);
+    halfedges[i + 2] = turned(first);
+  }
+  if (t > 0) std::reverse(hull + 1, hull + h);
+}
+
+flaunay_status interpolate(flaunay_locator* locator, const double* values, const double* queries,
+                           std::size_t m, const std::size_t* offsets, std::size_t sets, int method,
+                           std::size_t columns, double fill, double* results) {
+  flaunay_interpolation_options options{};
+  options.method = method;
+  options.columns = columns;
+  options.has_fill = 1;
+  options.fill = fill;
+  return flaunay_locator_interpolate_with(locator, values, queries, m, offsets, sets, &options, results);
+}
+}

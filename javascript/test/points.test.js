@@ -1,0 +1,22 @@
+// flaunay/points, in a process of its own, where no other module is ready.
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import Delaunator, {FlaunayError, Triangulation, wrongEdges} from 'flaunay/points';
+
+import {uniform} from './points.js';
+
+test('what it has', () => {
+  const coords = uniform(1000);
+  const {triangles, halfedges} = new Delaunator(coords);
+  assert.ok(wrongEdges(coords, triangles, halfedges).every((wrong) => wrong === 0));
+  const mesh = new Triangulation(coords);
+  assert.equal(mesh.nearest(coords[10], coords[11]), 5);
+  assert.ok(mesh.locate(0.5, 0.5) >= 0);
+  assert.equal(mesh.voronoi().circumcentres.length, 2 * triangles.length / 3);
+  assert.ok(Math.abs(mesh.clippedVoronoi([0, 0, 1, 1]).areas.reduce((a, b) => a + b) - 1) < 1e-12);
+});
+
+test('it comes after flaunay, or without it', async () => {
+  await assert.rejects(import('flaunay'), (error) => error instanceof FlaunayError && error.kind === 'usage');
+});

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Builds the package for JavaScript, tests it in Node and in headless Chromium, and packs it as
+# build/javascript/flaunay-VERSION.tgz. On Debian 12, as root, it installs Emscripten and what else it needs.
+# FLAUNAY_COMMAND: the native command, whose results must have the same bytes; it is built if not given.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+scripts/install-deps.sh
+packages=(chromium emscripten node-typescript)
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
+if ! dpkg-query -W -f '' "${packages[@]}" 2>/dev/null; then
+  apt-get update -q
+  DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${packages[@]}"
+fi
+
+cmake --preset javascript >/dev/null
+cmake --build --preset javascript
+
+output=build/javascript
+package=$output/package
+rm -rf "$package" "$output/installed" "$output"/*.tgz
+mkdir -p "$package" "$output/installed"
+cp javascript/*.{js,md,ts} LICENSE "$output"/javascript/*.wasm "$package"
+version="$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$output/CMakeCache.txt")"
+sed "s/\"version\": \"0.0.0\"/\"version\": \"$version\"/" javascript/package.json >"$package/package.json"
+
+(cd "$package" && npm pack --silent --pack-destination .. >/dev/null)
+
+# Tests import the package by its name, from the folder that they are in.
+cp "$package"/*.wasm javascript
+if [[ -z ${FLAUNAY_COMMAND-} ]]; then
+  cmake --preset release >/dev/null
+  cmake --build --preset release --target flaunay_cli
+  FLAUNAY_COMMAND="$PWD/build/release/flaunay"
+fi
+export FLAUNAY_COMMAND FLAUNAY_PACKAGE="$PWD/$package"
+node --test javascript/test
+tsc --noEmit --strict --target es2022 --module node16 --moduleResolution node16 --lib es2022,dom javascript/test/types.ts
+
+# As it is installed in an empty folder, with the program that users are shown.
+npm install --silent --offline --no-audit --no-fund --prefix "$output/installed" "$output/flaunay-$version.tgz"
+sed -n '/^```js$/,/^```$/{/^```/d;p}' javascript/README.md >"$output/installed/example.mjs"
+(cd "$output/installed" && node example.mjs)
+for module in flaunay points; do
+  echo "$module.wasm, compressed: $(gzip -9 -c "$package/$module.wasm" | wc -c) bytes"
+done
+echo "$output/flaunay-$version.tgz"
