@@ -33,3 +33,8 @@ set(Boost_FOUND ${boost_IS_FOUND})
 if(CL_IS_FOUND)
   set(OpenCL_INCLUDE_DIR ${HEADER_LIBRARIES})
 endif()
+# Boost 1.74 uses what the standard library of LLVM has removed in C++17.
+if(TARGET Boost::headers)
+  set_target_properties(Boost::headers PROPERTIES INTERFACE_COMPILE_DEFINITIONS
+                                                  _LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION)
+endif()

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what flaunay needs on Debian 12 to build, run and test. Does nothing if everything is installed.
+#   scripts/install-deps.sh [--packages]    with what scripts/release.sh and scripts/package-test.sh need, too
 set -euo pipefail
 
 packages=(
@@ -26,6 +27,11 @@ packages=(
   # the demonstration's picture
   librsvg2-bin
 )
+
+if [[ ${1-} == --packages ]]; then
+  packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian musl
+    qemu-user)
+fi
 
 missing=()
 for package in "${packages[@]}"; do

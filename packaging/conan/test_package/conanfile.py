@@ -1,0 +1,31 @@
+"""Builds the projects in C++ and C that test every installation of flaunay, and runs them."""
+
+from pathlib import Path
+
+from conan import ConanFile
+from conan.tools.build import can_run
+from conan.tools.cmake import CMake, cmake_layout
+
+
+class Consumer(ConanFile):
+    settings = "os", "arch", "compiler", "build_type"
+    generators = "CMakeDeps", "CMakeToolchain"
+
+    def requirements(self):
+        self.requires(self.tested_reference_str)
+
+    def layout(self):
+        cmake_layout(self)
+
+    def build(self):
+        cmake = CMake(self)
+        cmake.configure(
+            variables={"FLAUNAY_HAS_C": True},
+            build_script_folder=str(Path(self.recipe_folder).parents[2] / "tests" / "consumer"),
+        )
+        cmake.build()
+
+    def test(self):
+        if can_run(self):
+            for program in ("consumer", "consumer_c"):
+                self.run(str(Path(self.cpp.build.bindir) / program), env="conanrun")
