@@ -38,10 +38,11 @@ export FLAUNAY_COMMAND FLAUNAY_PACKAGE="$PWD/$package"
 node --test javascript/test
 tsc --noEmit --strict --target es2022 --module node16 --moduleResolution node16 --lib es2022,dom javascript/test/types.ts
 
-# As it is installed in an empty folder, with the program that users are shown.
+# As it is installed in an empty folder, with the program that users are shown; and the programs of the tutorials.
 npm install --silent --offline --no-audit --no-fund --prefix "$output/installed" "$output/flaunay-$version.tgz"
 sed -n '/^```js$/,/^```$/{/^```/d;p}' javascript/README.md >"$output/installed/example.mjs"
 (cd "$output/installed" && node example.mjs)
+PACKAGE="$package" WORK=build/snippets tests/snippets.sh js docs/tutorials/*.md
 for module in flaunay points; do
   echo "$module.wasm, compressed: $(gzip -9 -c "$package/$module.wasm" | wc -c) bytes"
 done

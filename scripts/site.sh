@@ -2,7 +2,8 @@
 # Builds the site from docs/ and site/, in build/site/html, and serves it at http://127.0.0.1:8000.
 #   scripts/site.sh           builds and serves
 #   scripts/site.sh --build   only builds
-# Needs doxygen and Python; MkDocs comes from PyPI, into a virtual environment in build/site.
+# Needs doxygen, Python, and for the first page the module that scripts/javascript.sh makes. MkDocs comes from PyPI,
+# into a virtual environment in build/site.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -25,6 +26,16 @@ END
 rm -rf "$work/cpp"
 mkdir -p "$work/cpp"
 doxygen "$work/Doxyfile"
+
+# The WebAssembly module, for the first page.
+package=build/javascript/package
+rm -rf "$work/module"
+if [[ -f $package/flaunay.wasm ]]; then
+  mkdir "$work/module"
+  cp "$package"/{flaunay.js,flaunay.wasm,index.js} "$work/module"
+else
+  echo 'site.sh: the first page has no triangulation, since scripts/javascript.sh has not made its module' >&2
+fi
 
 NO_MKDOCS_2_WARNING=1 "$work/venv/bin/mkdocs" --quiet build --strict --clean --config-file site/mkdocs.yml
 if [[ ${1-} != --build ]]; then

@@ -16,12 +16,17 @@ PAGES = {
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
     "bench/results/paper.md": "results/paper.md",
+    "javascript/README.md": "javascript-package.md",
+    "tests/data/README.md": "data.md",
     "site/index.md": "index.md",
     "site/reference.md": "reference/index.md",
     "site/reference-python.md": "reference/python.md",
 }
 # Folders that the site has as they are; those in build/ are there once site.sh has made them.
 FOLDERS = {
+    "site/live": "live",
+    "site/vendor": "vendor",
+    "build/site/module": "module",
     "build/site/cpp": "reference/cpp",
 }
 LINK = re.compile(r"(?<=\]\()(?!\w+:|#)([^)\s#]+)((?:#[^)\s]*)?)(?=\))")

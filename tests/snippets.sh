@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # The programs in the documentation, built and run:
 #
-#   snippets.sh cpp | c | python | sh PAGE.md...
+#   snippets.sh cpp | c | python | sh | js PAGE.md...
 #
 # A program is a fenced block of that language that begins with #include, #define or import; each block of sh is one. If
 # the next fenced block is one of text, what the program prints must be that. Programs run in a folder of their own. In
-# the environment: SOURCE of flaunay, LIBRARY (the shared one), WORK (a folder to work in), and CXX, CC, PYTHON or
-# COMMAND (flaunay's).
+# the environment: SOURCE of flaunay, LIBRARY (the shared one), WORK (a folder to work in), and CXX, CC, PYTHON,
+# COMMAND (flaunay's), or PACKAGE (the folder of the JavaScript package).
 set -euo pipefail
 
 language=$1
@@ -16,6 +16,7 @@ case $language in
   c) ending=c ;;
   python) ending=py ;;
   sh) ending=sh ;;
+  js) ending=mjs ;;
   *)
     echo "snippets.sh: unknown language $language" >&2
     exit 1
@@ -27,6 +28,10 @@ mkdir -p "$folder/files"
 folder="$(realpath "$folder")"
 python="$(command -v "${PYTHON:-python3}")"
 [[ $python == /* ]] || python="$PWD/$python"
+if [[ $language == js ]]; then
+  mkdir "$folder/node_modules"
+  ln -s "$(realpath "$PACKAGE")" "$folder/node_modules/flaunay"
+fi
 [[ $language != sh ]] || export PATH="${COMMAND%/*}:$PATH"
 
 # extract PAGE: its programs to $folder/PAGE-K.$ending, and what they print to $folder/PAGE-K.expected.
@@ -54,6 +59,7 @@ run() {
         "-Wl,-rpath,${LIBRARY%/*}" -lOpenCL -pthread && (cd "$folder/files" && "$stem") >"$stem.printed" || return
       ;;
     python) (cd "$folder/files" && "$python" "$1") >"$stem.printed" || return ;;
+    js) (cd "$folder/files" && node "$1") >"$stem.printed" || return ;;
     sh) (cd "$folder/files" && bash -euo pipefail "$1") >"$stem.printed" || return ;;
   esac
   [[ ! -e $stem.expected ]] || diff -u "$stem.expected" "$stem.printed"
