@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <new>
 #include <utility>
 
@@ -32,7 +31,7 @@ std::shared_ptr<_cl_mem> create_buffer(const boost::compute::context& context, s
 // the loads. Null if there is not enough memory.
 void* allocate_pages(std::size_t bytes) {
   const std::size_t page = bytes < kHugePage ? kAlignment : kHugePage;
-  void* const pages = std::aligned_alloc(page, (bytes + page - 1) / page * page);
+  void* const pages = allocate_aligned(page, (bytes + page - 1) / page * page);
   if (pages != nullptr && page == kHugePage) prefer_huge_pages(pages, bytes);
   return pages;
 }
@@ -40,7 +39,7 @@ void* allocate_pages(std::size_t bytes) {
 std::shared_ptr<_cl_mem> allocate_native(std::size_t bytes) {
   void* const pages = allocate_pages(bytes);
   if (pages == nullptr) throw std::bad_alloc();
-  return {handle_of(pages), [](cl_mem memory) { std::free(address_of(memory)); }};
+  return {handle_of(pages), [](cl_mem memory) { free_aligned(address_of(memory)); }};
 }
 
 }  // namespace
@@ -80,11 +79,11 @@ std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t
       // The pages are freed with the buffer, which OpenCL keeps while enqueued work uses it.
       if (code == CL_SUCCESS) {
         code = clSetMemObjectDestructorCallback(
-            memory, [](cl_mem, void* freed) { std::free(freed); }, pages);
+            memory, [](cl_mem, void* freed) { free_aligned(freed); }, pages);
         if (code == CL_SUCCESS) return own(memory);
         clReleaseMemObject(memory);
       }
-      std::free(pages);
+      free_aligned(pages);
     }
   }
 #endif

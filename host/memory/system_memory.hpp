@@ -15,7 +15,7 @@ struct MemoryLeft {
   std::string limit;  ///< "the limit of the address space (ulimit -v)" and others
 };
 
-/// Where the system tells of memory. Tests have folders of their own.
+/// Where Linux tells of memory. Tests have folders of their own.
 struct MemoryFiles {
   std::string process = "/proc";
   std::string groups = "/sys/fs/cgroup";
@@ -28,6 +28,9 @@ MemoryLeft address_space_left(const MemoryFiles& files = {});
 /// what the limits of the control groups leave, and the address space. The largest number of bytes if nothing
 /// is known. Reads some files, which takes a tenth of a millisecond.
 MemoryLeft memory_left(const MemoryFiles& files = {});
+
+/// The bytes of memory that the machine has; 0 if that is not known.
+std::size_t physical_memory();
 
 /// Throws DeviceError, with what lacks and what limits it, unless this many bytes are left, and some more for
 /// the OpenCL implementation itself. what: what they are for, such as "a buffer".

@@ -1,13 +1,16 @@
 #include "host/opencl/device.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/compute/platform.hpp>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
+
+#ifdef __linux__
+#include <unistd.h>
+#endif
 
 #include "host/error.hpp"
 #include "host/memory/system_memory.hpp"
@@ -76,7 +79,7 @@ std::vector<boost::compute::device> all_devices() {
     cl_uint device_count = 0;
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &device_count) != CL_SUCCESS) {
       // PoCL has no device if it cannot make its folder, and does not say why.
-      if (needs_folder) require_cache_folder(pocl_cache_folder());
+      if (needs_folder) require_pocl_folder();
       continue;
     }
     std::vector<cl_device_id> ids(device_count);
@@ -105,11 +108,6 @@ bool has_fp64(const boost::compute::device& device) {
 bool shares_host_memory(const boost::compute::device& device) {
   return (device.type() & CL_DEVICE_TYPE_CPU) != 0 ||
          device.get_info<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY) != CL_FALSE;
-}
-
-std::size_t physical_memory() {
-  const long pages = sysconf(_SC_PHYS_PAGES), bytes = sysconf(_SC_PAGESIZE);
-  return pages > 0 && bytes > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(bytes) : 0;
 }
 
 std::string wanted_device(const std::string& given) {

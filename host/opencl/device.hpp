@@ -15,9 +15,6 @@ std::vector<boost::compute::device> all_devices();
 /// The name that stands for the host itself, without OpenCL.
 constexpr const char* kHostName = "host";
 
-/// The bytes of memory that the machine has; 0 if that is not known.
-std::size_t physical_memory();
-
 /// The name of a device as given, or, if that is empty, as the environment variable FLAUNAY_DEVICE says;
 /// empty if neither names one.
 std::string wanted_device(const std::string& given);

@@ -5,7 +5,6 @@
 
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
-#include <dlfcn.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -20,9 +19,12 @@
 #include <utility>
 #include <vector>
 
+#include "host/system/library.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
+namespace system = flaunay::system;
 
 template <typename Function>
 struct Signature;
@@ -42,12 +44,9 @@ Function* find(const char*) {
 // A library that was loaded before comes first: it may have been put there to watch the calls.
 template <typename Function>
 Function* find(const char* name) {
-  static void* const library = [] {
-    void* const versioned = dlopen("libOpenCL.so.1", RTLD_LAZY | RTLD_GLOBAL);
-    return versioned != nullptr ? versioned : dlopen("libOpenCL.so", RTLD_LAZY | RTLD_GLOBAL);
-  }();
-  void* found = dlsym(RTLD_DEFAULT, name);
-  if (found == nullptr && library != nullptr) found = dlsym(library, name);
+  static void* const library = system::open_opencl();
+  system::AnyFunction* found = system::find_among_loaded(name);
+  if (found == nullptr && library != nullptr) found = system::find_function(library, name);
   return reinterpret_cast<Function*>(found);
 }
 #endif
@@ -84,10 +83,11 @@ using Platforms = std::vector<cl_platform_id>;
 
 // The platforms of a driver; none if it cannot be loaded or is none.
 Platforms platforms_of(const std::string& driver) {
-  using Find = void* (*)(const char*);
-  void* const library = dlopen(driver.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  using Find = void*(CL_API_CALL*)(const char*);
+  void* const library = system::open_library(driver);
   if (library == nullptr) return {};
-  const auto find_extension = reinterpret_cast<Find>(dlsym(library, "clGetExtensionFunctionAddress"));
+  const auto find_extension =
+      reinterpret_cast<Find>(system::find_function(library, "clGetExtensionFunctionAddress"));
   if (find_extension == nullptr) return {};
   const auto list = reinterpret_cast<decltype(&clGetPlatformIDs)>(find_extension("clIcdGetPlatformIDsKHR"));
   cl_uint count = 0;

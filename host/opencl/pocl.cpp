@@ -89,11 +89,11 @@ void require_space_for_pocl() {
 
 void require_pocl_compiler() {
   require_space(kSpaceForCompiler, "to compile kernels");
-  const std::string folder = pocl_cache_folder();
-  require_cache_folder(folder);
+  require_pocl_folder();
   static std::once_flag is_clean;
-  std::call_once(is_clean, [&] {
+  std::call_once(is_clean, [] {
     std::error_code ignored;
+    const std::string folder = pocl_cache_folder();
     const fs::path note = folder + kEndedWell;
     if (!is_recent(note)) remove_empty_kernels(folder);
     fs::remove(note, ignored);
@@ -119,6 +119,8 @@ std::string pocl_cache_folder() {
   if (const char* home = std::getenv("HOME"); home != nullptr) return home + ("/.cache" + part);
   return "/tmp" + part;
 }
+
+void require_pocl_folder() { require_cache_folder(pocl_cache_folder()); }
 
 void require_cache_folder(const std::string& folder) {
   if (const int error = make_private_folder(folder); error != 0) {

@@ -8,6 +8,17 @@
 
 namespace flaunay::host {
 
+#ifdef _WIN32
+
+// There, it is a driver like all others.
+constexpr bool is_pocl(cl_platform_id) { return false; }
+inline void require_space_for_pocl() {}
+inline void require_pocl_folder() {}
+inline void require_pocl_compiler() {}
+inline void note_pocl_ended_well() noexcept {}
+
+#else
+
 bool is_pocl(cl_platform_id platform);
 
 /// To be called before PoCL opens its device. Throws DeviceError if the limits of the process leave too
@@ -23,6 +34,9 @@ void require_pocl_compiler();
 /// To be called when PoCL has compiled and run its kernels: the next process need not look for empty ones.
 void note_pocl_ended_well() noexcept;
 
+/// Throws DeviceError as require_cache_folder does for the folder in which PoCL keeps compiled kernels.
+void require_pocl_folder();
+
 /// The folder in which PoCL keeps compiled kernels.
 std::string pocl_cache_folder();
 
@@ -32,5 +46,7 @@ void require_cache_folder(const std::string& folder);
 /// Removes empty kernels from PoCL's folder, which a full disk or a power failure has left. PoCL would not
 /// compile them again, but fail to load them and end the process.
 void remove_empty_kernels(const std::string& folder);
+
+#endif
 
 }  // namespace flaunay::host

@@ -1,8 +1,11 @@
 // Folders of the user's own, to which nobody else can write.
 #pragma once
 
-#include <sys/stat.h>
+#include <fmt/format.h>
 
+#include <cstddef>
+#include <optional>
+#include <random>
 #include <string>
 
 namespace flaunay::host {
@@ -11,8 +14,35 @@ namespace flaunay::host {
 /// if there is something of this name.
 int make_private_folder(const std::string& folder);
 
-/// Why others can write to a file or folder: it belongs to another user, or its mode allows it. Empty if they
-/// cannot.
-std::string who_else_writes(const struct stat& status);
+/// A folder that is open: whatever has its name by then, its files are in what was checked. On Windows it has
+/// the access control list that it inherits: that of the user's own folders lets nobody else write.
+class PrivateFolder {
+ public:
+  /// Opens the folder if it is there and nobody else can write to it.
+  explicit PrivateFolder(const std::string& folder);
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  ~PrivateFolder();
+
+  bool is_open() const { return is_open_; }
+  /// Why it is not open; empty if it is not there.
+  const std::string& reason() const { return reason_; }
+
+  /// The content of a regular file of at most this many bytes, to which nobody else can write.
+  std::optional<std::string> read(const std::string& name, std::size_t most_bytes) const;
+  /// Writes a file in one step as seen by other processes. Whether that was possible.
+  bool write(const std::string& name, const std::string& content) const;
+
+ private:
+  std::string folder_, reason_;
+  int descriptor_ = -1;
+  bool is_open_ = false;
+};
+
+/// A name for a file on its way to one of this name.
+inline std::string unfinished_name(const std::string& name) {
+  std::random_device random;
+  return fmt::format("{}.{:08x}{:08x}.tmp", name, random(), random());
+}
 
 }  // namespace flaunay::host

@@ -1,23 +1,19 @@
 #include "host/opencl/program_cache.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/uuid/detail/sha1.hpp>
-#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include "host/opencl/private_folder.hpp"
+#include "host/system/files.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -63,38 +59,6 @@ std::optional<std::string> unpacked(const std::string& content, const std::strin
 
 std::string name_of(const std::string& key) { return hash_of(key) + kEnding; }
 
-// Of a file or folder.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  explicit operator bool() const { return number_ >= 0; }
-  int number() const { return number_; }
-  bool close() {
-    const int number = std::exchange(number_, -1);
-    return number < 0 || ::close(number) == 0;
-  }
-
- private:
-  int number_;
-};
-
-// Reads or writes all bytes: `move` is read or write.
-template <typename Move, typename Byte>
-bool moved_all(Move move, int file, Byte* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t moved = move(file, bytes, count);
-    if (moved < 0 && errno == EINTR) continue;
-    if (moved <= 0) return false;
-    bytes += moved;
-    count -= static_cast<std::size_t>(moved);
-  }
-  return true;
-}
-
 // What the user is still to be told.
 struct Note {
   std::mutex mutex;
@@ -127,34 +91,17 @@ std::string take_cache_note() {
 ProgramCache::ProgramCache(std::string folder, std::size_t most_bytes)
     : folder_(std::move(folder)), most_bytes_(most_bytes) {}
 
-// The folder's descriptor, with which files are opened: whatever has its name by then, this is what was
-// checked. -1 if it is not there or not to be used.
-int ProgramCache::opened() const {
-  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  struct stat status {};
-  const bool is_there = folder >= 0 && ::fstat(folder, &status) == 0;
-  if (!is_there && errno == ENOENT) return -1;
-  const std::string reason = is_there ? who_else_writes(status) : std::strerror(errno);
-  if (reason.empty()) return folder;
-  make_note(folder_, reason);
-  if (folder >= 0) ::close(folder);
-  return -1;
+bool ProgramCache::is_usable(const PrivateFolder& folder) const {
+  if (!folder.reason().empty()) make_note(folder_, folder.reason());
+  return folder.is_open();
 }
 
 std::optional<std::string> ProgramCache::load(const std::string& key) const {
   if (folder_.empty()) return {};
-  const Descriptor folder(opened());
-  if (!folder) return {};
-  // Without waiting for the writer of a FIFO.
-  const Descriptor file(::openat(folder.number(), name_of(key).c_str(),
-                                 O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-  struct stat status {};
-  if (!file || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  const auto size = static_cast<std::uintmax_t>(status.st_size);
-  if (size > most_bytes_ || !who_else_writes(status).empty()) return {};
-  std::string content(size, '\0');
-  if (!moved_all(::read, file.number(), content.data(), content.size())) return {};
-  return unpacked(content, key);
+  const PrivateFolder folder(folder_);
+  if (!is_usable(folder)) return {};
+  const std::optional<std::string> content = folder.read(name_of(key), most_bytes_);
+  return content ? unpacked(*content, key) : std::nullopt;
 }
 
 void ProgramCache::store(const std::string& key, const std::string& program) const {
@@ -164,21 +111,8 @@ void ProgramCache::store(const std::string& key, const std::string& program) con
     make_note(folder_, std::strerror(error));
     return;
   }
-  const Descriptor folder(opened());
-  if (!folder) return;
-  std::random_device random;
-  const std::string name = name_of(key),
-                    unfinished = fmt::format("{}.{:08x}{:08x}.tmp", name, random(), random());
-  Descriptor file(::openat(folder.number(), unfinished.c_str(),
-                           O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR));
-  if (!file) return;
-  const bool is_written = moved_all(::write, file.number(), content.data(), content.size());
-  if (!file.close() || !is_written ||
-      ::renameat(folder.number(), unfinished.c_str(), folder.number(), name.c_str()) != 0) {
-    ::unlinkat(folder.number(), unfinished.c_str(), 0);
-    return;
-  }
-  remove_oldest();
+  const PrivateFolder folder(folder_);
+  if (is_usable(folder) && folder.write(name_of(key), content)) remove_oldest();
 }
 
 void ProgramCache::remove_oldest() const {
@@ -206,13 +140,11 @@ void ProgramCache::remove_oldest() const {
 }
 
 std::string default_cache_folder() {
-  if (const char* given = std::getenv("FLAUNAY_CACHE_DIR")) return given;
-  for (const auto& [variable, below] :
-       {std::pair{"XDG_CACHE_HOME", "/flaunay"}, std::pair{"HOME", "/.cache/flaunay"}}) {
-    const char* const folder = std::getenv(variable);
-    if (folder != nullptr && *folder == '/') return std::string(folder) + below;
+  if (const char* given = std::getenv("FLAUNAY_CACHE_DIR"); given != nullptr) {
+    return system::environment("FLAUNAY_CACHE_DIR");
   }
-  return "";
+  const std::string folder = system::cache_folder();
+  return folder.empty() ? "" : folder + "/flaunay";
 }
 
 }  // namespace flaunay::host

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "host/opencl/private_folder.hpp"
+
 namespace flaunay::host {
 
 /// A folder of compiled programs, each in a file that is named by the hash of its key. Several processes may
@@ -27,7 +29,7 @@ class ProgramCache {
   const std::string& folder() const { return folder_; }
 
  private:
-  int opened() const;
+  bool is_usable(const PrivateFolder& folder) const;
   void remove_oldest() const;
 
   std::string folder_;
@@ -38,7 +40,7 @@ class ProgramCache {
 std::string take_cache_note();
 
 /// The folder of the cache: the environment variable FLAUNAY_CACHE_DIR if it is set ("" for no cache), else
-/// flaunay in XDG_CACHE_HOME or in ~/.cache; empty if none of them is set.
+/// flaunay in the folder of the user's caches; empty if there is none.
 std::string default_cache_folder();
 
 }  // namespace flaunay::host

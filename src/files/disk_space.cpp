@@ -1,10 +1,9 @@
 #include "files/disk_space.hpp"
 
-#include <sys/stat.h>
-
 #include <array>
 #include <cerrno>
 #include <map>
+#include <optional>
 
 #include "files/file.hpp"
 #include "files/output.hpp"
@@ -29,7 +28,7 @@ void check_disk_space(const std::vector<SizedOutput>& files) {
     std::uint64_t needed = 0;
     bool has_outputs = false, has_scratch = false;
   };
-  std::map<dev_t, Disk> disks;
+  std::map<std::uint64_t, Disk> disks;
   for (const SizedOutput& file : files) {
     if (file.path.empty() || file.path == "-") continue;
     std::string folder = file.path;
@@ -38,11 +37,11 @@ void check_disk_space(const std::vector<SizedOutput>& files) {
       if (target.is_direct) continue;
       folder = target.folder;
     }
-    struct stat status {};
-    if (::stat(folder.c_str(), &status) != 0) {
+    const std::optional<system::FileStatus> status = system::status_of(folder);
+    if (!status) {
       fail(file.path, "has no room for a scratch file: {}", system_reason(errno));
     }
-    Disk& disk = disks.try_emplace(status.st_dev, Disk{file.path, folder}).first->second;
+    Disk& disk = disks.try_emplace(status->disk, Disk{file.path, folder}).first->second;
     disk.needed += file.bytes;
     (file.is_scratch ? disk.has_scratch : disk.has_outputs) = true;
   }

@@ -1,22 +1,21 @@
 // Reads whole files; errors that name a file.
 #pragma once
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "files/printable.hpp"
 #include "flaunay/flaunay.hpp"
+#include "host/system/files.hpp"
 
 namespace flaunay::io {
 
@@ -35,7 +34,7 @@ inline std::string system_reason(int error_number) { return std::strerror(error_
 
 /// The part of the file's name from its last dot, in lower case; empty if there is no dot.
 inline std::string ending_of(const std::string& path) {
-  const std::string name = path.substr(path.find_last_of('/') + 1);
+  const std::string name = path.substr(system::last_name(path));
   const std::size_t dot = name.find_last_of('.');
   if (dot == std::string::npos) return "";
   std::string ending = name.substr(dot);
@@ -69,7 +68,7 @@ std::size_t move_bytes(std::size_t bytes, const Part& part) {
   std::size_t done = 0;
   while (done < bytes) {
     errno = 0;
-    const ssize_t more = part(done);
+    const std::int64_t more = part(done);
     if (more < 0 && errno == EINTR) continue;
     if (more <= 0) break;
     done += static_cast<std::size_t>(more);
@@ -79,19 +78,19 @@ std::size_t move_bytes(std::size_t bytes, const Part& part) {
 /// Whether all bytes were written to an open file, at a place of it or after the last ones.
 inline bool write_at(int descriptor, std::uint64_t place, const void* data, std::size_t bytes) {
   return bytes == move_bytes(bytes, [=](std::size_t done) {
-           return ::pwrite(descriptor, static_cast<const char*>(data) + done, bytes - done,
-                           static_cast<off_t>(place + done));
+           return system::write_some_at(descriptor, place + done, static_cast<const char*>(data) + done,
+                                        bytes - done);
          });
 }
 inline bool write_next(int descriptor, const void* data, std::size_t bytes) {
   return bytes == move_bytes(bytes, [=](std::size_t done) {
-           return ::write(descriptor, static_cast<const char*>(data) + done, bytes - done);
+           return system::write_some(descriptor, static_cast<const char*>(data) + done, bytes - done);
          });
 }
 /// Reads from a place of an open file. Returns how many bytes there are, as move_bytes.
 inline std::size_t read_at(int descriptor, std::uint64_t place, std::size_t bytes, void* to) {
   return move_bytes(bytes, [=](std::size_t done) {
-    return ::pread(descriptor, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(place + done));
+    return system::read_some_at(descriptor, place + done, static_cast<char*>(to) + done, bytes - done);
   });
 }
 
@@ -103,16 +102,19 @@ class InputFile {
   InputFile(const std::string& path, std::string_view expected)
       : name_(shown_path(path)),
         expected_(expected),
-        descriptor_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    struct stat status {};
-    const bool is_open = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
-    const int reason = !is_open ? errno : S_ISDIR(status.st_mode) ? EISDIR : 0;
+        descriptor_(path == "-" ? kStandardInput : system::open_file(path, system::Access::read)) {
+    std::optional<system::FileStatus> status;
+    if (descriptor_ >= 0) status = system::status_of(descriptor_);
+    const bool is_open = status.has_value();
+    const int reason = !is_open ? errno : status->kind == system::FileKind::folder ? EISDIR : 0;
     if (reason != 0) {
       close();
       fail(name_, "cannot be {}: {}; expected {}", is_open ? "read" : "opened", system_reason(reason),
            expected_);
     }
-    if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = status.st_size;
+    if (status->kind == system::FileKind::regular && status->bytes > 0) {
+      size_ = static_cast<std::int64_t>(status->bytes);
+    }
   }
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -139,8 +141,8 @@ class InputFile {
   /// there are; fewer than `count` at the end.
   std::size_t read_next(char* to, std::size_t count) {
     if (ended_) return 0;
-    const std::size_t got =
-        move_bytes(count, [&](std::size_t done) { return ::read(descriptor_, to + done, count - done); });
+    const std::size_t got = move_bytes(
+        count, [&](std::size_t done) { return system::read_some(descriptor_, to + done, count - done); });
     if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
     ended_ = got < count;
     used_ += got;
@@ -170,6 +172,8 @@ class InputFile {
   }
 
  private:
+  static constexpr int kStandardInput = 0;
+
   void load() {
     // Room for one byte more than a regular file has detects its end in the same call. For pipes the buffer
     // grows.
@@ -183,7 +187,7 @@ class InputFile {
     if (used_ < count) read_next(&bytes_[used_], count - used_);
   }
   void close() {
-    if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
+    if (descriptor_ > kStandardInput) system::close_file(descriptor_);
   }
 
   std::string name_;

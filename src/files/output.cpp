@@ -1,14 +1,10 @@
 #include "files/output.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <random>
 #include <system_error>
 
@@ -18,6 +14,8 @@ namespace flaunay::io {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kStandardOutput = 1, kStandardError = 2;
 
 /// The path to which a chain of symbolic links leads, whether something is there or not.
 std::string followed(std::string path) {
@@ -36,7 +34,7 @@ std::string followed(std::string path) {
 std::string name_beside(const Target& target, const char* what) {
   static const unsigned process = std::random_device()();
   constexpr std::size_t kLongest = 200;  // of the 255 bytes that a name may have
-  std::string name = target.path.substr(target.path.find_last_of('/') + 1);
+  std::string name = target.path.substr(system::last_name(target.path));
   if (name.size() > kLongest) {
     name = fmt::format("{}-{:x}", name.substr(0, kLongest), std::hash<std::string>()(name));
   }
@@ -49,32 +47,23 @@ std::string name_beside(const Target& target, const char* what) {
 
 }  // namespace
 
-bool is_one_file(const std::string& a, const std::string& b) {
-  struct stat of_a {
-  }, of_b{};
-  return ::stat(a.c_str(), &of_a) == 0 && ::stat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
-         of_a.st_ino == of_b.st_ino;
-}
-
 Target find_target(const std::string& path) {
   Target target;
-  struct stat status {};
-  target.exists = ::stat(path.c_str(), &status) == 0;
+  const std::optional<system::FileStatus> status = system::status_of(path);
+  target.exists = status.has_value();
   if (!target.exists && errno != ENOENT) fail(path, "cannot be written: {}", system_reason(errno));
   if (target.exists) {
-    if (S_ISDIR(status.st_mode)) fail(path, "cannot be written: {}", system_reason(EISDIR));
+    if (status->kind == system::FileKind::folder) fail(path, "cannot be written: {}", system_reason(EISDIR));
     // Checked, because a rename would replace even a write-protected file.
-    if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) {
-      fail(path, "cannot be written: {}", system_reason(errno));
-    }
-    target.is_direct = !S_ISREG(status.st_mode);
-    target.mode = status.st_mode & 07777;
+    if (!system::is_writable(path)) fail(path, "cannot be written: {}", system_reason(errno));
+    target.is_direct = status->kind != system::FileKind::regular;
+    target.permissions = status->permissions;
   }
   target.path = target.is_direct ? path : followed(path);
-  const std::size_t slash = target.path.find_last_of('/');
-  target.folder = slash == std::string::npos ? "./" : target.path.substr(0, slash + 1);
-  if (slash + 1 == target.path.size()) fail(path, "cannot be created: {}", system_reason(EISDIR));
-  if (::stat(target.folder.c_str(), &status) != 0) {
+  const std::size_t name = system::last_name(target.path);
+  target.folder = name == 0 ? "./" : target.path.substr(0, name);
+  if (name == target.path.size()) fail(path, "cannot be created: {}", system_reason(EISDIR));
+  if (!system::status_of(target.folder)) {
     fail(path, "cannot be created in folder '{}': {}", target.folder, system_reason(errno));
   }
   return target;
@@ -89,32 +78,31 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   if (target_.is_direct) return;
   const Uninterrupted made;
   const std::string partial = name_beside(target_, "partial");
-  descriptor_ = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  descriptor_ = system::open_file(partial, system::Access::create);
   if (descriptor_ < 0) {
     if (errno == EEXIST) fail_same_path(path);
     fail(path_, "cannot be created in folder '{}': {}", target_.folder, system_reason(errno));
   }
   partial_ = Temporary(partial);
-  // Errors are ignored: some file systems have no modes.
-  if (target_.exists && ::fchmod(descriptor_, target_.mode) != 0) return;
+  if (target_.exists) system::set_permissions(descriptor_, target_.permissions);
 }
 
 OutputFile::OutputFile(const std::string& path, const std::string& partial)
     : path_(path),
       partial_(partial),
-      descriptor_(::open(partial.c_str(), O_WRONLY | O_CLOEXEC)),
+      descriptor_(system::open_file(partial, system::Access::write)),
       is_used_(true) {
   if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
+  if (descriptor_ > kStandardError) system::close_file(descriptor_);
 }
 
 void OutputFile::start() {
   is_used_ = true;
   if (!target_.is_direct) return;
-  descriptor_ = path_ == "-" ? STDOUT_FILENO : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  descriptor_ = path_ == "-" ? kStandardOutput : system::open_file(path_, system::Access::write);
   if (descriptor_ < 0) fail(path_, "cannot be opened for writing: {}", system_reason(errno));
 }
 
@@ -144,7 +132,7 @@ void OutputFile::check_written(bool is_written) const {
 
 void OutputFile::close() {
   flush();
-  if (descriptor_ > STDERR_FILENO) check_written(::close(std::exchange(descriptor_, -1)) == 0);
+  if (descriptor_ > kStandardError) check_written(system::close_file(std::exchange(descriptor_, -1)));
 }
 
 void Outputs::announce(const std::string& path) {
@@ -186,20 +174,14 @@ void Outputs::write_out() {
     if (!file->is_used_ || file->descriptor_ < 0) continue;
     file->flush();
     // Some file systems find only now that the disk is full. Others have no such call.
-    const bool is_written = file->target_.is_direct || ::fsync(file->descriptor_) == 0;
+    const bool is_written = file->target_.is_direct || system::write_to_disk(file->descriptor_);
     file->check_written(is_written || errno == EINVAL || errno == EROFS);
   }
   if (closed_in_.empty()) return;
   // Once, because there may be thousands of files.
-  const int folder = ::open(closed_in_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-#ifdef __linux__
-  const bool is_written = folder >= 0 && ::syncfs(folder) == 0;
-#else
-  const bool is_written = folder >= 0 && ::fsync(folder) == 0;
-#endif
-  const int reason = errno;
-  if (folder >= 0) ::close(folder);
-  if (!is_written) fail(closed_in_, "cannot be written: {}", system_reason(reason));
+  if (!system::write_folder_to_disk(closed_in_)) {
+    fail(closed_in_, "cannot be written: {}", system_reason(errno));
+  }
 }
 
 void Outputs::commit() {
@@ -209,7 +191,7 @@ void Outputs::commit() {
   for (const auto& file : files_) file->close();
   try {
     for (const std::string& path : removed_) {
-      keep_old(path, {path, path.substr(0, path.find_last_of('/') + 1)}, /* is_removed */ true);
+      keep_old(path, {path, path.substr(0, system::last_name(path))}, /* is_removed */ true);
     }
     for (const auto& file : files_) {
       if (!file->target_.is_direct) place(*file);
@@ -217,7 +199,7 @@ void Outputs::commit() {
   } catch (const Error& error) {
     throw Error(error.kind(), fmt::format("{}; {}", error.what(), take_back()));
   }
-  for (const Placed& placed : placed_) std::remove(placed.old.c_str());
+  for (const Placed& placed : placed_) system::remove_file(placed.old);
   *this = Outputs();
 }
 
@@ -225,7 +207,7 @@ void Outputs::place(const OutputFile& file) {
   const Target now = find_target(file.target_.path);
   if (now.is_direct) fail(file.path_, "cannot be replaced: is no regular file");
   if (now.exists) keep_old(file.path_, now, /* is_removed */ false);
-  if (::rename(file.partial_path().c_str(), now.path.c_str()) != 0) {
+  if (!system::rename_file(file.partial_path(), now.path)) {
     fail(file.path_, "cannot be put in place: {}", system_reason(errno));
   }
   if (!now.exists) placed_.push_back({file.path_, now.path, ""});
@@ -234,8 +216,8 @@ void Outputs::place(const OutputFile& file) {
 void Outputs::keep_old(const std::string& path, const Target& target, bool is_removed) {
   const std::string old = name_beside(target, "old");
   // With a link, there is a file all the time. Not every file system has links.
-  const bool is_linked = !is_removed && ::link(target.path.c_str(), old.c_str()) == 0;
-  if (!is_linked && ::rename(target.path.c_str(), old.c_str()) != 0) {
+  const bool is_linked = !is_removed && system::link_file(target.path, old);
+  if (!is_linked && !system::rename_file(target.path, old)) {
     fail(path, "cannot be replaced: {}", system_reason(errno));
   }
   placed_.push_back({path, target.path, old});
@@ -246,10 +228,10 @@ std::string Outputs::take_back() {
   for (; !placed_.empty(); placed_.pop_back()) {
     const auto& [path, target, old] = placed_.back();
     if (old.empty()) {
-      if (std::remove(target.c_str()) != 0) left += fmt::format("; {} is the new file already", path);
+      if (!system::remove_file(target)) left += fmt::format("; {} is the new file already", path);
     } else if (is_one_file(old, target)) {
-      std::remove(old.c_str());
-    } else if (std::rename(old.c_str(), target.c_str()) != 0) {
+      system::remove_file(old);
+    } else if (!system::rename_file(old, target)) {
       left += fmt::format("; {} could not be put back: the old file is {}", path, old);
     }
   }

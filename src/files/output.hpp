@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <sys/types.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "files/temporary.hpp"
+#include "host/system/files.hpp"
 
 namespace flaunay::io {
 
@@ -23,12 +23,11 @@ struct Target {
   std::string path;
   std::string folder;  ///< ends with a slash
   bool exists = false;
-  bool is_direct = false;  ///< it exists and is no regular file, such as a device or a pipe
-  mode_t mode = 0;         ///< if it exists
+  bool is_direct = false;    ///< it exists and is no regular file, such as a device or a pipe
+  unsigned permissions = 0;  ///< if it exists
 };
 
-/// Whether both paths lead to one file, or folder, that exists.
-bool is_one_file(const std::string& a, const std::string& b);
+using system::is_one_file;
 
 /// Throws Error(input) if a file cannot be written there.
 Target find_target(const std::string& path);

@@ -1,14 +1,9 @@
 #include "files/scratch.hpp"
 
-#include <fcntl.h>
-#include <stdlib.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
-#include <limits>
+#include <filesystem>
+#include <system_error>
 
 #include "files/file.hpp"
 #include "files/temporary.hpp"
@@ -17,30 +12,20 @@ namespace flaunay::io {
 namespace {
 
 int open_scratch(const std::string& folder) {
-#ifdef O_TMPFILE
-  const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_EXCL | O_RDWR | O_CLOEXEC, 0600);
-  if (unnamed >= 0) return unnamed;
-#endif
-  // Not every file system can do that. No signal ends the process while the file has a name.
+  // No signal ends the process while the file has a name.
   const Uninterrupted named;
-  std::string path = folder + "/.flaunay-XXXXXX";
-  const int file = ::mkostemp(path.data(), O_CLOEXEC);
-  if (file >= 0) ::unlink(path.c_str());
-  return file;
+  return system::open_unnamed(folder);
 }
 
 }  // namespace
 
 std::string scratch_folder(const std::string& folder) {
-  if (!folder.empty()) return folder;
-  const char* usual = std::getenv("TMPDIR");
-  return usual != nullptr && *usual != '\0' ? usual : "/tmp";
+  return folder.empty() ? system::temporary_folder() : folder;
 }
 
 std::uint64_t free_bytes(const std::string& folder) {
-  struct statvfs system {};
-  if (::statvfs(folder.c_str(), &system) != 0) return std::numeric_limits<std::uint64_t>::max();
-  return static_cast<std::uint64_t>(system.f_bavail) * system.f_frsize;
+  std::error_code unknown;  // then it is the largest number
+  return std::filesystem::space(folder, unknown).available;
 }
 
 ScratchFile::ScratchFile(const std::string& folder)
@@ -49,7 +34,7 @@ ScratchFile::ScratchFile(const std::string& folder)
 }
 
 ScratchFile::~ScratchFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ >= 0) system::close_file(descriptor_);
 }
 
 void ScratchFile::append(const void* data, std::size_t bytes) {
@@ -72,11 +57,7 @@ void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) cons
 
 void ScratchFile::release(std::uint64_t begin, std::uint64_t count) {
   held_ -= count;
-#ifdef __linux__
-  // If this fails, nothing is wrong but that the room is given back later.
-  static_cast<void>(::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-                                static_cast<off_t>(begin), static_cast<off_t>(count)));
-#endif
+  system::release_bytes(descriptor_, begin, count);
 }
 
 void ScratchFile::require_room(std::uint64_t bytes, const std::string& what) const {

@@ -7,7 +7,7 @@
 
 namespace flaunay::io {
 
-/// The folder itself, or if it is empty TMPDIR, or else /tmp.
+/// The folder itself, or if it is empty TMPDIR, or else the system's (/tmp).
 std::string scratch_folder(const std::string& folder);
 
 /// How many bytes can be written in a folder; the largest number if the system does not say.

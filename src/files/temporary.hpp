@@ -8,7 +8,8 @@
 namespace flaunay::io {
 
 /// From now on, SIGINT, SIGTERM and SIGHUP remove all temporary files and folders before they end the
-/// process, unless they are ignored or blocked already. To be called before there are other threads.
+/// process, unless they are ignored or blocked already; and so do Ctrl-C and its like on Windows. To be
+/// called before there are other threads.
 void clean_up_when_interrupted();
 
 /// While one exists, these signals wait: what is done meanwhile is done completely.

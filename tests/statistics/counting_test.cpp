@@ -79,6 +79,7 @@ double2 magnitudes(double2 p) { return {fabs(p.x), fabs(p.y)}; }
 using kernel::as_long;
 using kernel::as_ulong;
 using kernel::high_product;
+using kernel::int64;
 using kernel::uint64;
 inline uint64 as_ulong(Counted x) { return as_ulong(x.value); }
 inline Counted as_double(uint64 bits) { return kernel::as_double(bits); }

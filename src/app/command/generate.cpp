@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "files/disk_space.hpp"
 #include "files/file.hpp"
 #include "flaunay/flaunay.hpp"
+#include "host/system/process.hpp"
 
 namespace flaunay::cli {
 
@@ -31,10 +31,7 @@ struct GenerateRequest {
 };
 
 int generate(const GenerateRequest& request) {
-  if (request.output == "-") {
-    // As in every filter, a closed pipe ends the program without a message.
-    std::signal(SIGPIPE, SIG_DFL);
-  }
+  if (request.output == "-") system::end_on_closed_pipe();
   OutputFiles outputs;
   outputs.add_points(request.output);
   io::check_disk_space({{request.output, io::least_bytes(request.output, request.count)}});

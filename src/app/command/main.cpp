@@ -1,18 +1,18 @@
 // The command `flaunay`: parses the arguments, runs one subcommand, and turns an error into a message and an
 // exit code.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/command/commands.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/flaunay.hpp"
+#include "host/system/process.hpp"
 
 namespace {
 
@@ -20,20 +20,12 @@ using namespace flaunay::cli;
 
 int fail(int code, const std::string& message) { return report_error("flaunay", code, message); }
 
-// The system gives a file the lowest free descriptor. If a standard stream is closed, that would be the
-// stream's, and what is meant for the stream would go into the file.
-void occupy_closed_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
-    // In the other direction, so that using the stream is still an error.
-    ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-  }
-}
-
-int run(int argc, char** argv) {
+int run(std::vector<std::string> arguments) {
   CLI::App app("Exact two-dimensional Delaunay triangulation on any OpenCL device.", "flaunay");
   app.set_version_flag("--version", std::string("flaunay ") + flaunay::version());
   app.footer("The environment variable FLAUNAY_DEVICE chooses the device if --device is not given.");
+  // Paths may begin with a slash on Windows, too.
+  app.allow_windows_style_options(false);
   // At least 0, so that CLI11 reports an unknown subcommand by its name and not as a missing one.
   app.require_subcommand(0, 1);
   Action action;
@@ -44,7 +36,10 @@ int run(int argc, char** argv) {
   add_verify(app, action);
   add_devices(app, action);
   try {
-    app.parse(argc, argv);
+    // As CLI11 takes them: backwards, and without the program's name.
+    std::reverse(arguments.begin(), arguments.end());
+    if (!arguments.empty()) arguments.pop_back();
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return fail(kUsage, fmt::format("{} (see flaunay --help)", error.what()));
@@ -59,13 +54,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  occupy_closed_streams();
-  // A closed pipe and a file that becomes too large are handled where the output is written.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
+  flaunay::system::prepare_streams();
   flaunay::io::clean_up_when_interrupted();
   try {
-    return run(argc, argv);
+    return run(flaunay::system::arguments_of_main(argc, argv));
   } catch (const flaunay::Error& error) {
     return fail(exit_code(error.kind()), error.what());
   } catch (const std::bad_alloc&) {

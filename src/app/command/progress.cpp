@@ -1,14 +1,12 @@
 #include "app/command/progress.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
+
+#include "host/system/process.hpp"
 
 namespace flaunay::cli {
 
@@ -20,16 +18,6 @@ constexpr std::chrono::milliseconds kRedraw(100);
 constexpr double kEstimateAfterSeconds = 3;
 constexpr const char* kClearLine = "\r\x1b[K";
 
-bool on_terminal() {
-  const char* type = std::getenv("TERM");
-  return isatty(STDERR_FILENO) == 1 && !(type != nullptr && std::strcmp(type, "dumb") == 0);
-}
-
-std::size_t terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 std::string time_left(double seconds) {
   const auto rounded = static_cast<long long>(std::ceil(seconds));
   const long long minutes = rounded / 60, hours = minutes / 60;
@@ -38,15 +26,10 @@ std::string time_left(double seconds) {
   return fmt::format("about {} s left", rounded);
 }
 
-// A failure to write is ignored, since the line is only for information.
-void write_to_terminal(const std::string& text) {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
-}
-
 }  // namespace
 
 Progress::Progress(bool wanted) {
-  if (!wanted || !on_terminal()) return;
+  if (!wanted || system::terminal_width() == 0) return;
   try {
     drawer_ = std::thread([this] { draw_until_finished(); });
   } catch (const std::system_error&) {
@@ -93,10 +76,10 @@ void Progress::draw_until_finished() {
     const std::string text = line();
     // Unlocked, so that the work does not wait for a slow terminal.
     lock.unlock();
-    write_to_terminal(kClearLine + text.substr(0, terminal_width() - 1));
+    system::write_to_terminal(kClearLine + text.substr(0, system::terminal_width() - 1));
     lock.lock();
   } while (!finish_asked_.wait_for(lock, kRedraw, finished));
-  write_to_terminal(kClearLine);
+  system::write_to_terminal(kClearLine);
 }
 
 std::string Progress::line() const {

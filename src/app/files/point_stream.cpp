@@ -1,9 +1,8 @@
 #include "app/files/point_stream.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -141,8 +140,8 @@ std::uint64_t estimate_points(const std::string& path) {
   const Format& format = format_of(path, Use::read_points);
   if (format.map != nullptr) return 0;
   // A pipe is not opened, since it can be read only once.
-  struct stat status {};
-  if (path == "-" || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))) return 0;
+  const std::optional<system::FileStatus> status = path == "-" ? std::nullopt : system::status_of(path);
+  if (path == "-" || (status && status->kind != system::FileKind::regular)) return 0;
   if (format.records != nullptr) return RecordFile(path, format).size();
   InputFile file(path, format.content);
   const std::string_view beginning = file.first(kBeginning);

@@ -51,7 +51,7 @@ class PolyReader {
       return;
     }
     const std::string path = path_beside(path_, ".node");
-    if (::access(path.c_str(), R_OK) != 0) {
+    if (!system::is_readable(path)) {
       fail(path_, "has no vertices, and {} cannot be opened: {}", path, system_reason(errno));
     }
     NodeFile own = read_node(path, false);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <new>
 
@@ -20,7 +19,7 @@ class Buffer {
     const std::size_t bytes = count * sizeof(Value);
     const std::size_t page = bytes < host::kHugePage ? kCacheLine : host::kHugePage;
     values_.reset();
-    values_.reset(static_cast<Value*>(std::aligned_alloc(page, bytes / page * page + page)));
+    values_.reset(static_cast<Value*>(host::allocate_aligned(page, bytes / page * page + page)));
     if (values_ == nullptr) throw std::bad_alloc();
     host::prefer_huge_pages(values_.get(), bytes);
     size_ = count;
@@ -32,7 +31,7 @@ class Buffer {
  private:
   static constexpr std::size_t kCacheLine = 64;
   struct Free {
-    void operator()(Value* values) const { std::free(values); }
+    void operator()(Value* values) const { host::free_aligned(values); }
   };
   std::unique_ptr<Value, Free> values_;
   std::size_t size_ = 0;

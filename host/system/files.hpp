@@ -1,0 +1,71 @@
+// Files by descriptors, in one way on all systems: files_posix.cpp and files_windows.cpp. Names are in UTF-8
+// and contents are bytes. What fails leaves its reason in errno.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace flaunay::system {
+
+enum class Access {
+  read,
+  write,
+  create  ///< writes a new file; fails if there is something of this name
+};
+
+/// Returns a descriptor, -1 if that fails. Folders can be opened for reading, and have a status.
+int open_file(const std::string& name, Access access);
+/// A file for reading and writing that has no name, or none that stays.
+int open_unnamed(const std::string& folder);
+bool close_file(int file);
+
+/// Reads or writes some bytes, at a place of the file or after the last ones. Returns how many; -1 if that
+/// fails; 0: there are no more. Several threads may use places of one file.
+std::int64_t read_some(int file, void* to, std::size_t bytes);
+std::int64_t write_some(int file, const void* data, std::size_t bytes);
+std::int64_t read_some_at(int file, std::uint64_t place, void* to, std::size_t bytes);
+std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std::size_t bytes);
+
+/// Returns when what was written is on the disk.
+bool write_to_disk(int file);
+/// As write_to_disk for the files that were written in a folder and closed, where systems can do that.
+bool write_folder_to_disk(const std::string& folder);
+/// Gives the room of these bytes back, where the file system can.
+void release_bytes(int file, std::uint64_t begin, std::uint64_t count);
+
+enum class FileKind { regular, folder, other };
+struct FileStatus {
+  FileKind kind;
+  std::uint64_t bytes;
+  std::uint64_t disk;    ///< files on one disk have the same number
+  unsigned permissions;  ///< for set_permissions
+};
+std::optional<FileStatus> status_of(int file);
+std::optional<FileStatus> status_of(const std::string& name);
+/// Gives a file the permissions of another one, where file systems have them.
+void set_permissions(int file, unsigned permissions);
+bool is_readable(const std::string& name);
+bool is_writable(const std::string& name);
+/// Whether both are one file, or folder, that exists.
+bool is_one_file(const std::string& a, const std::string& b);
+
+/// Gives what is there another name, in one step, in place of a file that has it.
+bool rename_file(const std::string& from, const std::string& to);
+/// Gives a file a second name.
+bool link_file(const std::string& name, const std::string& second);
+/// Removes a file or an empty folder.
+bool remove_file(const std::string& name);
+
+/// Where in a path the last name begins, which ends it.
+std::size_t last_name(const std::string& path);
+/// A folder for files that nobody needs for long.
+std::string temporary_folder();
+/// The folder of the user's caches: XDG_CACHE_HOME or ~/.cache, or on Windows LOCALAPPDATA; empty if it is
+/// not known.
+std::string cache_folder();
+/// The value of an environment variable; empty if it is not set.
+std::string environment(const char* variable);
+
+}  // namespace flaunay::system
