@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Hashes every output of a build, so that two versions of flaunay can be compared.
 
-    scripts/fingerprint.py [--build DIR] [--python PYTHON] [--quick] [-o fingerprint.json]
+    scripts/fingerprint.py [--build DIR] [--python PYTHON] [--quick] [--emulator PROGRAM] [-o fingerprint.json]
     scripts/fingerprint.py --compare BEFORE.json AFTER.json
 
 The first form runs the command, a C program (tests/fingerprint/library.c, which it compiles and links to the
@@ -10,7 +10,8 @@ writes a JSON object with one short text for each output: its hash, or itself if
 folder, build/release if not given; it may be of another version, also of one whose default mode is "hybrid",
 which is taken for "blocks". PYTHON is an interpreter that has that version's module installed, as
 build/python/bin/python after scripts/python-test.sh. --quick leaves out the larger and the rarer inputs; only
-quick fingerprints can be compared with quick ones.
+quick fingerprints can be compared with quick ones. --emulator is for a build for another platform, whose command
+PROGRAM runs; then C is left out. With "none", the command of this machine's build is run in the same way.
 
 The second form prints the keys that differ, with both values, and exits with 1 if there are any.
 
@@ -53,16 +54,17 @@ def short_hash(data):
 
 
 class Fingerprint:
-    def __init__(self, build, quick, folder):
+    def __init__(self, build, quick, folder, emulator):
         self.build, self.quick, self.folder = build.resolve(), quick, folder
-        self.command = self.build / "flaunay"
+        windows = self.build / "flaunay.exe"
+        self.command = [*emulator, windows if windows.exists() else self.build / "flaunay"]
         self.values = {}
         self.sets = {}  # names and paths of points
         self.device = ""  # its name, which texts must not have
         self.default_mode = "hybrid" if "hybrid" in self.help_of("triangulate") else "blocks"
 
     def help_of(self, command):
-        return subprocess.run([self.command, command, "--help"], capture_output=True, text=True).stdout
+        return subprocess.run([*self.command, command, "--help"], capture_output=True, text=True).stdout
 
     # ---- Texts and hashes
 
@@ -124,7 +126,7 @@ class Fingerprint:
         """The exit code and everything that is printed becomes one value."""
         arguments = [self.default_mode if argument == "blocks" else str(argument) for argument in arguments]
         done = subprocess.run(
-            [self.command, *arguments],
+            [*self.command, *arguments],
             input=standard_input,
             capture_output=True,
             text=True,
@@ -399,7 +401,8 @@ class Fingerprint:
 
 def take(arguments):
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        fingerprint = Fingerprint(arguments.build, arguments.quick, pathlib.Path(folder).resolve())
+        emulator = [] if arguments.emulator == "none" else (arguments.emulator or "").split()
+        fingerprint = Fingerprint(arguments.build, arguments.quick, pathlib.Path(folder).resolve(), emulator)
 
         def in_parallel(jobs):
             for done in [pool.submit(call, *given, **(how[0] if how else {})) for call, given, *how in jobs]:
@@ -410,7 +413,7 @@ def take(arguments):
         fingerprint.run("cli/one-point", "triangulate", one, "--stats", f"{folder}/one.json")
         fingerprint.device = json.loads((pathlib.Path(folder) / "one.json").read_text())["device"]
         fingerprint.make_sets(in_parallel)
-        programs = [(fingerprint.c_program, ())]
+        programs = [(fingerprint.c_program, ())] if arguments.emulator is None else []
         if arguments.python is not None:
             programs.append((fingerprint.python_program, (os.path.abspath(arguments.python),)))
         in_parallel(programs + list(fingerprint.jobs()))
@@ -433,6 +436,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, default=REPOSITORY / "build/release")
     parser.add_argument("--python", help="an interpreter with the module flaunay; else Python is left out")
     parser.add_argument("--quick", action="store_true", help="fewer and smaller inputs")
+    parser.add_argument("--emulator", help="runs the programs of a build for another platform, such as wine")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("fingerprint.json"))
     parser.add_argument("--compare", nargs=2, type=pathlib.Path, metavar=("BEFORE", "AFTER"))
     arguments = parser.parse_args()

@@ -16,6 +16,7 @@
 #include "tests/support/bounds.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/whole.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -121,11 +122,11 @@ TEST(ExactPredicates, OfTheLargestIntegers) {
 // Integers of 128 and 256 bits
 
 mpz_class value_of(kernel::integer128 x) {
-  return (mpz_class(kernel::as_long(x.high)) << 64) + mpz_class(x.low);
+  return (whole(kernel::as_long(x.high)) << 64) + whole_unsigned(x.low);
 }
 
 mpz_class value_of(kernel::integer256 x) {
-  return (value_of(x.high) << 128) + (mpz_class(x.low.high) << 64) + mpz_class(x.low.low);
+  return (value_of(x.high) << 128) + (whole_unsigned(x.low.high) << 64) + whole_unsigned(x.low.low);
 }
 
 /// Modulo 2^bits, between -2^(bits - 1) and 2^(bits - 1).
@@ -138,9 +139,10 @@ mpz_class wrapped(const mpz_class& x, unsigned bits) {
 
 TEST(WideIntegers, AreThoseOfGmp) {
   FixtureRandom random(15);
-  const auto limb = [&random]() -> unsigned long {
-    const auto any = static_cast<unsigned long>(random.integer(0, INT64_MAX - 1)) * 2 + 1;
-    const unsigned long limbs[] = {0, 1, ~0UL, ~0UL >> 1, 1UL << 63, 1UL << 32, (1UL << 32) - 1, any};
+  const auto limb = [&random]() -> std::uint64_t {
+    const auto any = static_cast<std::uint64_t>(random.integer(0, INT64_MAX - 1)) * 2 + 1;
+    constexpr std::uint64_t one = 1, ones = ~std::uint64_t{0};
+    const std::uint64_t limbs[] = {0, 1, ones, ones >> 1, one << 63, one << 32, (one << 32) - 1, any};
     return limbs[random.integer(0, 7)];
   };
   for (int round = 0; round < 100000; ++round) {
@@ -149,9 +151,9 @@ TEST(WideIntegers, AreThoseOfGmp) {
     ASSERT_EQ(value_of(kernel::sum_128(a, b)), wrapped(value_of(a) + value_of(b), 128));
     ASSERT_EQ(value_of(kernel::difference_128(a, b)), wrapped(value_of(a) - value_of(b), 128));
     ASSERT_EQ(kernel::sign_of_128(a), sgn(value_of(a)));
-    const long x = kernel::as_long(a.low), y = kernel::as_long(b.low);
-    ASSERT_EQ(value_of(kernel::widened(x)), x);
-    ASSERT_EQ(value_of(kernel::product_128(x, y)), mpz_class(x) * y);
+    const std::int64_t x = kernel::as_long(a.low), y = kernel::as_long(b.low);
+    ASSERT_EQ(value_of(kernel::widened(x)), whole(x));
+    ASSERT_EQ(value_of(kernel::product_128(x, y)), whole(x) * whole(y));
     const kernel::integer256 product = kernel::product_256(a, b), other = kernel::product_256(b, c);
     ASSERT_EQ(value_of(product), value_of(a) * value_of(b));
     ASSERT_EQ(kernel::sign_of_256(product), sgn(value_of(product)));
@@ -180,16 +182,16 @@ TEST(WideIntegers, DifferencesAreOnesOrNot) {
       ASSERT_TRUE(std::ldexp(1, bits - 1) <= scaled && scaled < std::ldexp(1, bits));
       mpq_class exact(a);
       exact = (exact - mpq_class(b)) * mpq_class(factor);
-      long integer = 0;
+      std::int64_t integer = 0;
       const bool is_one = exact.get_den() == 1;
       ASSERT_EQ(kernel::is_integer(difference, factor, &integer) != 0, is_one) << text_of({a, b});
-      long same = integer;
+      std::int64_t same = integer;
       if (bits <= 53) {
         ASSERT_EQ(kernel::is_short_integer(difference, factor, &same) != 0, is_one) << text_of({a, b});
       }
       if (!is_one) continue;
       ++integers;
-      ASSERT_EQ(exact.get_num(), integer) << text_of({a, b});
+      ASSERT_EQ(exact.get_num(), whole(integer)) << text_of({a, b});
       ASSERT_EQ(integer, same) << text_of({a, b});
     }
   }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/support/fixed_point.hpp"
+#include "tests/support/whole.hpp"
 
 namespace flaunay::testing {
 
@@ -23,7 +24,7 @@ using Cases = std::function<void(std::mt19937_64&, Integer*)>;
 
 constexpr Integer kLargest = (Integer{1} << 62) - 1;
 
-inline mpz_class integer(Integer x) { return mpz_class(static_cast<long>(x)); }
+inline mpz_class integer(Integer x) { return whole(x); }
 
 inline mpz_class cross(const Integer* a, const Integer* b, const Integer* c, const Integer* d) {
   return (integer(b[0]) - integer(a[0])) * (integer(d[1]) - integer(c[1])) -
@@ -222,7 +223,7 @@ using Rational = mpq_class;
 
 constexpr Integer kInfinite = std::numeric_limits<Integer>::max();
 
-inline Rational rational(Integer x) { return Rational(static_cast<long>(x)); }
+inline Rational rational(Integer x) { return Rational(whole(x)); }
 
 struct Box {
   Integer low[2], high[2];

@@ -1,0 +1,106 @@
+# What tests share, and those that need no device: they are also built for other platforms (tests/platforms).
+set(TESTS ${PROJECT_SOURCE_DIR}/tests)
+
+# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] SOURCES ... LIBRARIES ... [LABELS ...] [COST seconds]): a
+# GoogleTest program whose tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in
+# one process. UNITY: its files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops
+# take less time than optimising them; UNOPTIMISED: in every build. SMALL_WHEN_SANITIZED: only the Small suites in a
+# sanitized build, which is slow. NATIVE_WHEN_SANITIZED: there, only as NAME.host (see below), which has all that
+# sanitizers can see; what drives OpenCL is in other programs. COST: about how long it takes; the longest begin first.
+function(flaunay_test NAME)
+  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;SMALL_WHEN_SANITIZED;NATIVE_WHEN_SANITIZED" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  list(TRANSFORM ARG_SOURCES PREPEND ${TESTS}/ REGEX "^[^/]")
+  add_executable(${NAME} ${ARG_SOURCES})
+  target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${NAME} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main $<TARGET_NAME_IF_EXISTS:OpenCL::OpenCL>
+                                        $<$<BOOL:${CMAKE_CROSSCOMPILING}>:fmt::fmt>)
+  target_compile_definitions(${NAME} PRIVATE FLAUNAY_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  if(WIN32)
+    # For M_PI.
+    target_compile_definitions(${NAME} PRIVATE _USE_MATH_DEFINES)
+  endif()
+  # Compiling the tests takes longer than what their own loops take; the library that they test is as users have it.
+  # Members that tests leave out are zero.
+  target_compile_options(${NAME} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-missing-field-initializers)
+  if(ARG_UNOPTIMISED OR (FLAUNAY_SANITIZE AND ARG_BRIEF))
+    target_compile_options(${NAME} PRIVATE -O0)
+  endif()
+  if(NOT ARG_UNITY)
+    set_target_properties(${NAME} PROPERTIES UNITY_BUILD OFF)
+  endif()
+  # An emulator takes long to begin.
+  if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
+    if(FLAUNAY_SANITIZE AND ARG_NATIVE_WHEN_SANITIZED)
+      return()
+    elseif(FLAUNAY_SANITIZE AND ARG_SMALL_WHEN_SANITIZED)
+      add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1 --gtest_filter=Small*)
+    else()
+      add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1)
+    endif()
+    set_tests_properties(${NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1800)
+    if(ARG_COST)
+      set_tests_properties(${NAME} PROPERTIES COST ${ARG_COST})
+    endif()
+  else()
+    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}")
+  endif()
+endfunction()
+
+# What tests compare with; GMP stays here, out of the library.
+add_library(flaunay_test_support STATIC ${TESTS}/support/reference.cpp)
+target_include_directories(flaunay_test_support PUBLIC ${PROJECT_SOURCE_DIR})
+target_link_libraries(flaunay_test_support PUBLIC flaunay_options gmpxx gmp)
+
+# The twin of the insertion of segments.
+add_library(flaunay_sequential_insertion STATIC
+            ${TESTS}/constrained/sequential/constraints.cpp ${TESTS}/constrained/sequential/insert.cpp
+            ${TESTS}/constrained/sequential/mesh.cpp ${TESTS}/constrained/sequential/polygon.cpp)
+target_include_directories(flaunay_sequential_insertion PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(flaunay_sequential_insertion PUBLIC flaunay_core PRIVATE flaunay_format)
+
+# The points that the fuzzer of the triangulation makes, and how it shrinks those that fail.
+add_library(flaunay_fuzz STATIC ${TESTS}/fuzz/degenerate.cpp ${TESTS}/fuzz/minimise.cpp)
+target_include_directories(flaunay_fuzz PUBLIC ${PROJECT_SOURCE_DIR})
+target_link_libraries(flaunay_fuzz PUBLIC flaunay_io PRIVATE fmt::fmt)
+
+# Without a device.
+flaunay_test(
+  test_fuzz BRIEF
+  SOURCES fuzz/minimise_test.cpp
+  LIBRARIES flaunay_fuzz flaunay_core flaunay_host_modes flaunay_verify flaunay_test_support
+  LABELS asan)
+flaunay_test(
+  test_host_modes
+  SOURCES dwyer/dwyer_test.cpp
+          geometry/areas_test.cpp
+          geometry/mesh_test.cpp
+          geometry/planar_test.cpp
+          geometry/sort_test.cpp
+          partition/regions_test.cpp
+          recursive/recursive_test.cpp
+          statistics/counting_test.cpp
+          verify/chunks_test.cpp
+          verify/verify_test.cpp
+  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
+  LABELS asan)
+# The predicates in fixed point, as several devices would compute them.
+set(FIXED_POINT_READINGS ${TESTS}/support/fixed_point_direct.cpp ${TESTS}/support/fixed_point_contracted.cpp)
+set_source_files_properties(${FIXED_POINT_READINGS} PROPERTIES COMPILE_OPTIONS -frounding-math)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set_source_files_properties(${TESTS}/support/fixed_point_contracted.cpp PROPERTIES COMPILE_OPTIONS
+                                                                            "-frounding-math;-mfma;-ffp-contract=fast;-O2")
+endif()
+flaunay_test(
+  test_fixed_point WHOLE SMALL_WHEN_SANITIZED
+  COST 10
+  SOURCES geometry/fixed_certify_test.cpp geometry/fixed_point_test.cpp support/double_certificates.cpp
+          ${FIXED_POINT_READINGS}
+  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_test_support
+  LABELS asan)
+flaunay_test(
+  test_constrained UNITY
+  SOURCES constrained/constrained_test.cpp constrained/pairs_test.cpp constrained/refinement_bounds_test.cpp
+          constrained/split_test.cpp constrained/verify_test.cpp
+  LIBRARIES flaunay_sequential_insertion flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
+  LABELS asan)
+
