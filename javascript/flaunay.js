@@ -113,6 +113,14 @@ function arrayAt(type, pointer, length) {
   return heap[type].subarray(first, first + length);
 }
 
+// A view that keeps what it belongs to from being collected.
+const owners = new WeakMap();
+function viewOf(owner, type, pointer, length) {
+  const view = arrayAt(type, pointer, length);
+  owners.set(view, owner);
+  return view;
+}
+
 // Memory for the arguments of a call, which ends with it.
 class Arguments {
   #pointers = [];
@@ -279,7 +287,7 @@ class Mesh {
 
   #array(type, name, length) {
     void this.#handle.pointer;
-    return arrayAt(type, this.#mesh[name], this.#mesh[name] === 0 ? 0 : length);
+    return viewOf(this, type, this.#mesh[name], this.#mesh[name] === 0 ? 0 : length);
   }
 
   get handle() {
@@ -370,7 +378,7 @@ export class Triangulation extends Mesh {
   }
 
   get coords() {
-    return arrayAt('float64', this.#coords.pointer, 2 * this.pointCount);
+    return viewOf(this, 'float64', this.#coords.pointer, 2 * this.pointCount);
   }
 
   /** The Voronoi diagram, whose cells may be unbounded. */
@@ -448,7 +456,7 @@ class Result {
   }
 
   array(type, name, length) {
-    return arrayAt(type, wasm[`${this.#prefix}_${name}`](this.#handle.pointer), length);
+    return viewOf(this, type, wasm[`${this.#prefix}_${name}`](this.#handle.pointer), length);
   }
 
   free() {
@@ -501,8 +509,8 @@ class ClippedVoronoi extends Result {
 
   /** The vertices of the cell of point i, counter-clockwise. */
   cell(i) {
-    const {offsets} = this;
-    return this.vertices.subarray(2 * offsets[i], 2 * offsets[i + 1]);
+    const {offsets, vertices} = this;
+    return viewOf(this, 'float64', vertices.byteOffset + 16 * offsets[i], 2 * (offsets[i + 1] - offsets[i]));
   }
 }
 
@@ -585,7 +593,7 @@ export class ConstrainedTriangulation extends Mesh {
 
   #array(type, name, length) {
     void this.handle;
-    return arrayAt(type, this.#arrays[name], this.#arrays[name] === 0 ? 0 : length);
+    return viewOf(this, type, this.#arrays[name], this.#arrays[name] === 0 ? 0 : length);
   }
 
   get addedPoints() {
@@ -677,10 +685,10 @@ export class DynamicTriangulation {
     const found = membersAt(wasm.flaunay_dynamic_changes(this.#handle.pointer), CHANGES);
     return {
       firstPoint: found.firstPoint,
-      representatives: arrayAt('int32', found.representatives, found.representativeCount),
-      removed: arrayAt('int32', found.removed, found.removedCount),
-      made: arrayAt('int32', found.made, found.madeCount),
-      madeCorners: arrayAt('int32', found.madeCorners, 3 * found.madeCount),
+      representatives: viewOf(this, 'int32', found.representatives, found.representativeCount),
+      removed: viewOf(this, 'int32', found.removed, found.removedCount),
+      made: viewOf(this, 'int32', found.made, found.madeCount),
+      madeCorners: viewOf(this, 'int32', found.madeCorners, 3 * found.madeCount),
       isAnew: found.isAnew !== 0,
     };
   }
@@ -708,7 +716,9 @@ export class DynamicTriangulation {
     const triangles = this.#results(8 * entries);
     const neighbors = triangles + 4 * entries;
     check(wasm.flaunay_dynamic_rows(this.#handle.pointer, triangles, neighbors));
-    return {triangles: arrayAt('int32', triangles, entries), neighbors: arrayAt('int32', neighbors, entries)};
+    return {
+      triangles: viewOf(this, 'int32', triangles, entries), neighbors: viewOf(this, 'int32', neighbors, entries),
+    };
   }
 
   /** x and y per number; NaN for points that were removed. */
@@ -728,8 +738,8 @@ export class DynamicTriangulation {
     if (pointer === 0) check(wasm.flaunay_last_error_status());
     const found = membersAt(pointer, LIVING);
     return {
-      edges: arrayAt('int32', found.edges, 2 * found.edgeCount),
-      segments: arrayAt('int32', found.segments, found.edgeCount),
+      edges: viewOf(this, 'int32', found.edges, 2 * found.edgeCount),
+      segments: viewOf(this, 'int32', found.segments, found.edgeCount),
     };
   }
 

@@ -1,5 +1,8 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
+import {setImmediate} from 'node:timers/promises';
+import {setFlagsFromString} from 'node:v8';
+import {runInNewContext} from 'node:vm';
 
 import Delaunator, {
   ConstrainedTriangulation, DynamicTriangulation, FlaunayError, Triangulation, version, wrongEdges,
@@ -100,6 +103,25 @@ test('memory is used again', () => {
   const before = used();
   for (let i = 0; i < 30; i++) work();
   assert.equal(used(), before);
+});
+
+test('what is not freed is collected, but not while a view is there', async () => {
+  setFlagsFromString('--expose-gc');
+  const collect = runInNewContext('gc');
+  const coords = uniform(5000);
+  const {triangles} = new Triangulation(coords), copy = triangles.slice();
+  const cell = new Triangulation(coords).clippedVoronoi([0, 0, 1, 1]).cell(7), copied = cell.slice();
+  let bytes = 0;
+  for (let i = 0; i < 60; i++) {
+    for (let k = 0; k < 5; k++) new Triangulation(coords).nearest(0, 0);
+    collect();
+    await setImmediate();
+    if (i === 10) bytes = triangles.buffer.byteLength;
+  }
+  assert.ok(bytes > 0, 'views are there');
+  assert.equal(triangles.buffer.byteLength, bytes);
+  assert.deepEqual(triangles, copy);
+  assert.deepEqual(cell, copied);
 });
 
 test('many sets in one call', () => {
