@@ -9,6 +9,11 @@
 
 #ifndef FIXED_POINT
 
+// Where C++'s fma is a call, or no instruction at all.
+#if defined(__cplusplus) && !defined(__FP_FAST_FMA) && !defined(SPLIT_PRODUCTS)
+#define SPLIT_PRODUCTS
+#endif
+
 BEGIN_SHARED
 
 // x + y = a + b exactly, x = fl(a + b).

@@ -1,5 +1,5 @@
 // Exact orientation and in-circle tests of points whose coordinates are doubles: by integers where they suffice, as for
-// most ties, else by expansions.
+// most ties, else with twice the precision of doubles or, if that cannot decide, by expansions.
 #ifndef FLAUNAY_EXACT_DOUBLES_H
 #define FLAUNAY_EXACT_DOUBLES_H
 
@@ -54,25 +54,20 @@ OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double
 
 OUT_OF_LINE static inline int cross_exact(double2 a, double2 b, double2 c, double2 d) {
   const double2 px = two_sum(b.x, -a.x), py = two_sum(b.y, -a.y), qx = two_sum(d.x, -c.x), qy = two_sum(d.y, -c.y);
-  if ((px.y != 0.0) | (py.y != 0.0) | (qx.y != 0.0) | (qy.y != 0.0)) return cross_by_expansions(px, py, qx, qy);
-  const double2 first = two_product(px.x, qy.x), second = two_product(py.x, qx.x);
-  return first.x != second.x ? sign_of(first.x - second.x) : sign_of(first.y - second.y);
+  if ((px.y == 0.0) & (py.y == 0.0) & (qx.y == 0.0) & (qy.y == 0.0)) {
+    const double2 first = two_product(px.x, qy.x), second = two_product(py.x, qx.x);
+    return first.x != second.x ? sign_of(first.x - second.x) : sign_of(first.y - second.y);
+  }
+  const double largest = larger_magnitude(larger_magnitude(px.x, py.x), larger_magnitude(qx.x, qy.x));
+  const double factor = unit_factor(largest, WIDE_BITS);
+  int64 pxi, pyi, qxi, qyi;
+  if (is_integer(px, factor, &pxi) & is_integer(py, factor, &pyi) & is_integer(qx, factor, &qxi) &
+      is_integer(qy, factor, &qyi))
+    return sign_of_128(difference_128(product_128(pxi, qyi), product_128(pyi, qxi)));
+  return cross_by_expansions(px, py, qx, qy);
 }
 
-OUT_OF_LINE static inline int orient_exact(double2 a, double2 b, double2 c) {
-  const double2 bx = two_sum(b.x, -a.x);
-  const double2 by = two_sum(b.y, -a.y);
-  const double2 cx = two_sum(c.x, -a.x);
-  const double2 cy = two_sum(c.y, -a.y);
-  const double largest = larger_magnitude(larger_magnitude(bx.x, by.x), larger_magnitude(cx.x, cy.x));
-  if (largest == 0.0) return 0;
-  const double factor = unit_factor(largest, WIDE_BITS);
-  int64 bxi, byi, cxi, cyi;
-  if (is_integer(bx, factor, &bxi) & is_integer(by, factor, &byi) & is_integer(cx, factor, &cxi) &
-      is_integer(cy, factor, &cyi))
-    return sign_of_128(difference_128(product_128(bxi, cyi), product_128(byi, cxi)));
-  return cross_by_expansions(bx, by, cx, cy);
-}
+static inline int orient_exact(double2 a, double2 b, double2 c) { return cross_exact(a, b, a, c); }
 
 // The determinant, compressed.
 static inline void circle_by_expansions(const double2* dx, const double2* dy, expansion* sum) {
@@ -130,14 +125,61 @@ static inline int are_integers(const circle_differences* from, double factor, in
 // Of coarse points (COARSE_CIRCLE_BITS), of which the filter has found this.
 #define circle_coarse(a, b, c, d) 0
 
-// Of any four points.
+// Products and sums of pairs as two_sum gives them, with about twice the precision of doubles.
+static inline double2 close_product(double2 f, double2 g) {
+  const double2 leading = two_product(f.x, g.x);
+  return VECTOR(double2, leading.x, leading.y + (f.x * g.y + f.y * g.x));
+}
+static inline double2 close_sum(double2 f, double2 g) {
+  const double2 leading = two_sum(f.x, g.x);
+  return VECTOR(double2, leading.x, leading.y + (f.y + g.y));
+}
+
+// An angle as in predicates/planar.h: dot and cross product, with the sums of their terms' magnitudes.
+typedef struct {
+  double2 dot, cross;
+  double dot_magnitude, cross_magnitude;
+} close_angle;
+static inline close_angle angle_closely(double2 ax, double2 ay, double2 bx, double2 by) {
+  const double2 xx = close_product(ax, bx), yy = close_product(ay, by);
+  const double2 xy = close_product(ax, by), yx = close_product(ay, bx);
+  const close_angle angle = {close_sum(xx, yy), close_sum(xy, -yx), fabs(xx.x) + fabs(yy.x), fabs(xy.x) + fabs(yx.x)};
+  return angle;
+}
+
+// The in-circle test by angles over the edge from a to b, with an error below 90 e^2 of the magnitudes, e = 2^-53; see
+// docs/exactness.md. 0 if it cannot decide: then the points are cocircular or very nearly so.
+#define CLOSE_BOUND 0x1p-99
+static inline int circle_closely(const circle_differences* from, double2 a, double2 b, double2 c) {
+  const close_angle seen = angle_closely(from->x[0], from->y[0], from->x[1], from->y[1]);
+  const close_angle other =
+      angle_closely(two_sum(a.x, -c.x), two_sum(a.y, -c.y), two_sum(b.x, -c.x), two_sum(b.y, -c.y));
+  const double2 wider = close_sum(close_product(other.dot, seen.cross), -close_product(seen.dot, other.cross));
+  const double det = wider.x + wider.y;
+  const double magnitude = other.dot_magnitude * seen.cross_magnitude + seen.dot_magnitude * other.cross_magnitude;
+  return fabs(det) > CLOSE_BOUND * magnitude ? sign_of(det) : 0;
+}
+
+// Of any four points, by their differences from d, not all 0.
+static inline int circle_of_differences(const circle_differences* from, double2 a, double2 b, double2 c) {
+  int64 x[3], y[3];
+  if (are_integers(from, unit_factor(from->largest, WIDE_BITS), x, y))
+    return sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]));
+  const int sign = circle_closely(from, a, b, c);
+  return sign != 0 ? sign : circle_sign_by_expansions(from->x, from->y);
+}
+
 OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
   const circle_differences from = differences_from(d, a, b, c);
-  if (from.largest == 0.0) return 0;
-  int64 x[3], y[3];
-  return are_integers(&from, unit_factor(from.largest, WIDE_BITS), x, y)
-             ? sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]))
-             : circle_sign_by_expansions(from.x, from.y);
+  return from.largest == 0.0 ? 0 : circle_of_differences(&from, a, b, c);
+}
+
+// Whether all differences are integers of at most 53 bits, as most are or none.
+static inline int are_short_integers(const circle_differences* from, double factor, int64* x, int64* y) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(is_short_integer(from->x[k], factor, &x[k]) & is_short_integer(from->y[k], factor, &y[k]))) return 0;
+  }
+  return 1;
 }
 
 // circle_exact, faster, of points for which circle_filtered or angle_compared could not decide with this bound. A bound
@@ -146,17 +188,14 @@ OUT_OF_LINE static inline int circle_undecided(double2 a, double2 b, double2 c, 
   if (bound > ANGLE_BOUND) return circle_exact(a, b, c, d);
   const circle_differences from = differences_from(d, a, b, c);
   if (from.largest == 0.0) return 0;
-  const double factor = unit_factor(from.largest, MIDDLE_BITS);
-  int64 x[3], y[3], all = 0;
-  int integers = 1;
-  for (int k = 0; k < 3; ++k) {
-    integers &= is_short_integer(from.x[k], factor, &x[k]) & is_short_integer(from.y[k], factor, &y[k]);
-    all |= x[k] | y[k];
+  int64 x[3], y[3];
+  if (are_short_integers(&from, unit_factor(from.largest, MIDDLE_BITS), x, y)) {
+    const int spare = MIDDLE_BITS - SHORT_BITS;
+    const int64 all = x[0] | y[0] | x[1] | y[1] | x[2] | y[2];
+    if ((all & (((int64)1 << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
+    return circle_short(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
   }
-  if (!integers) return circle_exact(a, b, c, d);
-  const int spare = MIDDLE_BITS - SHORT_BITS;
-  if ((all & (((int64)1 << spare) - 1)) != 0) return circle_middle(x[0], y[0], x[1], y[1], x[2], y[2]);
-  return circle_short(x[0] >> spare, y[0] >> spare, x[1] >> spare, y[1] >> spare, x[2] >> spare, y[2] >> spare);
+  return circle_of_differences(&from, a, b, c);
 }
 
 END_SHARED

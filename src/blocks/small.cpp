@@ -15,6 +15,8 @@
 #include "launchers/blocks/mesh.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
+#include "predicates/order.h"
+#include "predicates/planar.h"
 
 namespace flaunay::blocks {
 namespace {
@@ -65,6 +67,59 @@ Here<T> result_of(std::vector<T>& array, std::size_t size) {
   return here(array);
 }
 
+bool is_same(kernel::double2 p, kernel::double2 q) { return p.x == q.x && p.y == q.y; }
+
+// Whether all points are on one line: of other points, this looks at a few. undecided: grows by the number of
+// orientations that were evaluated exactly.
+bool are_on_line(const kernel::double2* points, std::size_t n, kernel::filter_bound bound,
+                 std::size_t& undecided) {
+  const kernel::double2 first = points[0];
+  std::size_t second = 1;
+  while (second < n && is_same(points[second], first)) ++second;
+  for (std::size_t i = second + 1; i < n; ++i) {
+    int side = kernel::orient_filtered(first, points[second], points[i], bound);
+    if (side == UNDECIDED) {
+      ++undecided;
+      side = kernel::orient_exact(first, points[second], points[i]);
+    }
+    if (side != 0) return false;
+  }
+  return true;
+}
+
+// Triangulates the set in s.vertices, whose points are on one line: without triangles, so that sorting is
+// all.
+MeshSizes sort_line(Scratch& s, std::size_t n, Triangulation& result) {
+  const auto* const points = reinterpret_cast<const kernel::double2*>(s.vertices.data());
+  sized(s.ranks, 2 * n);
+  auto* elements = reinterpret_cast<kernel::keyed*>(s.ranks.data());
+  const auto count = static_cast<int>(n);
+  for (int i = 0; i < count; ++i) elements[i] = kernel::keyed_place(0, i);
+  elements = kernel::sort_along(elements, elements + n, count, points, 0);
+  result.hull.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const int at = kernel::place_of_keyed(elements[i]);
+    if (!result.hull.empty() && is_same(points[at], points[result.hull.back()])) {
+      result.representatives[at] = result.hull.back();
+    } else {
+      result.hull.push_back(at);
+    }
+  }
+  MeshSizes sizes;
+  sizes.triangle_offsets = {0, 0};
+  sizes.hull_offsets = {0, result.hull.size()};
+  sizes.vertices = result.hull.size();
+  return sizes;
+}
+
+// Writes what a call has found, but for the arrays.
+void write_outcome(Outcome outcome, std::size_t n, const Scratch& s, Triangulation& result) {
+  result.statistics.device_bytes_peak = s.bytes();
+  outcome.write(n, result.statistics);
+  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
+  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+}
+
 }  // namespace
 
 void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
@@ -93,6 +148,15 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
       const kernel::double2 p = kernel::scaled_point(static_cast<int>(i), coordinates, scale);
       s.vertices[i] = {p.x, p.y};
     }
+  }
+
+  std::size_t undecided = 0;
+  if (sets == 1 && n > 0 &&
+      are_on_line(reinterpret_cast<const kernel::double2*>(s.vertices.data()), n, scalings.bounds.orient,
+                  undecided)) {
+    MeshSizes sizes = sort_line(s, n, result);
+    write_outcome({std::move(sizes), undecided}, n, s, result);
+    return;
   }
 
   const auto edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
@@ -183,11 +247,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                                           .source = source,
                                           .offsets = here(s.hull_offsets),
                                           .hull = result_of(result.hull, sizes.hull_vertices())});
-  result.statistics.device_bytes_peak = s.bytes();
-  Outcome outcome{std::move(sizes), counts[kernel::RINGS_UNDECIDED]};
-  outcome.write(n, result.statistics);
-  result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
-  result.hull_offsets = std::move(outcome.sizes.hull_offsets);
+  write_outcome({std::move(sizes), counts[kernel::RINGS_UNDECIDED]}, n, s, result);
 }
 
 }  // namespace flaunay::blocks

@@ -493,6 +493,26 @@ TEST(Triangulation, CollinearHasNoTriangles) {
   EXPECT_EQ(result.statistics.duplicates, 19999U);
 }
 
+/// A line whose points' coordinates are rounded, so that nothing but exact orientations tells it from others.
+TEST(Triangulation, OnALineOrNextToIt) {
+  FixtureRandom random(16);
+  for (const std::size_t n : {3, 4, 40, 700}) {
+    Coordinates points;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = random.unit();
+      fixtures_detail::add(points, x, x);
+    }
+    const Triangulation line = triangulate(points);
+    EXPECT_TRUE(line.triangles.empty());
+    EXPECT_EQ(line.hull.size(), n);
+    EXPECT_TRUE(valid(points, line));
+    points.back() = std::nextafter(points.back(), 2);
+    const Triangulation beside = triangulate(points);
+    EXPECT_FALSE(beside.triangles.empty());
+    EXPECT_TRUE(matches_reference(points, beside));
+  }
+}
+
 /// All points on the hull, whose edges but one go from smaller to larger numbers: no other input has as many
 /// edges without a neighbour.
 TEST(Triangulation, ParabolasOfManySizes) {

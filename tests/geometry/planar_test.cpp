@@ -89,6 +89,37 @@ TEST(ExactPredicates, TiesAndNearlyTies) {
   EXPECT_GT(ties, 5000);
 }
 
+// Points of a circle that are rounded, the origin among them, whose differences no integers hold; and
+// rectangles.
+TEST(ExactPredicates, WithTwiceThePrecision) {
+  FixtureRandom random(15);
+  int decided = 0, left = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const int exponent = static_cast<int>(random.integer(-200, 200));
+    const double scale = std::ldexp(1 + random.unit(), exponent);
+    Coordinates p;
+    for (int k = 0; k < 4; ++k) {
+      const double angle = 2 * M_PI * random.unit() * std::ldexp(1, -static_cast<int>(random.integer(0, 20)));
+      p.push_back(scale * std::sin(angle));
+      p.push_back(scale * (1 - std::cos(angle)));
+    }
+    if (round % 4 == 0) p = {p[0], p[1], p[2], p[1], p[2], p[3], p[0], p[3]};
+    const Point a = point_of(p, 0), b = point_of(p, 1), c = point_of(p, 2), d = point_of(p, 3);
+    const kernel::circle_differences from = kernel::differences_from(d, a, b, c);
+    const int expected = reference_incircle(&p[0], &p[2], &p[4], &p[6]);
+    const int sign = kernel::circle_closely(&from, a, b, c);
+    if (sign != 0) {
+      ASSERT_EQ(sign, expected) << text_of(p);
+      ++decided;
+    } else {
+      ++left;
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_circle(p, expected));
+  }
+  EXPECT_GT(decided, 10000);
+  EXPECT_GT(left, 4000);
+}
+
 // All coordinates as large as they can be, or next to it, or 0: sums and products at the limits of integers.
 TEST(ExactPredicates, OfTheLargestIntegers) {
   FixtureRandom random(14);
