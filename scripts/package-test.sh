@@ -26,6 +26,8 @@ debian_root() {
     debootstrap --variant=minbase bookworm "$root" >/dev/null
     touch "$root/made"
   fi
+  # Those that debootstrap wrote might name the same again.
+  rm -f "$root/etc/apt/sources.list"
   for file in /etc/hosts /etc/resolv.conf /etc/apt/sources.list /etc/ssl/certs/ca-certificates.crt; do
     if [[ -e $file ]]; then install -D "$file" "$root$file"; fi
   done
@@ -56,6 +58,7 @@ opencl-headers/2022.09.30
 END
   for shared in True False; do
     "$conan" create packaging/conan --no-remote --profile system --settings build_type=Debug \
+      --conf "tools.cmake.cmake_layout:test_folder=$work/conan-test" \
       --options "flaunay/*:shared=$shared"
   done
 }

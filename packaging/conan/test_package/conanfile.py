@@ -1,5 +1,6 @@
 """Builds the projects in C++ and C that test every installation of flaunay, and runs them."""
 
+import os
 from pathlib import Path
 
 from conan import ConanFile
@@ -28,4 +29,4 @@ class Consumer(ConanFile):
     def test(self):
         if can_run(self):
             for program in ("consumer", "consumer_c"):
-                self.run(str(Path(self.cpp.build.bindir) / program), env="conanrun")
+                self.run(os.path.join(self.cpp.build.bindir, program), env="conanrun")
