@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "app/files/points.hpp"
@@ -31,6 +32,10 @@ using Offsets = std::vector<std::size_t>;
 // Fowler, Noll and Vo's FNV-1a.
 template <typename T>
 std::uint64_t hash_of(const std::vector<T>& values) {
+  // Sizes have fewer bits on some platforms.
+  if constexpr (std::is_same_v<T, std::size_t> && sizeof(T) < sizeof(std::uint64_t)) {
+    return hash_of(std::vector<std::uint64_t>(values.begin(), values.end()));
+  }
   std::uint64_t hash = 0xcbf29ce484222325U;
   const auto* const bytes = reinterpret_cast<const unsigned char*>(values.data());
   for (std::size_t k = 0; k < values.size() * sizeof(T); ++k) hash = (hash ^ bytes[k]) * 0x100000001b3U;
