@@ -56,8 +56,8 @@ def short_hash(data):
 class Fingerprint:
     def __init__(self, build, quick, folder, emulator):
         self.build, self.quick, self.folder = build.resolve(), quick, folder
-        windows = self.build / "flaunay.exe"
-        self.command = [*emulator, windows if windows.exists() else self.build / "flaunay"]
+        programs = [self.build / f"flaunay{ending}" for ending in (".exe", ".js", "")]
+        self.command = [*emulator, next(path for path in programs if path.exists())]
         self.values = {}
         self.sets = {}  # names and paths of points
         self.device = ""  # its name, which texts must not have

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Builds flaunay for another platform and tests it there, in an emulator, against this machine's build.
 #
-#   scripts/platform-test.sh PLATFORM     windows (in Wine); PLATFORM is a preset of CMakePresets.json
+#   scripts/platform-test.sh PLATFORM     windows (in Wine), aarch64 (in QEMU) or wasm (in Node), presets of
+#                                         CMakePresets.json
 #
-# Runs the tests that need no OpenCL, those of files and streams, a program that uses the installed library, and
-# compares the bytes of all results with this machine's: of the library (tests/devices/outputs.cpp) and of the command
+# Runs the tests that need no OpenCL, those of files and streams, a program that uses the installed library (none of
+# these for wasm, whose package has tests of its own), and compares the bytes of all results with this machine's: of the library (tests/devices/outputs.cpp) and of the command
 # (scripts/fingerprint.py). Takes up to half an hour. What came of it is kept in bench/results/platforms.json.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,11 +16,21 @@ native=$PWD/build/release
 case $platform in
   windows)
     packages=(g++-mingw-w64-x86-64-posix wine wine64 googletest)
-    triplet=x86_64-w64-mingw32 suffix=-posix emulator=wine exe=.exe
+    triplet=x86_64-w64-mingw32 suffix=-posix emulator=(wine) exe=.exe consumer_flags=-static
     export WINEPREFIX=$PWD/build/wine WINEDEBUG=-all
     ;;
+  aarch64)
+    packages=(g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user googletest)
+    triplet=aarch64-linux-gnu suffix='' emulator=(qemu-aarch64 -L /usr/aarch64-linux-gnu) exe='' consumer_flags=''
+    ;;
+  wasm)
+    packages=(emscripten libfast-float-dev)
+    # Emscripten of Debian 12 would load files by fetch where Node has that.
+    triplet='' emulator=(node --no-experimental-fetch) exe=.js
+    export NODE_PATH=/usr/share/nodejs
+    ;;
   *)
-    echo "platform-test: unknown platform '$platform'; expected windows" >&2
+    echo "platform-test: unknown platform '$platform'; expected windows, aarch64 or wasm" >&2
     exit 2
     ;;
 esac
@@ -36,7 +47,7 @@ export FLAUNAY_DEVICE=host FLAUNAY_CACHE_DIR=
 
 # GMP, with which tests compare, from Debian's sources.
 gmp=$PWD/build/gmp-$platform
-if [[ ! -e $gmp/lib/libgmpxx.a ]]; then
+if [[ -n $triplet && ! -e $gmp/lib/libgmpxx.a ]]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
   mkdir -p "$work/sources" "$work/lists/partial"
@@ -66,33 +77,36 @@ fi
 
 cmake --preset release
 cmake --build --preset release --target flaunay_cli device_outputs
-cmake --preset "$platform" -DFLAUNAY_GMP="$gmp"
+cmake --preset "$platform" ${triplet:+-DFLAUNAY_GMP="$gmp"}
 cmake --build --preset "$platform"
 begin=$SECONDS
 
-# As those who have only this platform have it: without the compiler's libraries.
-ctest --test-dir "$build" --output-on-failure | tee "$build/ctest.log"
-tests=$(sed -nE 's/^.*tests passed.* out of ([0-9]+)$/\1/p' "$build/ctest.log")
+tests=0
+if [[ -n $triplet ]]; then
+  # As those who have only this platform have it: without the compiler's libraries.
+  ctest --test-dir "$build" --output-on-failure | tee "$build/ctest.log"
+  tests=$(sed -nE 's/^.*tests passed.* out of ([0-9]+)$/\1/p' "$build/ctest.log")
 
-rm -rf "$build/installed"
-cmake --install "$build" --prefix "$build/installed" > /dev/null
-cmake -S tests/consumer -B "$build/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/toolchains/$platform.cmake" -DCMAKE_PREFIX_PATH="$build/installed" \
-  -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH -DCMAKE_EXE_LINKER_FLAGS=-static -DFLAUNAY_HAS_C=ON > /dev/null
-cmake --build "$build/consumer"
-cp "$build"/installed/bin/*.dll "$build/consumer/"
-for program in "$build"/consumer/*"$exe"; do
-  "$emulator" "$program"
-done
+  rm -rf "$build/installed"
+  cmake --install "$build" --prefix "$build/installed" > /dev/null
+  cmake -S tests/consumer -B "$build/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/toolchains/$platform.cmake" -DCMAKE_PREFIX_PATH="$build/installed" \
+    -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH -DCMAKE_EXE_LINKER_FLAGS="$consumer_flags" -DFLAUNAY_HAS_C=ON > /dev/null
+  cmake --build "$build/consumer"
+  [[ $platform != windows ]] || cp "$build"/installed/bin/*.dll "$build/consumer/"
+  for program in consumer consumer_c; do
+    "${emulator[@]}" "$build/consumer/$program$exe"
+  done
 
-python3 tests/platforms/command.py --emulator "$emulator" "$build/installed/bin/flaunay$exe"
+  python3 tests/platforms/command.py --emulator "${emulator[*]}" "$build/installed/bin/flaunay$exe"
+fi
 
 "$native/tests/device_outputs" 20000 > "$build/outputs-here.txt"
-"$emulator" "$build/tests/platforms/device_outputs$exe" 20000 | tr -d '\r' > "$build/outputs.txt"
+"${emulator[@]}" "$build/tests/platforms/device_outputs$exe" 20000 | tr -d '\r' > "$build/outputs.txt"
 cmp "$build/outputs-here.txt" "$build/outputs.txt"
 
 scripts/fingerprint.py --quick --emulator none --build "$native" -o "$build/fingerprint-here.json"
-scripts/fingerprint.py --quick --emulator "$emulator" --build "$build" -o "$build/fingerprint.json"
+scripts/fingerprint.py --quick --emulator "${emulator[*]}" --build "$build" -o "$build/fingerprint.json"
 scripts/fingerprint.py --compare "$build/fingerprint-here.json" "$build/fingerprint.json"
 
 python3 - "$platform" "$tests" "$((SECONDS - begin))" "$build" << 'END'

@@ -120,6 +120,9 @@ std::vector<std::string> installed_drivers() {
 }
 
 Platforms installed_platforms() {
+#ifdef FLAUNAY_WITHOUT_OPENCL
+  return {};
+#endif
   if (const auto list = find<decltype(clGetPlatformIDs)>("clGetPlatformIDs")) {
     cl_uint count = 0;
     if (list(0, nullptr, &count) != CL_SUCCESS) return {};
