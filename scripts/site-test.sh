@@ -9,7 +9,9 @@ scripts/site.sh --build
 work=build/site
 "$work/venv/bin/python" tests/site/links.py "$work/html"
 
-# Port 0 is any free one, which the server prints.
+# Port 0 is any free one, which the server prints; not that of an earlier run.
+rm -f "$work/server.log"
+touch "$work/server.log"
 "$work/venv/bin/python" -u -m http.server --bind 127.0.0.1 --directory "$work/html" 0 >"$work/server.log" 2>/dev/null &
 server=$!
 trap 'kill "$server"' EXIT
