@@ -58,6 +58,17 @@ function changed() {
   schedule();
 }
 
+// Triangles around the selected point, and from there those beyond their sides for which isNext holds.
+function walk(isNext) {
+  const {triangles, neighbors} = rows;
+  const first = Math.floor(triangles.indexOf(selected) / 3);
+  const found = new Set(first < 0 ? [] : [first]);
+  for (const t of found) {
+    for (let k = 3 * t; k < 3 * t + 3; k++) if (neighbors[k] >= 0 && isNext(neighbors[k], k)) found.add(neighbors[k]);
+  }
+  return found;
+}
+
 // Makes the area contain the triangles around the selected point: all others stay when it moves.
 function includeStar() {
   area ??= {left: Infinity, top: Infinity, right: -Infinity, bottom: -Infinity};
@@ -70,9 +81,20 @@ function includeStar() {
   };
   include(selected, 20 * devicePixelRatio);
   const {triangles} = rows;
-  for (let k = 0; k < triangles.length; k++) {
-    if (triangles[k] === selected) for (let j = 0; j < 3; j++) include(triangles[k - (k % 3) + j], 2);
+  // The side opposite to another corner has the point.
+  for (const t of walk((_, k) => triangles[k] !== selected)) {
+    for (let k = 3 * t; k < 3 * t + 3; k++) include(triangles[k], 2);
   }
+}
+
+// The triangles that can be seen in the area. They are connected, since it is convex.
+function trianglesInArea() {
+  const {triangles} = rows;
+  return walk((t) => {
+    const [a, b, c] = [pixelOf(triangles[3 * t]), pixelOf(triangles[3 * t + 1]), pixelOf(triangles[3 * t + 2])];
+    return Math.max(a.x, b.x, c.x) > area.left - 4 && Math.min(a.x, b.x, c.x) < area.right + 4 &&
+      Math.max(a.y, b.y, c.y) > area.top - 4 && Math.min(a.y, b.y, c.y) < area.bottom + 4;
+  });
 }
 
 function moveTo(x, y) {
@@ -209,12 +231,14 @@ function draw() {
   const ink = inks();
   const x = (i) => coords[2 * i] * view.scale + view.x, y = (i) => coords[2 * i + 1] * view.scale + view.y;
   const what = chosen('view');
-  drawing.begin(width, height, isChanged || what !== 'edges' ? null : area);
+  // All is drawn if the selected point is in no triangle.
+  const only = isChanged || what !== 'edges' ? new Set() : trianglesInArea();
+  drawing.begin(width, height, only.size > 0 ? area : null);
   if (what === 'colours') drawColours(width, height);
   else colours.canvas.width = 1;
   renew();
   if (what === 'voronoi') drawVoronoi();
-  else drawEdges(drawing, rows, coords);
+  else drawEdges(drawing, rows, coords, [...only]);
   drawing.ink(ink.line, what === 'colours' ? 0.3 : 1);
   if (what === 'voronoi' && coords.length < 60_000) {
     for (let i = 0; 2 * i < coords.length; i++) drawing.dot(x(i), y(i));
@@ -244,10 +268,12 @@ function draw() {
   context.stroke();
 }
 
-// An edge is drawn with the second of its triangles, at the hull with the only one.
-function drawEdges(raster, {triangles, neighbors}, places) {
+// An edge is drawn with the second of its triangles, at the hull with the only one. only: all, if there are none.
+function drawEdges(raster, {triangles, neighbors}, places, only = []) {
   const {scale, x, y} = view;
-  for (let t = 0, k = 0; k < triangles.length; t++, k += 3) {
+  const count = only.length || triangles.length / 3;
+  for (let j = 0; j < count; j++) {
+    const t = only.length > 0 ? only[j] : j, k = 3 * t;
     const a = 2 * triangles[k], b = 2 * triangles[k + 1], c = 2 * triangles[k + 2];
     if (a < 0) continue;
     const ax = scale * places[a] + x, ay = scale * places[a + 1] + y;
@@ -393,12 +419,16 @@ function edgesText(edges) {
 }
 
 function check() {
-  if (isChecking || checked === version) return;
+  // Many points are checked when they are at rest.
+  if (isChecking || checked === version || (coords.length > 100_000 && (isMoving || drift))) return;
   isChecking = true;
   const edges = segments.length > 0 ? Int32Array.from(living.constraints().edges) : segments;
   renew();
-  checker.postMessage({job: version, coords: coords.slice(), runs: isMoving || drift ? 1 : runs(), segments: edges,
-    ours: {triangles: rows.triangles.slice(), neighbors: rows.neighbors.slice()}});
+  const given = {
+    job: version, coords: coords.slice(), runs: isMoving || drift ? 1 : runs(), segments: edges,
+    ours: {triangles: rows.triangles.slice(), neighbors: rows.neighbors.slice()},
+  };
+  checker.postMessage(given, [given.coords.buffer, given.ours.triangles.buffer, given.ours.neighbors.buffer]);
 }
 
 checker.onmessage = ({data}) => {

@@ -112,6 +112,11 @@ async function drag(seconds) {
   return {frames_per_second: Number(rate), move_ms: Number(move), draw_ms: Number(draw)};
 }
 
+async function capture(name, whole = false) {
+  const {data} = await send('Page.captureScreenshot', {format: 'png', captureBeyondViewport: whole});
+  writeFileSync(`${folder}/${name}.png`, Buffer.from(data, 'base64'));
+}
+
 async function screenshot(name, {width = 1280, height = 1000, scale = 1, dark = false, small = false} = {}) {
   await send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: scale, mobile: small});
   await send('Emulation.setEmulatedMedia', {features: [
@@ -124,8 +129,7 @@ async function screenshot(name, {width = 1280, height = 1000, scale = 1, dark = 
   assert.ok(await evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} scrolls sideways`);
   // As large as the canvas allows.
   assert.ok(await extent('.live-ours') > 0.9 && await extent('.live-peer') > 0.9, `${name} is drawn too small`);
-  const {data} = await send('Page.captureScreenshot', {format: 'png', captureBeyondViewport: small});
-  writeFileSync(`${folder}/${name}.png`, Buffer.from(data, 'base64'));
+  await capture(name, small);
 }
 
 const pixels = (name) => evaluate(`(() => { const canvas = document.querySelector('${name}');
@@ -260,8 +264,10 @@ try {
     await pause(200);
     const cells = await pixels('.live-ours');
     assert.ok(cells > 10_000 && cells !== edges, `${cells} pixels of cells`);
+    await capture('cells');
     await key('v');
     await pause(500);
+    await capture('colours');
     assert.ok(await pixels('.live-colours') > 10_000, 'no colours');
   });
 
