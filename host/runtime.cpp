@@ -43,7 +43,9 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
     : sizes_(std::move(settings.sizes)),
       capabilities_(settings.capabilities),
       backend_(make(accounts_)),
+#ifndef FLAUNAY_WITHOUT_OPENCL
       is_native_(backend_->threads() > 0),
+#endif
       arena_(backend_->memory()) {
   if (sizes_->separate_buffers != 0) arena_.separate_buffers();
 }

@@ -50,7 +50,11 @@ class Runtime {
   }
 
   /// Whether kernels run on threads of the host; each command is complete when its call returns.
+#ifdef FLAUNAY_WITHOUT_OPENCL
+  static constexpr bool is_native() { return true; }
+#else
   bool is_native() const { return is_native_; }
+#endif
   /// Null if kernels run natively.
   boost::compute::device device() const { return backend_->device(); }
   /// Null if kernels run natively.
@@ -344,7 +348,7 @@ class Runtime {
   template <typename ForEachArgument>
   void launch_by(const KernelName& name, std::size_t work_items, std::size_t group,
                  const ForEachArgument& for_each_argument) {
-    if (is_native_) {
+    if (is_native()) {
       NativeArguments arguments;
       for_each_argument([&](const auto& argument) { arguments(argument); });
       const bool counts = counting_ && name.counting != nullptr;
@@ -409,7 +413,9 @@ class Runtime {
   std::shared_ptr<const Sizes> sizes_;
   Capabilities capabilities_;
   std::unique_ptr<Backend> backend_;
+#ifndef FLAUNAY_WITHOUT_OPENCL
   bool is_native_;
+#endif
   std::vector<std::shared_ptr<void>> kept_;  // values of write_kept
   Arena arena_;
   // Two of each: without counting, and with it.

@@ -47,7 +47,7 @@ const boost::compute::device& preferred(const std::vector<boost::compute::device
 }
 
 // The loader skips a driver that does not fit into the address space, without a word.
-std::string hint_of_address_space() {
+[[maybe_unused]] std::string hint_of_address_space() {
   constexpr std::size_t kSpaceForDriver = 1024 * kMebibyte;
   const MemoryLeft left = address_space_left();
   if (left.bytes >= kSpaceForDriver) return "";
@@ -58,6 +58,9 @@ std::string hint_of_address_space() {
 }  // namespace
 
 std::vector<boost::compute::device> all_devices() {
+#ifdef FLAUNAY_WITHOUT_OPENCL
+  throw DeviceError("this build of flaunay does not use OpenCL devices");
+#else
   cl_uint platform_count = 0;
   const cl_int code = clGetPlatformIDs(0, nullptr, &platform_count);
   if (code != CL_SUCCESS || platform_count == 0) {
@@ -87,6 +90,7 @@ std::vector<boost::compute::device> all_devices() {
     for (const cl_device_id id : ids) devices.emplace_back(id);
   }
   return devices;
+#endif
 }
 
 static std::vector<boost::compute::device> some_devices() {

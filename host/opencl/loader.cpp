@@ -23,9 +23,6 @@
 
 namespace {
 
-namespace fs = std::filesystem;
-namespace system = flaunay::system;
-
 template <typename Function>
 struct Signature;
 template <typename R, typename... P>
@@ -35,12 +32,17 @@ struct Signature<R(P...)> {
   using Parameter = std::tuple_element_t<k, std::tuple<P...>>;
 };
 
-#ifdef FLAUNAY_WITHOUT_OPENCL
-template <typename Function>
-Function* find(const char*) {
-  return nullptr;
+// What a function answers if there is no OpenCL.
+template <typename Result, typename... Ignored>
+Result missing(Ignored...) {
+  if constexpr (std::is_same_v<Result, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
+  if constexpr (!std::is_same_v<Result, cl_int>) return nullptr;
 }
-#else
+
+#ifndef FLAUNAY_WITHOUT_OPENCL
+namespace fs = std::filesystem;
+namespace system = flaunay::system;
+
 // A library that was loaded before comes first: it may have been put there to watch the calls.
 template <typename Function>
 Function* find(const char* name) {
@@ -49,7 +51,6 @@ Function* find(const char* name) {
   if (found == nullptr && library != nullptr) found = system::find_function(library, name);
   return reinterpret_cast<Function*>(found);
 }
-#endif
 
 // The driver's functions for an object, which every object of OpenCL has in its first word (cl_khr_icd); null
 // for no object.
@@ -70,13 +71,6 @@ template <typename... Others>
 const cl_icd_dispatch* functions_for(const cl_context_properties*, cl_uint count, const cl_device_id* devices,
                                      Others...) {
   return count > 0 && devices != nullptr ? functions_of(*devices) : nullptr;
-}
-
-// What a function answers if there is no OpenCL.
-template <typename Result>
-Result missing() {
-  if constexpr (std::is_same_v<Result, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
-  if constexpr (!std::is_same_v<Result, cl_int>) return nullptr;
 }
 
 using Platforms = std::vector<cl_platform_id>;
@@ -170,11 +164,15 @@ Platforms all_platforms() {
   }
   return all;
 }
+#endif
 
 }  // namespace
 
 namespace flaunay::host {
 
+#ifdef FLAUNAY_WITHOUT_OPENCL
+void add_driver(const std::string&, const std::string&) {}
+#else
 void add_driver(const std::string& platform, const std::string& path) {
   const std::lock_guard lock(added_mutex);
   for (const AddedDriver& driver : added_drivers()) {
@@ -182,11 +180,17 @@ void add_driver(const std::string& platform, const std::string& path) {
   }
   added_drivers().push_back({platform, path, false, {}});
 }
+#endif
 
 }  // namespace flaunay::host
 
 #define RESULT(name) Signature<decltype(name)>::Result CL_API_CALL
 #define PARAMETER(name, k) Signature<decltype(name)>::Parameter<k> p##k
+#ifdef FLAUNAY_WITHOUT_OPENCL
+// Without loading anything, so that the linker leaves out what would.
+#define PASS_ON(name, ...) \
+  { return missing<Signature<decltype(name)>::Result>(__VA_ARGS__); }
+#else
 #define PASS_ON(name, ...)                                               \
   {                                                                      \
     static auto* const function = find<decltype(name)>(#name);           \
@@ -195,6 +199,7 @@ void add_driver(const std::string& platform, const std::string& path) {
     if (functions != nullptr) return functions->name(__VA_ARGS__);       \
     return missing<Signature<decltype(name)>::Result>();                 \
   }
+#endif
 #define PARAMETERS_1(name) PARAMETER(name, 0)
 #define PARAMETERS_2(name) PARAMETERS_1(name), PARAMETER(name, 1)
 #define PARAMETERS_3(name) PARAMETERS_1(name), PARAMETER(name, 1), PARAMETER(name, 2)
@@ -267,6 +272,9 @@ FUNCTION_9(clEnqueueReadBuffer)
 FUNCTION_9(clEnqueueWriteBuffer)
 FUNCTION_10(clEnqueueMapBuffer)
 
+#ifdef FLAUNAY_WITHOUT_OPENCL
+FUNCTION_3(clGetPlatformIDs)
+#else
 cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* places, cl_uint* count) {
   try {
     const Platforms all = all_platforms();
@@ -277,4 +285,5 @@ cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* places, cl
     return CL_OUT_OF_HOST_MEMORY;
   }
 }
+#endif
 }
