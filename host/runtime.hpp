@@ -55,6 +55,8 @@ class Runtime {
 #else
   bool is_native() const { return is_native_; }
 #endif
+  /// Whether nothing runs: arrays must not be accessed.
+  bool counts_only() const { return counts_only_; }
   /// Null if kernels run natively.
   boost::compute::device device() const { return backend_->device(); }
   /// Null if kernels run natively.

@@ -242,7 +242,7 @@ void sort_by_key(Runtime& runtime, const Buffer<cl_ulong>& keys, const Buffer<cl
   if (n < 2) return;
   // Counting digits would take longer.
   constexpr std::size_t kFew = 48;
-  if (runtime.is_native() && n <= kFew) {
+  if (runtime.is_native() && !runtime.counts_only() && n <= kFew) {
     return insert_sorted(reinterpret_cast<cl_ulong*>(address_of(keys.memory())),
                          reinterpret_cast<cl_int*>(address_of(payloads.memory())), n);
   }
