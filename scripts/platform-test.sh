@@ -17,7 +17,7 @@ case $platform in
   windows)
     packages=(g++-mingw-w64-x86-64-posix wine wine64 googletest)
     triplet=x86_64-w64-mingw32 suffix=-posix emulator=(wine) exe=.exe consumer_flags=-static
-    export WINEPREFIX=$PWD/build/wine WINEDEBUG=-all
+    export WINEPREFIX=$PWD/build/wine WINEDEBUG=-all LC_ALL=C.UTF-8
     ;;
   aarch64)
     packages=(g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user googletest)
@@ -42,6 +42,12 @@ if [[ -n ${missing[*]:-} ]]; then
   exit 1
 fi
 mkdir -p "$build"
+if [[ $platform == windows ]]; then
+  # Its services start now and stay, since they would keep the pipes of the first program open.
+  wineserver -p
+  wineboot < /dev/null > /dev/null 2>&1
+  trap 'wineserver -k' EXIT
+fi
 # Without a device, on both sides.
 export FLAUNAY_DEVICE=host FLAUNAY_CACHE_DIR=
 
@@ -49,7 +55,7 @@ export FLAUNAY_DEVICE=host FLAUNAY_CACHE_DIR=
 gmp=$PWD/build/gmp-$platform
 if [[ -n $triplet && ! -e $gmp/lib/libgmpxx.a ]]; then
   work=$(mktemp -d)
-  trap 'rm -rf "$work"' EXIT
+  trap 'rm -rf "$work"; [[ $platform != windows ]] || wineserver -k' EXIT
   mkdir -p "$work/sources" "$work/lists/partial"
   for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
     [[ ! -e $list ]] || sed -n 's/^deb /deb-src /p' "$list" > "$work/sources/$(basename "$list" .list).list"

@@ -27,7 +27,7 @@ constexpr const char* kFinished = "finished.npy";
 constexpr std::string_view kRegionPrefix = "region-";
 
 std::string inside(const std::string& folder, const std::string& name) {
-  return (fs::path(folder) / name).string();
+  return (fs::path(folder) / name).generic_string();
 }
 
 std::string region_stem(const std::string& folder, std::size_t r) {
@@ -53,17 +53,17 @@ std::vector<fs::path> partition_files(const std::string& folder) {
 // folder.
 void check_in_the_way(const fs::path& file, const std::string& input, bool force) {
   std::error_code error;
-  if (input != "-" && io::is_one_file(file.string(), input)) {
+  if (input != "-" && io::is_one_file(file.generic_string(), input)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: the partition would overwrite the input; choose another folder", input));
   }
   if (!force) {
     throw Error(ErrorKind::usage, fmt::format("{}: is in the way: the folder holds a partition; choose "
                                               "another, or replace it with --force",
-                                              file.string()));
+                                              file.generic_string()));
   }
   if (fs::is_directory(file, error)) {
-    throw Error(ErrorKind::usage, fmt::format("{}: is a folder, and in the way", file.string()));
+    throw Error(ErrorKind::usage, fmt::format("{}: is a folder, and in the way", file.generic_string()));
   }
 }
 
@@ -142,7 +142,7 @@ void announce_partition(io::Outputs& outputs, const std::string& folder) {
 void write_partition(io::Outputs& outputs, const std::string& folder, const io::Points& points,
                      const research::Partition& partition, const PartitionFacts& facts) {
   std::set<std::string> old;  // without those that are replaced
-  for (const fs::path& file : partition_files(folder)) old.insert(file.string());
+  for (const fs::path& file : partition_files(folder)) old.insert(file.generic_string());
   for (std::size_t r = 0; r < partition.regions.size(); ++r) {
     const std::string stem = region_stem(folder, r);
     io::write_region(outputs, stem, points, partition.regions[r]);
@@ -205,7 +205,9 @@ void check_no_partition_file(const std::string& folder, const std::string& path)
   if (!io::is_one_file(target.folder, folder)) return;
   // A file may have the name of another one in different case.
   const std::vector<fs::path> files = partition_files(folder);
-  const auto is_target = [&](const fs::path& file) { return io::is_one_file(file.string(), target.path); };
+  const auto is_target = [&](const fs::path& file) {
+    return io::is_one_file(file.generic_string(), target.path);
+  };
   if (is_partition_name(fs::path(target.path).filename().string()) ||
       std::any_of(files.begin(), files.end(), is_target)) {
     throw Error(ErrorKind::usage, fmt::format("{}: this output would overwrite the partition", path));
