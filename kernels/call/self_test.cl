@@ -37,6 +37,8 @@ kernel void self_test(global const double* restrict operands, global const uint6
     if (as_ulong(sum.x) != expected[3] || as_ulong(sum.y) != expected[5]) bits |= 32;
     const double2 product = two_product(third, third);
     if (as_ulong(product.x) != expected[4] || as_ulong(product.y) != expected[6]) bits |= 64;
+    // An fma that first rounds to a longer format is right for the factors above, and wrong for these.
+    if (as_ulong(two_product(operands[6], operands[7]).y) != expected[9]) bits |= 64;
     // Vectors as scalars, and sums in the order written.
     const double2 lanes = VECTOR(double2, a, third) * VECTOR(double2, b, third);
     if (as_ulong(lanes.x) != as_ulong(a * b) || as_ulong(lanes.y) != expected[4]) bits |= 128;

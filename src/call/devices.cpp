@@ -45,11 +45,13 @@ constexpr cl_uint kLoopCheck = 2048, kLoopCheckInFixedPoint = 128;
 cl_uint failed_checks(host::Runtime& runtime) {
   // Operands as in kernels/call/self_test.cl, and their results, which were computed with rational
   // arithmetic.
-  const cl_double operands[] = {1 + 0x1p-30, 1 - 0x1p-30,          -1.0,
-                                0x1p-1060,   0x1.5555555555555p-2, 0x1.0000000000001p+60};
+  const cl_double operands[] = {
+      1 + 0x1p-30,          1 - 0x1p-30,         -1.0, 0x1p-1060, 0x1.5555555555555p-2, 0x1.0000000000001p+60,
+      0x1.123456789abcdp+3, 0x1.fedcba9876543p-2};
   const cl_ulong expected[] = {0x0000000000000000, 0xbc30000000000000, 0x0000000000002000,
                                0x43b0000000000001, 0x3fbc71c71c71c71c, 0x3fd5555555555555,
-                               0xbc5c71c71c71c71c, 0x0000000000000000, 1};
+                               0xbc5c71c71c71c71c, 0x0000000000000000, 1,
+                               0x3ca476595fab5e9c};
   host::Arena::Scope scope(runtime.arena());
   const auto device_operands = runtime.arena().allocate<cl_double>(std::size(operands));
   const auto device_expected = runtime.arena().allocate<cl_ulong>(std::size(expected));

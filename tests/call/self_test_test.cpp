@@ -31,8 +31,9 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   host::Runtime& runtime = points::Runtimes::get("own");
   const host::Arena::Scope scope(runtime.arena());
   EXPECT_EQ(self_test_failure(runtime), "");
-  const std::vector<cl_double> operands{1 + 0x1p-30, 1 - 0x1p-30,          -1.0,
-                                        0x1p-1060,   0x1.5555555555555p-2, 0x1.0000000000001p+60};
+  const std::vector<cl_double> operands{
+      1 + 0x1p-30,          1 - 0x1p-30,         -1.0, 0x1p-1060, 0x1.5555555555555p-2, 0x1.0000000000001p+60,
+      0x1.123456789abcdp+3, 0x1.fedcba9876543p-2};
   const auto bits = [](double value) {
     cl_ulong result = 0;
     std::memcpy(&result, &value, sizeof result);
@@ -49,16 +50,18 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   };
   const mpq_class third(operands[4]), large(operands[5]);
   const double sum = rounded(third + large), product = rounded(third * third);
+  const mpq_class of_long = mpq_class(operands[6]) * mpq_class(operands[7]);
   const std::vector<cl_ulong> right{
       bits(0.0),                                                           // 1 rounded, less 1
       bits(rounded(mpq_class(operands[0]) * mpq_class(operands[1]) - 1)),  // fma
       bits(0x1p-1061),                                                     // a subnormal number, halved
       bits(sum),
       bits(product),
-      bits(rounded(third + large - mpq_class(sum))),      // two_sum
-      bits(rounded(third * third - mpq_class(product))),  // two_product
-      bits(0.0),                                          // (large + third) - large
-      1};                                                 // what many turns of a loop begin with
+      bits(rounded(third + large - mpq_class(sum))),                   // two_sum
+      bits(rounded(third * third - mpq_class(product))),               // two_product
+      bits(0.0),                                                       // (large + third) - large
+      1,                                                               // what many turns of a loop begin with
+      bits(rounded(of_long - mpq_class(operands[6] * operands[7])))};  // two_product, of long factors
   const auto failed_bits = [&](const std::vector<cl_double>& with, const std::vector<cl_ulong>& expected) {
     const auto failed = testing::upload(runtime, std::vector<cl_uint>{0xffffffff});
     runtime.launch(1, 1,
@@ -69,7 +72,7 @@ TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
   };
   EXPECT_EQ(failed_bits(operands, right), 0u);
   // Which checks rest on which expected value.
-  const cl_uint checks[] = {1 | 512 | 1024, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256, 2048};
+  const cl_uint checks[] = {1 | 512 | 1024, 2, 4, 8 | 32, 16 | 64 | 128, 32, 64, 256, 2048, 64};
   for (std::size_t k = 0; k < right.size(); ++k) {
     std::vector<cl_ulong> wrong = right;
     wrong[k] ^= 1;
