@@ -4,9 +4,10 @@
 #   scripts/platform-test.sh PLATFORM     windows (in Wine), aarch64 (in QEMU) or wasm (in Node), presets of
 #                                         CMakePresets.json
 #
-# Runs the tests that need no OpenCL, those of files and streams, a program that uses the installed library (none of
-# these for wasm, whose package has tests of its own), and compares the bytes of all results with this machine's: of the library (tests/devices/outputs.cpp) and of the command
-# (scripts/fingerprint.py). Takes up to half an hour. What came of it is kept in bench/results/platforms.json.
+# Runs the tests that need no OpenCL, those of files and streams, and a program that uses the installed library; none of
+# these for wasm, whose package has tests of its own. Compares the bytes of all results with this machine's: of the
+# library (tests/devices/outputs.cpp) and of the command (scripts/fingerprint.py). Takes up to half an hour. What came of
+# it is kept in bench/results/platforms.json.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -42,11 +43,16 @@ if [[ -n ${missing[*]:-} ]]; then
   exit 1
 fi
 mkdir -p "$build"
+work=
+clean_up() {
+  if [[ -n $work ]]; then rm -rf "$work"; fi
+  if [[ $platform == windows ]]; then wineserver -k; fi
+}
+trap clean_up EXIT
 if [[ $platform == windows ]]; then
   # Its services start now and stay, since they would keep the pipes of the first program open.
   wineserver -p
   wineboot < /dev/null > /dev/null 2>&1
-  trap 'wineserver -k' EXIT
 fi
 # Without a device, on both sides.
 export FLAUNAY_DEVICE=host FLAUNAY_CACHE_DIR=
@@ -55,7 +61,6 @@ export FLAUNAY_DEVICE=host FLAUNAY_CACHE_DIR=
 gmp=$PWD/build/gmp-$platform
 if [[ -n $triplet && ! -e $gmp/lib/libgmpxx.a ]]; then
   work=$(mktemp -d)
-  trap 'rm -rf "$work"; [[ $platform != windows ]] || wineserver -k' EXIT
   mkdir -p "$work/sources" "$work/lists/partial"
   for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
     [[ ! -e $list ]] || sed -n 's/^deb /deb-src /p' "$list" > "$work/sources/$(basename "$list" .list).list"
