@@ -30,7 +30,7 @@ packages=(
 
 if [[ ${1-} == --packages ]]; then
   packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian musl
-    qemu-user)
+    qemu-user wine wine64)
 fi
 
 missing=()

