@@ -109,19 +109,19 @@ test_wheels() {
   zig="$(build/wheel-tools/bin/python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')/zig"
   for target in x86_64-linux-gnu.2.28 aarch64-linux-gnu.2.28 x86_64-linux-musl aarch64-linux-musl x86_64-windows-gnu; do
     processor="${target%%-*}"
-    tag="manylinux*$processor"
+    tag="manylinux_2_28_$processor"
     emulator=(env)
     library=libflaunay.so
     case "$target" in
       aarch64-linux-gnu*) emulator=(qemu-aarch64 -L /usr/aarch64-linux-gnu) ;;
       aarch64-linux-musl) emulator=(qemu-aarch64 -L "$(arm_musl)") ;;&
-      *musl) tag="musllinux*$processor" ;;
+      *musl) tag="musllinux_1_2_$processor" ;;
       *windows*) emulator=(wine) library=libflaunay.dll tag=win_amd64 ;;
     esac
     folder="$work/wheel-$target"
     rm -rf "$folder"
     mkdir -p "$folder"
-    python3 -m zipfile -e build/wheels/flaunay-"$version"-*"$tag".whl "$folder"
+    python3 -m zipfile -e build/wheels/flaunay-"$version"-py3-none-"$tag".whl "$folder"
     # For Windows, the program's name has to end thus.
     "$zig" cc -target "$target" -dynamic -std=c11 -O3 -s -I src/include tests/wheel/check.c "$folder/flaunay/$library" \
       -Wl,-rpath,"$folder/flaunay" -o "$folder/flaunay/check.exe"
@@ -132,8 +132,8 @@ test_wheels() {
       return 1
     fi
   done
-  windows_wheel build/wheels/flaunay-"$version"-*win_amd64.whl
-  scripts/wheel-test.sh build/wheels/flaunay-"$version"-*manylinux*x86_64.whl
+  windows_wheel build/wheels/flaunay-"$version"-py3-none-win_amd64.whl
+  scripts/wheel-test.sh build/wheels/flaunay-"$version"-py3-none-manylinux_2_28_x86_64.whl
   scripts/wheel-test.sh "build/wheels/flaunay-$version.tar.gz" "${PYTHON:-python3}"
 }
 
