@@ -45,6 +45,8 @@ boost = number("/usr/include/boost/version.hpp", "BOOST_VERSION")
 boost = f"{boost // 100000}.{boost // 100 % 1000}.{boost % 100}"
 libcxx = number(ziglang / "lib/libcxx/include/__config", "_LIBCPP_VERSION")
 libcxx = f"{libcxx // 10000}.{libcxx // 100 % 100}.{libcxx % 100}"
+mingw = ziglang / "lib/libc/include/any-windows-any/_mingw_mac.h"
+mingw = ".".join(str(number(mingw, f"__MINGW64_VERSION_{part}")) for part in ("MAJOR", "MINOR", "BUGFIX"))
 zig = subprocess.check_output([ziglang / "zig", "version"], text=True).strip()
 everywhere = "in every library"
 wheels = "in the libraries of wheels"
@@ -58,6 +60,7 @@ components = [
     component("libc++", libcxx, llvm, wheels),
     component("libc++abi", libcxx, llvm, wheels),
     component("libunwind", libcxx, llvm, wheels),
+    component("mingw-w64", mingw, "ZPL-2.1", "in the library of the wheel for Windows"),
     component("zig compiler-rt", zig, "MIT", wheels, f"pkg:pypi/ziglang@{zig}"),
 ]
 root = f"flaunay@{version}"
