@@ -7,9 +7,9 @@
 #include "host/clock.hpp"
 #include "host/error.hpp"
 #include "host/memory/counting.hpp"
-#include "host/memory/huge_pages.hpp"
 #include "host/native/backend.hpp"
 #include "host/opencl/backend.hpp"
+#include "host/system/pages.hpp"
 
 namespace flaunay::host {
 
@@ -124,7 +124,7 @@ Kernel& Runtime::find_kernel(const KernelName& name) {
 }
 
 void Runtime::touch_new(void* begin, std::size_t bytes) {
-  prefer_huge_pages(begin, bytes);
+  system::prefer_huge_pages(begin, bytes);
   backend_->touch_new(begin, bytes);
 }
 

@@ -11,7 +11,8 @@ folder, build/release if not given; it may be of another version, also of one wh
 which is taken for "blocks". PYTHON is an interpreter that has that version's module installed, as
 build/python/bin/python after scripts/python-test.sh. --quick leaves out the larger and the rarer inputs; only
 quick fingerprints can be compared with quick ones. --emulator is for a build for another platform, whose command
-PROGRAM runs; then C is left out. With "none", the command of this machine's build is run in the same way.
+PROGRAM runs; then C and messages about devices are left out. With "none", the command is run without one in the
+same way.
 
 The second form prints the keys that differ, with both values, and exits with 1 if there are any.
 
@@ -56,8 +57,9 @@ def short_hash(data):
 class Fingerprint:
     def __init__(self, build, quick, folder, emulator):
         self.build, self.quick, self.folder = build.resolve(), quick, folder
+        self.has_devices = emulator is None
         programs = [self.build / f"flaunay{ending}" for ending in (".exe", ".js", "")]
-        self.command = [*emulator, next(path for path in programs if path.exists())]
+        self.command = [*(emulator or []), next(path for path in programs if path.exists())]
         self.values = {}
         self.sets = {}  # names and paths of points
         self.device = ""  # its name, which texts must not have
@@ -107,6 +109,9 @@ class Fingerprint:
         for name in "flaunay", "device", "input", "seconds", "points_per_second":
             statistics.pop(name, None)
         statistics["phases"] = [phase["name"] for phase in statistics.get("phases", [])]
+        # Angles, of which the last digits are those of each system's arc cosine.
+        refinement = statistics.get("refinement") or {}
+        refinement |= {name: round(value, 9) for name, value in refinement.items() if isinstance(value, float)}
         for name in "levels", "kernels":
             rows = statistics.pop(name, None) or []
             for row in rows:
@@ -353,8 +358,6 @@ class Fingerprint:
             "levels-blocks": ["--partition-levels=3"],
             "threads": ["--mode=partition", "--threads=0"],
             "threads-flattened": ["--mode=flattened", "--threads=2"],
-            "device": ["--device=no such device"],
-            "number": ["--device=#99"],
             "device-dwyer": ["--mode=dwyer", "--device=#0"],
             "profile-recursive": ["--mode=recursive", "--profile"],
             "mesh": ["-o", folder / "mesh.xyz"],
@@ -364,10 +367,13 @@ class Fingerprint:
             "unwritable": ["--triangles", folder / "no-folder/t.npy"],
             "same-paths": ["--triangles", folder / "a.npy", "--hull", folder / "a.npy"],
         }
+        variables = [("FLAUNAY_TUNING", "sideways"), ("FLAUNAY_TUNING", "gpu:0")]
+        if self.has_devices:
+            options |= {"device": ["--device=no such device"], "number": ["--device=#99"]}
+            variables.append(("FLAUNAY_DEVICE", "none such"))
         requests |= {key: ["triangulate", good, *arguments] for key, arguments in options.items()}
         for key, arguments in requests.items():
             yield self.run, (f"cli/wrong/{key}", *arguments)
-        variables = [("FLAUNAY_TUNING", "sideways"), ("FLAUNAY_TUNING", "gpu:0"), ("FLAUNAY_DEVICE", "none such")]
         for name, value in variables:
             yield self.run, (f"cli/wrong/{name}={value}", "triangulate", good), {"environment": {name: value}}
 
@@ -401,7 +407,7 @@ class Fingerprint:
 
 def take(arguments):
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        emulator = [] if arguments.emulator == "none" else (arguments.emulator or "").split()
+        emulator = None if arguments.emulator is None else arguments.emulator.replace("none", "").split()
         fingerprint = Fingerprint(arguments.build, arguments.quick, pathlib.Path(folder).resolve(), emulator)
 
         def in_parallel(jobs):

@@ -106,7 +106,7 @@ test_wheels() {
   trap 'wineserver --kill' EXIT
   wineserver --persistent
   wineboot </dev/null >/dev/null 2>&1
-  zig="$(build/wheel-tools/bin/python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')/zig"
+  zig="$(scripts/wheel.sh --zig)"
   for target in x86_64-linux-gnu.2.28 aarch64-linux-gnu.2.28 x86_64-linux-musl aarch64-linux-musl x86_64-windows-gnu; do
     processor="${target%%-*}"
     tag="manylinux_2_28_$processor"

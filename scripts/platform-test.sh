@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds flaunay for another platform and tests it there, in an emulator, against this machine's build.
 #
-#   scripts/platform-test.sh PLATFORM     windows (in Wine), aarch64 (in QEMU) or wasm (in Node), presets of
-#                                         CMakePresets.json
+#   scripts/platform-test.sh PLATFORM     windows (in Wine), aarch64 (in QEMU), wasm (in Node), musl or i686 (these run
+#                                         here): presets of CMakePresets.json
 #
 # Runs the tests that need no OpenCL, those of files and streams, and a program that uses the installed library; none of
 # these for wasm, whose package has tests of its own. Compares the bytes of all results with this machine's: of the
@@ -12,6 +12,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 platform=${1:?usage: scripts/platform-test.sh PLATFORM}
+toolchain=$platform
+zig=()
 build=$PWD/build/$platform
 native=$PWD/build/release
 case $platform in
@@ -30,8 +32,16 @@ case $platform in
     triplet='' emulator=(node --no-experimental-fetch) exe=.js
     export NODE_PATH=/usr/share/nodejs
     ;;
+  musl | i686)
+    packages=(musl libc6-i386 python3-venv)
+    triplet='' emulator=() exe='' consumer_flags=-dynamic
+    target=x86_64-linux-musl
+    if [[ $platform == i686 ]]; then target=x86-linux-gnu.2.28; fi
+    toolchain=zig
+    zig=("-DFLAUNAY_ZIG=$(scripts/wheel.sh --zig)" "-DFLAUNAY_ZIG_TARGET=$target")
+    ;;
   *)
-    echo "platform-test: unknown platform '$platform'; expected windows, aarch64 or wasm" >&2
+    echo "platform-test: unknown platform '$platform'; expected windows, aarch64, wasm, musl or i686" >&2
     exit 2
     ;;
 esac
@@ -88,7 +98,7 @@ fi
 
 cmake --preset release
 cmake --build --preset release --target flaunay_cli device_outputs
-cmake --preset "$platform" ${triplet:+-DFLAUNAY_GMP="$gmp"}
+cmake --preset "$platform" "${zig[@]}" ${triplet:+-DFLAUNAY_GMP="$gmp"}
 cmake --build --preset "$platform"
 begin=$SECONDS
 
@@ -97,12 +107,14 @@ if [[ -n $triplet ]]; then
   # As those who have only this platform have it: without the compiler's libraries.
   ctest --test-dir "$build" --output-on-failure | tee "$build/ctest.log"
   tests=$(sed -nE 's/^.*tests passed.* out of ([0-9]+)$/\1/p' "$build/ctest.log")
-
+fi
+if [[ $platform != wasm ]]; then
   rm -rf "$build/installed"
   cmake --install "$build" --prefix "$build/installed" > /dev/null
   cmake -S tests/consumer -B "$build/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/toolchains/$platform.cmake" -DCMAKE_PREFIX_PATH="$build/installed" \
-    -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH -DCMAKE_EXE_LINKER_FLAGS="$consumer_flags" -DFLAUNAY_HAS_C=ON > /dev/null
+    -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/toolchains/$toolchain.cmake" "${zig[@]}" \
+    -DCMAKE_PREFIX_PATH="$build/installed" -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH \
+    -DCMAKE_EXE_LINKER_FLAGS="$consumer_flags" -DFLAUNAY_HAS_C=ON > /dev/null
   cmake --build "$build/consumer"
   [[ $platform != windows ]] || cp "$build"/installed/bin/*.dll "$build/consumer/"
   for program in consumer consumer_c; do
@@ -117,7 +129,7 @@ fi
 cmp "$build/outputs-here.txt" "$build/outputs.txt"
 
 scripts/fingerprint.py --quick --emulator none --build "$native" -o "$build/fingerprint-here.json"
-scripts/fingerprint.py --quick --emulator "${emulator[*]}" --build "$build" -o "$build/fingerprint.json"
+scripts/fingerprint.py --quick --emulator "${emulator[*]:-none}" --build "$build" -o "$build/fingerprint.json"
 scripts/fingerprint.py --compare "$build/fingerprint-here.json" "$build/fingerprint.json"
 
 python3 - "$platform" "$tests" "$((SECONDS - begin))" "$build" << 'END'
@@ -136,7 +148,6 @@ records[platform] = {
     "results_of_the_command": len(json.loads(fingerprint)),
     "sha256_of_the_library": hashlib.sha256(outputs).hexdigest()[:16],
     "sha256_of_the_command": hashlib.sha256(fingerprint).hexdigest()[:16],
-    "same_bytes_as_here": True,
     "seconds": int(seconds),
 }
 record.write_text(json.dumps(records, indent=1, sort_keys=True) + "\n")

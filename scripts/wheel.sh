@@ -2,6 +2,7 @@
 # Builds wheels of the Python package, for other systems too; they need nothing but the system's C library.
 #   scripts/wheel.sh [TARGET...]    for these of the targets below; without any, for all
 #   scripts/wheel.sh --sdist        the source distribution
+#   scripts/wheel.sh --zig          prints where the compiler is, which it installs
 # The wheels are in build/wheels. The compiler is that of PyPI's package ziglang: whatever this system's C library is, a
 # wheel runs with the one that its target names, on every processor of that kind. The same commit gives the same bytes.
 set -euo pipefail
@@ -15,9 +16,9 @@ declare -A platforms=(
   [aarch64-linux-musl]=musllinux_1_2_aarch64
   [x86_64-windows-gnu]=win_amd64
 )
-sdist=false
-if [[ ${1-} == --sdist ]]; then
-  sdist=true
+what=wheels
+if [[ ${1-} == --sdist || ${1-} == --zig ]]; then
+  what=$1
   shift
 fi
 targets=("$@")
@@ -42,6 +43,10 @@ if [[ ! -e $environment/made ]]; then
 fi
 export PATH="$PWD/$environment/bin:$PATH"
 zig="$(python -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')/zig"
+if [[ $what == --zig ]]; then
+  echo "$zig"
+  exit
+fi
 SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
 export SOURCE_DATE_EPOCH
 
@@ -60,7 +65,7 @@ check_library() {
 }
 
 mkdir -p build/wheels
-if $sdist; then
+if [[ $what == --sdist ]]; then
   # Of the last commit's files alone: what packs them would follow links of other builds out of this folder.
   files="$(mktemp -d)"
   trap 'rm -rf "$files"' EXIT

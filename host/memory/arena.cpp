@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "host/error.hpp"
-#include "host/memory/huge_pages.hpp"
 #include "host/memory/system_memory.hpp"
+#include "host/system/pages.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -30,16 +30,16 @@ std::shared_ptr<_cl_mem> create_buffer(const boost::compute::context& context, s
 // Kernels access large blocks irregularly: with pages of 4 KiB, address translation would take longer than
 // the loads. Null if there is not enough memory.
 void* allocate_pages(std::size_t bytes) {
-  const std::size_t page = bytes < kHugePage ? kAlignment : kHugePage;
-  void* const pages = allocate_aligned(page, (bytes + page - 1) / page * page);
-  if (pages != nullptr && page == kHugePage) prefer_huge_pages(pages, bytes);
+  const std::size_t page = bytes < system::kHugePage ? kAlignment : system::kHugePage;
+  void* const pages = system::allocate_aligned(page, (bytes + page - 1) / page * page);
+  if (pages != nullptr && page == system::kHugePage) system::prefer_huge_pages(pages, bytes);
   return pages;
 }
 
 std::shared_ptr<_cl_mem> allocate_native(std::size_t bytes) {
   void* const pages = allocate_pages(bytes);
   if (pages == nullptr) throw std::bad_alloc();
-  return {handle_of(pages), [](cl_mem memory) { free_aligned(address_of(memory)); }};
+  return {handle_of(pages), [](cl_mem memory) { system::free_aligned(address_of(memory)); }};
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t
   if (source.in_host_memory && bytes > kNeverLacking) require_memory(bytes, "a buffer");
   if (source.context.get() == nullptr) return allocate_native(bytes);
 #ifdef __linux__
-  if (source.in_host_memory && bytes >= kHugePage) {
+  if (source.in_host_memory && bytes >= system::kHugePage) {
     if (void* const pages = allocate_pages(bytes)) {
       cl_int code = CL_SUCCESS;
       cl_mem memory =
@@ -79,11 +79,11 @@ std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t
       // The pages are freed with the buffer, which OpenCL keeps while enqueued work uses it.
       if (code == CL_SUCCESS) {
         code = clSetMemObjectDestructorCallback(
-            memory, [](cl_mem, void* freed) { free_aligned(freed); }, pages);
+            memory, [](cl_mem, void* freed) { system::free_aligned(freed); }, pages);
         if (code == CL_SUCCESS) return own(memory);
         clReleaseMemObject(memory);
       }
-      free_aligned(pages);
+      system::free_aligned(pages);
     }
   }
 #endif

@@ -1,11 +1,8 @@
 // Folders of the user's own, to which nobody else can write.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <optional>
-#include <random>
 #include <string>
 
 namespace flaunay::host {
@@ -38,11 +35,5 @@ class PrivateFolder {
   int descriptor_ = -1;
   bool is_open_ = false;
 };
-
-/// A name for a file on its way to one of this name.
-inline std::string unfinished_name(const std::string& name) {
-  std::random_device random;
-  return fmt::format("{}.{:08x}{:08x}.tmp", name, random(), random());
-}
 
 }  // namespace flaunay::host

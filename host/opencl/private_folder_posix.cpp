@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "host/opencl/private_folder.hpp"
+#include "host/system/files.hpp"
 
 namespace flaunay::host {
 namespace {
@@ -95,7 +96,7 @@ std::optional<std::string> PrivateFolder::read(const std::string& name, std::siz
 }
 
 bool PrivateFolder::write(const std::string& name, const std::string& content) const {
-  const std::string unfinished = unfinished_name(name);
+  const std::string unfinished = system::temporary_path(name, "partial");
   Descriptor file(::openat(descriptor_, unfinished.c_str(),
                            O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!file) return false;

@@ -42,7 +42,7 @@ std::optional<std::string> PrivateFolder::read(const std::string& name, std::siz
 }
 
 bool PrivateFolder::write(const std::string& name, const std::string& content) const {
-  const std::string file = folder_ + "/" + name, unfinished = unfinished_name(file);
+  const std::string file = folder_ + "/" + name, unfinished = system::temporary_path(file, "partial");
   std::ofstream stream(path_of(unfinished), std::ios::binary);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();

@@ -60,6 +60,9 @@ bool remove_file(const std::string& name);
 
 /// Where in a path the last name begins, which ends it.
 std::size_t last_name(const std::string& path);
+/// The path of a file beside the one of this path: "partial" for one on its way there. For one path this
+/// process has one such file, by the rules of the file system for names, and other processes have others.
+std::string temporary_path(const std::string& path, const char* what);
 /// A folder for files that nobody needs for long.
 std::string temporary_folder();
 /// The folder of the user's caches: XDG_CACHE_HOME or ~/.cache, or on Windows LOCALAPPDATA; empty if it is

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <random>
 #include <system_error>
 
 #include "host/system/files.hpp"
@@ -110,9 +109,8 @@ int open_file(const std::string& name, Access access) {
 }
 
 int open_unnamed(const std::string& folder) {
-  std::random_device random;
-  for (;;) {
-    const std::string name = folder + "/.flaunay-" + std::to_string(random());
+  for (int number = 0;; ++number) {
+    const std::string name = temporary_path(folder + "/.flaunay-" + std::to_string(number), "scratch");
     const HANDLE handle =
         CreateFileW(wide(name).c_str(), GENERIC_READ | GENERIC_WRITE, kShared, nullptr, CREATE_NEW,
                     FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, nullptr);

@@ -98,8 +98,14 @@ inline int64 convert_long(double x) { return static_cast<int64>(x); }
 inline float convert_float(int64 x) { return static_cast<float>(x); }
 inline float convert_float(uint x) { return static_cast<float>(x); }
 inline double convert_double(int64 x) { return static_cast<double>(x); }
+#ifdef __SIZEOF_INT128__
 __extension__ using WideLong = __int128;
 __extension__ using WideUlong = unsigned __int128;
+#else
+// Clang has these for processors of 32 bits, too.
+using WideLong = _BitInt(128);
+using WideUlong = unsigned _BitInt(128);
+#endif
 inline int64 high_product(int64 x, int64 y) { return static_cast<int64>(WideLong{x} * y >> 64); }
 inline uint64 high_product(uint64 x, uint64 y) { return static_cast<uint64>(WideUlong{x} * y >> 64); }
 // Compares pairs by the first number, then by the second.

@@ -24,6 +24,7 @@ ASSERT_SIZE(seam_walk, 32);
 typedef struct {
   vertex_box rectangle, all;
   int outside[3];
+  int unused;  // where doubles are aligned to 4 bytes there would be no gap here
 } block_frame;
 ASSERT_SIZE(block_frame, 80);
 

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <functional>
 #include <optional>
-#include <random>
 #include <system_error>
 
 #include "files/file.hpp"
@@ -27,18 +25,6 @@ std::string followed(std::string path) {
     path = (fs::path(path).parent_path() / next).string();
   }
   fail(path, "cannot be written: {}", system_reason(ELOOP));
-}
-
-/// The path of a file beside the target. Two files of this process have the same one if they have the same
-/// target, by the rules of the file system for names, and those of other processes have others.
-std::string name_beside(const Target& target, const char* what) {
-  static const unsigned process = std::random_device()();
-  constexpr std::size_t kLongest = 200;  // of the 255 bytes that a name may have
-  std::string name = target.path.substr(system::last_name(target.path));
-  if (name.size() > kLongest) {
-    name = fmt::format("{}-{:x}", name.substr(0, kLongest), std::hash<std::string>()(name));
-  }
-  return fmt::format("{}{}.{:08x}.{}", target.folder, name, process, what);
 }
 
 [[noreturn]] void fail_same_path(const std::string& path) {
@@ -77,7 +63,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   target_ = find_target(path);
   if (target_.is_direct) return;
   const Uninterrupted made;
-  const std::string partial = name_beside(target_, "partial");
+  const std::string partial = system::temporary_path(target_.path, "partial");
   descriptor_ = system::open_file(partial, system::Access::create);
   if (descriptor_ < 0) {
     if (errno == EEXIST) fail_same_path(path);
@@ -214,7 +200,7 @@ void Outputs::place(const OutputFile& file) {
 }
 
 void Outputs::keep_old(const std::string& path, const Target& target, bool is_removed) {
-  const std::string old = name_beside(target, "old");
+  const std::string old = system::temporary_path(target.path, "old");
   // With a link, there is a file all the time. Not every file system has links.
   const bool is_linked = !is_removed && system::link_file(target.path, old);
   if (!is_linked && !system::rename_file(target.path, old)) {

@@ -169,7 +169,7 @@ TEST(SmallProgramCache, FollowsNoLinks) {
   // Names that were guessed.
   for (int k = 0; k < 2000; ++k) {
     fs::create_symlink(precious,
-                       file.string() + "." + std::to_string(getpid()) + "-" + std::to_string(k) + ".tmp");
+                       file.string() + "." + std::to_string(getpid()) + "-" + std::to_string(k) + ".partial");
   }
   cache.store("key", "program");
   EXPECT_EQ(cache.load("key"), "program");

@@ -9,7 +9,7 @@
 
 #include "app/files/formats.hpp"
 #include "files/file.hpp"
-#include "host/memory/huge_pages.hpp"
+#include "host/system/pages.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -211,7 +211,7 @@ class Array {
     check_size();
     std::vector<Value> all;
     all.reserve(promised_ / sizeof(Value));
-    host::prefer_huge_pages(all.data(), promised_);
+    system::prefer_huge_pages(all.data(), promised_);
     all.resize(promised_ / sizeof(Value));
     file_.read_at(header_.data_begin, promised_, all.data());
     return all;

@@ -7,7 +7,7 @@
 
 #include "app/files/formats.hpp"
 #include "files/file.hpp"
-#include "host/memory/huge_pages.hpp"
+#include "host/system/pages.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -37,7 +37,7 @@ Points read_records(const std::string& path, const Format& format) {
   const PointRecords records = format.records(path, file);
   Points points;
   points.coordinates.reserve(2 * records.size);
-  host::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
+  system::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
   points.coordinates.resize(2 * records.size);
   records.read(file, 0, records.size, points.coordinates.data());
   check_finite(path, points);

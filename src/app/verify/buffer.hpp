@@ -5,7 +5,7 @@
 #include <memory>
 #include <new>
 
-#include "host/memory/huge_pages.hpp"
+#include "host/system/pages.hpp"
 
 namespace flaunay::verification {
 
@@ -17,11 +17,11 @@ class Buffer {
   explicit Buffer(std::size_t count) { allocate(count); }
   void allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(Value);
-    const std::size_t page = bytes < host::kHugePage ? kCacheLine : host::kHugePage;
+    const std::size_t page = bytes < system::kHugePage ? kCacheLine : system::kHugePage;
     values_.reset();
-    values_.reset(static_cast<Value*>(host::allocate_aligned(page, bytes / page * page + page)));
+    values_.reset(static_cast<Value*>(system::allocate_aligned(page, bytes / page * page + page)));
     if (values_ == nullptr) throw std::bad_alloc();
-    host::prefer_huge_pages(values_.get(), bytes);
+    system::prefer_huge_pages(values_.get(), bytes);
     size_ = count;
   }
   Value* data() const { return values_.get(); }
@@ -31,7 +31,7 @@ class Buffer {
  private:
   static constexpr std::size_t kCacheLine = 64;
   struct Free {
-    void operator()(Value* values) const { host::free_aligned(values); }
+    void operator()(Value* values) const { system::free_aligned(values); }
   };
   std::unique_ptr<Value, Free> values_;
   std::size_t size_ = 0;

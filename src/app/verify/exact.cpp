@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <limits>
 
+#include "arithmetic/language.h"
+
 namespace flaunay {
 namespace {
 
 namespace mp = boost::multiprecision;
-__extension__ using Int128 = __int128;
+using kernel::WideLong;
 // Of fixed size, so without allocation: wide enough for all but wildly mixed magnitudes.
 using Int512 =
     mp::number<mp::cpp_int_backend<512, 512, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
@@ -150,14 +152,14 @@ struct Vectors {
 
 int ExactPredicates::exact_orient2d(const double* a, const double* b, const double* c) {
   const Scaled<3> points({a, b, c});
-  if (2 * points.bits + 3 <= 127) return orient2d_sign<Int128>(points);
+  if (2 * points.bits + 3 <= 127) return orient2d_sign<WideLong>(points);
   if (2 * points.bits + 3 <= 512) return orient2d_sign<Int512>(points);
   return orient2d_sign<BigInt>(points);
 }
 
 int ExactPredicates::exact_incircle(const double* a, const double* b, const double* c, const double* d) {
   const Scaled<4> points({a, b, c, d});
-  if (4 * points.bits + 8 <= 127) return incircle_sign<Int128>(points);
+  if (4 * points.bits + 8 <= 127) return incircle_sign<WideLong>(points);
   if (4 * points.bits + 8 <= 512) return incircle_sign<Int512>(points);
   return incircle_sign<BigInt>(points);
 }
@@ -165,7 +167,7 @@ int ExactPredicates::exact_incircle(const double* a, const double* b, const doub
 int ExactPredicates::exact_side_of_crossing(const double* a0, const double* a1, const double* b0,
                                             const double* b1, const double* p, int axis) {
   const Scaled<5> points({a0, a1, b0, b1, p});
-  if (3 * points.bits + 5 <= 127) return crossing_sign<Int128>(points, axis);
+  if (3 * points.bits + 5 <= 127) return crossing_sign<WideLong>(points, axis);
   if (3 * points.bits + 5 <= 512) return crossing_sign<Int512>(points, axis);
   return crossing_sign<BigInt>(points, axis);
 }

@@ -1,0 +1,14 @@
+#include <malloc.h>
+
+#include "host/system/pages.hpp"
+
+namespace flaunay::system {
+
+void* allocate_aligned(std::size_t alignment, std::size_t bytes) { return _aligned_malloc(bytes, alignment); }
+
+void free_aligned(void* memory) { _aligned_free(memory); }
+
+// Only users with a privilege have such pages.
+void prefer_huge_pages(void*, std::size_t) {}
+
+}  // namespace flaunay::system
