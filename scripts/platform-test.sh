@@ -141,7 +141,7 @@ records = json.loads(record.read_text()) if record.exists() else {}
 outputs = (pathlib.Path(build) / "outputs.txt").read_bytes()
 fingerprint = (pathlib.Path(build) / "fingerprint.json").read_bytes()
 records[platform] = {
-    "commit": subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip(),
+    "commit": subprocess.check_output(["git", "describe", "--always", "--dirty", "--exclude=*"], text=True).strip(),
     "date": datetime.date.today().isoformat(),
     "test_programs_passed": int(tests),
     "results_of_the_library": outputs.count(b"\n"),
