@@ -103,4 +103,18 @@ flaunay_test(
           constrained/split_test.cpp constrained/verify_test.cpp
   LIBRARIES flaunay_sequential_insertion flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
   LABELS asan)
-
+flaunay_test(
+  test_io UNOPTIMISED
+  SOURCES io/io_test.cpp io/generate_test.cpp io/map_test.cpp io/stream_test.cpp
+  LIBRARIES flaunay_io flaunay_core fmt::fmt nlohmann_json::nlohmann_json
+  LABELS asan)
+# Kernels that are kept are a device's.
+set(NATIVE_TESTS call/native_test.cpp host/threads_test.cpp)
+if(NOT CMAKE_CROSSCOMPILING)
+  list(APPEND NATIVE_TESTS host/program_cache_test.cpp)
+endif()
+flaunay_test(
+  test_native WHOLE UNITY
+  SOURCES ${NATIVE_TESTS}
+  LIBRARIES flaunay_core flaunay_host flaunay_io
+  LABELS asan)

@@ -1,7 +1,9 @@
 // Calls on host memory without OpenCL: the same results as on a device, byte by byte.
 #include <gtest/gtest.h>
+#ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
+#endif
 
 #include <atomic>
 #include <cstddef>
@@ -228,6 +230,7 @@ TEST_F(SmallNative, ThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(wrong, 0);
 }
 
+#ifndef _WIN32
 // OpenCL cannot be used in a process that was forked after it was, but the host can.
 TEST_F(SmallNative, ForkedProcessesCanTriangulate) {
   FixtureRandom random(16);
@@ -243,6 +246,7 @@ TEST_F(SmallNative, ForkedProcessesCanTriangulate) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
 }
+#endif
 
 TEST_F(SmallNative, IsNamedHostAndHasNoOpenCL) {
   const DeviceInfo info = on_host().device();

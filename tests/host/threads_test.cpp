@@ -2,8 +2,10 @@
 #include "host/native/threads.hpp"
 
 #include <gtest/gtest.h>
+#ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
+#endif
 
 #include <atomic>
 #include <cstddef>
@@ -85,6 +87,7 @@ TEST(SmallThreads, AreCountedByTheEnvironment) {
   }
 }
 
+#ifndef _WIN32
 TEST(SmallThreads, ForkedProcessesHaveTheirOwn) {
   Threads threads(3);
   ASSERT_TRUE(shares_well(threads, 100, 1));
@@ -99,6 +102,7 @@ TEST(SmallThreads, ForkedProcessesHaveTheirOwn) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "status " << status;
   EXPECT_TRUE(shares_well(threads, 100, 1));
 }
+#endif
 
 }  // namespace
 }  // namespace flaunay::host

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <random>
 #include <set>
 #include <sstream>
 #include <string>
@@ -21,9 +21,9 @@ namespace flaunay::io {
 class FolderTest : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "flaunay-io-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
+    const std::string name = "flaunay-io-" + std::to_string(std::random_device()());
+    folder_ = (std::filesystem::temp_directory_path() / name).string();
+    ASSERT_TRUE(std::filesystem::create_directory(folder_));
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -40,7 +40,7 @@ class FolderTest : public testing::Test {
   std::set<std::string> names() const {
     std::set<std::string> all;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
-      all.insert(entry.path().filename());
+      all.insert(entry.path().filename().string());
     return all;
   }
 

@@ -202,10 +202,10 @@ TEST(Generate, CirclesAreRoundToTheLastBits) {
     ASSERT_NEAR(p.first * q.second - p.second * q.first, std::sin(2 * std::acos(-1.0) / 5000), 1e-14) << i;
   }
   const Points nested = generate("nested-circles", 5000, 3);
-  std::set<long> radii;
+  std::set<long long> radii;
   for (std::size_t i = 0; i < nested.size(); ++i) {
     const Pair p = point(nested, i);
-    radii.insert(std::lround(std::hypot(p.first, p.second) * 1e12));
+    radii.insert(std::llround(std::hypot(p.first, p.second) * 1e12));
   }
   EXPECT_EQ(radii.size(), 18u);  // sqrt(5000) / 4 + 1
   EXPECT_EQ(distinct(nested).size(), 5000u);

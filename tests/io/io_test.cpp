@@ -1,10 +1,12 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
+#ifndef _WIN32
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <cctype>
@@ -268,55 +270,6 @@ TEST_F(IoTest, TextRoundsNumbersTooSmallToZero) {
   EXPECT_TRUE(std::signbit(values[1]));
 }
 
-TEST_F(IoTest, StandardInputIsText) {
-  const std::string file = write("input", "x y\n1 2\n3 4\n"), bad = write("bad", "1 2\n3 q\n"),
-                    none = write("none", "");
-  const int saved = dup(STDIN_FILENO);
-  ASSERT_GE(saved, 0);
-  const auto from = [](const std::string& name, const std::function<void()>& action) {
-    const int input = open(name.c_str(), O_RDONLY);
-    dup2(input, STDIN_FILENO);
-    close(input);
-    action();
-  };
-  from(file, [] { EXPECT_EQ(read_points("-").coordinates, (Values{1, 2, 3, 4})); });
-  from(bad, [] {
-    expect_error(ErrorKind::input, "- (standard input): ", {"line 2, column 3", "'q'"},
-                 [] { read_points("-"); });
-  });
-  from(none,
-       [] { expect_error(ErrorKind::input, "- (standard input): ", {"empty"}, [] { read_points("-"); }); });
-  dup2(saved, STDIN_FILENO);
-  close(saved);
-}
-
-TEST_F(IoTest, ReadsPipesLongerThanOneBuffer) {
-  const std::string fifo = path("pipe.xy");
-  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-  const Points points = generate("uniform", 20000, 1);
-  const std::string file = path("file.xy");
-  write_points(file, points);
-  // "cat" as the other end.
-  ASSERT_EQ(std::system(("cat '" + file + "' > '" + fifo + "' &").c_str()), 0);
-  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
-}
-
-TEST_F(IoTest, ReadsArraysFromPipesAsFromFiles) {
-  const std::string fifo = path("pipe.npy"), file = path("file.npy");
-  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-  const Points points = generate("uniform", 300000, 1);
-  write_points(file, points);
-  const auto feed = [&](const std::string& command) {
-    ASSERT_EQ(std::system((command + " '" + file + "' > '" + fifo + "' &").c_str()), 0);
-  };
-  feed("cat");
-  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
-  EXPECT_EQ(read_points(file).coordinates, points.coordinates);
-  feed("head -c -8");
-  expect_error(ErrorKind::input, fifo, {"truncated", "4800000 bytes", "found 4799992"},
-               [&] { read_points(fifo); });
-}
-
 TEST_F(IoTest, ReadsTheFixtures) {
   const std::string data = flaunay::test_data();
   for (const auto& [name, count] : std::vector<std::pair<const char*, std::size_t>>{{"issue43.xy", 5},
@@ -446,6 +399,7 @@ TEST_F(IoTest, NpyNamesWhatDoesNotFit) {
 }
 
 /// Too large for memory, but with holes, so that it takes no room on the disk.
+#ifndef _WIN32  // where the standard library makes no file larger than 2 GiB
 TEST_F(IoTest, LargeFilesAreRefusedByTheirBeginning) {
   const auto enlarged = [&](const std::string& name, const std::string& beginning) {
     const std::string file = write(name, beginning);
@@ -469,6 +423,7 @@ TEST_F(IoTest, LargeFilesAreRefusedByTheirBeginning) {
   const std::string ply = enlarged("a.ply", "plx\n");
   expect_refused(ply, "no PLY file", [&] { read_triangles(ply); });
 }
+#endif
 
 // ---- any file of points ----
 
@@ -535,8 +490,10 @@ TEST_F(IoTest, OutputsThatCannotBeCreatedSayWhy) {
   const std::vector<std::tuple<std::string, std::string>> cases = {
       {path("folder.off"), "Is a directory"},
       {path("nowhere/a.off"), "No such file or directory"},
+#ifndef _WIN32  // which says only that there is no such file
       {path("file/a.off"), "Not a directory"},
       {path(std::string(300, 'n') + ".off"), "name too long"},
+#endif
   };
   for (const auto& [target, reason] : cases) {
     expect_error(ErrorKind::input, target + ": ", {reason}, [&, t = target] { Outputs().announce(t); });
@@ -547,27 +504,6 @@ TEST_F(IoTest, OutputsThatCannotBeCreatedSayWhy) {
   expect_error(ErrorKind::input, path("b.node: "), {"Is a directory"},
                [&] { write_mesh(path("b.ele"), points, mesh); });
   EXPECT_EQ(names(), (std::set<std::string>{"folder.off", "file", "b.node"}));
-}
-
-TEST_F(IoTest, UnwritableFolderSaysWhy) {
-  std::filesystem::create_directory(path("closed"));
-  write("kept.off", "kept");
-  ASSERT_EQ(chmod(path("closed").c_str(), 0500), 0);
-  ASSERT_EQ(chmod(path("kept.off").c_str(), 0400), 0);
-  ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
-  constexpr uid_t kNobody = 65534;
-  const uid_t user = geteuid();
-  if (user == 0) {
-    ASSERT_EQ(seteuid(kNobody), 0);  // root may write anywhere
-  }
-  for (const char* name : {"closed/a.off", "kept.off"}) {
-    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
-                 [&] { Outputs().announce(path(name)); });
-    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
-                 [&] { write_mesh(path(name), {kSquare}, square_mesh()); });
-  }
-  ASSERT_EQ(seteuid(user), 0);
-  EXPECT_EQ(read(path("kept.off")), "kept");
 }
 
 TEST_F(IoTest, AnnouncedFilesAreGoneUnlessTheyAreWritten) {
@@ -594,98 +530,6 @@ TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
   }
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},
                [] { check_ending("a.npy", ".json"); });
-}
-
-TEST_F(IoTest, FullDeviceIsAnError) {
-  std::filesystem::create_symlink("/dev/full", path("full.off"));
-  EXPECT_NO_THROW(Outputs().announce(path("full.off")));
-  expect_error(ErrorKind::input, path("full.off: "), {"No space left"},
-               [&] { write_mesh(path("full.off"), {kSquare}, square_mesh()); });
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
-}
-
-TEST_F(IoTest, FailedWriteKeepsTheOldFile) {
-  const std::vector<const char*> targets = {"a.ele", "a.off", "a.ply", "a.msh",
-                                            "a.vtu", "a.obj", "a.npy", "a.svg"};
-  std::set<std::string> before = {"a.node"};
-  write("a.node", "old");
-  for (const char* name : targets) {
-    write(name, "old");
-    before.insert(name);
-  }
-  const auto [points, mesh] = grid_mesh(60);
-  // A limit on the size of files fails like a full disk: in the middle of the writing.
-  rlimit saved{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &saved), 0);
-  const auto old_handler = signal(SIGXFSZ, SIG_IGN);
-  for (const char* name : targets) {
-    std::string message;
-    rlimit small = saved;
-    small.rlim_cur = 3000;
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    try {
-      write_mesh(path(name), points, mesh);
-    } catch (const Error& error) {
-      message = error.what();
-    }
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &saved), 0);
-    EXPECT_NE(message.find("File too large"), std::string::npos) << name << ": " << message;
-  }
-  signal(SIGXFSZ, old_handler);
-  EXPECT_EQ(names(), before);
-  for (const std::string& name : before) EXPECT_EQ(read(path(name)), "old") << name;
-}
-
-TEST_F(IoTest, ReplacingKeepsModeAndSymbolicLink) {
-  const std::string real = write("real.off", "old");
-  ASSERT_EQ(chmod(real.c_str(), 0640), 0);
-  std::filesystem::create_symlink("real.off", path("link.off"));
-  write_mesh(path("link.off"), {kSquare}, square_mesh());
-  EXPECT_TRUE(std::filesystem::is_symlink(path("link.off")));
-  EXPECT_EQ(read_triangles(real), square_mesh().triangles);
-  struct stat status {};
-  ASSERT_EQ(stat(real.c_str(), &status), 0);
-  EXPECT_EQ(status.st_mode & 0777, 0640u);
-  EXPECT_EQ(names(), (std::set<std::string>{"real.off", "link.off"}));
-}
-
-TEST_F(IoTest, ADanglingLinkIsFollowed) {
-  std::filesystem::create_directory(path("folder"));
-  std::filesystem::create_symlink("folder/second.off", path("first.off"));
-  std::filesystem::create_symlink("../real.off", path("folder/second.off"));
-  EXPECT_NO_THROW(Outputs().announce(path("first.off")));
-  EXPECT_FALSE(std::filesystem::exists(path("real.off")));
-  write_mesh(path("first.off"), {kSquare}, square_mesh());
-  EXPECT_TRUE(std::filesystem::is_symlink(path("first.off")));
-  EXPECT_TRUE(std::filesystem::is_symlink(path("folder/second.off")));
-  EXPECT_EQ(read_triangles(path("real.off")), square_mesh().triangles);
-
-  std::filesystem::create_symlink("b.off", path("a.off"));
-  std::filesystem::create_symlink("a.off", path("b.off"));
-  expect_error(ErrorKind::input, path("a.off"), {"symbolic links"},
-               [&] { Outputs().announce(path("a.off")); });
-  std::filesystem::create_symlink("nowhere/c.off", path("c.off"));
-  expect_error(ErrorKind::input, path("c.off"), {"No such file"}, [&] { Outputs().announce(path("c.off")); });
-}
-
-TEST_F(IoTest, TwoOutputsOfOnePathAreRefusedHoweverItIsWritten) {
-  std::filesystem::create_directory(path("folder"));
-  std::filesystem::create_directory_symlink("folder", path("link"));
-  std::filesystem::create_symlink("folder/a", path("dangling"));
-  std::filesystem::create_symlink("/dev/null", path("null"));
-  for (const std::string state : {"new", "existing"}) {
-    SCOPED_TRACE(state);
-    for (const char* other : {"folder/a", "./folder//a", "link/a", "folder/../folder/a", "dangling"}) {
-      Outputs outputs;
-      outputs.announce(path("folder/a"));
-      expect_error(ErrorKind::usage, path(other), {"same path"}, [&] { outputs.announce(path(other)); });
-    }
-    Outputs outputs;
-    outputs.announce(path("folder/a"));
-    for (const char* other : {"a", "folder/b", "folder/\xc3\xa4", "null"}) outputs.announce(path(other));
-    expect_error(ErrorKind::usage, "/dev/null", {"same path"}, [&] { outputs.announce("/dev/null"); });
-    write("folder/a", "");
-  }
 }
 
 TEST_F(IoTest, NamesMayBeAsLongAsTheSystemPermits) {
@@ -731,19 +575,16 @@ TEST_F(IoTest, IfOneOutputFailsAllStayAsTheyWere) {
 TEST_F(IoTest, OldFilesAreRemovedWithTheCommit) {
   write("removed", "old");
   write("replaced", "old");
-  write("linked", "old");
-  std::filesystem::create_symlink("linked", path("link"));
   Outputs outputs;
   outputs.remove(path("removed"));
-  outputs.remove(path("link"));
   outputs.open(path("replaced")).print("new");
   outputs.close();
   outputs.open(path("last")).print("last");
   outputs.write_out();
   EXPECT_EQ(read(path("replaced")) + read(path("removed")), "oldold");
   outputs.commit();
-  EXPECT_EQ(names(), (std::set<std::string>{"replaced", "last", "linked"}));
-  EXPECT_EQ(read(path("replaced")) + read(path("last")) + read(path("linked")), "newlastold");
+  EXPECT_EQ(names(), (std::set<std::string>{"replaced", "last"}));
+  EXPECT_EQ(read(path("replaced")) + read(path("last")), "newlast");
 }
 
 TEST(PrintableTest, EscapesWhatATerminalWouldObey) {
@@ -1146,6 +987,183 @@ TEST_F(IoTest, APartitionsPictureWindsAroundEachRegionOnce) {
     EXPECT_TRUE(is_well_formed(read(path("b.svg"))));
   }
 }
+
+#ifndef _WIN32
+// ---- pipes, links, permissions and limits as POSIX has them ----
+
+TEST_F(IoTest, StandardInputIsText) {
+  const std::string file = write("input", "x y\n1 2\n3 4\n"), bad = write("bad", "1 2\n3 q\n"),
+                    none = write("none", "");
+  const int saved = dup(STDIN_FILENO);
+  ASSERT_GE(saved, 0);
+  const auto from = [](const std::string& name, const std::function<void()>& action) {
+    const int input = open(name.c_str(), O_RDONLY);
+    dup2(input, STDIN_FILENO);
+    close(input);
+    action();
+  };
+  from(file, [] { EXPECT_EQ(read_points("-").coordinates, (Values{1, 2, 3, 4})); });
+  from(bad, [] {
+    expect_error(ErrorKind::input, "- (standard input): ", {"line 2, column 3", "'q'"},
+                 [] { read_points("-"); });
+  });
+  from(none,
+       [] { expect_error(ErrorKind::input, "- (standard input): ", {"empty"}, [] { read_points("-"); }); });
+  dup2(saved, STDIN_FILENO);
+  close(saved);
+}
+
+TEST_F(IoTest, ReadsPipesLongerThanOneBuffer) {
+  const std::string fifo = path("pipe.xy");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const Points points = generate("uniform", 20000, 1);
+  const std::string file = path("file.xy");
+  write_points(file, points);
+  // "cat" as the other end.
+  ASSERT_EQ(std::system(("cat '" + file + "' > '" + fifo + "' &").c_str()), 0);
+  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
+}
+
+TEST_F(IoTest, ReadsArraysFromPipesAsFromFiles) {
+  const std::string fifo = path("pipe.npy"), file = path("file.npy");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const Points points = generate("uniform", 300000, 1);
+  write_points(file, points);
+  const auto feed = [&](const std::string& command) {
+    ASSERT_EQ(std::system((command + " '" + file + "' > '" + fifo + "' &").c_str()), 0);
+  };
+  feed("cat");
+  EXPECT_EQ(read_points(fifo).coordinates, points.coordinates);
+  EXPECT_EQ(read_points(file).coordinates, points.coordinates);
+  feed("head -c -8");
+  expect_error(ErrorKind::input, fifo, {"truncated", "4800000 bytes", "found 4799992"},
+               [&] { read_points(fifo); });
+}
+
+TEST_F(IoTest, UnwritableFolderSaysWhy) {
+  std::filesystem::create_directory(path("closed"));
+  write("kept.off", "kept");
+  ASSERT_EQ(chmod(path("closed").c_str(), 0500), 0);
+  ASSERT_EQ(chmod(path("kept.off").c_str(), 0400), 0);
+  ASSERT_EQ(chmod(folder_.c_str(), 0755), 0);
+  constexpr uid_t kNobody = 65534;
+  const uid_t user = geteuid();
+  if (user == 0) {
+    ASSERT_EQ(seteuid(kNobody), 0);  // root may write anywhere
+  }
+  for (const char* name : {"closed/a.off", "kept.off"}) {
+    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
+                 [&] { Outputs().announce(path(name)); });
+    expect_error(ErrorKind::input, path(name) + ": ", {"Permission denied"},
+                 [&] { write_mesh(path(name), {kSquare}, square_mesh()); });
+  }
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_EQ(read(path("kept.off")), "kept");
+}
+
+TEST_F(IoTest, FullDeviceIsAnError) {
+  std::filesystem::create_symlink("/dev/full", path("full.off"));
+  EXPECT_NO_THROW(Outputs().announce(path("full.off")));
+  expect_error(ErrorKind::input, path("full.off: "), {"No space left"},
+               [&] { write_mesh(path("full.off"), {kSquare}, square_mesh()); });
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(IoTest, FailedWriteKeepsTheOldFile) {
+  const std::vector<const char*> targets = {"a.ele", "a.off", "a.ply", "a.msh",
+                                            "a.vtu", "a.obj", "a.npy", "a.svg"};
+  std::set<std::string> before = {"a.node"};
+  write("a.node", "old");
+  for (const char* name : targets) {
+    write(name, "old");
+    before.insert(name);
+  }
+  const auto [points, mesh] = grid_mesh(60);
+  // A limit on the size of files fails like a full disk: in the middle of the writing.
+  rlimit saved{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &saved), 0);
+  const auto old_handler = signal(SIGXFSZ, SIG_IGN);
+  for (const char* name : targets) {
+    std::string message;
+    rlimit small = saved;
+    small.rlim_cur = 3000;
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    try {
+      write_mesh(path(name), points, mesh);
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &saved), 0);
+    EXPECT_NE(message.find("File too large"), std::string::npos) << name << ": " << message;
+  }
+  signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(names(), before);
+  for (const std::string& name : before) EXPECT_EQ(read(path(name)), "old") << name;
+}
+
+TEST_F(IoTest, ReplacingKeepsModeAndSymbolicLink) {
+  const std::string real = write("real.off", "old");
+  ASSERT_EQ(chmod(real.c_str(), 0640), 0);
+  std::filesystem::create_symlink("real.off", path("link.off"));
+  write_mesh(path("link.off"), {kSquare}, square_mesh());
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.off")));
+  EXPECT_EQ(read_triangles(real), square_mesh().triangles);
+  struct stat status {};
+  ASSERT_EQ(stat(real.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
+  EXPECT_EQ(names(), (std::set<std::string>{"real.off", "link.off"}));
+}
+
+TEST_F(IoTest, ADanglingLinkIsFollowed) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder/second.off", path("first.off"));
+  std::filesystem::create_symlink("../real.off", path("folder/second.off"));
+  EXPECT_NO_THROW(Outputs().announce(path("first.off")));
+  EXPECT_FALSE(std::filesystem::exists(path("real.off")));
+  write_mesh(path("first.off"), {kSquare}, square_mesh());
+  EXPECT_TRUE(std::filesystem::is_symlink(path("first.off")));
+  EXPECT_TRUE(std::filesystem::is_symlink(path("folder/second.off")));
+  EXPECT_EQ(read_triangles(path("real.off")), square_mesh().triangles);
+
+  std::filesystem::create_symlink("b.off", path("a.off"));
+  std::filesystem::create_symlink("a.off", path("b.off"));
+  expect_error(ErrorKind::input, path("a.off"), {"symbolic links"},
+               [&] { Outputs().announce(path("a.off")); });
+  std::filesystem::create_symlink("nowhere/c.off", path("c.off"));
+  expect_error(ErrorKind::input, path("c.off"), {"No such file"}, [&] { Outputs().announce(path("c.off")); });
+}
+
+TEST_F(IoTest, ALinkIsRemovedAndNotWhereItLeads) {
+  write("linked", "old");
+  std::filesystem::create_symlink("linked", path("link"));
+  Outputs outputs;
+  outputs.remove(path("link"));
+  outputs.commit();
+  EXPECT_EQ(names(), (std::set<std::string>{"linked"}));
+  EXPECT_EQ(read(path("linked")), "old");
+}
+
+TEST_F(IoTest, TwoOutputsOfOnePathAreRefusedHoweverItIsWritten) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_directory_symlink("folder", path("link"));
+  std::filesystem::create_symlink("folder/a", path("dangling"));
+  std::filesystem::create_symlink("/dev/null", path("null"));
+  for (const std::string state : {"new", "existing"}) {
+    SCOPED_TRACE(state);
+    for (const char* other : {"folder/a", "./folder//a", "link/a", "folder/../folder/a", "dangling"}) {
+      Outputs outputs;
+      outputs.announce(path("folder/a"));
+      expect_error(ErrorKind::usage, path(other), {"same path"}, [&] { outputs.announce(path(other)); });
+    }
+    Outputs outputs;
+    outputs.announce(path("folder/a"));
+    for (const char* other : {"a", "folder/b", "folder/\xc3\xa4", "null"}) outputs.announce(path(other));
+    expect_error(ErrorKind::usage, "/dev/null", {"same path"}, [&] { outputs.announce("/dev/null"); });
+    write("folder/a", "");
+  }
+}
+
+#endif
 
 }  // namespace
 }  // namespace flaunay::io

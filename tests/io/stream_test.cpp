@@ -1,7 +1,9 @@
 // Points that are read, and meshes that are written, in pieces; LAS files.
+#ifndef _WIN32
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#endif
 
 #include <array>
 #include <cmath>
@@ -166,13 +168,6 @@ TEST_F(LasTest, WrongFiles) {
   expect_error(ErrorKind::input, file + ": ", {"point 1 is (inf, "}, [&] { read_points(file); });
 }
 
-TEST_F(LasTest, APipeIsReadAsAFile) {
-  const std::string file = write("scan.las", some_scan().bytes()), pipe = path("pipe.las");
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  ASSERT_EQ(std::system(("cat '" + file + "' > '" + pipe + "' &").c_str()), 0);
-  EXPECT_EQ(read_points(pipe).coordinates, some_scan().coordinates());
-}
-
 TEST_F(LasTest, CompressedFilesAreRefused) {
   const std::string laz = write("scan.laz", some_scan().bytes());
   expect_error(ErrorKind::input, laz + ": ", {"compressed (LAZ)", "pdal"}, [&] { read_points(laz); });
@@ -305,17 +300,6 @@ TEST_F(PointStreamTest, AFileThatBecomesShorterIsAnError) {
   }
 }
 
-TEST_F(PointStreamTest, BinaryPointsOfAPipeAreRefused) {
-  ASSERT_EQ(mkfifo(path("pipe.npy").c_str(), 0600), 0);
-  EXPECT_EQ(estimate_points(path("pipe.npy")), 0u) << "and it was not opened, which would wait";
-  const std::string header = npy_header("<f8", 1, 2) + raw(Values{1, 2});
-  // Open in both directions, so that nothing waits.
-  std::fstream writer(path("pipe.npy"), std::ios::in | std::ios::out | std::ios::binary);
-  writer << header << std::flush;
-  expect_error(ErrorKind::input, path("pipe.npy") + ": ", {"no regular file"},
-               [&] { open_point_stream(path("pipe.npy"), folder_); });
-}
-
 TEST_F(PointStreamTest, RoomForResultsAndScratchOnOneDisk) {
   // Points whose triangles and neighbours fit, 48 bytes a point, or their scratch, 24, but not both.
   const std::uint64_t n = free_bytes(folder_) / 60;
@@ -335,24 +319,6 @@ TEST_F(PointStreamTest, ScratchThatCannotBeWritten) {
   expect_error(ErrorKind::input, folder_ + ": ",
                {"has room for", "the points of x", "another scratch folder"},
                [&] { scratch.require_room(std::uint64_t{1} << 62, "the points of x"); });
-}
-
-TEST_F(PointStreamTest, ScratchIsTheUsersAloneWhateverTheUmask) {
-  const mode_t before = umask(0);
-  const ScratchFile scratch(folder_);
-  umask(before);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "it has no name that others could open";
-  bool is_found = false;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    std::error_code ignored;
-    const std::string target = std::filesystem::read_symlink(entry.path(), ignored);
-    if (target.compare(0, folder_.size(), folder_) != 0) continue;
-    struct stat status {};
-    ASSERT_EQ(stat(entry.path().c_str(), &status), 0);
-    EXPECT_EQ(status.st_mode & 07777, 0600U) << target;
-    is_found = true;
-  }
-  EXPECT_TRUE(is_found);
 }
 
 TEST_F(PointStreamTest, GeneratedPointsDoNotDependOnPieces) {
@@ -469,6 +435,45 @@ TEST_F(MeshStreamTest, AnIndexThatIsTooLargeForItsFileIsAnError) {
                [&] { files.write(MeshArray::hull, 0, &large, 1); });
 }
 
+#ifndef _WIN32
+// ------------------------------------------------------ pipes, permissions and limits as POSIX has them
+
+TEST_F(LasTest, APipeIsReadAsAFile) {
+  const std::string file = write("scan.las", some_scan().bytes()), pipe = path("pipe.las");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ASSERT_EQ(std::system(("cat '" + file + "' > '" + pipe + "' &").c_str()), 0);
+  EXPECT_EQ(read_points(pipe).coordinates, some_scan().coordinates());
+}
+
+TEST_F(PointStreamTest, BinaryPointsOfAPipeAreRefused) {
+  ASSERT_EQ(mkfifo(path("pipe.npy").c_str(), 0600), 0);
+  EXPECT_EQ(estimate_points(path("pipe.npy")), 0u) << "and it was not opened, which would wait";
+  const std::string header = npy_header("<f8", 1, 2) + raw(Values{1, 2});
+  // Open in both directions, so that nothing waits.
+  std::fstream writer(path("pipe.npy"), std::ios::in | std::ios::out | std::ios::binary);
+  writer << header << std::flush;
+  expect_error(ErrorKind::input, path("pipe.npy") + ": ", {"no regular file"},
+               [&] { open_point_stream(path("pipe.npy"), folder_); });
+}
+
+TEST_F(PointStreamTest, ScratchIsTheUsersAloneWhateverTheUmask) {
+  const mode_t before = umask(0);
+  const ScratchFile scratch(folder_);
+  umask(before);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "it has no name that others could open";
+  bool is_found = false;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code ignored;
+    const std::string target = std::filesystem::read_symlink(entry.path(), ignored);
+    if (target.compare(0, folder_.size(), folder_) != 0) continue;
+    struct stat status {};
+    ASSERT_EQ(stat(entry.path().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0600U) << target;
+    is_found = true;
+  }
+  EXPECT_TRUE(is_found);
+}
+
 TEST_F(MeshStreamTest, PipesAreRefused) {
   ASSERT_EQ(mkfifo(path("n.npy").c_str(), 0600), 0);
   Outputs outputs;
@@ -495,6 +500,8 @@ TEST_F(MeshStreamTest, AFailedWriteLeavesOldOutputs) {
   EXPECT_EQ(names(), (std::set<std::string>{"t.npy"}));
   EXPECT_EQ(read(path("t.npy")), "old");
 }
+
+#endif
 
 }  // namespace
 }  // namespace flaunay::io
