@@ -82,10 +82,5 @@ function(flaunay_use_launchers LIBRARY TARGET)
   target_sources(${LIBRARY} PRIVATE ${SOURCES})
   # Each has static functions of its own, whose names may be the same. Not every kernel with a list of arguments uses
   # all of them.
-  set(OPTIONS -Wno-unused-parameter)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND NOT EMSCRIPTEN)
-    # Pairs of numbers in vectors make merges slower: bench/results/packages.md.
-    list(APPEND OPTIONS -fno-slp-vectorize)
-  endif()
-  set_source_files_properties(${SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS "${OPTIONS}")
+  set_source_files_properties(${SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-unused-parameter)
 endfunction()
