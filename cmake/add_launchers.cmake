@@ -54,7 +54,8 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
       string(REGEX REPLACE "\\.cl$" ".cpp" NATIVE_FILE ${GIVEN_NATIVE_OUTPUT}/${FILE})
       set(NATIVE_ARGUMENT -DNATIVE_OUTPUT=${NATIVE_FILE})
       file(READ ${DIRECTORY}/${FILE} TEXT)
-      if(TEXT MATCHES "COUNTERS|SEGMENTED_ARG_REDUCE")
+      # No function that flaunay.js calls counts.
+      if(TEXT MATCHES "COUNTERS|SEGMENTED_ARG_REDUCE" AND (FLAUNAY_COMMAND OR NOT EMSCRIPTEN))
         string(REGEX REPLACE "\\.cl$" ".cpp" COUNTING_FILE ${GIVEN_NATIVE_OUTPUT}/counting/${FILE})
         list(APPEND NATIVE_ARGUMENT -DCOUNTING_OUTPUT=${COUNTING_FILE})
         list(APPEND NATIVE_FILE ${COUNTING_FILE})
@@ -82,5 +83,11 @@ function(flaunay_use_launchers LIBRARY TARGET)
   target_sources(${LIBRARY} PRIVATE ${SOURCES})
   # Each has static functions of its own, whose names may be the same. Not every kernel with a list of arguments uses
   # all of them.
-  set_source_files_properties(${SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-unused-parameter)
+  set_source_files_properties(${SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set(OPTIONS -Wno-unused-parameter)
+  if(EMSCRIPTEN)
+    # The rest of a module is compiled for its size.
+    list(APPEND OPTIONS -O3)
+  endif()
+  set_property(SOURCE ${SOURCES} PROPERTY COMPILE_OPTIONS ${OPTIONS})
 endfunction()

@@ -6,11 +6,25 @@
 #include <string>
 #include <vector>
 
+// In a build without OpenCL, such functions always throw, and the compiler leaves out what follows a call.
+#ifdef FLAUNAY_WITHOUT_OPENCL
+#define NEEDS_OPENCL [[noreturn]]
+#else
+#define NEEDS_OPENCL
+#endif
+
 namespace flaunay::host {
+
+/// Whether this build can use OpenCL.
+#ifdef FLAUNAY_WITHOUT_OPENCL
+constexpr bool kCanUseOpenCl = false;
+#else
+constexpr bool kCanUseOpenCl = true;
+#endif
 
 /// Lists every device of every platform, platforms in the loader's order. Throws DeviceError, which says what
 /// to install, if there is no platform.
-std::vector<boost::compute::device> all_devices();
+NEEDS_OPENCL std::vector<boost::compute::device> all_devices();
 
 /// The name that stands for the host itself, without OpenCL.
 constexpr const char* kHostName = "host";
@@ -29,12 +43,12 @@ bool may_have_gpu(const std::string& folder = "/dev");
 
 /// The first GPU with fp64, else the first GPU, else the first device with fp64, else the first one. Throws
 /// DeviceError if there is none.
-boost::compute::device best_device();
+NEEDS_OPENCL boost::compute::device best_device();
 
 /// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else that of best_device),
 /// "#k" (the k-th of all_devices), or a part of a device's or platform's name in upper or lower case. Throws
 /// DeviceError, which lists the devices, if none matches.
-boost::compute::device find_device(const std::string& wanted);
+NEEDS_OPENCL boost::compute::device find_device(const std::string& wanted);
 
 bool has_fp64(const boost::compute::device& device);
 
@@ -42,3 +56,5 @@ bool has_fp64(const boost::compute::device& device);
 bool shares_host_memory(const boost::compute::device& device);
 
 }  // namespace flaunay::host
+
+#undef NEEDS_OPENCL

@@ -12,7 +12,7 @@ namespace {
 
 // Whether the device that nobody has named passes the self-test, as one without fp64 may not. The host does
 // as well.
-bool can_be_used(call::Implementation& self) {
+[[maybe_unused]] bool can_be_used(call::Implementation& self) {
   try {
     with_errors([&self] { self.on_device(); });
     return true;
@@ -60,11 +60,14 @@ Engine& Triangulator::Implementation::native() {
 
 bool Triangulator::Implementation::uses_device_for_host_memory() {
   if (is_named_) return !is_host_named_;
-  if (!uses_gpu_) {
-    const auto gpu = host::find_gpu();
-    uses_gpu_ = gpu && (host::has_fp64(*gpu) || can_be_used(*this));
+  if constexpr (host::kCanUseOpenCl) {
+    if (!uses_gpu_) {
+      const auto gpu = host::find_gpu();
+      uses_gpu_ = gpu && (host::has_fp64(*gpu) || can_be_used(*this));
+    }
+    return *uses_gpu_;
   }
-  return *uses_gpu_;
+  return false;
 }
 
 Engine& Triangulator::Implementation::for_host_memory() {
@@ -74,7 +77,7 @@ Engine& Triangulator::Implementation::for_host_memory() {
 
 Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
   const std::lock_guard lock(making_);
-  if (engine.has_doubles()) return engine;
+  if (engine.runtime.is_native() || engine.has_doubles()) return engine;
   if (!has_looked_for_doubles_) device_with_doubles_ = engine.with_doubles();
   has_looked_for_doubles_ = true;
   return device_with_doubles_ != nullptr ? *device_with_doubles_ : native();
