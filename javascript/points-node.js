@@ -1,4 +1,4 @@
-// As node.js, for points.wasm, whose size is a half: points, Voronoi diagrams and queries.
+// As node.js, for points.wasm, whose size is 40 % of it: points, Voronoi diagrams and queries.
 import {readFileSync} from 'node:fs';
 import {start} from './flaunay.js';
 

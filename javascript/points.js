@@ -1,4 +1,4 @@
-// As index.js, for points.wasm, whose size is a half: points, Voronoi diagrams and queries.
+// As index.js, for points.wasm, whose size is 40 % of it: points, Voronoi diagrams and queries.
 import {init} from './flaunay.js';
 
 await init(new URL('points.wasm', import.meta.url));

@@ -43,7 +43,4 @@ npm install --silent --offline --no-audit --no-fund --prefix "$output/installed"
 sed -n '/^```js$/,/^```$/{/^```/d;p}' javascript/README.md >"$output/installed/example.mjs"
 (cd "$output/installed" && node example.mjs)
 PACKAGE="$package" WORK=build/snippets tests/snippets.sh js docs/tutorials/*.md
-for module in flaunay points; do
-  echo "$module.wasm, compressed: $(gzip -9 -c "$package/$module.wasm" | wc -c) bytes"
-done
 echo "$output/flaunay-$version.tgz"

@@ -1,6 +1,9 @@
 // flaunay/points, in a process of its own, where no other module is ready.
 import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
 import test from 'node:test';
+import {brotliCompressSync} from 'node:zlib';
 
 import Delaunator, {FlaunayError, Triangulation, wrongEdges} from 'flaunay/points';
 
@@ -15,6 +18,12 @@ test('what it has', () => {
   assert.ok(mesh.locate(0.5, 0.5) >= 0);
   assert.equal(mesh.voronoi().circumcentres.length, 2 * triangles.length / 3);
   assert.ok(Math.abs(mesh.clippedVoronoi([0, 0, 1, 1]).areas.reduce((a, b) => a + b) - 1) < 1e-12);
+});
+
+test('its size on the way to a browser', (t) => {
+  const bytes = brotliCompressSync(readFileSync(createRequire(import.meta.url).resolve('flaunay/points.wasm'))).length;
+  t.diagnostic(`points.wasm has ${bytes} bytes when it is compressed`);
+  assert.ok(bytes <= 160_000, `${bytes}`);
 });
 
 test('it comes after flaunay, or without it', async () => {
