@@ -74,15 +74,15 @@ def main():
             print(f"{distribution:18} {n:8} {1e3 * seconds['flaunay']:10.3f} ms, delaunator "
                   f"{1e3 * seconds['delaunator']:10.3f} ms ({row['over_delaunator']:.2f} times), native "
                   f"{1e3 * seconds['native']:10.3f} ms ({row['over_native']:.2f})", flush=True)
-    if given.output:
-        record = {
-            "host": processor(),
-            "node": output_of(["node", "--version"]).strip(),
-            "commit": output_of(["git", "-C", REPOSITORY, "rev-parse", "--short", "HEAD"]).strip(),
-            "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-            "results": results,
-        }
-        given.output.write_text(json.dumps(record, indent=1) + "\n")
+            if given.output:
+                record = {
+                    "host": processor(),
+                    "node": output_of(["node", "--version"]).strip(),
+                    "commit": output_of(["git", "-C", REPOSITORY, "rev-parse", "--short", "HEAD"]).strip(),
+                    "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+                    "results": results,
+                }
+                given.output.write_text(json.dumps(record, indent=1) + "\n")
 
 
 if __name__ == "__main__":
