@@ -77,6 +77,7 @@ Engine& Triangulator::Implementation::for_host_memory() {
 
 Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
   const std::lock_guard lock(making_);
+  // Without OpenCL, the first is known to the compiler, which leaves out the rest.
   if (engine.runtime.is_native() || engine.has_doubles()) return engine;
   if (!has_looked_for_doubles_) device_with_doubles_ = engine.with_doubles();
   has_looked_for_doubles_ = true;
