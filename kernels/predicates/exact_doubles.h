@@ -1,5 +1,5 @@
 // Exact orientation and in-circle tests of points whose coordinates are doubles: by integers where they suffice, as for
-// most ties, else with twice the precision of doubles or, if that cannot decide, by expansions.
+// most ties, else by expansions; in-circle tests with twice the precision of doubles before they take long integers.
 #ifndef FLAUNAY_EXACT_DOUBLES_H
 #define FLAUNAY_EXACT_DOUBLES_H
 
@@ -162,11 +162,12 @@ static inline int circle_closely(const circle_differences* from, double2 a, doub
 
 // Of any four points, by their differences from d, not all 0.
 static inline int circle_of_differences(const circle_differences* from, double2 a, double2 b, double2 c) {
-  int64 x[3], y[3];
-  if (are_integers(from, unit_factor(from->largest, WIDE_BITS), x, y))
-    return sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]));
   const int sign = circle_closely(from, a, b, c);
-  return sign != 0 ? sign : circle_sign_by_expansions(from->x, from->y);
+  if (sign != 0) return sign;
+  int64 x[3], y[3];
+  return are_integers(from, unit_factor(from->largest, WIDE_BITS), x, y)
+             ? sign_of_256(circle_wide(x[0], y[0], x[1], y[1], x[2], y[2]))
+             : circle_sign_by_expansions(from->x, from->y);
 }
 
 OUT_OF_LINE static inline int circle_exact(double2 a, double2 b, double2 c, double2 d) {
