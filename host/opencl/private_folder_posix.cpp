@@ -34,19 +34,6 @@ class Descriptor {
   int number_;
 };
 
-// Reads or writes all bytes: `move` is read or write.
-template <typename Move, typename Byte>
-bool moved_all(Move move, int file, Byte* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t moved = move(file, bytes, count);
-    if (moved < 0 && errno == EINTR) continue;
-    if (moved <= 0) return false;
-    bytes += moved;
-    count -= static_cast<std::size_t>(moved);
-  }
-  return true;
-}
-
 // Why others can write to a file or folder: it belongs to another user, or its mode allows it. Empty if they
 // cannot.
 std::string who_else_writes(const struct stat& status) {
@@ -91,7 +78,7 @@ std::optional<std::string> PrivateFolder::read(const std::string& name, std::siz
   const auto size = static_cast<std::uintmax_t>(status.st_size);
   if (size > most_bytes || !who_else_writes(status).empty()) return {};
   std::string content(size, '\0');
-  if (!moved_all(::read, file.number(), content.data(), content.size())) return {};
+  if (system::read_at(file.number(), 0, content.size(), content.data()) < content.size()) return {};
   return content;
 }
 
@@ -100,7 +87,7 @@ bool PrivateFolder::write(const std::string& name, const std::string& content) c
   Descriptor file(::openat(descriptor_, unfinished.c_str(),
                            O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!file) return false;
-  const bool is_written = moved_all(::write, file.number(), content.data(), content.size());
+  const bool is_written = system::write_next(file.number(), content.data(), content.size());
   if (file.close() && is_written &&
       ::renameat(descriptor_, unfinished.c_str(), descriptor_, name.c_str()) == 0) {
     return true;

@@ -45,12 +45,8 @@ bool PrivateFolder::write(const std::string& name, const std::string& content) c
   const std::string file = folder_ + "/" + name, unfinished = system::temporary_path(file, "partial");
   const int descriptor = system::open_file(unfinished, system::Access::create);
   if (descriptor < 0) return false;  // another thread may be writing it
-  std::int64_t written = 1;
-  for (std::size_t done = 0; written > 0 && done < content.size();
-       done += static_cast<std::size_t>(written)) {
-    written = system::write_some(descriptor, content.data() + done, content.size() - done);
-  }
-  if (system::close_file(descriptor) && written > 0 && system::rename_file(unfinished, file)) return true;
+  const bool is_written = system::write_next(descriptor, content.data(), content.size());
+  if (system::close_file(descriptor) && is_written && system::rename_file(unfinished, file)) return true;
   system::remove_file(unfinished);
   return false;
 }

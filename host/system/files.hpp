@@ -2,6 +2,7 @@
 // and contents are bytes. What fails leaves its reason in errno.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,38 @@ std::int64_t read_some(int file, void* to, std::size_t bytes);
 std::int64_t write_some(int file, const void* data, std::size_t bytes);
 std::int64_t read_some_at(int file, std::uint64_t place, void* to, std::size_t bytes);
 std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std::size_t bytes);
+
+/// Calls `part(done)`, which reads or writes some of the bytes after those that are done, until all are or no
+/// more come. Returns how many are done; if not all, errno is the reason, or 0 if no more came.
+template <typename Part>
+std::size_t move_bytes(std::size_t bytes, const Part& part) {
+  std::size_t done = 0;
+  while (done < bytes) {
+    errno = 0;
+    const std::int64_t more = part(done);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) break;
+    done += static_cast<std::size_t>(more);
+  }
+  return done;
+}
+/// Whether all bytes were written to an open file, at a place of it or after the last ones.
+inline bool write_at(int file, std::uint64_t place, const void* data, std::size_t bytes) {
+  return bytes == move_bytes(bytes, [=](std::size_t done) {
+           return write_some_at(file, place + done, static_cast<const char*>(data) + done, bytes - done);
+         });
+}
+inline bool write_next(int file, const void* data, std::size_t bytes) {
+  return bytes == move_bytes(bytes, [=](std::size_t done) {
+           return write_some(file, static_cast<const char*>(data) + done, bytes - done);
+         });
+}
+/// Reads from a place of an open file. Returns how many bytes there are, as move_bytes.
+inline std::size_t read_at(int file, std::uint64_t place, std::size_t bytes, void* to) {
+  return move_bytes(bytes, [=](std::size_t done) {
+    return read_some_at(file, place + done, static_cast<char*>(to) + done, bytes - done);
+  });
+}
 
 /// Returns when what was written is on the disk.
 bool write_to_disk(int file);

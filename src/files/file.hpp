@@ -61,39 +61,6 @@ inline std::string shown_path(const std::string& path) {
   return path == "-" ? std::string("- (standard input)") : path;
 }
 
-/// Calls `part(done)`, which reads or writes some of the bytes after those that are done, until all are or no
-/// more come. Returns how many are done; if not all, errno is the reason, or 0 if no more came.
-template <typename Part>
-std::size_t move_bytes(std::size_t bytes, const Part& part) {
-  std::size_t done = 0;
-  while (done < bytes) {
-    errno = 0;
-    const std::int64_t more = part(done);
-    if (more < 0 && errno == EINTR) continue;
-    if (more <= 0) break;
-    done += static_cast<std::size_t>(more);
-  }
-  return done;
-}
-/// Whether all bytes were written to an open file, at a place of it or after the last ones.
-inline bool write_at(int descriptor, std::uint64_t place, const void* data, std::size_t bytes) {
-  return bytes == move_bytes(bytes, [=](std::size_t done) {
-           return system::write_some_at(descriptor, place + done, static_cast<const char*>(data) + done,
-                                        bytes - done);
-         });
-}
-inline bool write_next(int descriptor, const void* data, std::size_t bytes) {
-  return bytes == move_bytes(bytes, [=](std::size_t done) {
-           return system::write_some(descriptor, static_cast<const char*>(data) + done, bytes - done);
-         });
-}
-/// Reads from a place of an open file. Returns how many bytes there are, as move_bytes.
-inline std::size_t read_at(int descriptor, std::uint64_t place, std::size_t bytes, void* to) {
-  return move_bytes(bytes, [=](std::size_t done) {
-    return system::read_some_at(descriptor, place + done, static_cast<char*>(to) + done, bytes - done);
-  });
-}
-
 /// A file being read; "-" is standard input. Its beginning can be checked before the rest is read.
 /// Throws Error(input).
 class InputFile {
@@ -141,7 +108,7 @@ class InputFile {
   /// there are; fewer than `count` at the end.
   std::size_t read_next(char* to, std::size_t count) {
     if (ended_) return 0;
-    const std::size_t got = move_bytes(
+    const std::size_t got = system::move_bytes(
         count, [&](std::size_t done) { return system::read_some(descriptor_, to + done, count - done); });
     if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
     ended_ = got < count;
@@ -157,7 +124,7 @@ class InputFile {
       std::memcpy(to, bytes_.data() + begin, count);
       return;
     }
-    const std::size_t got = io::read_at(descriptor_, begin, count, to);
+    const std::size_t got = system::read_at(descriptor_, begin, count, to);
     if (got < count && errno != 0) fail(name_, "cannot be read: {}", system_reason(errno));
     if (got < count) {
       fail(name_, "ends after {} bytes, but had {} when it was opened: it became shorter while it was read",

@@ -99,17 +99,17 @@ void OutputFile::write(const void* data, std::size_t bytes) {
     if (buffer_.size() >= kFull) flush();
   } else {
     flush();
-    check_written(write_next(descriptor_, data, bytes));
+    check_written(system::write_next(descriptor_, data, bytes));
   }
 }
 
 void OutputFile::flush() {
-  check_written(write_next(descriptor_, buffer_.data(), buffer_.size()));
+  check_written(system::write_next(descriptor_, buffer_.data(), buffer_.size()));
   buffer_.clear();
 }
 
 void OutputFile::write_at(std::uint64_t place, const void* data, std::size_t bytes) {
-  check_written(io::write_at(descriptor_, place, data, bytes));
+  check_written(system::write_at(descriptor_, place, data, bytes));
 }
 
 void OutputFile::check_written(bool is_written) const {

@@ -45,12 +45,12 @@ void ScratchFile::append(const void* data, std::size_t bytes) {
 }
 
 void ScratchFile::write_at(std::uint64_t begin, const void* data, std::size_t bytes) {
-  if (io::write_at(descriptor_, begin, data, bytes)) return;
+  if (system::write_at(descriptor_, begin, data, bytes)) return;
   fail(folder_, "the scratch file cannot be written at byte {}: {}", begin, system_reason(errno));
 }
 
 void ScratchFile::read_at(std::uint64_t begin, std::size_t count, void* to) const {
-  if (io::read_at(descriptor_, begin, count, to) == count) return;
+  if (system::read_at(descriptor_, begin, count, to) == count) return;
   fail(folder_, "the scratch file of {} bytes cannot be read at byte {}: {}", size_, begin,
        errno != 0 ? system_reason(errno) : "it ends there");
 }
