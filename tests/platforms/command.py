@@ -10,6 +10,7 @@ import contextlib
 import os
 import pathlib
 import pty
+import signal
 import subprocess
 import tempfile
 import time
@@ -116,6 +117,7 @@ class Files(unittest.TestCase):
         process, terminal = pty.fork()
         if process == 0:
             os.chdir(self.folder)
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # which programs in the background ignore
             os.execvp(self.command[0], [*self.command, "generate", "uniform", "100000000", "-o", "many.npy"])
         deadline = time.monotonic() + 60
         while len(self.names()) == 1 and time.monotonic() < deadline:
