@@ -140,8 +140,15 @@ record = pathlib.Path("bench/results/platforms.json")
 records = json.loads(record.read_text()) if record.exists() else {}
 outputs = (pathlib.Path(build) / "outputs.txt").read_bytes()
 fingerprint = (pathlib.Path(build) / "fingerprint.json").read_bytes()
+
+
+def output_of(*command):
+    return subprocess.check_output(command, text=True).strip()
+
+
+changed = output_of("git", "status", "--porcelain", "--untracked-files=no", "--", ".", f":!{record}")
 records[platform] = {
-    "commit": subprocess.check_output(["git", "describe", "--always", "--dirty", "--exclude=*"], text=True).strip(),
+    "commit": output_of("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changed else ""),
     "date": datetime.date.today().isoformat(),
     "test_programs_passed": int(tests),
     "results_of_the_library": outputs.count(b"\n"),
