@@ -9,6 +9,10 @@ foreach(NAME fmt boost CL CLI nlohmann fast_float)
     file(CREATE_LINK ${FLAUNAY_HEADERS_OF_SYSTEM}/${NAME} ${HEADER_LIBRARIES}/${NAME} SYMBOLIC)
   endif()
 endforeach()
+# Boost.Compute looks for them by the name that macOS has for them.
+if(CMAKE_SYSTEM_NAME STREQUAL "Darwin")
+  file(CREATE_LINK CL ${HEADER_LIBRARIES}/OpenCL SYMBOLIC)
+endif()
 
 function(flaunay_header_library FOLDER)
   if(NOT EXISTS ${HEADER_LIBRARIES}/${FOLDER})

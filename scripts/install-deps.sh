@@ -29,7 +29,7 @@ packages=(
 )
 
 if [[ ${1-} == --packages ]]; then
-  packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian musl
+  packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian llvm-14 musl
     qemu-user wine wine64)
 fi
 

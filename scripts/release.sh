@@ -2,8 +2,8 @@
 # Makes all files of a release that one machine can make, in build/release-files, with SHA256SUMS and a bill of
 # materials. The same commit gives the same bytes. It needs to be root where something is missing.
 #   scripts/release.sh
-# Wheels for macOS are made by .github/workflows/platforms.yml. The recipes for conda, Conan and vcpkg, in packaging,
-# build the source.
+# The wheel for macOS cannot be tested here: .github/workflows/platforms.yml is there for that. The recipes for conda,
+# Conan and vcpkg, in packaging, build the source.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -15,6 +15,7 @@ declare -A platforms=(
   [x86_64-linux-musl]=musllinux_1_2_x86_64
   [aarch64-linux-musl]=musllinux_1_2_aarch64
   [x86_64-windows-gnu]=win_amd64
+  [aarch64-macos.11.0]=macosx_11_0_arm64
 )
 what=wheels
 if [[ ${1-} == --sdist || ${1-} == --zig ]]; then
@@ -53,9 +54,15 @@ export SOURCE_DATE_EPOCH
 # It needs no other libraries than the system's, and no symbols of glibc that are newer than the target names.
 check_library() {
   local library="$1" glibc="${2##*-gnu.}" needed others newest
-  needed="$(objdump --private-headers "$library" | sed -nE 's/^\s*(DLL Name:|NEEDED) +//p')"
+  if [[ $library == *.dylib ]]; then
+    # With its own name.
+    needed="$(llvm-objdump-14 --macho --dylibs-used "$library" | sed -nE 's/^\s+(\S+) \(.*/\1/p')"
+  else
+    needed="$(objdump --private-headers "$library" | sed -nE 's/^\s*(DLL Name:|NEEDED) +//p')"
+  fi
   others="$(grep -vxE -e '(KERNEL32|SHELL32|api-ms-win-crt-[a-z0-9-]+)\.dll' \
-    -e '(libc|libm|libdl|libpthread|ld-linux-[a-z0-9-]+)\.so(\.[0-9]+)?' <<<"$needed" || true)"
+    -e '(libc|libm|libdl|libpthread|ld-linux-[a-z0-9-]+)\.so(\.[0-9]+)?' \
+    -e '(src/libflaunay|/usr/lib/libSystem\.B)\.dylib' <<<"$needed" || true)"
   newest="$(objdump --dynamic-syms "$library" 2>/dev/null | grep -oP 'GLIBC_\K[0-9.]+' |
     sort --version-sort | tail -n 1 || true)"
   if [[ -z $needed || -n $others ]] || ! printf '%s\n' "$newest" "$glibc" | sort --version-sort --check=quiet; then
@@ -81,7 +88,10 @@ for target in "${targets[@]}"; do
     -DFLAUNAY_COMMAND=OFF -DFLAUNAY_INSTALL=OFF
   cmake --build "$build" --target flaunay
   library="$PWD/$build/src/libflaunay.so"
-  if [[ $target == *windows* ]]; then library="${library%so}dll"; fi
+  case $target in
+    *windows*) library="${library%so}dll" ;;
+    *macos*) library="${library%so}dylib" ;;
+  esac
   check_library "$library" "$target"
   rm -rf "$build-dist"
   python -m build --wheel --no-isolation --outdir "$build-dist" \
