@@ -1712,6 +1712,46 @@ static void test_locator(void) {
   flaunay_triangulation_destroy(mesh);
 }
 
+// A square with a square hole, its corners four points more.
+static void test_queries_with_constraints(void) {
+  const double corners[] = {0, 0, 9, 0, 9, 9, 0, 9, 3, 3, 6, 3, 6, 6, 3, 6};
+  const int32_t rings[] = {0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4};
+  const flaunay_constraints constraints = {
+      .segments = rings, .segment_count = 8, .outside = FLAUNAY_OUTSIDE_HOLES};
+  const flaunay_options options = {.parts = FLAUNAY_PART_NEIGHBORS};
+  flaunay_constrained* result = NULL;
+  REQUIRE(flaunay_triangulate_constrained(triangulator, corners, 8, NULL, 1, &constraints, &options,
+                                          &result) == FLAUNAY_SUCCESS);
+  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  flaunay_triangulation* copy = NULL;
+  REQUIRE(flaunay_triangulation_create(8, mesh->triangles, mesh->triangle_count, mesh->neighbors, mesh->hull,
+                                       mesh->hull_count, mesh->representatives, &copy) == FLAUNAY_SUCCESS);
+  const uint8_t* constrained = flaunay_constrained_get_arrays(result)->constrained;
+  flaunay_locator* locator = NULL;
+  REQUIRE(flaunay_locator_create_constrained(triangulator, corners, 8, copy, constrained, &locator) ==
+          FLAUNAY_SUCCESS);
+  const double queries[] = {4.5, 4.5, 1, 1, 6, 4, 12, 1};
+  int32_t triangles[4], nearest[4];
+  double heights[4], values[8];
+  for (int i = 0; i < 8; ++i) values[i] = 2 * corners[2 * i] + corners[2 * i + 1];
+  CHECK(flaunay_locator_locate(locator, queries, 4, NULL, 1, triangles) == FLAUNAY_SUCCESS);
+  CHECK(triangles[0] == -1 && triangles[1] >= 0 && triangles[2] >= 0 && triangles[3] == -1);
+  CHECK(flaunay_locator_nearest(locator, queries, 4, NULL, 1, nearest) == FLAUNAY_SUCCESS);
+  CHECK(nearest[0] == 4 && nearest[1] == 0 && nearest[2] == 5 && nearest[3] == 1);
+  const flaunay_interpolation_options sibson = {.method = FLAUNAY_INTERPOLATION_SIBSON};
+  CHECK(flaunay_locator_interpolate_with(locator, values, queries, 4, NULL, 1, &sibson, heights) ==
+        FLAUNAY_SUCCESS);
+  CHECK(isnan(heights[0]) && fabs(heights[1] - 3) < 1e-9 && fabs(heights[2] - 16) < 1e-9 &&
+        isnan(heights[3]));
+  flaunay_locator_destroy(locator);
+  CHECK(fails(flaunay_locator_create_constrained(triangulator, corners, 8, copy, NULL, &locator),
+              FLAUNAY_ERROR_USAGE, "constrained"));
+  CHECK(fails(flaunay_locator_create_constrained(triangulator, corners, 7, copy, constrained, &locator),
+              FLAUNAY_ERROR_USAGE, "points"));
+  flaunay_triangulation_destroy(copy);
+  flaunay_constrained_destroy(result);
+}
+
 static void test_derived_on_device(void) {
   flaunay_triangulation* mesh = NULL;
   REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
@@ -2515,6 +2555,7 @@ static void test_all(void) {
   test_bad_dynamic();
   test_relax();
   test_locator();
+  test_queries_with_constraints();
   test_derived_on_device();
   test_relax_on_device();
   test_chunks_in_arrays();

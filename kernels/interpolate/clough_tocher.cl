@@ -64,11 +64,12 @@ static inline double clough_tocher(const double2* p, const double* value, const 
          w * w * (3.0 * (u * near_centre[a] + v * near_centre[b]) + w * centre);
 }
 
-// n queries in order of places; found: their triangles, less than 0 outside of the hull. gradients: rows by vertex, in
-// the units of `points`.
-kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, double outside, filter_bound bound, FACES(),
-                                      global const int* restrict found, global const double* restrict values,
-                                      global const double2* restrict gradients, global double* restrict results) {
+// n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
+// outside, too. gradients: rows by vertex, in the units of `points`.
+kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, double outside, filter_bound bound,
+                                      int kept, FACES(), global const int* restrict found,
+                                      global const double* restrict values, global const double2* restrict gradients,
+                                      global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;
@@ -82,7 +83,7 @@ kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, doub
       barycentric(p, placed[i], bound, weight);
       for (int k = 0; k < 3; ++k) {
         across[k] = -0.5;
-        if (f.neighbor[k] >= 0) {
+        if (f.neighbor[k] >= 0 && f.neighbor[k] < kept) {
           const face beyond = faces[f.neighbor[k]];
           int apex = 0;
           while (apex < 2 && beyond.neighbor[apex] != found[i]) ++apex;

@@ -43,8 +43,22 @@ FETCHING void fetch_star(int v, int last, global const double2* points, global c
 #endif
 }
 
-// n: points, of which the first so many are vertices as vertices[0] says. The others have no edges.
-kernel void count_edges(int n, global const int* restrict vertices, global const double2* restrict points,
+// As star_next, over the edges of the first `kept` triangles.
+static inline int next_kept(star_walk* walk, int kept, global const face* faces) {
+  for (;;) {
+    const int from = walk->triangle, was_back = walk->is_back;
+    if (!star_next(walk, faces)) return 0;
+    if (from < kept) return 1;
+    const face f = faces[from];
+    const int at = corner_of(f, walk->vertex);
+    const int beyond = f.neighbor[was_back ? corner_before(at) : next_corner(at)];
+    if (beyond >= 0 && beyond < kept) return 1;
+  }
+}
+
+// n: points, of which the first so many are vertices as vertices[0] says. The others have no edges. kept: the triangles
+// that have edges; others fill the mesh.
+kernel void count_edges(int n, int kept, global const int* restrict vertices, global const double2* restrict points,
                         global const face* restrict faces, global const int* restrict first_triangle,
                         global uint* restrict counts) {
   const int v = get_global_id(0);
@@ -53,7 +67,7 @@ kernel void count_edges(int n, global const int* restrict vertices, global const
     if (v < *vertices) {
       fetch_star(v + VERTICES_AHEAD, *vertices - 1, points, faces, first_triangle);
       star_walk walk = star_begin(v, first_triangle[v]);
-      while (star_next(&walk, faces)) ++count;
+      while (next_kept(&walk, kept, faces)) ++count;
     }
     counts[v] = count;
   }
@@ -76,10 +90,11 @@ static inline void invert_block(double xx, double xy, double yy, global double* 
 
 // room: no edge is written there or behind; there are more only if the mesh is none. weights: 1 / L^3, relative to 1 /
 // L of the vertex' shortest edge, which keeps them in range.
-kernel void write_edges(int n, int room, global const int* restrict vertices, global const uint* restrict firsts,
-                        global const double2* restrict points, global const face* restrict faces,
-                        global const int* restrict first_triangle, global int* restrict neighbors,
-                        global double* restrict weights, global double* restrict inverses) {
+kernel void write_edges(int n, int kept, int room, global const int* restrict vertices,
+                        global const uint* restrict firsts, global const double2* restrict points,
+                        global const face* restrict faces, global const int* restrict first_triangle,
+                        global int* restrict neighbors, global double* restrict weights,
+                        global double* restrict inverses) {
   const int v = get_global_id(0);
   if (v < n && v < *vertices) {
     fetch_star(v + VERTICES_AHEAD, *vertices - 1, points, faces, first_triangle);
@@ -87,7 +102,7 @@ kernel void write_edges(int n, int room, global const int* restrict vertices, gl
     const int first = min((int)firsts[v], room), last = min((int)firsts[v + 1], room);
     star_walk walk = star_begin(v, first_triangle[v]);
     double least = 0.0;
-    for (int i = first; i < last && star_next(&walk, faces); ++i) {
+    for (int i = first; i < last && next_kept(&walk, kept, faces); ++i) {
       const double2 edge = points[walk.neighbor] - at;
       const double squared = edge.x * edge.x + edge.y * edge.y;
       neighbors[i] = walk.neighbor;

@@ -17,7 +17,8 @@
 //    the tree at the same time. Then each walks from triangle to triangle, over any edge that has the query strictly
 //    beyond it: a visibility walk (Devillers, Pion and Teillaud, "Walking in a triangulation", 2002). In a Delaunay
 //    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
-//    falls with each step, except within a cocircular polygon, whose triangles form a tree.
+//    falls with each step, except within a cocircular polygon, whose triangles form a tree. In a mesh with constraints
+//    it may circle: find_in_constrained follows with straight walks for queries that took too many steps.
 // 2. nearest_points continues from these triangles, with one work-item per query, and so do the kernels that
 // interpolate
 //    (interpolate/). Where a walk to the nearest vertex takes long, nearest_points searches through levels
@@ -382,6 +383,117 @@ kernel void find_triangles(int n, int chunk, int sets, walk_options options, glo
       }
       begin = end;
     }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Walking straight
+
+// The triangle that q lies in, as of walk, of a mesh that is convex. From a corner of triangle `start` the walk goes
+// over the edges that the line to q crosses, and begins anew at each vertex on it, which is nearer to q; so it ends in
+// any triangulation.
+static inline int walk_straight(coordinate2 q, int start, filter_bound bound, coordinate unit,
+                                global const coordinate2* points, global const face* faces,
+                                global const int* first_triangle) {
+  // Triangle t, of which the walk is at corner k, v.
+  int t = start, k = 0;
+  face f = faces[t];
+  for (;;) {
+    const int vertex = f.corner[k], first = t;
+    const coordinate2 v = in_frame(points[vertex], unit);
+    if (v.x == q.x && v.y == q.y) return first_triangle[vertex];
+    // Around v to the triangle whose angle there has q in it, with a on the right and b on the left.
+    coordinate2 a, b;
+    int va, bv, is_back = 0;
+    for (;;) {
+      a = in_frame(points[f.corner[next_corner(k)]], unit);
+      b = in_frame(points[f.corner[corner_before(k)]], unit);
+      va = orient_sign(v, a, q, bound);
+      bv = orient_sign(b, v, q, bound);
+      if (va >= 0 && bv >= 0) break;
+      int beside = f.neighbor[is_back ? corner_before(k) : next_corner(k)];
+      if (beside < 0 && !is_back) {
+        is_back = 1;
+        f = faces[first];
+        beside = f.neighbor[corner_before(corner_at(f, vertex))];
+      }
+      if (beside < 0 || beside == first) return ~t;
+      t = beside;
+      f = faces[t];
+      k = corner_at(f, vertex);
+    }
+    const int ab = orient_sign(a, b, q, bound);
+    if (ab >= 0) {
+      if (va != 0 && bv != 0 && ab != 0) return t;
+      if (ab == 0 && va == 0) return first_triangle[f.corner[next_corner(k)]];
+      if (ab == 0 && bv == 0) return first_triangle[f.corner[corner_before(k)]];
+      const int beyond = f.neighbor[ab == 0 ? k : va == 0 ? corner_before(k) : next_corner(k)];
+      return beyond < 0 ? t : min(t, beyond);
+    }
+    if (va == 0 || bv == 0) {
+      k = va == 0 ? next_corner(k) : corner_before(k);
+      continue;
+    }
+    // Over the edge from a to b, opposite to corner k, which has q strictly beyond it.
+    for (;;) {
+      const int u = f.neighbor[k];
+      if (u < 0) return ~t;
+      f = faces[u];
+      k = corner_opposite(f, t);
+      t = u;
+      const coordinate2 d = in_frame(points[f.corner[k]], unit);
+      const int ad = orient_sign(a, d, q, bound), db = orient_sign(d, b, q, bound);
+      if (ad >= 0 && db >= 0) {
+        if (ad != 0 && db != 0) return t;
+        if (ad == 0 && db == 0) return first_triangle[f.corner[k]];
+        const int beyond = f.neighbor[ad == 0 ? next_corner(k) : corner_before(k)];
+        return beyond < 0 ? t : min(t, beyond);
+      }
+      const int side = orient_sign(v, q, d, bound);
+      if (side == 0) break;
+      if (side > 0) {
+        b = d;
+        k = next_corner(k);
+      } else {
+        a = d;
+        k = corner_before(k);
+      }
+    }
+  }
+}
+
+// Of a mesh with constraints, which has one set: ends walks that find_triangles gave up. Triangles from `kept` on fill
+// the mesh up to the convex hull, and queries in them are outside. found: by place; answers: by query, if is_answer.
+kernel void find_in_constrained(int n, PLACED_QUERIES(), int kept, int is_answer, QUERY_TREES(),
+                                global const coordinate* restrict queries, filter_bound bound, WALKED_MESH(),
+                                global int* restrict found, global int* restrict answers) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    int at = found[i];
+    if (at == GIVEN_UP) {
+      const mesh_set set = records[0];
+      int leaf[DESCENTS];
+      leaves_of_queries(order[i], order[i] + 1, queries, frames[0], nodes + set.nodes, set.depth, leaf);
+      const int start = set.depth > 0 ? starts[set.starts + leaf[0]] : set.starts;
+      at = walk_straight(placed[i], start, bound, frames[0].unit, points, faces, first_triangle);
+    }
+    at = at < kept ? max(at, -1) : -1;
+    found[i] = at;
+    if (is_answer) answers[order[i]] = at;
+  }
+}
+
+// The faces of the first n triangles without the neighbours that a constraint or the border is between. constrained: by
+// corner.
+kernel void cut_faces(int n, global const uchar* restrict constrained, global const face* restrict faces,
+                      global face* restrict visible) {
+  const int t = get_global_id(0);
+  if (t < n) {
+    face f = faces[t];
+    for (int k = 0; k < 3; ++k) {
+      if (constrained[3 * t + k] || f.neighbor[k] >= n) f.neighbor[k] = -1;
+    }
+    visible[t] = f;
   }
 }
 

@@ -39,6 +39,19 @@ class Triangles(Protocol):
     def simplices(self) -> Indices: ...
 
 
+class Searched(Protocol):
+    """What queries need of a mesh."""
+
+    @property
+    def simplices(self) -> Indices: ...
+    @property
+    def neighbors(self) -> Indices: ...
+    @property
+    def hull(self) -> Indices: ...
+    @property
+    def _stand_ins(self) -> tuple[FloatArray, Indices]: ...
+
+
 class Mesh(Triangles, Protocol):
     """A Delaunay triangulation, as functions below its class see it."""
 

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _declarations, _library
-from flaunay._arrays import FloatArray, Mesh, names_of
+from flaunay._arrays import FloatArray, Mesh, Searched, names_of
 from flaunay._declarations import INDEX_TYPE, PART, PRECISION
 from flaunay._errors import UsageError
 from flaunay._library import DeviceHandle, Handle, check, library, text_of
@@ -1121,7 +1121,7 @@ def triangulate_chunks(
 # ---- Voronoi diagrams and queries
 
 
-def _triangulation_of(mesh: Mesh) -> tuple[_Doubles, int, _Triangulation]:
+def _triangulation_of(mesh: Searched) -> tuple[_Doubles, int, _Triangulation]:
     """The points of a mesh, how many there are, and what the library knows of it."""
     given, representatives = mesh._stand_ins
     points = np.ascontiguousarray(given, _FLOAT64)
@@ -1201,9 +1201,22 @@ class _Locator(_InTurns):
 class Locator(_Locator):
     """Answers queries on a triangulation."""
 
-    def __init__(self, triangulator: Triangulator, mesh: Mesh) -> None:
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        mesh: Searched,
+        constrained: Optional[npt.NDArray[np.bool_]] = None,
+    ) -> None:
+        """constrained: of a mesh with constraints, for each corner whether the edge opposite to it is one."""
         super().__init__(triangulator)
         points, self._point_count, primal = _triangulation_of(mesh)
+        if constrained is not None:
+            triangulator.call(
+                library.locator_create_constrained,
+                *(triangulator.pointer, points, self._point_count, primal.pointer),
+                *(np.ascontiguousarray(constrained, np.bool_), self.place),
+            )
+            return
         triangulator.call(
             library.locator_create,
             *(triangulator.pointer, points, self._point_count, None, 0, primal.pointer, self.place),

@@ -16,6 +16,7 @@ from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
+from flaunay._queries import KeptLocator, Queries
 from flaunay._refinement import RefinementReport, Refining, as_refinement
 from flaunay._triangulation import Triangulation
 
@@ -28,7 +29,7 @@ Doubles = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstrainedTriangulation(Triangulation):
+class ConstrainedTriangulation(Queries, Triangulation):
     """Triangulations with segments as edges: `triangulate` makes them if there are segments.
 
     Every edge that is no constraint is locally Delaunay, and of cocircular points the triangles are
@@ -77,11 +78,13 @@ class ConstrainedTriangulation(Triangulation):
 
     Notes
     -----
-    `Voronoi`, the interpolators and other queries need a Delaunay triangulation, and raise `UsageError` for
-    this one: a walk may not end in it, and its dual is no Voronoi diagram. The nearest point has nothing
-    to do with segments, so ``flaunay.Delaunay(result.points).nearest`` finds it. To locate and interpolate
-    in floating point, ``result.to_matplotlib()`` has ``get_trifinder()``, and there is
-    `matplotlib.tri.LinearTriInterpolator`.
+    `find_simplex` finds the triangle of a point, which has its ``regions`` and its ``polygon_of``; -1 where there is
+    no triangle, as in holes. `nearest` finds the nearest of all `points`, whatever is between. The interpolators take
+    the triangulation in place of points, with a value for each of `points`, those that were added too. Linear
+    interpolation is that in the triangles, and `CloughTocherInterpolator` is smooth across segments. The natural
+    neighbours of a place are the points that it sees: weights are those in Seidel's extended Voronoi diagram (1988),
+    so segments are creases, on which the result is linear between the ends of an edge. All of these need one set,
+    such as a map of polygons. `Voronoi` needs a Delaunay triangulation.
     """
 
     areas: Doubles
@@ -312,26 +315,69 @@ class ConstrainedTriangulation(Triangulation):
         shapely.geometrycollections(shapes, indices=owners.astype(np.intp), out=collections)
         return collections
 
-    def find_simplex(self, xi: object = None, *_: object, **__: object) -> Indices:
-        """Raises UsageError: only in a Delaunay triangulation do exact walks always end."""
-        raise UsageError(
-            "find_simplex needs a Delaunay triangulation; in one with constraints, "
-            "to_matplotlib().get_trifinder() finds triangles, in floating point"
+    @property
+    def npoints(self) -> int:
+        """The number of points, with those that were added."""
+        return len(self.points)
+
+    @property
+    def nsimplex(self) -> int:
+        """The number of triangles."""
+        return len(self.triangles)
+
+    @cached_property
+    def _kept_locator(self) -> KeptLocator:
+        return KeptLocator()
+
+    @property
+    def _locator(self) -> _calls.Locator:
+        return self._kept_locator.get(self._make_locator)
+
+    def _make_locator(self) -> _calls.Locator:
+        if len(self.hull_offsets) != 2:
+            raise UsageError(
+                "queries in a triangulation with constraints need one set; polygons are one with map=True"
+            )
+        return _calls.Locator(
+            _triangulators.of_device(None),
+            _Searched(self.points, self.triangles, self._neighbors, self.hull, self.representatives),
+            self.constrained,
         )
 
-    def interpolate(self, values: object = None, *_: object, **__: object) -> Doubles:
-        """Raises UsageError, as `find_simplex`."""
-        raise UsageError(
-            "interpolate needs a Delaunay triangulation; in one with constraints, there is "
-            "matplotlib.tri.LinearTriInterpolator(result.to_matplotlib(), values)"
-        )
+    @property
+    def _neighbors(self) -> Indices:
+        return neighbors_of(self.triangles) if self.neighbors is None else self.neighbors
 
-    def nearest(self, xi: object = None, *_: object, **__: object) -> Indices:
-        """Raises UsageError: constraints do not change which point is nearest."""
-        raise UsageError(
-            "constraints do not change which point is nearest: "
-            "flaunay.Delaunay(result.points).nearest finds it"
-        )
+    def _near_hull(self, outside: Doubles, tol: float) -> Indices:
+        raise UsageError("with constraints, find_simplex is exact: it takes no tol")
+
+
+@dataclass(frozen=True)
+class _Searched:
+    """What a locator is made from."""
+
+    points: Doubles
+    simplices: Indices
+    neighbors: Indices
+    hull: Indices
+    representatives: Indices
+
+    @property
+    def _stand_ins(self) -> tuple[Doubles, Indices]:
+        return self.points, self.representatives
+
+
+def neighbors_of(triangles: Indices) -> Indices:
+    """The triangle opposite to each corner, or -1."""
+    corners = triangles.astype(np.int64)
+    here, back = (np.roll(corners, -k, axis=1).ravel() for k in (1, 2))
+    n = corners.max(initial=0) + 1
+    keys, wanted = here * n + back, back * n + here
+    order = np.argsort(keys)
+    places = np.searchsorted(keys[order], wanted).clip(max=max(0, len(keys) - 1))
+    found = order[places] if len(keys) else places
+    beyond = np.where(keys[found] == wanted, found // 3, -1) if len(keys) else found
+    return beyond.astype(np.int32).reshape(-1, 3)
 
 
 def number_of(names: Mapping[str, int], given: object, name: str) -> int:

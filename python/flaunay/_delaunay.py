@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import os
-import threading
 from collections.abc import Callable
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Optional, TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +23,7 @@ from flaunay._arrays import (
 from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
 from flaunay._plot import draw_edges
+from flaunay._queries import KeptLocator, Queries, as_queries
 from flaunay._triangulation import Triangulation, arrays_of_mesh
 
 if TYPE_CHECKING:
@@ -35,10 +33,6 @@ if TYPE_CHECKING:
 
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
-_Answers = TypeVar("_Answers", Indices, Doubles)
-
-# Of values and of results in a call that interpolates: 512 MiB of each.
-_MOST_NUMBERS = 1 << 26
 
 
 def _check_points(indices: Indices, n: int, name: str) -> None:
@@ -50,44 +44,7 @@ def _check_points(indices: Indices, n: int, name: str) -> None:
         raise UsageError(f"{name} were changed: {indices[wrong[0]]} is none of the {n} points")
 
 
-def _as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
-    """Points one after the other, and the shape in which there were as many."""
-    queries = as_floats(xi, "xi")
-    if queries.ndim == 0 or queries.shape[-1] != 2:
-        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
-    return np.asarray(queries, np.float64).reshape(-1, 2), queries.shape[:-1]
-
-
-def _are_finite(queries: Doubles) -> npt.NDArray[np.bool_]:
-    are_finite: npt.NDArray[np.bool_] = np.isfinite(queries[:, 0]) & np.isfinite(queries[:, 1])
-    return are_finite
-
-
-def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any) -> _Answers:
-    """What is asked about queries, and `nowhere` for those that are not finite.
-
-    Those are looked for only when the library has found one, so that others need not wait for it.
-    """
-    try:
-        return ask(queries)
-    except InputError:
-        finite = _are_finite(queries)
-        if finite.all():
-            raise
-    answers = ask(np.where(finite[:, None], queries, 0))
-    answers[~finite] = nowhere
-    return answers
-
-
-def _given(answers: _Answers, out: Optional[_Answers]) -> _Answers:
-    """The answers, in the caller's array if there is one."""
-    if out is None:
-        return answers
-    out[...] = answers
-    return out
-
-
-class Delaunay:
+class Delaunay(Queries):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one
@@ -190,10 +147,7 @@ class Delaunay:
         all_must_be_vertices = _scipy.check_options(furthest_site, qhull_options)
         self._device = device
         self._living: Optional[DynamicTriangulation] = None
-        # With the process that made it.
-        self._locator_or_none: Optional[tuple[_calls.Locator, int]] = None
-        # Two threads that ask at the same time should not both make a locator.
-        self._locator_lock = threading.Lock()
+        self._kept_locator = KeptLocator()
         if incremental:
             if mode != "blocks":
                 raise UsageError(f"mode {mode!r} cannot be incremental; mode 'blocks' can")
@@ -386,7 +340,7 @@ class Delaunay:
         >>> tri.lift_points([[0, 11]]).round(12)
         array([[ 0., 11., 11.]])
         """
-        points, shape = _as_queries(x)
+        points, shape = as_queries(x)
         return _scipy.lifted(points, *self._paraboloid).reshape(*shape, 3)
 
     def plane_distance(self, xi: ArrayLike) -> Doubles:
@@ -402,7 +356,7 @@ class Delaunay:
         array([[ True],
                [False]])
         """
-        points, shape = _as_queries(xi)
+        points, shape = as_queries(xi)
         heights = _scipy.lifted(points, *self._paraboloid) @ self.equations[:, :3].T
         distances: Doubles = heights + self.equations[:, 3]
         return distances.reshape(*shape, self.nsimplex)
@@ -446,13 +400,7 @@ class Delaunay:
         """
         self._settle()
         self._living = None
-        self._drop_locator()
-
-    def _drop_locator(self) -> None:
-        with self._locator_lock:
-            if self._locator_or_none is not None and self._locator_or_none[1] != os.getpid():
-                _triangulators.keep(self._locator_or_none)
-            self._locator_or_none = None
+        self._kept_locator.drop()
 
     def _settle(self) -> None:
         """Reads what would need the living triangulation later on."""
@@ -465,7 +413,7 @@ class Delaunay:
         for name in list(self.__dict__):
             if isinstance(getattr(type(self), name, None), cached_property):
                 del self.__dict__[name]
-        self._drop_locator()
+        self._kept_locator.drop()
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> Optional[Changes]:
         """Adds points to an incremental triangulation, as SciPy does.
@@ -595,167 +543,19 @@ class Delaunay:
 
     @property
     def _locator(self) -> _calls.Locator:
-        cached = self._locator_or_none
-        if cached is not None and cached[1] == os.getpid():
-            return cached[0]
-        with self._locator_lock:
-            if self._locator_or_none is None or self._locator_or_none[1] != os.getpid():
-                # A forked child must not use its parent's device, not even to release memory.
-                _triangulators.keep(self._locator_or_none)
-                locator = _calls.Locator(_triangulators.of_device(self._device), self)
-                self._locator_or_none = locator, os.getpid()
-            return self._locator_or_none[0]
+        return self._kept_locator.get(self._make_locator)
+
+    def _make_locator(self) -> _calls.Locator:
+        return _calls.Locator(_triangulators.of_device(self._device), self)
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is in device memory is made again where it is needed; a lock and what lives are the object's own.
+        # What lives is the object's own, and what is in device memory is made again where it is needed.
         self._settle()
-        state = {**self.__dict__, "_locator_or_none": None, "_living": None}
-        del state["_locator_lock"]
-        return state
+        return {**self.__dict__, "_living": None, "_kept_locator": KeptLocator()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._locator_lock = threading.Lock()
         freeze_all(state)
 
-    def find_simplex(
-        self,
-        xi: ArrayLike,
-        bruteforce: bool = False,
-        tol: Optional[float] = None,
-        out: Optional[Indices] = None,
-    ) -> Indices:
-        """The simplices that points lie in, exactly.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Any points.
-        bruteforce : bool
-            Changes nothing: SciPy's other search finds nothing else here.
-        tol : float, optional
-            By how much the barycentric coordinates of a point outside of the hull may be negative in a
-            simplex at the hull. Without it nothing: `find_simplex` is exact, where SciPy has ``100 * eps``.
-        out : ndarray of int32, shape (...), optional
-            Where to write the result, by a copy.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            For each the simplex that it lies in, of several the one of the smallest index; -1 outside
-            of the hull, where NaN and infinite points are too.
-
-        Raises
-        ------
-        UsageError
-            For a wrong shape, what is no number, and a tolerance that is negative or NaN.
-        InputError
-            For a point of a magnitude too different from the triangulation's.
-
-        Notes
-        -----
-        About O(log n) work for each. The first query of any kind makes a tree, in O(n log n).
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.find_simplex([[1, 1], [3, 3]])
-        array([ 0, -1], dtype=int32)
-        """
-        if tol is not None and not tol >= 0:
-            raise UsageError(f"tol must be 0 or more, not {tol}")
-        queries, shape = _as_queries(xi)
-        if out is not None:
-            check_out(out, np.int32, shape, "out")
-        found = _answers(self._locator.locate, queries, -1)
-        if tol and self.nsimplex:
-            outside = np.flatnonzero((found < 0) & _are_finite(queries))
-            found[outside] = _scipy.simplices_near_hull(self, queries[outside], tol)
-        return _given(found.reshape(shape), out)
-
-    def nearest(self, xi: ArrayLike, out: Optional[Indices] = None) -> Indices:
-        """The points of the triangulation that are nearest to others, exactly.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Any points.
-        out : ndarray of int32, shape (...), optional
-            Where to write the result, by a copy.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            For each the index of the nearest point, of several the first in the order of x, then y;
-            -1 if the triangulation has no points, and for NaN and infinite points, to which none is nearest.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.nearest([[3, 0], [100, 3]])
-        array([1, 1], dtype=int32)
-        """
-        queries, shape = _as_queries(xi)
-        if out is not None:
-            check_out(out, np.int32, shape, "out")
-        if len(self.hull):
-            found = _answers(self._locator.nearest, queries, -1)
-        else:
-            found = np.full(len(queries), -1, np.int32)
-        return _given(found.reshape(shape), out)
-
-    def interpolate(
-        self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None
-    ) -> Doubles:
-        """Linear interpolation in the simplices, as `scipy.interpolate.LinearNDInterpolator`.
-
-        Parameters
-        ----------
-        values : array_like, shape (npoints, ...)
-            What the points have. Of equal points, the one of the smallest index counts.
-        xi : array_like, shape (..., 2)
-            Where to interpolate.
-        out : ndarray of float64, shape xi.shape[:-1] + values.shape[1:], optional
-            Where to write the result, by a copy.
-
-        Returns
-        -------
-        ndarray of float64, shape xi.shape[:-1] + values.shape[1:]
-            NaN outside of the hull and for NaN and infinite points; at a point exactly its value.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`, and for another number of values than of points.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-        >>> tri.interpolate([0, 8, 4], [[1, 1], [9, 9]])
-        array([ 3., nan])
-        """
-        queries, shape = _as_queries(xi)
-        given = np.asarray(as_floats(values, "values"), np.float64)
-        if given.ndim == 0 or len(given) != self.npoints:
-            raise UsageError(
-                f"values must have the shape ({self.npoints}, ...), not {given.shape}: one for each point"
-            )
-        trailing = given.shape[1:]
-        if out is not None:
-            check_out(out, np.float64, shape + trailing, "out")
-        rows = given.reshape(self.npoints, math.prod(trailing))
-        result = np.empty((len(queries), rows.shape[1]))
-        # Each call locates the queries, so that it takes all columns for which a device may have memory.
-        step = max(1, _MOST_NUMBERS // max(1, len(queries), len(rows)))
-        for k in range(0, rows.shape[1], step):
-            ask = partial(self._locator.interpolate, rows[:, k : k + step], "linear", np.nan)
-            result[:, k : k + step] = _answers(ask, queries, np.nan)
-        return _given(result.reshape(shape + trailing), out)
+    def _near_hull(self, outside: Doubles, tol: float) -> Indices:
+        return _scipy.simplices_near_hull(self, outside, tol)

@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_masked
+from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 
 Doubles = npt.NDArray[np.float64]
-Points = Union[npt.ArrayLike, Delaunay]
+Points = Union[npt.ArrayLike, Delaunay, ConstrainedTriangulation]
 
 # Of the tolerances of gradients; each iteration multiplies their error by this.
 _RATE = 2 - 3**0.5
@@ -95,7 +96,8 @@ class _Interpolator(Fixed):
     _data: tuple[npt.NDArray[Any], Any, Any]
 
     def __init__(self, points: Points, rescale: bool, device: Optional[str]) -> None:
-        if isinstance(points, Delaunay):
+        self.tri: Union[Delaunay, ConstrainedTriangulation]
+        if isinstance(points, (Delaunay, ConstrainedTriangulation)):
             if rescale:
                 raise UsageError("rescale needs points, not their triangulation")
             self.tri = points
@@ -226,8 +228,9 @@ class LinearInterpolator(_Columns):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2), or Delaunay
-        Where values are known, or the triangulation of these points. A tuple of x and y is taken too.
+    points : array_like, shape (npoints, 2), Delaunay, or ConstrainedTriangulation
+        Where values are known, or the triangulation of these points. A tuple of x and y is taken too. With
+        constraints, see the notes of `ConstrainedTriangulation`.
     values : array_like, shape (npoints, ...)
         What the points have, real or complex. Of equal points, the one of the smallest index counts.
     fill_value : float or complex, optional

@@ -500,39 +500,3 @@ def test_calls_for_points_say_that_a_result_has_them(call):
     mesh = flaunay.triangulate(SQUARE, [[1, 3]])
     with pytest.raises(flaunay.UsageError, match="not one with constraints.*`points` has them"):
         call(mesh)
-
-
-@pytest.mark.parametrize(
-    "interpolator",
-    [
-        flaunay.LinearInterpolator,
-        flaunay.NearestInterpolator,
-        flaunay.CloughTocherInterpolator,
-        flaunay.NaturalNeighborInterpolator,
-    ],
-)
-def test_interpolators_refuse_it(interpolator):
-    mesh = flaunay.triangulate(SQUARE, [[1, 3]])
-    with pytest.raises(flaunay.UsageError, match="a flaunay.Delaunay, not another triangulation"):
-        interpolator(mesh, [0, 1, 2, 3])
-
-
-def test_queries_name_what_answers_them():
-    mesh = flaunay.triangulate(SQUARE, [[1, 3]])
-    for call, hint in {
-        lambda: mesh.find_simplex([[0, 0]]): "get_trifinder",
-        lambda: mesh.interpolate([0, 1, 2, 3], [[0, 0]]): "LinearTriInterpolator",
-        lambda: mesh.nearest([[0, 0]]): "Delaunay",
-    }.items():
-        with pytest.raises(flaunay.UsageError, match=hint):
-            call()
-
-
-def test_what_the_hints_say_works():
-    tri = pytest.importorskip("matplotlib.tri")
-    mesh = flaunay.triangulate(SQUARE, [[1, 3]])
-    found = mesh.to_matplotlib().get_trifinder()([0.2, 0.9], [0.3, 0.8])
-    assert [sorted(mesh.triangles[t]) for t in found] == [[0, 1, 3], [1, 2, 3]]
-    height = tri.LinearTriInterpolator(mesh.to_matplotlib(), [4, 0, 2, 0])
-    assert height(0.5, 0.5) == 0 and abs(height(0, 0) - 4) < 1e-12
-    assert flaunay.Delaunay(mesh.points).nearest([0.1, 0.2]) == 0

@@ -90,7 +90,7 @@ def test_columns_are_interpolated_together(
     expected = [tri.interpolate(column, queries) for column in values.reshape(-1, 24).T]
     calls = []
     ask = flaunay._calls.Locator.interpolate
-    monkeypatch.setattr(flaunay._delaunay, "_MOST_NUMBERS", most)
+    monkeypatch.setattr(flaunay._queries, "_MOST_NUMBERS", most)
     monkeypatch.setattr(
         flaunay._calls.Locator, "interpolate", lambda *all: calls.append(1) or ask(*all)
     )
@@ -250,7 +250,7 @@ def test_queries_after_pickling_and_copying(points, queries, copied):
     expected = tri.find_simplex(queries)
     for other in before, copied(tri), copied(copied(tri)):
         assert np.array_equal(other.find_simplex(queries), expected)
-        assert other._locator_lock is not tri._locator_lock
+        assert other._kept_locator._lock is not tri._kept_locator._lock
 
 
 @pytest.mark.parametrize("index", [-2, 800, 10**9, -(2**31), 2**31 - 1])

@@ -115,5 +115,5 @@ def test_two_threads_make_one_locator(random, monkeypatch):
 def test_queries_take_no_lock_once_there_is_a_locator(random):
     tri = flaunay.Delaunay(random.random((100, 2)))
     tri.nearest(tri.points)
-    with ThreadPoolExecutor(1) as pool, tri._locator_lock:
+    with ThreadPoolExecutor(1) as pool, tri._kept_locator._lock:
         assert np.array_equal(pool.submit(tri.nearest, tri.points).result(30), np.arange(100))

@@ -4,6 +4,7 @@
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.h"
 
 using namespace flaunay;
@@ -66,6 +67,23 @@ flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const 
     const Triangulation& searched = required(triangulation, "the triangulation").cpp;
     return std::make_unique<flaunay_locator>(
         flaunay_locator{Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched)});
+  });
+}
+
+flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangulator,
+                                                  const double* coordinates, size_t n,
+                                                  const flaunay_triangulation* triangulation,
+                                                  const uint8_t* constrained, flaunay_locator** locator) {
+  return create(locator, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    ConstrainedTriangulation searched;
+    static_cast<Triangulation&>(searched) = required(triangulation, "the triangulation").cpp;
+    const std::size_t corners = searched.triangles.size();
+    if (corners > 0) {
+      required(constrained, "the array of what is constrained");
+      searched.constrained.assign(constrained, constrained + corners);
+    }
+    return std::make_unique<flaunay_locator>(flaunay_locator{Locator(cpp, coordinates, n, searched)});
   });
 }
 

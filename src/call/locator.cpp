@@ -8,6 +8,8 @@
 
 #include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
+#include "call/triangulate.hpp"
+#include "call/whole_mesh.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/read_back.hpp"
@@ -30,6 +32,7 @@ struct Answerer {
     auto made = locate::make_locator(call.runtime, own, mesh, blocks::run);
     if (!made) return made.too_wide();
     locator = *std::move(made);
+    if (constrained) locate::constrain(call.runtime, own, *constrained, locator);
     call.end();
     return geometry::Done();
   }
@@ -43,6 +46,8 @@ struct Answerer {
   Place place;
   Arena own;
   locate::Locator locator;
+  /// Of a mesh with constraints: see WholeMesh.
+  std::shared_ptr<const std::vector<std::uint8_t>> constrained;
 };
 
 }  // namespace call
@@ -58,6 +63,7 @@ struct Locator::Implementation {
     const auto with_doubles = [&](const std::string&) {
       fixed.reset();
       doubles_ = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
+      doubles_->constrained = constrained;
       return make(*doubles_);
     };
     if (asked_.has_doubles()) {
@@ -65,7 +71,43 @@ struct Locator::Implementation {
       return;
     }
     fixed = std::make_unique<call::Answerer>(call::Place{asked_, &asked_});
+    fixed->constrained = constrained;
     call::in_fixed_point_or([&] { return make(*fixed); }, with_doubles);
+  }
+
+  /// Makes the locator of a mesh in host memory. It is the owner's turn.
+  void make_from(const double* coordinates, const std::vector<std::size_t>& offsets,
+                 const Triangulation& mesh) {
+    const call::HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
+    make_with([&](call::Answerer& by) {
+      call::Frame call(by.place.engine);
+      call.check_size(points.count);
+      return by.make(call, points, call::mesh_of(call, points, offsets, mesh));
+    });
+    point_count = points.count;
+  }
+
+  /// What answers queries for nearest points. For a mesh with constraints, which do not change what is
+  /// nearest, it is the locator of a triangulation without them, made when it is first needed.
+  Implementation& for_nearest() {
+    if (all_points.empty()) return *this;
+    if (!without_constraints_) {
+      call::take_turn(*owner, [&] {
+        const std::vector<std::size_t> offsets = {0, all_points.size() / 2};
+        Options options;
+        options.neighbors = true;
+        const Triangulation mesh =
+            call::triangulate(*owner, {all_points.data(), nullptr, offsets.back()}, offsets, options);
+        auto made = std::make_unique<Implementation>(owner, asked_);
+        made->make_from(all_points.data(), offsets, mesh);
+        without_constraints_ = std::move(made);
+      });
+    }
+    return *without_constraints_;
+  }
+
+  Implementation& for_method(Interpolation method) {
+    return method == Interpolation::nearest ? for_nearest() : *this;
   }
 
   /// The locator with doubles; made of the other one when it is first needed.
@@ -73,6 +115,7 @@ struct Locator::Implementation {
     if (!doubles_) {
       call::take_turn(*owner, [&] {
         auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
+        made->constrained = constrained;
         const call::Frame from(asked_);
         call::Frame call(made->place.engine);
         call.check_size(point_count);
@@ -230,9 +273,13 @@ struct Locator::Implementation {
   std::shared_ptr<Triangulator::Implementation> owner;
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
+  // Of a mesh with constraints, otherwise empty: all of its points, and WholeMesh::constrained.
+  std::vector<double> all_points{};
+  std::shared_ptr<const std::vector<std::uint8_t>> constrained{};
 
  private:
   call::Engine& asked_;  ///< one of the owner's
+  std::unique_ptr<Implementation> without_constraints_;
   std::unique_ptr<call::Answerer> doubles_;
 };
 
@@ -263,14 +310,19 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
+  call::take_turn(*self.owner, [&] { self.make_from(coordinates, offsets, triangulation); });
+}
+
+Locator::Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
+                 const ConstrainedTriangulation& triangulation)
+    : implementation_(make(triangulator, false)) {
+  Implementation& self = *implementation_;
+  call::WholeMesh whole =
+      with_errors([&] { return call::fill(triangulator, coordinates, n, triangulation); });
+  self.all_points = std::move(whole.coordinates);
+  self.constrained = std::make_shared<const std::vector<std::uint8_t>>(std::move(whole.constrained));
   call::take_turn(*self.owner, [&] {
-    const call::HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
-    self.make_with([&](call::Answerer& by) {
-      call::Frame call(by.place.engine);
-      call.check_size(points.count);
-      return by.make(call, points, call::mesh_of(call, points, offsets, triangulation));
-    });
-    self.point_count = offsets.back();
+    self.make_from(self.all_points.data(), {0, self.all_points.size() / 2}, whole.mesh);
   });
 }
 
@@ -314,14 +366,15 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->answer_with([&](call::Answerer& by) {
-    return implementation_->answer<std::int32_t>(by, queries, offsets, 1, kNearest);
-  });
+  Implementation& self = implementation_->for_nearest();
+  return self.answer_with(
+      [&](call::Answerer& by) { return self.answer<std::int32_t>(by, queries, offsets, 1, kNearest); });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
-  implementation_->answer_with([&](call::Answerer& by) {
-    return implementation_->answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
+  Implementation& self = implementation_->for_nearest();
+  self.answer_with([&](call::Answerer& by) {
+    return self.answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
   });
 }
 
@@ -350,19 +403,21 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
   const std::size_t numbers = implementation_->numbers(options.columns);
   if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
-  return *implementation_->answer<double>(implementation_->doubles(), queries, offsets, options.columns,
-                                          implementation_->interpolation(options, values, options.gradients));
+  Implementation& self = implementation_->for_method(options.method);
+  return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
+                              self.interpolation(options, values, options.gradients));
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
-  const auto work = implementation_->interpolation(options, values, options.device_gradients);
-  *implementation_->answer<cl_double>(
-      implementation_->doubles(), queries, {values, options.device_gradients}, results, options.columns,
-      "interpolated values", enqueue, [&](auto&&... all) {
-        call::expect(options.gradients == nullptr, "gradients in host memory of values in device memory");
-        return work(all...);
-      });
+  Implementation& self = implementation_->for_method(options.method);
+  const auto work = self.interpolation(options, values, options.device_gradients);
+  *self.answer<cl_double>(self.doubles(), queries, {values, options.device_gradients}, results,
+                          options.columns, "interpolated values", enqueue, [&](auto&&... all) {
+                            call::expect(options.gradients == nullptr,
+                                         "gradients in host memory of values in device memory");
+                            return work(all...);
+                          });
 }
 
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,

@@ -58,7 +58,8 @@ struct Tuning : host::Sizes {
   std::size_t levels_from = 1;
   /// How many vertices a vertex of the next level stands for; at least 2.
   std::size_t level_ratio = 2;
-  /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels.
+  /// A query looks at so many triangles on its way, and then at so many neighbours, before it needs levels;
+  /// in a mesh with constraints, before it walks straight.
   std::size_t walk_most = 1;
   /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call
   /// fails.

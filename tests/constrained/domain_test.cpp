@@ -447,6 +447,51 @@ std::size_t large() {
 }
 
 // Squares around each other, of which a third goes the other way around.
+// The answers of a locator, by exact signs of integers, with a point that splitting has added.
+TEST(Domains, Queries) {
+  const Coordinates points = {0, 0, 40, 0, 40, 40, 0, 40, 8, 8, 32, 32, 8, 32, 32, 8, 10, 20, 20, 34};
+  const Segments segments = {0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 6, 7, 4, 6, 6, 5, 5, 7, 7, 4};
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  const double hole[] = {30, 20};
+  constraints.holes = hole;
+  constraints.hole_count = 1;
+  ConstrainedOptions options;
+  options.crossings = Crossings::split;
+  options.neighbors = true;
+  Triangulator triangulator;
+  const ConstrainedTriangulation mesh =
+      triangulator.constrained(points.data(), points.size() / 2, constraints, options);
+  ASSERT_EQ(mesh.added_points, (Coordinates{20, 20}));
+  Coordinates all = points;
+  all.insert(all.end(), mesh.added_points.begin(), mesh.added_points.end());
+  Coordinates queries;
+  std::vector<std::int32_t> expected;
+  for (int x = -1; x <= 41; ++x) {
+    for (int y = -1; y <= 41; ++y) {
+      queries.insert(queries.end(), {static_cast<double>(x), static_cast<double>(y)});
+      std::int32_t first = -1;
+      for (std::size_t t = mesh.triangles.size() / 3; t-- > 0;) {
+        bool is_inside = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double* const a = &all[2 * static_cast<std::size_t>(mesh.triangles[3 * t + k])];
+          const double* const b = &all[2 * static_cast<std::size_t>(mesh.triangles[3 * t + (k + 1) % 3])];
+          is_inside &= (b[0] - a[0]) * (y - a[1]) >= (b[1] - a[1]) * (x - a[0]);
+        }
+        if (is_inside) first = static_cast<std::int32_t>(t);
+      }
+      expected.push_back(first);
+    }
+  }
+  Locator locator(triangulator, points.data(), points.size() / 2, mesh);
+  EXPECT_EQ(locator.locate(queries.data(), expected.size()), expected);
+  EXPECT_EQ(expected[43 * 31 + 21], -1);
+  const double middle[] = {21, 20};
+  EXPECT_EQ(locator.nearest(middle, 1), std::vector<std::int32_t>{10});
+  EXPECT_THROW(Locator(triangulator, all.data(), all.size() / 2, mesh), Error);
+}
+
 TEST(Domains, NestedRings) {
   const auto rings = static_cast<std::int32_t>(large() / 4);
   Case input;

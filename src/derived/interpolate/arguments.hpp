@@ -10,4 +10,11 @@ inline kernels::faces faces_of(const locate::Locator& locator) {
   return {.points = locator.points, .source = locator.source, .faces = locator.faces};
 }
 
+/// In a mesh with constraints, without what is beyond them.
+inline kernels::faces visible_faces_of(const locate::Locator& locator) {
+  return {.points = locator.points,
+          .source = locator.source,
+          .faces = locator.is_constrained ? locator.visible : locator.faces};
+}
+
 }  // namespace flaunay::interpolate

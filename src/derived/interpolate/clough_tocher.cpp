@@ -16,6 +16,7 @@ void clough_tocher(host::Runtime& runtime, const Locator& locator, const Table& 
                                                                     .columns = table.columns,
                                                                     .outside = table.outside,
                                                                     .bound = located.orient_bound,
+                                                                    .kept = locator.kept,
                                                                     .faces = faces_of(locator),
                                                                     .found = located.found,
                                                                     .values = table.values,

@@ -55,13 +55,15 @@ Edges find_edges(host::Runtime& runtime, const Locator& locator) {
   edges.weights = arena.allocate<cl_double>(edges.room);
   edges.inverses = arena.allocate<cl_double>(3 * n);
   runtime.copy(locator.first_vertices, locator.sets, edges.vertices, 0, 1);
-  runtime.map(n, kernels::count_edges{.vertices = edges.vertices,
+  runtime.map(n, kernels::count_edges{.kept = locator.kept,
+                                      .vertices = edges.vertices,
                                       .points = locator.points,
                                       .faces = locator.faces,
                                       .first_triangle = locator.first_triangle,
                                       .counts = edges.firsts});
   host::exclusive_scan(runtime, edges.firsts, n, edges.firsts);
-  runtime.map(n, kernels::write_edges{.room = edges.room,
+  runtime.map(n, kernels::write_edges{.kept = locator.kept,
+                                      .room = edges.room,
                                       .vertices = edges.vertices,
                                       .firsts = edges.firsts,
                                       .points = locator.points,

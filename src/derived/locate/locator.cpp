@@ -269,6 +269,27 @@ void find_triangles(host::Runtime& runtime, const Locator& locator, const Pass& 
           .found = found});
 }
 
+// Finds the triangle of each query in a mesh with constraints. found: by place. answers: by query, if there
+// are some.
+void find_in_constrained(host::Runtime& runtime, const Locator& locator, const Pass& pass,
+                         const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
+                         const Buffer<cl_int>* answers) {
+  // Visibility walks may circle; straight ones take longer per step.
+  const WalkLimits limits{0, tuning_of(runtime).walk_most};
+  find_triangles(runtime, locator, pass, false, limits, queries, m, found);
+  runtime.map(
+      m, kernels::find_in_constrained{
+             .placed_queries = pass,
+             .kept = locator.kept,
+             .is_answer = answers != nullptr,
+             .query_trees = {.records = locator.records, .nodes = locator.nodes, .starts = locator.starts},
+             .queries = queries,
+             .bound = pass.orient_bound,
+             .walked_mesh = locator,
+             .found = found,
+             .answers = answers != nullptr ? *answers : found});
+}
+
 // Goes on from triangles, by place, to those of queries off the grid. answers: by query.
 void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
@@ -384,11 +405,24 @@ Fitted<Locator> make_locator(host::Runtime& runtime, Arena& own, const DeviceMes
   if (!input) return input.too_wide();
   Locator locator = make_locator(runtime, own, mesh, *input, tuning_of(runtime).vertices_per_leaf);
   locator.triangulate = triangulate;
+  locator.kept = mesh.triangle_count();
   locator.range = {input->by_set, input->shifts};
   if (input->by_set.empty()) {
     locator.range.by_set = inspect_sets(runtime, mesh.coordinates, mesh.point_offsets);
   }
   return locator;
+}
+
+void constrain(host::Runtime& runtime, Arena& own, const std::vector<cl_uchar>& constrained,
+               Locator& locator) {
+  Arena::Scope scope(runtime.arena());
+  locator.is_constrained = true;
+  locator.kept = constrained.size() / 3;
+  locator.visible = own.allocate<kernel::face>(locator.kept);
+  runtime.map(locator.kept, kernels::cut_faces{.constrained = runtime.upload(runtime.arena(), constrained),
+                                               .faces = locator.faces,
+                                               .visible = locator.visible});
+  runtime.finish();
 }
 
 Locator make_walk_locator(host::Runtime& runtime, Arena& own, const DeviceMesh& mesh) {
@@ -411,6 +445,11 @@ Fitted<Done> locate(host::Runtime& runtime, const Locator& locator, const Buffer
   Arena::Scope scope(runtime.arena());
   const Fitted<Pass> pass = prepare(runtime, locator, queries, m, query_offsets);
   if (!pass) return pass.too_wide();
+  if (locator.is_constrained) {
+    if (pass->is_off_grid) return TooWide{pass->both};
+    find_in_constrained(runtime, locator, *pass, queries, m, runtime.arena().allocate<cl_int>(m), &triangles);
+    return Done();
+  }
   if (!pass->is_off_grid) {
     find_triangles(runtime, locator, *pass, true, kNoLimits, queries, m, triangles);
     return Done();
@@ -451,7 +490,11 @@ LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const std::vector<std::size_t>& query_offsets, const QueryLimits& limits) {
   Pass pass = *prepare(runtime, locator, queries, m, query_offsets, limits);
   pass.found = runtime.arena().allocate<cl_int>(m);
-  find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, pass.found);
+  if (locator.is_constrained) {
+    find_in_constrained(runtime, locator, pass, queries, m, pass.found, nullptr);
+  } else {
+    find_triangles(runtime, locator, pass, false, kNoLimits, queries, m, pass.found);
+  }
   return pass;
 }
 

@@ -34,6 +34,12 @@ struct Locator {
   host::Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
   std::size_t most_triangles = 0;            ///< of one set
   bool has_clearances = false;               ///< measured only when queries for nearest points come
+  /// Of a mesh with constraints, which has one set: the triangles before `kept` are its own, and the others
+  /// fill it up to the convex hull. visible: faces of its own without neighbours beyond constraints and its
+  /// border.
+  bool is_constrained = false;
+  std::size_t kept = 0;
+  host::Buffer<kernel::face> visible{};
   /// For the search of nearest points. There are none until a query needs them.
   Levels levels{};
   Triangulate triangulate = nullptr;         ///< makes the levels of samples
@@ -49,6 +55,11 @@ struct Locator {
 /// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
 geometry::Fitted<Locator> make_locator(host::Runtime& runtime, host::Arena& own,
                                        const points::DeviceMesh& mesh, Triangulate triangulate);
+
+/// Makes a locator one of a mesh with constraints. constrained: three per triangle that is kept, whether the
+/// edge opposite to the corner is a constraint; there are no queries for nearest points then. Waits once.
+void constrain(host::Runtime& runtime, host::Arena& own, const std::vector<cl_uchar>& constrained,
+               Locator& locator);
 
 /// Makes a locator without trees, of points that are scaled already. Not for queries of callers.
 Locator make_walk_locator(host::Runtime& runtime, host::Arena& own, const points::DeviceMesh& mesh);

@@ -891,8 +891,8 @@ FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* tr
 FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
 /// The triangles with their neighbours and the other arrays of a triangulation. point_count, hull and
 /// representatives include points that were added. Where triangles are left out, neighbours and
-/// halfedges are -1; the hull remains that of the points. Voronoi diagrams and locators need
-/// Delaunay triangulations, so they do not take this handle, and must not be given its arrays.
+/// halfedges are -1; the hull remains that of the points. Voronoi diagrams need Delaunay triangulations, and
+/// must not be given its arrays; locators for it are made by flaunay_locator_create_constrained.
 FLAUNAY_API const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result);
 /// What the result has besides.
 FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
@@ -1247,6 +1247,16 @@ FLAUNAY_API flaunay_status flaunay_locator_create(flaunay_triangulator* triangul
                                                   const double* coordinates, size_t n, const size_t* offsets,
                                                   size_t sets, const flaunay_triangulation* triangulation,
                                                   flaunay_locator** locator);
+/// Makes a locator for a triangulation with constraints, of one set. coordinates: of its points and after
+/// them those that were added, n together. triangulation: made by flaunay_triangulation_create of the arrays
+/// of its flaunay_constrained_mesh. constrained: that of flaunay_constrained_get_arrays. Queries in no
+/// triangle, such as those in holes, are outside; nearest points are those of all points. Natural neighbours
+/// are those that can be seen without crossing a constraint (docs/constrained.md).
+FLAUNAY_API flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangulator,
+                                                              const double* coordinates, size_t n,
+                                                              const flaunay_triangulation* triangulation,
+                                                              const uint8_t* constrained,
+                                                              flaunay_locator** locator);
 /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
 /// neighbors, hull and representatives. The work is enqueued like that of flaunay_triangulate_device, with
 /// the same errors.

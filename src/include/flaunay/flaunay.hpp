@@ -456,12 +456,15 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
-  /// These do not compile: in a constrained triangulation, walks to a query need not end, and the nearest
-  /// point need not be near.
+  /// Makes a locator for a triangulation with constraints, which must have neighbours and be of one set, such
+  /// as a map. coordinates: those of the n points that were triangulated; values and answers are of the
+  /// points that were added, too. Queries in no triangle, such as those in holes, are outside. Nearest points
+  /// are those of all points, whatever is between. Natural neighbours are those that can be seen without
+  /// crossing a constraint or the border: weights are those of Seidel's extended Voronoi diagram (1988), tend
+  /// to linear interpolation on constraints, and are exact for linear functions. Clough-Tocher is smooth
+  /// across constraints. If triangles are left out, all points are triangulated again with the edges there.
   Locator(Triangulator& triangulator, const double* coordinates, std::size_t n,
-          const ConstrainedTriangulation& triangulation) = delete;
-  Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
-          const ConstrainedTriangulation& triangulation) = delete;
+          const ConstrainedTriangulation& triangulation);
   /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
   /// neighbors, hull and representatives. The work is enqueued like that of Triangulator::triangulate for
   /// device memory, with the same errors.

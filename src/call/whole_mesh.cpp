@@ -1,0 +1,168 @@
+#include "call/whole_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "call/frame.hpp"
+#include "geometry/magnitudes.hpp"
+#include "geometry/predicates.hpp"
+
+namespace flaunay::call {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+[[noreturn]] void refuse(std::size_t triangle) {
+  throw Error(
+      ErrorKind::input,
+      fmt::format("triangle {} is not that of a constrained triangulation of these points", triangle));
+}
+
+void check(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
+  const std::size_t n = filled.coordinates.size() / 2, triangles = mesh.triangles.size() / 3;
+  expect(mesh.triangle_offsets.size() == 2 && mesh.hull_offsets.size() == 2,
+         "queries in a triangulation with constraints need one set: of polygons, make a map");
+  expect(mesh.representatives.size() == n, "the triangulation is of another number of points");
+  expect(mesh.neighbors.size() == mesh.triangles.size(),
+         "the triangulation has no neighbours: see Options::neighbors");
+  expect(mesh.constrained.size() == mesh.triangles.size(),
+         "the triangulation does not say which edges are constraints");
+  const auto is_in = [](std::int32_t i, std::int32_t first, std::size_t end) {
+    return i >= first && (i < 0 || static_cast<std::size_t>(i) < end);
+  };
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    if (!is_in(mesh.triangles[c], 0, n) || !is_in(mesh.neighbors[c], -1, triangles)) refuse(c / 3);
+  }
+  for (const std::int32_t v : mesh.hull) {
+    expect(is_in(v, 0, n), "the hull has an index that is no point's");
+  }
+}
+
+// Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for what its hull
+// encloses, which rounding may have made turn to the right.
+bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
+  const Ids& hull = mesh.hull;
+  std::size_t vertices = 0;
+  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+    vertices += mesh.representatives[i] == static_cast<std::int32_t>(i);
+  }
+  if (mesh.triangles.size() / 3 + 2 + hull.size() != 2 * vertices) return false;
+  const double* const coordinates = filled.coordinates.data();
+  const std::size_t n = filled.coordinates.size() / 2;
+  const geometry::Scaling scaling =
+      geometry::scaling_for(coordinates, 0, n, geometry::inspect(coordinates, 0, n));
+  const geometry::Predicates predicates{scaling.bounds};
+  const auto at = [&](std::size_t i) {
+    return kernel::scaled_point(hull[i % hull.size()], coordinates, scaling.powers());
+  };
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    if (predicates.orient(at(i), at(i + 1), at(i + 2)) < 0) return false;
+  }
+  return !mesh.triangles.empty();
+}
+
+// The edges that must be those of the whole mesh: constraints and the border.
+Ids walls(const ConstrainedTriangulation& mesh) {
+  Ids segments;
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    const std::size_t t = c / 3, k = c % 3;
+    const std::int32_t beyond = mesh.neighbors[c];
+    if (beyond >= 0 && (mesh.constrained[c] == 0 || static_cast<std::size_t>(beyond) < t)) continue;
+    segments.push_back(mesh.triangles[3 * t + (k + 1) % 3]);
+    segments.push_back(mesh.triangles[3 * t + (k + 2) % 3]);
+  }
+  return segments;
+}
+
+// Finds triangles by their first edge. Triangles have their smallest corner first.
+class ByEdge {
+ public:
+  explicit ByEdge(const Ids& triangles) : triangles_(triangles) {
+    std::size_t size = 16;
+    while (size < triangles.size()) size *= 2;
+    slots_.assign(size, -1);
+    for (std::size_t t = 0; 3 * t < triangles.size(); ++t) {
+      std::size_t slot = begin(triangles[3 * t], triangles[3 * t + 1]);
+      while (slots_[slot] >= 0) slot = (slot + 1) & (slots_.size() - 1);
+      slots_[slot] = static_cast<std::int32_t>(t);
+    }
+  }
+
+  /// The triangle of these three corners, -1 if there is none.
+  std::int32_t find(const std::int32_t* corners) const {
+    std::size_t slot = begin(corners[0], corners[1]);
+    for (; slots_[slot] >= 0; slot = (slot + 1) & (slots_.size() - 1)) {
+      if (std::equal(corners, corners + 3, &triangles_[3 * static_cast<std::size_t>(slots_[slot])])) break;
+    }
+    return slots_[slot];
+  }
+
+ private:
+  std::size_t begin(std::int32_t a, std::int32_t b) const {
+    const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
+    return (key * 0x9e3779b97f4a7c15U >> 20) & (slots_.size() - 1);
+  }
+
+  const Ids& triangles_;
+  Ids slots_;
+};
+
+// Brings the triangles of `mesh` to the front of those of `whole`, in their order.
+void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
+  const std::size_t kept = mesh.triangles.size() / 3, all = whole.triangles.size() / 3;
+  const ByEdge by_edge(whole.triangles);
+  Ids order(all), place(all, -1);
+  for (std::size_t t = 0; t < kept; ++t) {
+    const std::int32_t from = by_edge.find(&mesh.triangles[3 * t]);
+    if (from < 0 || place[static_cast<std::size_t>(from)] >= 0) refuse(t);
+    order[t] = from;
+    place[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(t);
+  }
+  std::size_t next = kept;
+  for (std::size_t t = 0; t < all; ++t) {
+    if (place[t] >= 0) continue;
+    order[next] = static_cast<std::int32_t>(t);
+    place[t] = static_cast<std::int32_t>(next++);
+  }
+  Ids triangles(3 * all), neighbors(3 * all);
+  for (std::size_t t = 0; t < all; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = 3 * static_cast<std::size_t>(order[t]) + k;
+      const std::int32_t beyond = whole.neighbors[from];
+      triangles[3 * t + k] = whole.triangles[from];
+      neighbors[3 * t + k] = beyond < 0 ? -1 : place[static_cast<std::size_t>(beyond)];
+    }
+  }
+  whole.triangles.swap(triangles);
+  whole.neighbors.swap(neighbors);
+}
+
+}  // namespace
+
+WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_t n,
+               const ConstrainedTriangulation& mesh) {
+  expect(n == 0 || coordinates != nullptr, "points, but no coordinates: the pointer is null");
+  WholeMesh filled;
+  filled.coordinates.assign(coordinates, coordinates + 2 * n);
+  filled.coordinates.insert(filled.coordinates.end(), mesh.added_points.begin(), mesh.added_points.end());
+  check(filled, mesh);
+  filled.constrained = mesh.constrained;
+  if (is_whole(filled, mesh)) {
+    filled.mesh = mesh;
+    return filled;
+  }
+  const Ids segments = walls(mesh);
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  ConstrainedOptions options;
+  options.neighbors = true;
+  filled.mesh = triangulator.constrained(filled.coordinates.data(), filled.coordinates.size() / 2,
+                                         constraints, options);
+  reorder(mesh, filled.mesh);
+  return filled;
+}
+
+}  // namespace flaunay::call

@@ -1,0 +1,27 @@
+// Meshes with constraints, filled up to the convex hull, as locators need them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "flaunay/constrained.hpp"
+
+namespace flaunay::call {
+
+/// A mesh up to the convex hull of its points. Its first triangles are those of another one, in their order.
+struct WholeMesh {
+  std::vector<double> coordinates;
+  Triangulation mesh;
+  /// Three per triangle of the other mesh: whether the edge opposite to the corner is a constraint.
+  std::vector<std::uint8_t> constrained;
+};
+
+/// Fills the holes of a mesh with constraints, of one set of n points and those that it has added, and what
+/// is between its border and the convex hull. Throws Error(usage) for several sets and for arrays of other
+/// lengths, Error(input) for what is no constrained triangulation of these points. If the mesh is convex,
+/// O(n); otherwise its points are triangulated with its edges.
+WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_t n,
+               const ConstrainedTriangulation& mesh);
+
+}  // namespace flaunay::call
