@@ -76,6 +76,20 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
   return *ask_if_it_fits(runtime, input, values);
 }
 
+/// The triangles of queries by a locator for constraints, of which there are none, that has left out
+/// triangles from `kept` on.
+std::vector<cl_int> ask_constrained(Runtime& runtime, const Case& input, std::size_t kept) {
+  Arena own(runtime.memory());
+  if (runtime.sizes().separate_buffers) own.separate_buffers();
+  Arena::Scope scope(runtime.arena());
+  Locator locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
+  constrain(runtime, own, std::vector<cl_uchar>(3 * kept), locator);
+  const std::size_t m = input.query_count();
+  const auto triangles = guarded<cl_int>(runtime, m);
+  *locate(runtime, locator, upload(runtime, input.queries), m, input.query_offsets, triangles);
+  return download(runtime, triangles, m);
+}
+
 bool contains(const Case& input, std::size_t t, const double* q) {
   for (int k = 0; k < 3; ++k) {
     if (reference_orient2d(input.point(input.corner(t, k)), input.point(input.corner(t, (k + 1) % 3)), q) < 0)
@@ -566,6 +580,30 @@ TEST(Levels, BoxesAreLeftOutByACertainMargin) {
   EXPECT_GT(beyond, 2000);
 }
 
+/// With constraints, walks that are given up go on straight.
+TEST(SmallConstrained, WalksStraight) {
+  for (const std::string& tuning : tunings()) {
+    for (const char* const name : {"grid", "integer-circle", "uniform", "star"}) {
+      SCOPED_TRACE(tuning + ", " + name);
+      const Case input = make_case(make_fixture(name, 60, 6), 5, 7);
+      const std::size_t triangles = input.mesh.triangles.size() / 3;
+      const auto runtime = testing::make_tuned_runtime(tuning);
+      for (const std::size_t most : {1, 1000}) {
+        Tuning tuned = tuning_of(*runtime);
+        tuned.walk_most = most;
+        runtime->set_sizes(std::make_shared<Tuning>(tuned));
+        for (const std::size_t kept : {triangles, triangles / 2}) {
+          const std::vector<cl_int> found = ask_constrained(*runtime, input, kept);
+          for (std::size_t i = 0; i < input.query_count(); ++i) {
+            const cl_int twin = triangle_twin(input, 0, input.query(i));
+            ASSERT_EQ(found[i], twin < static_cast<cl_int>(kept) ? twin : -1) << most << ", " << kept;
+          }
+        }
+      }
+    }
+  }
+}
+
 /// The tuning of the levels changes no answer, whatever it is.
 TEST(Levels, AnyTuningHasTheSameAnswers) {
   const Case input = make_case(make_fixture("star", 40, 6), 5, 7);
@@ -899,11 +937,12 @@ TEST(Kernels, AllAreLaunched) {
   ask(runtime, input, values_for(input.size()));
   const Case hubs = case_of_hubs(3000, 8);
   ask(runtime, hubs, values_for(hubs.size()));
+  ask_constrained(runtime, make_case(make_fixture("uniform", 60, 6), 5, 7), 1);
   dual(runtime, input);
   for (const auto& [name, time] : runtime.kernel_times()) launched.insert(name);
   runtime.set_profiling(false);
   std::vector<const char*> files{"locate/locate", "locate/levels", "voronoi/voronoi"};
-  std::size_t expected = 26;
+  std::size_t expected = 28;
   if (!testing::tests_native() && !is_fixed_point(runtime)) {
     files.push_back("locate/fixed_point");
     expected += 3;
