@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from flaunay import _calls, _export, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
+from flaunay._border import Border
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._optional import optional
@@ -347,6 +348,10 @@ class ConstrainedTriangulation(Queries, Triangulation):
     @property
     def _neighbors(self) -> Indices:
         return neighbors_of(self.triangles) if self.neighbors is None else self.neighbors
+
+    @cached_property
+    def _border(self) -> Border:
+        return Border(self.points, self.triangles, self._neighbors)
 
     def _near_hull(self, outside: Doubles, tol: float) -> Indices:
         raise UsageError("with constraints, find_simplex is exact: it takes no tol")

@@ -20,6 +20,7 @@ from flaunay._arrays import (
     frozen,
     summary,
 )
+from flaunay._border import Border, ConvexBorder
 from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
 from flaunay._plot import draw_edges
@@ -556,6 +557,10 @@ class Delaunay(Queries):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         freeze_all(state)
+
+    @cached_property
+    def _border(self) -> Border:
+        return ConvexBorder(self.points, self.simplices, self.neighbors, self.hull)
 
     def _near_hull(self, outside: Doubles, tol: float) -> Indices:
         return _scipy.simplices_near_hull(self, outside, tol)

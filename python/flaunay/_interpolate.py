@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any, Optional, Union
+from dataclasses import dataclass
+from typing import Any, Literal, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 
 Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
 Points = Union[npt.ArrayLike, Delaunay, ConstrainedTriangulation]
 
 # Of the tolerances of gradients; each iteration multiplies their error by this.
@@ -84,6 +86,36 @@ class _Scale:
             return points
         scaled: Doubles = (points - self._offset) / self._size
         return scaled
+
+
+def _as_distance(given: Optional[float], name: str) -> Optional[float]:
+    if given is None:
+        return None
+    if not isinstance(given, (int, float, np.number)) or not given >= 0:
+        raise UsageError(f"{name} must be a number of 0 or more, not {given!r}")
+    return float(given)
+
+
+@dataclass(frozen=True)
+class _Beyond:
+    """Where there are values beyond the border, and where inside there are none."""
+
+    tol: Optional[float] = None
+    extrapolate: Optional[str] = None
+    max_edge: Optional[float] = None
+    max_distance: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        for name in ("tol", "max_edge", "max_distance"):
+            object.__setattr__(self, name, _as_distance(getattr(self, name), name))
+        if self.extrapolate not in (None, "nearest", "linear"):
+            raise UsageError(
+                f"extrapolate must be 'nearest', 'linear' or None, not {self.extrapolate!r}"
+            )
+
+    @property
+    def is_usual(self) -> bool:
+        return self == _Beyond()
 
 
 class _Interpolator(Fixed):
@@ -170,8 +202,10 @@ class _Columns(_Interpolator):
         fill_value: complex,
         rescale: bool,
         device: Optional[str],
+        beyond: _Beyond,
     ) -> None:
         super().__init__(points, rescale, device)
+        self._beyond = beyond
         self._fill = _as_fill(fill_value)
         self.values = values
 
@@ -212,6 +246,8 @@ class _Columns(_Interpolator):
         queries, are_bad = self._finite(queries)
         fill = np.nan if is_complex else fill_value.real
         rows = self.tri._locator.interpolate(numbers, self._method, fill, queries, gradients)
+        if not self._beyond.is_usual:
+            self._go_beyond(queries, rows, fill, numbers, gradients)
         if are_bad is not None:
             rows[are_bad] = fill
         if not is_complex:
@@ -221,6 +257,88 @@ class _Columns(_Interpolator):
         result.real, result.imag = rows[:, :k], rows[:, k : 2 * k]
         result[np.isnan(rows[:, -1])] = fill_value
         return result.reshape(shape)
+
+
+    def _go_beyond(
+        self,
+        queries: Doubles,
+        rows: Doubles,
+        fill: float,
+        numbers: Doubles,
+        gradients: Optional[Doubles],
+    ) -> None:
+        """Changes the rows of queries outside, and of those that shall have no value."""
+        tri, beyond = self.tri, self._beyond
+        found = tri._locator.locate(queries)
+        outside = np.flatnonzero(found < 0)
+        if len(outside) and tri.nsimplex and (beyond.tol is not None or beyond.extrapolate):
+            border = tri._border
+            edges, parts, distances = border.nearest(queries[outside])
+            if beyond.extrapolate is None and beyond.tol is not None:
+                near = distances <= beyond.tol
+                outside, edges, parts = outside[near], edges[near], parts[near]
+            ends = border.firsts[edges], border.seconds[edges]
+            found[outside] = border.triangles[edges]
+            places, values = self._along_border(ends, parts, numbers, gradients)
+            if beyond.extrapolate == "linear":
+                slopes = self._slopes(ends, parts, found[outside], numbers, gradients)
+                steps = queries[outside] - places
+                values += (slopes * steps[:, None]).sum(axis=-1)
+            rows[outside] = values
+        if beyond.max_edge is not None and tri.nsimplex:
+            corners = np.asarray(self.points, np.float64)[tri.simplices[found]]
+            sides = np.roll(corners, -1, axis=1) - corners
+            longest = np.hypot(sides[..., 0], sides[..., 1]).max(axis=1)
+            rows[(found >= 0) & (longest > beyond.max_edge)] = fill
+        if beyond.max_distance is not None and tri.npoints:
+            away = self.points[tri._locator.nearest(queries)] - queries
+            rows[np.hypot(away[:, 0], away[:, 1]) > beyond.max_distance] = fill
+
+    def _along_border(
+        self,
+        ends: tuple[Any, Any],
+        parts: Doubles,
+        numbers: Doubles,
+        gradients: Optional[Doubles],
+    ) -> tuple[Doubles, Doubles]:
+        """Places on edges of the border, and the values there."""
+        points = np.asarray(self.points, np.float64)
+        begin, end = (points[vertices] for vertices in ends)
+        along = end - begin
+        part = parts[:, None]
+        low, high = (numbers[vertices] for vertices in ends)
+        values = (1 - part) * low + part * high
+        if gradients is not None:
+            # The cubic with the slopes at both ends.
+            at_low, at_high = ((gradients[v] * along[:, None]).sum(axis=-1) for v in ends)
+            rise = high - low
+            values += (
+                part * (1 - part) * ((1 - part) * (at_low - rise) - part * (at_high - rise))
+            )
+        return begin + part * along, values
+
+    def _slopes(
+        self,
+        ends: tuple[Any, Any],
+        parts: Doubles,
+        triangles: Indices,
+        numbers: Doubles,
+        gradients: Optional[Doubles],
+    ) -> Doubles:
+        """Gradients at places on the border: of the planes of triangles, or between those of the ends."""
+        if gradients is not None:
+            part = parts[:, None, None]
+            between: Doubles = (1 - part) * gradients[ends[0]] + part * gradients[ends[1]]
+            return between
+        corners = self.tri.simplices[triangles]
+        points = np.asarray(self.points, np.float64)[corners]
+        first, second = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+        area = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])[:, None]
+        rise = numbers[corners[:, 1]] - numbers[corners[:, 0]]
+        other = numbers[corners[:, 2]] - numbers[corners[:, 0]]
+        x = (rise * second[:, 1:] - other * first[:, 1:]) / area
+        y = (other * first[:, :1] - rise * second[:, :1]) / area
+        return np.stack([x, y], axis=-1)
 
 
 class LinearInterpolator(_Columns):
@@ -239,6 +357,17 @@ class LinearInterpolator(_Columns):
         Bring the points to the unit square before. This helps if x and y have different units.
     device : str, optional
         As of `triangulate`.
+    tol : float, optional
+        Queries outside that are at most so far from the border have the value of the nearest place on it. Points
+        whose hull is a rotated rectangle often have half of the queries on its sides outside, by rounding.
+    extrapolate : {"nearest", "linear"}, optional
+        What all other queries outside have: the value of the nearest place on the border, or from there on along
+        the plane of the triangle at it. (`CloughTocherInterpolator` has gradients for that.)
+    max_edge : float, optional
+        There is no value in triangles with a longer edge, such as those across bays and gaps.
+    max_distance : float, optional
+        There is no value farther than this from the nearest point. All these lengths are those of the rescaled
+        points if they are rescaled.
 
     Attributes
     ----------
@@ -280,8 +409,13 @@ class LinearInterpolator(_Columns):
         rescale: bool = False,
         *,
         device: Optional[str] = None,
+        tol: Optional[float] = None,
+        extrapolate: Optional[Literal["nearest", "linear"]] = None,
+        max_edge: Optional[float] = None,
+        max_distance: Optional[float] = None,
     ) -> None:
-        super().__init__(points, values, fill_value, rescale, device)
+        beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
+        super().__init__(points, values, fill_value, rescale, device, beyond)
 
 
 class CloughTocherInterpolator(_Columns):
@@ -306,6 +440,10 @@ class CloughTocherInterpolator(_Columns):
         they are estimated, so that the interpolant has the least curvature along the edges.
     device : str, optional
         As of `triangulate`.
+    border_tol : float, optional
+        The `tol` of `LinearInterpolator`.
+    extrapolate, max_edge, max_distance
+        As of `LinearInterpolator`.
 
     Attributes
     ----------
@@ -352,6 +490,10 @@ class CloughTocherInterpolator(_Columns):
         gradients: Optional[npt.ArrayLike] = None,
         *,
         device: Optional[str] = None,
+        border_tol: Optional[float] = None,
+        extrapolate: Optional[Literal["nearest", "linear"]] = None,
+        max_edge: Optional[float] = None,
+        max_distance: Optional[float] = None,
     ) -> None:
         if not tol > 0:
             raise UsageError(f"tol must be greater than 0, not {tol}")
@@ -365,7 +507,8 @@ class CloughTocherInterpolator(_Columns):
                 )
         self._tolerance, self._iterations = tol, maxiter
         self._are_estimated, self._given = gradients is None, gradients
-        super().__init__(points, values, fill_value, rescale, device)
+        beyond = _Beyond(border_tol, extrapolate, max_edge, max_distance)
+        super().__init__(points, values, fill_value, rescale, device, beyond)
         self._given = None
 
     def _gradients(self, values: npt.NDArray[Any], rows: Doubles) -> Doubles:
@@ -418,6 +561,8 @@ class NearestInterpolator(_Interpolator):
         As of `LinearInterpolator`.
     device : str, optional
         As of `triangulate`.
+    max_distance : float, optional
+        There is no value farther than this from the nearest point: NaN, as for queries that are not finite.
 
     Raises
     ------
@@ -445,7 +590,9 @@ class NearestInterpolator(_Interpolator):
         rescale: bool = False,
         *,
         device: Optional[str] = None,
+        max_distance: Optional[float] = None,
     ) -> None:
+        self._max_distance = _as_distance(max_distance, "max_distance")
         super().__init__(points, rescale, device)
         self.values = values
         if self.tri.npoints == 0:
@@ -455,15 +602,31 @@ class NearestInterpolator(_Interpolator):
         array = as_any(values, "values")
         return array.astype(np.float64) if array.dtype.kind in "biuf" else array
 
-    def __call__(self, *xi: Any) -> npt.NDArray[Any]:
-        """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
+    def __call__(
+        self, *xi: Any, distance_upper_bound: Optional[float] = None
+    ) -> npt.NDArray[Any]:
+        """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast.
+
+        distance_upper_bound: as in SciPy, in place of `max_distance` for this call.
+        """
+        most = self._max_distance
+        if distance_upper_bound is not None:
+            most = _as_distance(distance_upper_bound, "distance_upper_bound")
         queries, shape = self._queries(xi)
         queries, are_bad = self._finite(queries)
         values = self.values
-        result: npt.NDArray[Any] = values[self.tri._locator.nearest(queries)]
+        nearest = self.tri._locator.nearest(queries)
+        result: npt.NDArray[Any] = values[nearest]
+        if most is not None:
+            away = self.points[nearest] - queries
+            far = np.hypot(away[:, 0], away[:, 1]) > most
+            if far.any():
+                are_bad = far if are_bad is None else far | are_bad
         if are_bad is not None:
             if result.dtype.kind not in "fc":
-                raise UsageError(f"xi are not finite, and values of {result.dtype} have no NaN")
+                raise UsageError(
+                    f"xi are not finite or too far away, and values of {result.dtype} have no NaN"
+                )
             result[are_bad] = np.nan
         return result.reshape(shape + values.shape[1:])
 
@@ -490,6 +653,8 @@ class NaturalNeighborInterpolator(_Columns):
         As of `LinearInterpolator`. Natural neighbours depend on the units of x and y.
     device : str, optional
         As of `triangulate`.
+    tol, extrapolate, max_edge, max_distance
+        As of `LinearInterpolator`.
 
     Attributes
     ----------
@@ -525,27 +690,36 @@ class NaturalNeighborInterpolator(_Columns):
         self,
         points: Points,
         values: npt.ArrayLike,
-        method: str = "sibson",
+        method: Literal["sibson", "laplace"] = "sibson",
         fill_value: complex = np.nan,
         rescale: bool = False,
         *,
         device: Optional[str] = None,
+        tol: Optional[float] = None,
+        extrapolate: Optional[Literal["nearest", "linear"]] = None,
+        max_edge: Optional[float] = None,
+        max_distance: Optional[float] = None,
     ) -> None:
         if method not in _WEIGHTS:
             raise UsageError(f"method must be 'sibson' or 'laplace', not {method!r}")
         self._method = method
-        super().__init__(points, values, fill_value, rescale, device)
+        beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
+        super().__init__(points, values, fill_value, rescale, device, beyond)
 
 
 def griddata(
     points: Points,
     values: npt.ArrayLike,
     xi: Any,
-    method: str = "linear",
+    method: Literal["linear", "nearest", "cubic", "natural"] = "linear",
     fill_value: complex = np.nan,
     rescale: bool = False,
     *,
     device: Optional[str] = None,
+    tol: Optional[float] = None,
+    extrapolate: Optional[Literal["nearest", "linear"]] = None,
+    max_edge: Optional[float] = None,
+    max_distance: Optional[float] = None,
 ) -> npt.NDArray[Any]:
     """Interpolates scattered values, as `scipy.interpolate.griddata`.
 
@@ -564,6 +738,8 @@ def griddata(
         As of `LinearInterpolator`.
     device : str, optional
         As of `triangulate`.
+    tol, extrapolate, max_edge, max_distance
+        As of `LinearInterpolator`; the nearest point has the last one only.
 
     Returns
     -------
@@ -591,5 +767,8 @@ def griddata(
         raise UsageError(
             f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
         )
-    fill = {} if method == "nearest" else {"fill_value": fill_value}
-    return kinds[method](points, values, rescale=rescale, device=device, **fill)(xi)
+    options: dict[str, Any] = {"max_distance": max_distance}
+    if method != "nearest":
+        options.update(fill_value=fill_value, extrapolate=extrapolate, max_edge=max_edge)
+        options["border_tol" if method == "cubic" else "tol"] = tol
+    return kinds[method](points, values, rescale=rescale, device=device, **options)(xi)

@@ -1,0 +1,113 @@
+"""The border of a mesh, and the places on it that are nearest to what is outside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import FloatArray
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+
+# Of distances that are computed at a time.
+_MOST_PAIRS = 1 << 22
+
+
+class Border:
+    """The edges that one triangle has, directed so that it is on their left."""
+
+    def __init__(
+        self,
+        points: FloatArray,
+        triangles: npt.NDArray[np.int32],
+        neighbors: npt.NDArray[np.int32],
+    ) -> None:
+        self.triangles, corners = np.nonzero(neighbors < 0)
+        self.firsts = triangles[self.triangles, (corners + 1) % 3]
+        self.seconds = triangles[self.triangles, (corners + 2) % 3]
+        self._points = points
+
+    def nearest(self, queries: Doubles) -> tuple[Indices, Doubles, Doubles]:
+        """For each query the nearest edge, the part of it before the nearest place, and the distance."""
+        edges = np.empty(len(queries), np.intp)
+        parts, distances = np.empty(len(queries)), np.empty(len(queries))
+        for rows, candidates in self._candidates(queries):
+            at_row = queries[rows, None]
+            begin = np.asarray(self._points[self.firsts[candidates]], np.float64)
+            along = self._points[self.seconds[candidates]] - begin
+            lengths = (along * along).sum(axis=-1)
+            part = ((at_row - begin) * along).sum(axis=-1) / lengths
+            part = part.clip(0, 1)
+            away = np.hypot(*np.moveaxis(begin + part[..., None] * along - at_row, -1, 0))
+            best = away.argmin(axis=1)
+            picked = np.arange(len(best)), best
+            edges[rows] = np.broadcast_to(candidates, away.shape)[picked]
+            parts[rows], distances[rows] = part[picked], away[picked]
+        return edges, parts, distances
+
+    def _candidates(self, queries: Doubles) -> Iterator[tuple[slice, Indices]]:
+        """Some queries at a time, with edges among which the nearest ones are."""
+        step = max(1, _MOST_PAIRS // max(1, len(self.firsts)))
+        for begin in range(0, len(queries), step):
+            yield slice(begin, begin + step), np.arange(len(self.firsts))[None]
+
+
+class ConvexBorder(Border):
+    """That of a convex mesh, whose nearest places to queries outside take a logarithmic number of steps."""
+
+    def __init__(
+        self,
+        points: FloatArray,
+        triangles: npt.NDArray[np.int32],
+        neighbors: npt.NDArray[np.int32],
+        hull: npt.NDArray[np.int32],
+    ) -> None:
+        super().__init__(points, triangles, neighbors)
+        by_first = np.empty(len(points), np.intp)
+        by_first[self.firsts] = np.arange(len(self.firsts))
+        # Counter-clockwise.
+        self._ring = by_first[hull]
+        self._at = np.asarray(points[hull], np.float64)
+        self._along = np.roll(self._at, -1, axis=0) - self._at
+        turns = np.unwrap(np.arctan2(self._along[:, 1], self._along[:, 0]))
+        turns = np.maximum.accumulate(turns)
+        self._turns = np.concatenate([turns - 2 * np.pi, turns, turns + 2 * np.pi])
+
+    def _candidates(self, queries: Doubles) -> Iterator[tuple[slice, Indices]]:
+        """Along the edges that a query sees, distances first fall and then rise.
+
+        So from one that it sees, a binary search finds the last one along which distances fall. The edges beside it
+        are candidates, too, since signs here are rounded.
+        """
+        count = len(self._ring)
+        centre = self._at.mean(axis=0)
+        angles = np.arctan2(*(self._at - centre).T[::-1])
+        first = int(np.argmin(angles))
+        places = np.searchsorted(
+            np.roll(angles, -first), np.arctan2(*(queries - centre).T[::-1]), "right"
+        )
+        seen = (places - 1 + first) % count
+        turns = self._turns[seen + count]
+        ahead = np.searchsorted(self._turns, turns + np.pi) - seen - count
+        behind = seen + count - np.searchsorted(self._turns, turns - np.pi, "right")
+        steps = self._steps(queries, seen, ahead, 1)
+        back = self._steps(queries, seen, behind, -1)
+        last = seen + np.where(steps > 0, steps, -back)
+        yield slice(None), self._ring[(last[:, None] + np.arange(-1, 2)) % count]
+
+    def _steps(self, queries: Doubles, seen: Indices, most: Indices, way: int) -> Indices:
+        """How many edges follow each other from those seen on along which distances fall."""
+        low, high = np.zeros(len(seen), np.intp), most.copy()
+        while (low < high).any():
+            middle = (low + high) // 2
+            edge = (seen + way * middle) % len(self._ring)
+            along, away = self._along[edge], queries - self._at[edge]
+            end = away - along if way > 0 else away
+            falls = way * (end * along).sum(axis=1) > 0
+            falls &= along[:, 0] * away[:, 1] < along[:, 1] * away[:, 0]
+            low = np.where(falls & (low < high), middle + 1, low)
+            high = np.where(falls, high, np.minimum(high, middle))
+        return low
