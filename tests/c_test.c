@@ -1635,6 +1635,42 @@ static void test_relax(void) {
   CHECK(flaunay_relax(triangulator, NULL, 0, box, 4, 1, NULL) == FLAUNAY_SUCCESS);
 }
 
+static void test_raster(void) {
+  const double places[] = {0, 0, 2, 0, 0, 2, 2, 2}, values[] = {0, 2, 4, 6}, heights[] = {1, 3};
+  const int32_t triangles[] = {0, 1, 2, 1, 3, 2}, neighbors[] = {1, -1, -1, -1, 0, -1},
+                wrong[] = {0, 1, 4, 1, 3, 2};
+  double pixels[6] = {0};
+  flaunay_raster raster = {.y = 2, .dx = 1, .dy = -1, .rows = 2, .columns = 3, .fill = -1};
+  REQUIRE(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, &raster, pixels) ==
+          FLAUNAY_SUCCESS);
+  for (size_t i = 0; i < 6; ++i) CHECK(pixels[i] == (double)(i % 3) + (i < 3 ? 4 : 2));
+  raster.max_edge = 1;
+  REQUIRE(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, &raster, pixels) ==
+          FLAUNAY_SUCCESS);
+  CHECK(pixels[0] == -1);
+  CHECK(fails(flaunay_rasterize(triangulator, places, 4, wrong, neighbors, 2, values, &raster, pixels),
+              FLAUNAY_ERROR_USAGE, "triangle 0"));
+  CHECK(fails(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, NULL, pixels),
+              FLAUNAY_ERROR_USAGE, "NULL"));
+  raster.reserved[1] = 1;
+  CHECK(fails(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, &raster, pixels),
+              FLAUNAY_ERROR_USAGE, "flaunay_raster"));
+
+  flaunay_contours* lines = NULL;
+  REQUIRE(flaunay_contours_compute(triangulator, places, 4, triangles, neighbors, 2, values, heights, 2, 0,
+                                   &lines) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_contours_line_count(lines) == 2);
+  CHECK(flaunay_contours_heights(lines)[1] == 1);
+  CHECK(flaunay_contours_offsets(lines)[1] == 2);
+  const double* const first = flaunay_contours_coordinates(lines);
+  CHECK(first[0] == 0 && first[1] == 0.5 && first[2] == 1 && first[3] == 0);
+  flaunay_contours_destroy(lines);
+  flaunay_contours_destroy(NULL);
+  CHECK(fails(
+      flaunay_contours_compute(triangulator, places, 4, triangles, neighbors, 2, values, NULL, 1, 0, &lines),
+      FLAUNAY_ERROR_USAGE, "NULL"));
+}
+
 static void test_relax_on_device(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, places[] = {1, 1, 1, 3};
   const flaunay_device_points input = {.memory = make_buffer(context, sizeof places, places), .count = 2};
@@ -2554,6 +2590,7 @@ static void test_all(void) {
   test_dynamic_rows_on_device();
   test_bad_dynamic();
   test_relax();
+  test_raster();
   test_locator();
   test_queries_with_constraints();
   test_derived_on_device();

@@ -48,6 +48,7 @@ from flaunay._interpolate import (
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._polygons import PolygonTriangulation, polygons
+from flaunay._raster import Contours
 from flaunay._refinement import RefinementReport
 from flaunay._triangulate import refine, triangulate
 from flaunay._triangulation import Triangulation, modes
@@ -61,6 +62,7 @@ __all__ = [
     "ClippedVoronoi",
     "CloughTocherInterpolator",
     "ConstrainedTriangulation",
+    "Contours",
     "Delaunay",
     "DeviceClippedVoronoi",
     "DeviceError",

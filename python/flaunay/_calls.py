@@ -1194,6 +1194,55 @@ def relax(
     return relaxed
 
 
+def _mesh_arguments(
+    points: FloatArray, triangles: _Indices, neighbors: _Indices, values: _Doubles
+) -> tuple[Any, ...]:
+    """What functions take that read a surface: points, triangles, their neighbours and values."""
+    n, corners = _count_points(points), _as_corners(triangles)
+    if values.shape != (n,):
+        raise UsageError(f"values must have the shape ({n},), not {values.shape}")
+    beyond = _as_indices(neighbors, "neighbors", (len(corners), 3))
+    coordinates = np.ascontiguousarray(points, _FLOAT64)
+    return coordinates, n, corners, beyond, len(corners), _as_doubles(values)
+
+
+def rasterize(
+    triangulator: Triangulator,
+    *surface: Any,
+    grid: tuple[float, float, float, float],
+    max_edge: float,
+    fill: float,
+    pixels: _Doubles,
+) -> None:
+    """Writes values at pixels. grid: the first pixel's x and y, and the steps to the next ones."""
+    rows, columns = pixels.shape
+    names = ("x", "y", "dx", "dy")
+    raster = _declarations.Raster(
+        **dict(zip(names, grid)), rows=rows, columns=columns, max_edge=max_edge, fill=fill
+    )
+    given = (triangulator.pointer, *_mesh_arguments(*surface), ctypes.byref(raster), pixels)
+    with triangulator.turn:
+        _call_with_mesh(library.rasterize, *given)
+
+
+class _Contours(Handle):
+    _destroy = library.contours_destroy
+
+
+def contours(
+    triangulator: Triangulator, *surface: Any, heights: _Doubles, max_edge: float
+) -> tuple[_Doubles, _Offsets, _Indices]:
+    """Points, where lines begin among them, and the number of each line's height."""
+    made = _Contours()
+    given = (triangulator.pointer, *_mesh_arguments(*surface), heights, len(heights), max_edge)
+    with triangulator.turn:
+        _call_with_mesh(library.contours_compute, *given, made.place)
+    lines = library.contours_line_count(made.pointer)
+    offsets = _view(made, library.contours_offsets(made.pointer), (lines + 1,), _INT64)
+    points = _view(made, library.contours_coordinates(made.pointer), (int(offsets[-1]), 2), _FLOAT64)
+    return points, offsets, _view(made, library.contours_heights(made.pointer), (lines,), _INT32)
+
+
 class _Locator(_InTurns):
     _destroy = library.locator_destroy
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _export, _triangulators
+from flaunay import _calls, _export, _raster, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
 from flaunay._border import Border
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
@@ -119,6 +119,8 @@ class ConstrainedTriangulation(Queries, Triangulation):
 
     to_matplotlib = _export.to_matplotlib
     to_pyvista = _export.to_pyvista
+    raster = _raster.raster
+    contours = _raster.contours
 
     def to_meshio(
         self,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _export, _graphs, _scipy, _triangulators
+from flaunay import _calls, _export, _graphs, _raster, _scipy, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     FloatArray,
@@ -134,6 +134,10 @@ class Delaunay(Queries):
     to_matplotlib = _export.to_matplotlib
     to_meshio = _export.to_meshio
     to_pyvista = _export.to_pyvista
+
+    # Maps.
+    raster = _raster.raster
+    contours = _raster.contours
 
     def __init__(
         self,

@@ -1238,6 +1238,60 @@ FLAUNAY_API flaunay_status flaunay_relax_device(flaunay_triangulator* triangulat
                                                 size_t corner_count, size_t iterations,
                                                 const flaunay_enqueue* enqueue, cl_mem* relaxed);
 
+// ---- Rasters and contours
+
+/// The pixels of a raster. The centre of the pixel in row r and column c is (x + c dx, y + r dy), each
+/// product and each sum rounded to double precision.
+typedef struct flaunay_raster {
+  double x;               ///< the centre of the pixel in row 0 and column 0
+  double y;               ///< its other coordinate
+  double dx;              ///< from a column to the next one; positive
+  double dy;              ///< from a row to the next one; negative if north is up
+  size_t rows;            ///< less than 2^31
+  size_t columns;         ///< less than 2^31
+  double max_edge;        ///< pixels in triangles with a longer edge have no value; 0: no edge is too long
+  double fill;            ///< of pixels without a value
+  uintptr_t reserved[4];  ///< 0
+} flaunay_raster;
+
+/// Computes a raster of values at n points by linear interpolation in t counter-clockwise triangles of one
+/// set: pixels has room for rows x columns numbers, row by row. neighbors: as FLAUNAY_PART_NEIGHBORS has
+/// them. A pixel has the value at its centre; which triangle that lies in is decided exactly. The border
+/// belongs to the triangles, and a centre on an edge between two of them to one: to that which it would lie
+/// in if it were moved to the right, by less than anything. The raster does not depend on the order of
+/// triangles, on the device or on the number of threads. FLAUNAY_ERROR_USAGE for a raster that makes no sense
+/// and for triangles of other points; FLAUNAY_ERROR_INPUT for coordinates that are not finite, too large or
+/// too fine, and for pixels that are too small for doubles.
+FLAUNAY_API flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const double* coordinates,
+                                             size_t n, const int32_t* triangles, const int32_t* neighbors,
+                                             size_t t, const double* values, const flaunay_raster* raster,
+                                             double* pixels);
+
+/// Contour lines.
+typedef struct flaunay_contours flaunay_contours;
+/// Computes contour lines at so many heights, which must increase, of values at n points that are linear in t
+/// counter-clockwise triangles. Higher values are on the left of a line. It is closed, with its first point
+/// again at the end, or begins and ends at the border. A value that equals a height counts as above it, so
+/// that no two lines cross. Triangles with an edge longer than max_edge (0: no edge is too long), or with a
+/// value that is not finite, are left out. Results do not depend on the order of triangles. Errors as of
+/// flaunay_rasterize. The caller destroys the result.
+FLAUNAY_API flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator,
+                                                    const double* coordinates, size_t n,
+                                                    const int32_t* triangles, const int32_t* neighbors,
+                                                    size_t t, const double* values, const double* heights,
+                                                    size_t height_count, double max_edge,
+                                                    flaunay_contours** contours);
+/// Destroys contours. O(1).
+FLAUNAY_API void flaunay_contours_destroy(flaunay_contours* contours);
+/// Number of lines.
+FLAUNAY_API size_t flaunay_contours_line_count(const flaunay_contours* contours);
+/// Lines + 1 values: line i has the points from the i-th to the (i + 1)-th.
+FLAUNAY_API const size_t* flaunay_contours_offsets(const flaunay_contours* contours);
+/// x and y per point.
+FLAUNAY_API const double* flaunay_contours_coordinates(const flaunay_contours* contours);
+/// Per line the number of its height. Lines of one height follow each other, in the order of their points.
+FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* contours);
+
 // ---- Queries
 
 /// Makes a locator for a triangulation of these points, which must have neighbours. offsets and sets: as for

@@ -1,0 +1,70 @@
+// The C interface to rasters and contours.
+#include "flaunay/terrain.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_contours {
+  Contours cpp;
+};
+
+namespace {
+
+double longest_of(double max_edge) {
+  return max_edge == 0 ? std::numeric_limits<double>::infinity() : max_edge;
+}
+
+}  // namespace
+
+flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+                                 const int32_t* triangles, const int32_t* neighbors, size_t t,
+                                 const double* values, const flaunay_raster* raster, double* pixels) {
+  return guarded([&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const flaunay_raster& wanted = required(raster, "the raster");
+    c::check_reserved(wanted, "flaunay_raster");
+    rasterize(cpp, {coordinates, n, triangles, neighbors, t}, values,
+              {wanted.x, wanted.y, wanted.dx, wanted.dy, wanted.rows, wanted.columns},
+              {longest_of(wanted.max_edge), wanted.fill}, pixels);
+  });
+}
+
+flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator, const double* coordinates,
+                                        size_t n, const int32_t* triangles, const int32_t* neighbors,
+                                        size_t t, const double* values, const double* heights,
+                                        size_t height_count, double max_edge, flaunay_contours** contours) {
+  return create(contours, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const double* const first = height_count == 0 ? nullptr : &required(heights, "the heights");
+    return std::make_unique<flaunay_contours>(
+        flaunay_contours{trace_contours(cpp, {coordinates, n, triangles, neighbors, t}, values,
+                                        {first, first + height_count}, longest_of(max_edge))});
+  });
+}
+
+void flaunay_contours_destroy(flaunay_contours* contours) { delete contours; }
+
+size_t flaunay_contours_line_count(const flaunay_contours* contours) {
+  return read(contours, [](const auto& handle) { return handle.cpp.heights.size(); });
+}
+
+#define ACCESSOR(type, name)                                                                \
+  const type* flaunay_contours_##name(const flaunay_contours* contours) {                   \
+    return read(contours, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
+  }
+ACCESSOR(size_t, offsets)
+ACCESSOR(double, coordinates)
+ACCESSOR(int32_t, heights)
+#undef ACCESSOR

@@ -1,0 +1,67 @@
+// The public calls for rasters and contours.
+#include "derived/raster/raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "call/frame.hpp"
+#include "derived/contours/contours.hpp"
+
+namespace flaunay {
+
+namespace {
+
+void check(const MeshView& mesh, const double* values) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  call::expect(mesh.points <= kMost && mesh.count <= kMost / 3,
+               "the mesh has more points or triangles than 32-bit indices can count");
+  call::expect(mesh.points == 0 || (mesh.coordinates != nullptr && values != nullptr),
+               "points, but no coordinates or no values: the pointer is null");
+  call::expect(mesh.count == 0 || (mesh.triangles != nullptr && mesh.neighbors != nullptr),
+               "triangles, but no corners or no neighbours: the pointer is null");
+}
+
+}  // namespace
+
+void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* values, const RasterGrid& grid,
+               const RasterOptions& options, double* pixels) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  call::take_turn(self, [&] {
+    const std::size_t count = raster::checked_pixels(grid, options);
+    check(mesh, values);
+    if (count == 0) return;
+    call::expect(pixels != nullptr, "pixels, but no room for them: the pointer is null");
+    call::Frame call(self.with_doubles(self.for_host_memory()));
+    host::Runtime& runtime = call.runtime;
+    const raster::Surface surface{call.in(mesh.coordinates, 2 * mesh.points),
+                                  call.in(mesh.triangles, 3 * mesh.count),
+                                  call.in(mesh.neighbors, 3 * mesh.count),
+                                  call.in(values, mesh.points),
+                                  mesh.points,
+                                  mesh.count};
+    // The caller's memory itself if kernels run natively.
+    const auto buffer =
+        runtime.is_native() ? call.in(pixels, count) : runtime.arena().allocate<cl_double>(count);
+    raster::compute(runtime, surface, grid, options, buffer);
+    if (!runtime.is_native()) runtime.read(buffer, 0, count, pixels);
+    call.end();
+  });
+}
+
+Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const double* values,
+                        const std::vector<double>& heights, double max_edge) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    check(mesh, values);
+    call::expect(std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); }),
+                 "heights of contours must be finite");
+    call::expect(std::adjacent_find(heights.begin(), heights.end(), std::greater_equal<>()) == heights.end(),
+                 "heights of contours must increase");
+    call::expect(max_edge >= 0, "max_edge must be a length");
+    return contours::compute(self.native().runtime, mesh, values, heights, max_edge);
+  });
+}
+
+}  // namespace flaunay

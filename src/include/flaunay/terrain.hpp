@@ -1,0 +1,71 @@
+// From a triangulation to a map: rasters and contours of values at points.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay {
+
+/// Triangles of points in host memory, as Triangulation and ConstrainedTriangulation have them:
+/// counter-clockwise, of one set, and with neighbours. Refers to the caller's arrays.
+struct MeshView {
+  const double* coordinates = nullptr;      ///< x0 y0 x1 y1 ...
+  std::size_t points = 0;                   ///< number of points
+  const std::int32_t* triangles = nullptr;  ///< 3 points per triangle
+  const std::int32_t* neighbors = nullptr;  ///< the triangle opposite to each corner, or -1
+  std::size_t count = 0;                    ///< number of triangles
+};
+
+/// The pixels of a raster. The centre of the pixel in row r and column c is (x + c dx, y + r dy), each
+/// product and each sum rounded to double precision.
+struct RasterGrid {
+  double x = 0, y = 0;    ///< the centre of the pixel in row 0 and column 0
+  double dx = 1, dy = 1;  ///< from a pixel to the next one. dx is positive; dy is negative if north is up
+  std::size_t rows = 0, columns = 0;  ///< numbers of pixels; less than 2^31 each
+};
+
+/// The options of a raster.
+struct RasterOptions {
+  /// Pixels in triangles with a longer edge have no value, as if these were not there: across bays and gaps.
+  /// Lengths are compared by their squares, rounded.
+  double max_edge = std::numeric_limits<double>::infinity();
+  double fill = std::numeric_limits<double>::quiet_NaN();  ///< of pixels without a value
+};
+
+/// Computes a raster by linear interpolation in the triangles. pixels: room for rows x columns numbers, row
+/// by row. values: one per point. A pixel has the value at its centre; which triangle that lies in is decided
+/// exactly. The border belongs to the triangles, and a centre on an edge between two of them to one: to that
+/// which it would lie in if it were moved to the right, by less than anything. At a point it has the point's
+/// own value. So the raster depends on points, values and triangles alone, not on their order, the device or
+/// the number of threads. O(triangles + pixels). Throws Error(usage) for a grid that makes no sense and for
+/// triangles of other points; Error(input) for coordinates that are not finite, or so large or fine that they
+/// are not multiples of 2^-511 below 2^509, and for pixels so small that rounding moves them by a quarter.
+FLAUNAY_API void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* values,
+                           const RasterGrid& grid, const RasterOptions& options, double* pixels);
+
+/// Contour lines at several heights. Those of one height follow each other, in the order of their points.
+struct Contours {
+  std::vector<double> coordinates;    ///< x and y per point of a line
+  std::vector<std::size_t> offsets;   ///< lines + 1 values: line i has points [offsets[i], offsets[i + 1])
+  std::vector<std::int32_t> heights;  ///< per line the number of its height
+};
+
+/// Computes the contour lines of values that are linear in each triangle. Heights must increase. Higher
+/// values are on the left of a line. It is closed, with its first point again at the end, or begins and ends
+/// at the border of the triangles. A closed line begins at its lexicographically smallest point. A value that
+/// equals a height counts as above it; so no two lines cross, but they can have points in common at such a
+/// vertex. Triangles with a longer edge than max_edge, and those with a value that is not finite, are left
+/// out. Points are rounded, on each edge the same for both triangles; equal ones that follow each other are
+/// one, and lines of one point, and closed ones of two, are none. So the result depends on points, values and
+/// triangles alone, not on their order or the number of threads. It runs on threads of the host. O(triangles
+/// log heights + points of lines). Throws Error(usage) for heights that do not increase or are not finite,
+/// and for triangles of other points.
+FLAUNAY_API Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const double* values,
+                                    const std::vector<double>& heights,
+                                    double max_edge = std::numeric_limits<double>::infinity());
+
+}  // namespace flaunay

@@ -1,0 +1,445 @@
+// Rasters and contours against rational arithmetic, triangle by triangle.
+//
+// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flaunay/terrain.hpp"
+#include "tests/locate/support.hpp"
+
+namespace flaunay::raster {
+namespace {
+
+using testing::Coordinates;
+using testing::FixtureRandom;
+using testing::make_fixture;
+
+constexpr double kFill = -77.25;
+
+struct Terrain {
+  Coordinates points;
+  std::vector<double> values;
+  Triangulation mesh;
+
+  MeshView view() const {
+    return {points.data(), values.size(), mesh.triangles.data(), mesh.neighbors.data(),
+            mesh.triangles.size() / 3};
+  }
+  const double* point(std::int32_t v) const { return &points[2 * static_cast<std::size_t>(v)]; }
+  std::array<std::int32_t, 3> corners(std::size_t t) const {
+    return {mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]};
+  }
+};
+
+Terrain make_terrain(const Coordinates& points, const std::vector<double>& values) {
+  Terrain terrain{points, values, {}};
+  terrain.mesh = testing::triangulator().triangulate(points.data(), points.size() / 2);
+  return terrain;
+}
+
+std::vector<double> random_values(std::size_t n, std::uint64_t seed, std::int64_t most) {
+  FixtureRandom random(seed);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < n; ++i) values.push_back(static_cast<double>(random.integer(-most, most)) / 8);
+  return values;
+}
+
+Terrain terrain_of(const std::string& fixture, std::size_t n, std::int64_t most = 1000) {
+  const Coordinates points = make_fixture(fixture, n, 7);
+  return make_terrain(points, random_values(points.size() / 2, 3, most));
+}
+
+Terrain shuffled(const Terrain& terrain, std::uint64_t seed) {
+  std::vector<std::size_t> order(terrain.values.size());
+  std::iota(order.begin(), order.end(), 0);
+  FixtureRandom(seed).shuffle(order);
+  Coordinates points;
+  std::vector<double> values;
+  for (const std::size_t i : order) {
+    points.insert(points.end(), {terrain.points[2 * i], terrain.points[2 * i + 1]});
+    values.push_back(terrain.values[i]);
+  }
+  return make_terrain(points, values);
+}
+
+std::vector<double> rasterized(Triangulator& triangulator, const Terrain& terrain, const RasterGrid& grid,
+                               double max_edge = std::numeric_limits<double>::infinity()) {
+  std::vector<double> pixels(grid.rows * grid.columns, 1e300);
+  rasterize(triangulator, terrain.view(), terrain.values.data(), grid, {max_edge, kFill}, pixels.data());
+  return pixels;
+}
+
+bool same_bytes(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+bool has_longer_edge(const Terrain& terrain, std::size_t t, double longest) {
+  const auto v = terrain.corners(t);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* const a = terrain.point(v[k]);
+    const double* const b = terrain.point(v[(k + 1) % 3]);
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    if (dx * dx + dy * dy > longest * longest) return true;
+  }
+  return false;
+}
+
+// The value at q, by the first triangle that has it; nothing if none has.
+std::optional<mpq_class> value_at(const Terrain& terrain, const double* q, double max_edge) {
+  for (std::size_t t = 0; t < terrain.mesh.triangles.size() / 3; ++t) {
+    if (has_longer_edge(terrain, t, max_edge)) continue;
+    const auto v = terrain.corners(t);
+    mpq_class whole = 0, sum = 0;
+    bool is_outside = false;
+    for (std::size_t k = 0; k < 3 && !is_outside; ++k) {
+      const mpq_class area = locate::area(terrain.point(v[(k + 1) % 3]), terrain.point(v[(k + 2) % 3]), q);
+      is_outside = area < 0;
+      whole += area;
+      if (area != 0) sum += area * mpq_class(terrain.values[static_cast<std::size_t>(v[k])]);
+    }
+    if (!is_outside) return sum / whole;
+  }
+  return std::nullopt;
+}
+
+void expect_right(const Terrain& terrain, const RasterGrid& grid, const std::vector<double>& pixels,
+                  double max_edge = std::numeric_limits<double>::infinity()) {
+  double largest = 1;
+  for (const double value : terrain.values) largest = std::max(largest, std::fabs(value));
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double q[2] = {grid.x + static_cast<double>(i % grid.columns) * grid.dx,
+                         grid.y + static_cast<double>(i / grid.columns) * grid.dy};
+    const std::optional<mpq_class> expected = value_at(terrain, q, max_edge);
+    ASSERT_EQ(expected.has_value(), pixels[i] != kFill) << "pixel " << i << " at " << q[0] << ", " << q[1];
+    if (!expected) continue;
+    ASSERT_NEAR(expected->get_d(), pixels[i], 1e-12 * largest) << "pixel " << i;
+  }
+}
+
+// So many pixels, whose outermost centres are corners of the points' box, which is made larger by `beyond`
+// times its size.
+RasterGrid grid_over(const Terrain& terrain, std::size_t rows, std::size_t columns, double beyond) {
+  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+  for (std::size_t c = 0; c < terrain.points.size(); ++c) {
+    low[c % 2] = std::min(low[c % 2], terrain.points[c]);
+    high[c % 2] = std::max(high[c % 2], terrain.points[c]);
+  }
+  const double width = high[0] - low[0] > 0 ? high[0] - low[0] : 1;
+  const double height = high[1] - low[1] > 0 ? high[1] - low[1] : 1;
+  return {low[0] - beyond * width,
+          high[1] + beyond * height,
+          width * (1 + 2 * beyond) / static_cast<double>(columns - 1),
+          -height * (1 + 2 * beyond) / static_cast<double>(rows - 1),
+          rows,
+          columns};
+}
+
+void check_terrain(const Terrain& terrain, const RasterGrid& grid) {
+  const std::vector<double> pixels = rasterized(testing::triangulator(), terrain, grid);
+  expect_right(terrain, grid, pixels);
+  EXPECT_TRUE(same_bytes(pixels, rasterized(testing::triangulator_with("small"), terrain, grid)));
+  static Triangulator on_host("host");
+  EXPECT_TRUE(same_bytes(pixels, rasterized(on_host, terrain, grid)));
+  for (const std::uint64_t seed : {1, 2}) {
+    EXPECT_TRUE(same_bytes(pixels, rasterized(on_host, shuffled(terrain, seed), grid))) << seed;
+  }
+}
+
+TEST(SmallRaster, HasTheValuesOfTheTrianglesThatPixelsLieIn) {
+  for (const char* const fixture : {"uniform", "grid", "star", "kuzmin", "circle", "collinear"}) {
+    SCOPED_TRACE(fixture);
+    const Terrain terrain = terrain_of(fixture, 40);
+    check_terrain(terrain, grid_over(terrain, 13, 17, 0.1));
+    check_terrain(terrain, grid_over(terrain, 9, 9, 0));
+  }
+}
+
+TEST(SmallRaster, AGridOfPointsHasPixelsOnItsPointsEdgesAndBorder) {
+  Coordinates points;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) points.insert(points.end(), {500000.0 + j, 4.5e6 + i});
+  }
+  const Terrain terrain = make_terrain(points, random_values(36, 5, 1000));
+  for (const double step : {1.0, 0.5, 0.25}) {
+    const auto count = static_cast<std::size_t>(5 / step) + 1;
+    const RasterGrid grid{500000.0, 4.5e6, step, step, count, count};
+    check_terrain(terrain, grid);
+    const std::vector<double> pixels = rasterized(testing::triangulator(), terrain, grid);
+    const auto stride = static_cast<std::size_t>(1 / step);
+    for (std::size_t i = 0; i < 36; ++i) {
+      EXPECT_EQ(terrain.values[i], pixels[i / 6 * stride * count + i % 6 * stride]);
+    }
+    EXPECT_EQ(0, std::count(pixels.begin(), pixels.end(), kFill));
+  }
+}
+
+TEST(SmallRaster, SliversAndLevelEdgesAreRight) {
+  const double thin = 0x1p-40;
+  const Terrain across = make_terrain({0, 0, 8, 8 + thin, 16, 16, 3, 1}, {1, 2, 3, 4});
+  check_terrain(across, {0, 0, 1, 1, 17, 17});
+  const Terrain level = make_terrain({0, 4, 100, 4 + thin, 200, 4, 7, 4 - thin, 55, 4}, {1, 2, 3, 4, 5});
+  check_terrain(level, {0, 4, 1, thin / 2, 3, 201});
+  check_terrain(level, {0, 3, 1, 0.5, 5, 201});
+  // Much larger than the raster, and not at its scale.
+  const Terrain large = make_terrain({-1e9, -3e8, 2e9, 5e8, -7e8, 1e9}, {0, 1000, -3000});
+  check_terrain(large, {0.125, 7.5, 1e-3, -1e-3, 11, 11});
+}
+
+TEST(SmallRaster, TrianglesWithLongEdgesHaveNoPixels) {
+  for (const char* const fixture : {"uniform", "grid"}) {
+    const Terrain terrain = terrain_of(fixture, 60);
+    const RasterGrid grid = grid_over(terrain, 13, 13, 0);
+    for (const double part : {0.0, 0.15, 0.3, 0.6}) {
+      const double longest = part * grid.dx * 12;
+      const std::vector<double> pixels = rasterized(testing::triangulator(), terrain, grid, longest);
+      expect_right(terrain, grid, pixels, longest);
+    }
+  }
+}
+
+TEST(SmallRaster, ACornerWithoutWeightDoesNotCount) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Terrain terrain = make_terrain({0, 0, 2, 0, 0, 2, 2, 2}, {1, 3, nan, 5});
+  const std::vector<double> pixels = rasterized(testing::triangulator(), terrain, {0, 0, 1, 1, 3, 3});
+  EXPECT_EQ(2, pixels[1]);
+  EXPECT_EQ(4, pixels[5]);
+  EXPECT_TRUE(std::isnan(pixels[3]));
+}
+
+TEST(SmallRaster, NothingGivesNothing) {
+  const Terrain empty = make_terrain({}, {});
+  EXPECT_EQ(std::vector<double>(4, kFill), rasterized(testing::triangulator(), empty, {0, 0, 1, 1, 2, 2}));
+  EXPECT_TRUE(rasterized(testing::triangulator(), terrain_of("uniform", 9), {0, 0, 1, 1, 0, 5}).empty());
+  EXPECT_TRUE(trace_contours(testing::triangulator(), empty.view(), nullptr, {1}).heights.empty());
+}
+
+template <typename Work>
+void expect_error(ErrorKind kind, const char* part, const Work& work) {
+  try {
+    work();
+    FAIL() << "no error: " << part;
+  } catch (const Error& error) {
+    EXPECT_EQ(kind, error.kind());
+    EXPECT_NE(std::string::npos, std::string(error.what()).find(part)) << error.what();
+  }
+}
+
+TEST(SmallRaster, ErrorsSayWhatIsWrong) {
+  Terrain terrain = make_terrain({0, 0, 1, 0, 0, 1}, {1, 2, 3});
+  const auto with = [&](const RasterGrid& grid, double max_edge = 9) {
+    return [&terrain, grid, max_edge] { rasterized(testing::triangulator(), terrain, grid, max_edge); };
+  };
+  expect_error(ErrorKind::usage, "dx", with({0, 0, 0, 1, 2, 2}));
+  expect_error(ErrorKind::usage, "positive", with({0, 0, -1, 1, 2, 2}));
+  expect_error(ErrorKind::usage, "x = nan", with({std::nan(""), 0, 1, 1, 2, 2}));
+  expect_error(ErrorKind::usage, "rows", with({0, 0, 1, 1, std::size_t{1} << 31, 0}));
+  expect_error(ErrorKind::usage, "max_edge", with({0, 0, 1, 1, 2, 2}, -1));
+  expect_error(ErrorKind::input, "too small", with({1e6, 0, 1e-12, 1, 2, 2}));
+  expect_error(ErrorKind::input, "too fine", with({0, 0, 0x1p-520, 1, 2, 2}));
+  terrain.mesh.triangles[1] = 3;
+  expect_error(ErrorKind::usage, "triangle 0", with({0, 0, 1, 1, 2, 2}));
+  expect_error(ErrorKind::usage, "triangle 0", [&] {
+    trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), {1.5});
+  });
+  terrain.mesh.triangles[1] = 1;
+  terrain.mesh.neighbors[0] = 1;
+  expect_error(ErrorKind::usage, "triangle 0", with({0.5, 0.5, 1, 1, 1, 1}));
+  terrain.points[0] = std::nan("");
+  expect_error(ErrorKind::input, "point 0", with({0, 0, 1, 1, 2, 2}));
+  for (const std::vector<double>& heights : {std::vector<double>{1, 1}, {2, 1}, {std::nan("")}}) {
+    expect_error(ErrorKind::usage, "heights", [&] {
+      trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), heights);
+    });
+  }
+}
+
+TEST(Raster, ManyPointsGiveTheSameOnAnyNumberOfThreads) {
+  const Terrain terrain = terrain_of("uniform", 20000);
+  const RasterGrid grid = grid_over(terrain, 300, 200, 0.01);
+  check_terrain(terrain_of("kuzmin", 150), grid_over(terrain_of("kuzmin", 150), 20, 20, 0.01));
+  std::vector<double> first;
+  for (const char* const threads : {"1", "2", "5"}) {
+    const testing::ScopedEnvironment scoped("FLAUNAY_THREADS", threads);
+    Triangulator triangulator("host");
+    const std::vector<double> pixels = rasterized(triangulator, terrain, grid);
+    if (first.empty()) first = pixels;
+    EXPECT_TRUE(same_bytes(first, pixels));
+  }
+}
+
+// ---- Contours
+
+using Place = std::array<double, 2>;
+using Piece = std::array<Place, 2>;
+
+Contours traced(const Terrain& terrain, const std::vector<double>& heights,
+                double max_edge = std::numeric_limits<double>::infinity()) {
+  return trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), heights, max_edge);
+}
+
+std::vector<Place> line_of(const Contours& contours, std::size_t i) {
+  std::vector<Place> line;
+  for (std::size_t p = contours.offsets[i]; p < contours.offsets[i + 1]; ++p) {
+    line.push_back({contours.coordinates[2 * p], contours.coordinates[2 * p + 1]});
+  }
+  return line;
+}
+
+// Where the line of a height crosses an edge, which is followed from its smaller end.
+Place crossing(const Terrain& terrain, std::int32_t v, std::int32_t w, double height) {
+  Place a = {terrain.point(v)[0], terrain.point(v)[1]}, b = {terrain.point(w)[0], terrain.point(w)[1]};
+  double low = terrain.values[static_cast<std::size_t>(v)],
+         high = terrain.values[static_cast<std::size_t>(w)];
+  if (b < a) {
+    std::swap(a, b);
+    std::swap(low, high);
+  }
+  if (low == height) return a;
+  if (high == height) return b;
+  const double part = (height - low) / (high - low);
+  return {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])};
+}
+
+// The piece in each triangle of the lines of a height, with higher values on the left; none of one point.
+std::vector<Piece> pieces_of(const Terrain& terrain, double height, double max_edge) {
+  std::vector<Piece> pieces;
+  for (std::size_t t = 0; t < terrain.mesh.triangles.size() / 3; ++t) {
+    if (has_longer_edge(terrain, t, max_edge)) continue;
+    const auto v = terrain.corners(t);
+    std::optional<Place> from, to;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t a = v[k], b = v[(k + 1) % 3];
+      const bool a_above = terrain.values[static_cast<std::size_t>(a)] >= height,
+                 b_above = terrain.values[static_cast<std::size_t>(b)] >= height;
+      if (a_above && !b_above) from = crossing(terrain, a, b, height);
+      if (!a_above && b_above) to = crossing(terrain, a, b, height);
+    }
+    if (from && *from != *to) pieces.push_back({*from, *to});
+  }
+  std::sort(pieces.begin(), pieces.end());
+  return pieces;
+}
+
+void check_contours(const Terrain& terrain, const std::vector<double>& heights,
+                    double max_edge = std::numeric_limits<double>::infinity()) {
+  const Contours contours = traced(terrain, heights, max_edge);
+  ASSERT_EQ(contours.heights.size() + 1, contours.offsets.size());
+  ASSERT_TRUE(std::is_sorted(contours.heights.begin(), contours.heights.end()));
+  std::vector<std::vector<Piece>> found(heights.size());
+  for (std::size_t i = 0; i < contours.heights.size(); ++i) {
+    const std::vector<Place> line = line_of(contours, i);
+    ASSERT_GE(line.size(), line.front() == line.back() ? 4u : 2u);
+    for (std::size_t p = 1; p < line.size(); ++p) {
+      ASSERT_NE(line[p - 1], line[p]);
+      found[static_cast<std::size_t>(contours.heights[i])].push_back({line[p - 1], line[p]});
+    }
+    if (line.front() != line.back()) continue;
+    EXPECT_EQ(line.front(), *std::min_element(line.begin(), line.end()));
+  }
+  for (std::size_t level = 0; level < heights.size(); ++level) {
+    std::vector<Piece> expected = pieces_of(terrain, heights[level], max_edge);
+    std::sort(found[level].begin(), found[level].end());
+    // Closed lines there and back between two points are left out.
+    std::vector<Piece> missing;
+    std::set_difference(expected.begin(), expected.end(), found[level].begin(), found[level].end(),
+                        std::back_inserter(missing));
+    for (const Piece& piece : missing) {
+      EXPECT_EQ(1, std::count(missing.begin(), missing.end(), Piece{piece[1], piece[0]}));
+    }
+    EXPECT_EQ(expected.size(), found[level].size() + missing.size());
+    EXPECT_TRUE(std::includes(expected.begin(), expected.end(), found[level].begin(), found[level].end()));
+  }
+  for (const std::uint64_t seed : {1, 2}) {
+    const Contours others = traced(shuffled(terrain, seed), heights, max_edge);
+    EXPECT_TRUE(same_bytes(contours.coordinates, others.coordinates));
+    EXPECT_EQ(contours.offsets, others.offsets);
+    EXPECT_EQ(contours.heights, others.heights);
+  }
+}
+
+TEST(SmallContours, HaveThePiecesOfAllTriangles) {
+  for (const char* const fixture : {"uniform", "grid", "star", "kuzmin", "collinear"}) {
+    SCOPED_TRACE(fixture);
+    check_contours(terrain_of(fixture, 60), {-50.0625, 0.0625, 3.03125, 77.03125});
+    check_contours(terrain_of(fixture, 60), {0.0625, 77.03125}, 0.3);
+  }
+}
+
+TEST(SmallContours, ValuesThatEqualAHeightCountAsAbove) {
+  // Few different values: summits, ridges and plains at a height.
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Terrain terrain = terrain_of("grid", 49);
+    terrain.values = random_values(49, seed, 2);
+    check_contours(terrain, {-0.25, -0.125, 0, 0.125, 0.25});
+  }
+}
+
+TEST(SmallContours, AHillHasClosedLinesCounterClockwise) {
+  Coordinates points;
+  std::vector<double> values;
+  for (int i = -4; i <= 4; ++i) {
+    for (int j = -4; j <= 4; ++j) {
+      points.insert(points.end(), {i / 4.0, j / 4.0});
+      values.push_back(-i * i - j * j);
+    }
+  }
+  const Terrain terrain = make_terrain(points, values);
+  const Contours contours = traced(terrain, {-20.5, -10.5, -3.5});
+  EXPECT_EQ((std::vector<std::int32_t>{0, 0, 0, 0, 1, 2}), contours.heights);
+  for (std::size_t i = 0; i < contours.heights.size(); ++i) {
+    const std::vector<Place> line = line_of(contours, i);
+    EXPECT_EQ(i >= 4, line.front() == line.back());
+    double area = 0;
+    for (std::size_t p = 1; p < line.size(); ++p) {
+      area += line[p - 1][0] * line[p][1] - line[p - 1][1] * line[p][0];
+    }
+    EXPECT_GT(area, 0);
+  }
+}
+
+TEST(SmallContours, LeaveOutValuesThatAreNotFinite) {
+  Terrain terrain = terrain_of("uniform", 50);
+  terrain.values[7] = std::numeric_limits<double>::quiet_NaN();
+  terrain.values[8] = std::numeric_limits<double>::infinity();
+  const Contours contours = traced(terrain, {0.0625});
+  EXPECT_FALSE(contours.heights.empty());
+  for (const double c : contours.coordinates) EXPECT_TRUE(std::isfinite(c));
+}
+
+TEST(Contours, DoNotCross) {
+  const Terrain terrain = terrain_of("uniform", 400);
+  const Contours contours = traced(terrain, {-60, -20, 0.0625, 30, 90});
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < contours.heights.size(); ++i) {
+    const std::vector<Place> line = line_of(contours, i);
+    for (std::size_t p = 1; p < line.size(); ++p) pieces.push_back({line[p - 1], line[p]});
+  }
+  const auto side = [](const Piece& piece, const Place& q) {
+    return sgn(locate::area(piece[0].data(), piece[1].data(), q.data()));
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Piece &p = pieces[i], &q = pieces[j];
+      if (std::max(p[0][0], p[1][0]) < std::min(q[0][0], q[1][0]) ||
+          std::max(q[0][0], q[1][0]) < std::min(p[0][0], p[1][0]))
+        continue;
+      EXPECT_FALSE(side(p, q[0]) * side(p, q[1]) < 0 && side(q, p[0]) * side(q, p[1]) < 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::raster
