@@ -36,6 +36,8 @@ rm -rf build/python-wheel
 # these are installed: they are large.
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
 "${pip[@]}" install --quiet meshio networkx scikit-fem shapely mypy "numpy==$numpy"
+# What flaunay.terrain reads and writes files by. attrs: affine, which rasterio needs, does not work with the system's.
+"${pip[@]}" install --quiet --upgrade "laspy[lazrs]" rasterio pyogrio attrs "numpy==$numpy"
 
 # The annotations of the package, as it is installed, and of what its users are shown.
 "$python" -m mypy --strict --package flaunay

@@ -50,6 +50,7 @@ from flaunay._on_device import DeviceTriangulation, triangulate_device
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
 from flaunay._refinement import RefinementReport
+from flaunay._terrain import Terrain, terrain
 from flaunay._triangulate import refine, triangulate
 from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
@@ -80,6 +81,7 @@ __all__ = [
     "NearestInterpolator",
     "PolygonTriangulation",
     "RefinementReport",
+    "Terrain",
     "TriangleRows",
     "Triangulation",
     "UsageError",
@@ -93,6 +95,7 @@ __all__ = [
     "refine",
     "relax",
     "relax_device",
+    "terrain",
     "triangle",
     "triangulate",
     "triangulate_chunks",

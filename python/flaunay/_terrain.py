@@ -1,0 +1,636 @@
+"""From measured heights to maps: laser scans and other points to rasters, contours and pictures."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import struct
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _raster
+from flaunay._arrays import as_floats, summary
+from flaunay._delaunay import Delaunay
+from flaunay._errors import InputError, UsageError
+from flaunay._interpolate import LinearInterpolator, NearestInterpolator
+from flaunay._optional import optional
+from flaunay._raster import Contours
+from flaunay._triangulate import triangulate
+
+Doubles = npt.NDArray[np.float64]
+_Paths = Union[str, "os.PathLike[str]"]
+
+_PURPOSE = "flaunay.terrain"
+_LAS = {".las", ".laz"}
+_TEXT = {".txt", ".xyz", ".csv"}
+_SUFFIXES = sorted(_LAS | _TEXT | {".npy"})
+_RASTERS = {".tif": "COG", ".tiff": "COG", ".png": "PNG"}
+_LINES = {".geojson": "GeoJSON", ".gpkg": "GPKG", ".shp": "ESRI Shapefile"}
+_DUPLICATES = ("highest", "lowest", "mean")
+# 32 GiB as float64.
+_MOST_PIXELS = 1 << 32
+# Of GeoTIFF, in .las files: the keys that have the numbers of EPSG, of projected and of other systems.
+_EPSG_KEYS = (3072, 2048)
+
+
+def _check_one_of(given: Optional[str], known: Sequence[Optional[str]], name: str) -> None:
+    if given not in known:
+        raise UsageError(f"{name} must be one of {', '.join(map(repr, known))}, not {given!r}")
+
+
+# ---- Points
+
+
+class _Las:
+    """A .las or .laz file. What its header says is checked before points are read."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        laspy = optional("laspy", _PURPOSE)
+        try:
+            with laspy.open(path) as file:
+                self.header = file.header
+        except Exception as error:
+            raise InputError(f"{path}: {error}") from error
+        header = self.header
+        needed = header.offset_to_point_data + header.point_count * header.point_format.size
+        if path.suffix.lower() == ".las" and path.stat().st_size < needed:
+            raise InputError(
+                f"{path} is truncated: its {header.point_count} points end at byte {needed}, "
+                f"but the file has {path.stat().st_size}"
+            )
+        self.box: Optional[Doubles] = None
+        if header.point_count:
+            self.box = np.array([*header.mins[:2], *header.maxs[:2]], np.float64)
+
+    @property
+    def crs(self) -> Any:
+        """That of rasterio, or None."""
+        crs = optional("rasterio.crs", _PURPOSE).CRS
+        records = {record.record_id: record for record in self.header.vlrs}
+        if 2112 in records:
+            text = records[2112].record_data_bytes().decode("utf-8", "replace").rstrip("\0")
+            return crs.from_wkt(text) if text else None
+        if 34735 in records:
+            keys = np.frombuffer(records[34735].record_data_bytes(), np.uint16)[4:].reshape(-1, 4)
+            for wanted in _EPSG_KEYS:
+                found = keys[(keys[:, 0] == wanted) & (keys[:, 1] == 0), 3]
+                if found.size and 0 < found[0] < 32767:
+                    return crs.from_epsg(int(found[0]))
+        return None
+
+    def read(self, classes: Optional[frozenset[int]], returns: Optional[str]) -> Doubles:
+        laspy = optional("laspy", _PURPOSE)
+        parts, count = [], 0
+        try:
+            with laspy.open(self.path) as file:
+                for points in file.chunk_iterator(1 << 20):
+                    count += len(points)
+                    parts.append(self._chosen(points, classes, returns))
+        except Exception as error:
+            raise InputError(f"{self.path}: {error}") from error
+        if count != self.header.point_count:
+            raise InputError(
+                f"{self.path} is truncated: it has {count} of {self.header.point_count} points"
+            )
+        return np.concatenate(parts) if parts else np.empty((0, 3))
+
+    def _chosen(
+        self, points: Any, classes: Optional[frozenset[int]], returns: Optional[str]
+    ) -> Doubles:
+        chosen = np.ones(len(points), bool)
+        if classes is not None:
+            chosen &= np.isin(np.asarray(points.classification), list(classes))
+        if returns == "first":
+            chosen &= np.asarray(points.return_number) == 1
+        elif returns == "last":
+            chosen &= np.asarray(points.return_number) == np.asarray(points.number_of_returns)
+        columns = [
+            _decimal(np.asarray(points.array[name][chosen]), scale, offset)
+            for name, scale, offset in zip("XYZ", self.header.scales, self.header.offsets)
+        ]
+        return np.stack(columns, axis=1)
+
+
+def _decimal(integers: npt.NDArray[Any], scale: float, offset: float) -> Doubles:
+    """Scaled integers, the next double to each decimal number where scale and offset are decimal.
+
+    Then equal places are equal in files of other offsets, too.
+    """
+    whole = round(1 / scale) if scale > 0 else 0
+    first = round(offset * whole)
+    if whole and 1 / whole == scale and first / whole == offset and abs(first) < 1 << 62:
+        numbers = integers.astype(np.int64) + first
+        if not numbers.size or np.abs(numbers).max() < 1 << 53:
+            return np.asarray(numbers / whole, np.float64)
+    return np.asarray(integers * scale + offset, np.float64)
+
+
+class _Table:
+    """Points as text, .npy or an array."""
+
+    crs = None
+
+    def __init__(self, given: Any, name: str) -> None:
+        if isinstance(given, Path):
+            given = self._of_file(given)
+        self._points = np.asarray(as_floats(given, name), np.float64)
+        if self._points.ndim != 2 or self._points.shape[1] != 3:
+            raise UsageError(f"{name} must be x, y and z of points, not {self._points.shape}")
+        self.box: Optional[Doubles] = None
+        if len(self._points):
+            xy = self._points[:, :2]
+            self.box = np.concatenate([xy.min(axis=0), xy.max(axis=0)])
+
+    @staticmethod
+    def _of_file(path: Path) -> Any:
+        try:
+            if path.suffix.lower() == ".npy":
+                return np.load(path, mmap_mode="r")
+            with open(path) as file:
+                line = next((line for line in file if line.strip() and line[0] != "#"), "")
+            separator = "," if "," in line else None
+            return np.loadtxt(path, delimiter=separator, ndmin=2)[:, :3]
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path}: {error}") from error
+
+    def read(self, classes: Optional[frozenset[int]], returns: Optional[str]) -> Doubles:
+        if classes is not None or returns is not None:
+            raise UsageError("classes and returns are those of .las and .laz files alone")
+        return self._points
+
+
+def _sources(given: Any) -> list[Any]:
+    if not isinstance(given, (str, os.PathLike)):
+        if isinstance(given, (list, tuple)) and all(
+            isinstance(p, (str, os.PathLike)) for p in given
+        ):
+            return [one for path in given for one in _sources(path)]
+        return [_Table(given, "points")]
+    path = Path(given)
+    if path.is_dir():
+        files = sorted(p for p in path.iterdir() if p.suffix.lower() in _SUFFIXES)
+        if not files:
+            raise InputError(f"{path} has no files that end with {', '.join(_SUFFIXES)}")
+        return [one for file in files for one in _sources(file)]
+    if not path.exists():
+        raise InputError(f"{path} does not exist")
+    suffix = path.suffix.lower()
+    if suffix in _LAS:
+        return [_Las(path)]
+    if suffix in _TEXT or suffix == ".npy":
+        return [_Table(path, str(path))]
+    raise UsageError(f"{path} must end with {', '.join(_SUFFIXES)}")
+
+
+def _common_crs(sources: Iterable[Any], given: Any) -> Any:
+    """The system of the sources' coordinates, or the one that is given in its place."""
+    if given is not None:
+        return optional("rasterio.crs", _PURPOSE).CRS.from_user_input(given)
+    found: Any = None
+    first: Any = None
+    for source in sources:
+        crs = source.crs
+        if crs is None:
+            continue
+        if found is not None and crs != found:
+            raise InputError(
+                f"{first.path} and {source.path} have different coordinate systems, {found} and {crs}: "
+                "reproject one of them, or say by crs= what both have"
+            )
+        found, first = crs, source
+    return found
+
+
+def _merge_heights(
+    heights: Doubles, representatives: npt.NDArray[np.int32], fixed: int, duplicates: str
+) -> None:
+    """Gives the representative of equal points their common height, unless it is one of the first, fixed ones."""
+    others = np.flatnonzero(representatives != np.arange(len(heights)))
+    others = others[(others >= fixed) & (representatives[others] >= fixed)]
+    of = representatives[others]
+    if duplicates == "highest":
+        np.maximum.at(heights, of, heights[others])
+    elif duplicates == "lowest":
+        np.minimum.at(heights, of, heights[others])
+    else:
+        # Summed in the order of heights, so that the order of points does not matter.
+        first = np.unique(of)
+        all_of, owner = np.concatenate([first, others]), np.concatenate([first, of])
+        order = np.lexsort((heights[all_of], owner))
+        starts = np.searchsorted(owner[order], first)
+        counts = np.diff([*starts, len(order)])
+        if len(first):
+            heights[first] = np.add.reduceat(heights[all_of][order], starts) / counts
+
+
+# ---- Breaklines and boundaries
+
+
+def _geometries(given: Any, crs: Any, name: str) -> list[Any]:
+    """Shapely's geometries: those given, or those of a file, which must have the system of the points."""
+    shapely = optional("shapely", _PURPOSE)
+    if isinstance(given, (str, os.PathLike)):
+        pyogrio = optional("pyogrio.raw", _PURPOSE)
+        try:
+            meta, _, found, _ = pyogrio.read(given, columns=[])
+        except Exception as error:
+            raise InputError(f"{name}: {given}: {error}") from error
+        if crs is not None and meta["crs"]:
+            own = optional("rasterio.crs", _PURPOSE).CRS.from_user_input(meta["crs"])
+            if own != crs:
+                raise InputError(f"{name}: {given} has the coordinate system {own}, not {crs}")
+        return list(shapely.from_wkb(found))
+    if hasattr(given, "geom_type"):
+        return [given]
+    return [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+
+
+def _lines_of(geometries: Iterable[Any]) -> Iterator[Doubles]:
+    """The lines and rings of geometries, shape (k, 3); z is NaN where they have none."""
+    shapely = optional("shapely", _PURPOSE)
+    for geometry in geometries:
+        for part in shapely.get_parts(geometry):
+            rings = [part.exterior, *part.interiors] if part.geom_type == "Polygon" else [part]
+            for line in rings:
+                if line.geom_type not in ("LineString", "LinearRing"):
+                    raise UsageError(f"breaklines must be lines or polygons, not {line.geom_type}")
+                yield shapely.get_coordinates(line, include_z=True)
+
+
+# ---- Results
+
+
+def _hillshade(pixels: Doubles, dx: float, dy: float) -> npt.NDArray[np.uint8]:
+    """Grey and alpha of a surface that is lit from the north-west, 45 degrees high."""
+    down, right = np.gradient(pixels)
+    slope_x, slope_y = right / dx, -down / dy
+    light = (1 - slope_x / math.sqrt(2) + slope_y / math.sqrt(2)) / np.sqrt(
+        2 * (1 + slope_x**2 + slope_y**2)
+    )
+    there = np.isfinite(light)
+    grey = np.where(there, 255 * np.clip(light, 0, 1), 0).astype(np.uint8)
+    return np.stack([grey, np.where(there, 255, 0).astype(np.uint8)])
+
+
+class Terrain:
+    """Measured heights, their triangulation and a raster of them. `terrain` makes it.
+
+    Attributes
+    ----------
+    mesh : Delaunay or ConstrainedTriangulation
+        The triangulation; with breaklines, these are edges of it.
+    heights : ndarray of float64, shape (n,)
+        The height of each of ``mesh.points``.
+    raster : ndarray of float64, shape (rows, columns)
+        Heights, the north at the top; NaN where there are none.
+    bounds : tuple of float
+        What the pixels cover: xmin, ymin, xmax, ymax.
+    resolution : float
+        The size of a pixel.
+    crs : rasterio.crs.CRS or None
+        The system of the coordinates, if it is known.
+    """
+
+    def __init__(self, mesh: Any, heights: Doubles, grid: _Grid, crs: Any, boundary: Any) -> None:
+        self.mesh = mesh
+        self.heights = heights
+        self.crs = crs
+        self.resolution = grid.resolution
+        self.bounds = grid.bounds
+        self._grid = grid
+        self._boundary = boundary
+        self._max_edge: Optional[float] = None
+        self.raster: Doubles = np.empty((grid.rows, grid.columns))
+
+    def __repr__(self) -> str:
+        rows, columns = self.raster.shape
+        return summary(self, points=len(self.heights), rows=rows, columns=columns)
+
+    def contours(self, heights: Union[float, npt.ArrayLike]) -> Contours:
+        """Contour lines at heights, or at all multiples of one number; see `Delaunay.contours`."""
+        levels = np.asarray(as_floats(heights, "heights"), np.float64)
+        if levels.ndim == 0:
+            step = _raster.as_length(float(levels), "the interval of contours")
+            finite = self.heights[np.isfinite(self.heights)]
+            low, high = (finite.min(), finite.max()) if finite.size else (0.0, -1.0)
+            if (high - low) / step > 1e6:
+                raise UsageError(
+                    f"contours every {step} between {low} and {high} are more than a million"
+                )
+            levels = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+        lines = _raster.contours(self.mesh, self.heights, levels, max_edge=self._max_edge)
+        return lines if self._boundary is None else self._clipped(lines)
+
+    def _clipped(self, lines: Contours) -> Contours:
+        shapely = optional("shapely", _PURPOSE)
+        if not len(lines):
+            return lines
+        of_line = np.repeat(np.arange(len(lines)), np.diff(lines.offsets))
+        made = shapely.intersection(
+            shapely.linestrings(lines.points, indices=of_line), self._boundary
+        )
+        parts, of = shapely.get_parts(made, return_index=True)
+        is_line = shapely.get_type_id(parts) == 1
+        parts, of = parts[is_line], of[is_line]
+        points, of_part = shapely.get_coordinates(parts, return_index=True)
+        offsets = np.searchsorted(of_part, np.arange(len(parts) + 1))
+        return Contours(points, offsets.astype(np.int64), lines.heights[of])
+
+    # Files
+
+    def _write_raster(self, path: str, driver: str, nodata: float) -> None:
+        rasterio = optional("rasterio", _PURPOSE)
+        grid = self._grid
+        transform = rasterio.transform.from_origin(
+            grid.bounds[0], grid.bounds[3], grid.resolution, grid.resolution
+        )
+        common = {
+            **{"driver": driver, "height": grid.rows, "width": grid.columns},
+            **{"transform": transform, "crs": self.crs},
+        }
+        if driver == "PNG":
+            picture = _hillshade(self.raster, grid.resolution, grid.resolution)
+            with rasterio.open(path, "w", count=2, dtype="uint8", **common) as file:
+                file.write(picture)
+            return
+        with rasterio.open(
+            path,
+            "w",
+            count=1,
+            dtype="float32",
+            nodata=nodata,
+            compress="DEFLATE",
+            predictor="YES",
+            **common,
+        ) as file:
+            file.update_tags(AREA_OR_POINT="Point" if grid.is_point else "Area")
+            file.write(np.where(np.isnan(self.raster), nodata, self.raster).astype(np.float32), 1)
+
+    def _write_lines(self, path: str, driver: str, lines: Contours) -> None:
+        pyogrio = optional("pyogrio.raw", _PURPOSE)
+        geometries = np.array(
+            [
+                struct.pack("<BII", 1, 2, len(line)) + line.astype("<f8").tobytes()
+                for _, line in lines
+            ],
+            object,
+        )
+        pyogrio.write(
+            path,
+            geometries,
+            [np.asarray(lines.heights)],
+            np.array(["height"], object),
+            geometry_type="LineString",
+            driver=driver,
+            crs=None if self.crs is None else self.crs.to_wkt(),
+            layer="contours",
+        )
+
+
+class _Grid:
+    """Pixels of one size: their corners, or with is_point their centres, are multiples of it."""
+
+    def __init__(self, box: Doubles, resolution: float, is_point: bool) -> None:
+        if not (resolution > 0 and math.isfinite(resolution)):
+            raise UsageError(f"resolution must be positive, not {resolution}")
+        if not np.isfinite(box).all() or not (box[0] <= box[2] and box[1] <= box[3]):
+            raise UsageError(
+                f"bounds must be finite, xmin <= xmax and ymin <= ymax, not {box.tolist()}"
+            )
+        low, high = np.floor(box[:2] / resolution), np.ceil(box[2:] / resolution)
+        columns, rows = np.maximum(high - low, 1) + is_point
+        if rows * columns > _MOST_PIXELS:
+            raise UsageError(
+                f"resolution {resolution:g} makes {columns:,.0f} x {rows:,.0f} pixels of "
+                f"{box[2] - box[0]:g} x {box[3] - box[1]:g}; at most {_MOST_PIXELS:,} are possible"
+            )
+        self.resolution, self.is_point = resolution, is_point
+        self.rows, self.columns = int(rows), int(columns)
+        half = 0.5 * is_point
+        x0, y0 = float(low[0]) - half, float(low[1]) - half
+        self.bounds = tuple(
+            float(edge) * resolution for edge in (x0, y0, x0 + self.columns, y0 + self.rows)
+        )
+        # The centre of the first pixel, and the steps to the next ones.
+        self.steps = (
+            (x0 + 0.5) * resolution,
+            (y0 + self.rows - 0.5) * resolution,
+            resolution,
+            -resolution,
+        )
+
+
+@contextlib.contextmanager
+def _all_or_none(paths: Sequence[Path]) -> Iterator[list[str]]:
+    """Names of temporary files, which take the place of files when all are written."""
+    with contextlib.ExitStack() as stack:
+        names = []
+        for path in paths:
+            folder = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix=".flaunay-", dir=path.parent)
+            )
+            names.append(os.path.join(folder, path.name))
+        yield names
+        for name, path in zip(names, paths):
+            os.replace(name, path)
+
+
+def _checked_outputs(given: Any, contours: Any) -> list[Path]:
+    if given is None:
+        return []
+    given = [given] if isinstance(given, (str, os.PathLike)) else given
+    paths = [Path(path) for path in given]
+    known = {**_RASTERS, **{k: v for k, v in _LINES.items() if k != ".shp"}}
+    for path in paths:
+        if path.suffix.lower() not in known:
+            raise UsageError(f"output {path} must end with {', '.join(known)}")
+        if not path.parent.is_dir():
+            raise InputError(f"output {path}: there is no folder {path.parent}")
+        if path.suffix.lower() in _LINES:
+            if contours is None:
+                raise UsageError(f"output {path} needs contours=, the interval of their heights")
+            optional("pyogrio.raw", _PURPOSE)
+        else:
+            optional("rasterio", _PURPOSE)
+    return paths
+
+
+def _with_breaklines(
+    points: Doubles, heights: Doubles, breaklines: Any, crs: Any, device: Optional[str]
+) -> tuple[Any, Doubles, int]:
+    """The mesh with breaklines, whose points come first; heights of all points, and the number of those."""
+    lines = [line for line in _lines_of(_geometries(breaklines, crs, "breaklines")) if len(line)]
+    firsts = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
+    along = np.concatenate([np.empty((0, 3)), *lines])
+    segments = np.stack([np.arange(len(along)), np.arange(1, len(along) + 1)], axis=1)
+    segments = np.delete(segments, firsts[1:] - 1, axis=0)
+    missing = np.isnan(along[:, 2])
+    if missing.any():
+        tri = Delaunay(points, device=device)
+        places = along[missing, :2]
+        found = LinearInterpolator(tri, heights)(places)
+        beyond = np.isnan(found)
+        found[beyond] = NearestInterpolator(tri, heights)(places[beyond])
+        along[missing, 2] = found
+    try:
+        mesh = triangulate(
+            np.concatenate([along[:, :2], points]), segments=segments, device=device, neighbors=True
+        )
+    except InputError as error:
+        raise InputError(f"breaklines: {error}") from error
+    return mesh, np.concatenate([along[:, 2], heights]), len(along)
+
+
+def terrain(
+    points: Any,
+    output: Union[None, _Paths, Sequence[_Paths]] = None,
+    *,
+    resolution: float,
+    bounds: Optional[Sequence[float]] = None,
+    classes: Optional[Iterable[int]] = None,
+    returns: Optional[str] = None,
+    duplicates: str = "highest",
+    breaklines: Any = None,
+    boundary: Any = None,
+    max_edge: Optional[float] = None,
+    contours: Union[None, float, npt.ArrayLike] = None,
+    crs: Any = None,
+    pixel_is: str = "area",
+    nodata: float = -9999.0,
+    device: Optional[str] = None,
+) -> Terrain:
+    """Makes a map of measured heights: a raster, contours and a shaded picture.
+
+    Parameters
+    ----------
+    points : path, list of paths or array_like
+        Files ``.las``, ``.laz``, ``.txt``, ``.xyz``, ``.csv`` and ``.npy``, folders of these, or an array of
+        x, y and z.
+    output : path or list of paths, optional
+        Files to write: ``.tif`` (a cloud-optimised GeoTIFF of float32), ``.png`` (shaded hills),
+        ``.geojson`` or ``.gpkg`` (contours). All are written, or none is.
+    resolution : float
+        The size of a pixel.
+    bounds : (xmin, ymin, xmax, ymax), optional
+        What the raster covers at least; the box of the points by default.
+    classes : iterable of int, optional
+        Of a scan, the classes of points that are used: 2 is ground, 9 water.
+    returns : {"first", "last"}, optional
+        Of a scan, only these returns of each pulse.
+    duplicates : {"highest", "lowest", "mean"}
+        The height of a place that was measured several times.
+    breaklines : path, geometries of Shapely or list of arrays, optional
+        Lines that become edges of the triangulation, of shape (k, 3), or (k, 2) to take the heights of the
+        points around them. They must not cross.
+    boundary : path or geometry of Shapely, optional
+        Polygons, outside of which the map is empty.
+    max_edge : float, optional
+        Triangles with a longer edge are left out.
+    contours : float or array_like, optional
+        The interval of contours' heights, or the heights, for `output`.
+    crs : optional
+        The system of the coordinates, as rasterio reads it, in place of that of the files.
+    pixel_is : {"area", "point"}
+        Whether the edges of pixels or their centres are multiples of the resolution.
+    nodata : float
+        What stands for no height in the GeoTIFF.
+    device : str, optional
+        As of `triangulate`.
+
+    Returns
+    -------
+    Terrain
+
+    Raises
+    ------
+    UsageError
+        For arguments that make no sense, such as a resolution that makes too many pixels.
+    InputError
+        For files that cannot be read, are truncated or have different coordinate systems, if no point
+        is left, and for breaklines that cross.
+    ImportError
+        Without a package that is needed; ``pip install flaunay[terrain]`` installs all.
+
+    Notes
+    -----
+    Coordinates of scans are the doubles next to the decimal numbers that the files have. The raster has the
+    same bytes whatever the order of files and points. All points are in memory at once, about
+    200 bytes each.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.terrain([[0, 0, 5], [4, 0, 9], [0, 4, 5], [4, 4, 9]], resolution=2).raster
+    array([[6., 8.],
+           [6., 8.]])
+    """
+    _check_one_of(returns, (None, "first", "last"), "returns")
+    _check_one_of(duplicates, _DUPLICATES, "duplicates")
+    _check_one_of(pixel_is, ("area", "point"), "pixel_is")
+    chosen = None if classes is None else frozenset(classes)
+    outputs = _checked_outputs(output, contours)
+    sources = _sources(points)
+    system = _common_crs(sources, crs)
+    boxes = np.array([source.box for source in sources if source.box is not None])
+    if bounds is not None:
+        box = np.asarray(as_floats(bounds, "bounds"), np.float64)
+        if box.shape != (4,):
+            raise UsageError(f"bounds must be (xmin, ymin, xmax, ymax), not of shape {box.shape}")
+    elif len(boxes):
+        box = np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
+    else:
+        raise InputError("there are no points")
+    is_point = pixel_is == "point"
+    _Grid(box, resolution, is_point)
+    area = None
+    if boundary is not None:
+        area = optional("shapely", _PURPOSE).union_all(_geometries(boundary, system, "boundary"))
+        optional("rasterio.features", _PURPOSE)
+
+    measured = np.concatenate([source.read(chosen, returns) for source in sources])
+    if not len(measured):
+        raise InputError(
+            "no point is left" + ("" if chosen is None else f" of the classes {sorted(chosen)}")
+        )
+    if bounds is None:
+        # Those of the points that are left.
+        box = np.concatenate([measured[:, :2].min(axis=0), measured[:, :2].max(axis=0)])
+    grid = _Grid(box, resolution, is_point)
+    places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
+    mesh: Any
+    fixed = 0
+    if breaklines is None:
+        mesh = Delaunay(places, device=device)
+    else:
+        mesh, heights, fixed = _with_breaklines(places, heights, breaklines, system, device)
+    _merge_heights(heights, mesh.representatives, fixed, duplicates)
+    result = Terrain(mesh, heights, grid, system, area)
+    result._max_edge = max_edge
+    _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
+    if area is not None:
+        rasterio = optional("rasterio", _PURPOSE)
+        origin = rasterio.transform.from_origin(
+            grid.bounds[0], grid.bounds[3], resolution, resolution
+        )
+        outside = optional("rasterio.features", _PURPOSE).geometry_mask(
+            [area], result.raster.shape, origin
+        )
+        result.raster[outside] = np.nan
+    lines = None
+    with _all_or_none(outputs) as names:
+        for name in names:
+            suffix = Path(name).suffix.lower()
+            if suffix in _RASTERS:
+                result._write_raster(name, _RASTERS[suffix], nodata)
+            else:
+                assert contours is not None
+                lines = result.contours(contours) if lines is None else lines
+                result._write_lines(name, _LINES[suffix], lines)
+    return result

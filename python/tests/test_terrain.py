@@ -1,0 +1,234 @@
+"""Scans to maps; without the packages for files only what needs none."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import flaunay
+
+
+def hills(x, y):
+    return np.round(100 + 30 * np.sin(x / 9) + 20 * np.cos(y / 7), 2)
+
+
+@pytest.fixture
+def scan(random):
+    """Points of a survey, to centimetres."""
+    x, y = np.round(random.uniform([500000, 4500000], [500060, 4500040], (3000, 2)), 2).T
+    return np.stack([x, y, hills(x - 500000, y - 4500000)], axis=1)
+
+
+def write_las(path, points, epsg=None, offsets=(500000, 4500000, 0), classes=None, version="1.4"):
+    laspy = pytest.importorskip("laspy")
+    header = laspy.LasHeader(point_format=6 if version == "1.4" else 1, version=version)
+    header.scales, header.offsets = [0.01] * 3, offsets
+    if epsg is not None:
+        crs = pytest.importorskip("rasterio.crs").CRS.from_epsg(epsg)
+        record = laspy.VLR("LASF_Projection", 2112, "", crs.to_wkt().encode() + b"\0")
+        header.vlrs.append(record)
+    las = laspy.LasData(header)
+    las.x, las.y, las.z = np.asarray(points).T
+    las.return_number[:] = 1
+    las.number_of_returns[:] = np.arange(len(points)) % 2 + 1
+    las.classification[:] = 2 if classes is None else classes
+    las.write(path)
+    return path
+
+
+def test_raster_is_that_of_the_triangulation(scan):
+    made = flaunay.terrain(scan, resolution=2)
+    assert made.bounds == (500000, 4500000, 500060, 4500040)
+    tri = flaunay.Delaunay(scan[:, :2])
+    np.testing.assert_array_equal(made.raster, tri.raster(scan[:, 2], (20, 30), made.bounds))
+    point = flaunay.terrain(scan, resolution=2, pixel_is="point")
+    assert point.bounds == (499999, 4499999, 500061, 4500041)
+    assert repr(made) == "<flaunay.Terrain: 3000 points, 20 rows, 30 columns>"
+    assert set(made.contours(10).heights) == {10 * k for k in range(6, 15)}
+
+
+@pytest.mark.parametrize("duplicates, expected", [("highest", 9), ("lowest", 1), ("mean", 4)])
+def test_places_measured_several_times(duplicates, expected):
+    points = [[0, 0, 9], [4, 0, 5], [0, 0, 1], [0, 4, 5], [0, 0, 2]]
+    made = flaunay.terrain(points, resolution=4, pixel_is="point", duplicates=duplicates)
+    assert made.raster[-1, 0] == expected
+
+
+def test_files_of_text_and_npy(scan, tmp_path):
+    expected = flaunay.terrain(scan, resolution=3)
+    np.savetxt(tmp_path / "a.xyz", scan[:1000], fmt="%.2f", header="x y z")
+    np.savetxt(tmp_path / "b.csv", scan[1000:1500], fmt="%.2f", delimiter=",")
+    np.save(tmp_path / "c.npy", scan[1500:])
+    (tmp_path / "notes.md").write_text("none of the points")
+    assert flaunay.terrain(tmp_path, resolution=3).raster.tobytes() == expected.raster.tobytes()
+
+
+def test_max_edge_leaves_gaps(scan):
+    left = scan[np.abs(scan[:, 0] - 500030) > 8]
+    made = flaunay.terrain(left, resolution=1, max_edge=6)
+    columns = np.isnan(made.raster).mean(axis=0)
+    assert (columns[25:35] == 1).all() and (columns[3:20] < 0.2).all()
+    for _, line in made.contours(5):
+        assert (np.abs(line[:, 0] - 500030) > 7).all()
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ({"resolution": 1e-5}, "pixels"),
+        ({"resolution": 0}, "resolution"),
+        ({"duplicates": "any"}, "duplicates"),
+        ({"returns": "second"}, "returns"),
+        ({"pixel_is": "cell"}, "pixel_is"),
+        ({"bounds": (1, 2, 3)}, "bounds"),
+        ({"classes": [2]}, "classes"),
+        ({"output": "dem.jpg"}, "must end with"),
+        ({"output": "lines.geojson"}, "contours="),
+    ],
+)
+def test_what_is_wrong_is_said(scan, arguments, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.terrain(scan, **{"resolution": 1, **arguments})
+
+
+def test_input_that_cannot_be_used(tmp_path):
+    with pytest.raises(flaunay.InputError, match="no points"):
+        flaunay.terrain(np.empty((0, 3)), resolution=1)
+    with pytest.raises(flaunay.InputError, match="does not exist"):
+        flaunay.terrain(tmp_path / "none.las", resolution=1)
+    with pytest.raises(flaunay.InputError, match="no files"):
+        flaunay.terrain(tmp_path, resolution=1)
+    (tmp_path / "a.xyz").write_text("1 2 3\n1 2\n")
+    with pytest.raises(flaunay.InputError, match="a.xyz"):
+        flaunay.terrain(tmp_path, resolution=1)
+    with pytest.raises(flaunay.UsageError, match="must end with"):
+        (tmp_path / "a.dat").write_text("")
+        flaunay.terrain(tmp_path / "a.dat", resolution=1)
+
+
+# ---- Laser scans
+
+
+@pytest.mark.parametrize("suffix", ["las", "laz"])
+def test_scans_have_the_decimal_numbers(scan, tmp_path, suffix):
+    write_las(tmp_path / f"a.{suffix}", scan[:1000])
+    write_las(tmp_path / f"b.{suffix}", scan[1000:], offsets=(400000, 4000000, 50), version="1.2")
+    made = flaunay.terrain(tmp_path, resolution=2)
+    assert {tuple(p) for p in made.mesh.points} == {tuple(p) for p in scan[:, :2]}
+    assert made.raster.tobytes() == flaunay.terrain(scan, resolution=2).raster.tobytes()
+
+
+def test_classes_and_returns(scan, tmp_path):
+    classes = np.where(scan[:, 0] < 500030, 2, 5)
+    path = write_las(tmp_path / "a.laz", scan, classes=classes)
+    ground = flaunay.terrain(path, resolution=2, classes=[2, 9])
+    assert len(ground.heights) == (classes == 2).sum() and ground.bounds[2] == 500030
+    assert len(flaunay.terrain(path, resolution=2, returns="last").heights) == 1500
+    assert len(flaunay.terrain(path, resolution=2, returns="first").heights) == 3000
+    with pytest.raises(flaunay.InputError, match=r"classes \[7\]"):
+        flaunay.terrain(path, resolution=2, classes=[7])
+
+
+def test_coordinate_systems_are_compared(scan, tmp_path):
+    write_las(tmp_path / "a.las", scan, 32633)
+    write_las(tmp_path / "b.las", scan, 32634)
+    with pytest.raises(flaunay.InputError, match="a.las and .*b.las have different"):
+        flaunay.terrain(tmp_path, resolution=2)
+    assert flaunay.terrain(tmp_path, resolution=2, crs="EPSG:32634").crs.to_epsg() == 32634
+    assert flaunay.terrain(tmp_path / "a.las", resolution=2).crs.to_epsg() == 32633
+
+
+@pytest.mark.parametrize("suffix", ["las", "laz"])
+def test_truncated_scans_leave_no_files(scan, tmp_path, suffix):
+    pytest.importorskip("rasterio")
+    path = write_las(tmp_path / f"a.{suffix}", scan)
+    path.write_bytes(path.read_bytes()[:-2000])
+    with pytest.raises(flaunay.InputError, match=str(path)):
+        flaunay.terrain(path, tmp_path / "dem.tif", resolution=2)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_geotiff(scan, tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    write_las(tmp_path / "a.las", scan, 32633)
+    for pixel_is, size in (("area", 30), ("point", 31)):
+        output = tmp_path / "dem.tif"
+        made = flaunay.terrain(tmp_path / "a.las", output, resolution=2, pixel_is=pixel_is)
+        with rasterio.open(output) as file:
+            assert file.crs.to_epsg() == 32633 and file.nodata == -9999 and file.width == size
+            assert tuple(file.bounds) == made.bounds
+            assert file.tags()["AREA_OR_POINT"].lower() == pixel_is
+            assert file.tags(ns="IMAGE_STRUCTURE")["LAYOUT"] == "COG"
+            pixels = file.read(1, masked=True)
+            place = file.xy(7, 11)
+        np.testing.assert_array_equal(pixels.filled(np.nan), made.raster.astype(np.float32))
+        x, y = np.array(place)
+        assert abs(made.raster[7, 11] - hills(x - 500000, y - 4500000)) < 3
+
+
+def test_contours_and_hillshade(scan, tmp_path):
+    rasterio = pytest.importorskip("rasterio")
+    pyogrio = pytest.importorskip("pyogrio")
+    outputs = [tmp_path / name for name in ("a.geojson", "a.gpkg", "a.png")]
+    made = flaunay.terrain(scan, outputs, resolution=1, contours=10, crs="EPSG:32633")
+    lines = made.contours(10)
+    for path in outputs[:2]:
+        meta, _, geometries, fields = pyogrio.raw.read(path)
+        assert meta["crs"] == "EPSG:32633" and len(geometries) == len(lines)
+        np.testing.assert_array_equal(fields[0], lines.heights)
+    first = json.loads(outputs[0].read_text())["features"][0]
+    np.testing.assert_allclose(first["geometry"]["coordinates"], lines[0][1], atol=1e-6)
+    with rasterio.open(outputs[2]) as file:
+        grey, alpha = file.read()
+    assert grey.shape == made.raster.shape and np.ptp(grey[alpha > 0]) > 50
+    assert ((alpha == 0) == np.isnan(sum(np.gradient(made.raster)))).all()
+
+
+def test_breaklines_are_hard_edges(tmp_path):
+    shapely = pytest.importorskip("shapely")
+    # A terrace, whose edge no points show.
+    x, y = np.meshgrid(np.arange(0, 21, 4.0), np.arange(0, 21, 4.0))
+    points = np.stack([x.ravel(), y.ravel(), np.where(x < 9, 0, 10).ravel()], axis=1)
+    edges = [[[9, 0, 0], [9, 20, 0]], [[9.5, 0, 10], [9.5, 20, 10]]]
+    made = flaunay.terrain(points, resolution=1, breaklines=[np.array(e, float) for e in edges])
+    np.testing.assert_allclose(
+        made.raster, np.where(np.arange(20) < 9, 0.0, 10.0)[None].repeat(20, 0)
+    )
+    flat = flaunay.terrain(points, resolution=1, breaklines=shapely.LineString([(9, 0), (9, 20)]))
+    assert np.allclose(flat.raster[:, 8], flaunay.terrain(points, resolution=1).raster[:, 8])
+    with pytest.raises(flaunay.InputError, match="breaklines"):
+        flaunay.terrain(points, resolution=1, breaklines=[[[0, 0], [9, 9]], [[9, 0], [0, 9]]])
+    with pytest.raises(flaunay.UsageError, match="lines or polygons"):
+        flaunay.terrain(points, resolution=1, breaklines=[shapely.Point(1, 1)])
+    with pytest.raises(flaunay.InputError, match="none.gpkg"):
+        pytest.importorskip("pyogrio")
+        flaunay.terrain(points, resolution=1, breaklines=tmp_path / "none.gpkg")
+
+
+def test_boundary_cuts_raster_and_contours(scan, tmp_path):
+    shapely = pytest.importorskip("shapely")
+    pyogrio = pytest.importorskip("pyogrio")
+    pytest.importorskip("rasterio")
+    area = shapely.box(500010, 4500010, 500050, 4500030).difference(
+        shapely.box(500025, 4500015, 500035, 4500025)
+    )
+    path = tmp_path / "area.gpkg"
+    pyogrio.raw.write(
+        path,
+        np.array([area.wkb], object),
+        [],
+        np.array([], object),
+        geometry_type="Polygon",
+        crs="EPSG:32633",
+    )
+    for boundary in (area, path):
+        made = flaunay.terrain(scan, resolution=1, boundary=boundary, crs="EPSG:32633")
+        assert np.isfinite(made.raster).sum() == 40 * 20 - 100
+        lines = made.contours(5)
+        assert len(lines)
+        for _, line in lines:
+            assert shapely.LineString(line).difference(area.buffer(1e-6)).length < 1e-9
+    with pytest.raises(flaunay.InputError, match="coordinate system"):
+        flaunay.terrain(scan, resolution=1, boundary=path, crs="EPSG:32634")
