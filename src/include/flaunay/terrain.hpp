@@ -23,9 +23,12 @@ struct MeshView {
 /// The pixels of a raster. The centre of the pixel in row r and column c is (x + c dx, y + r dy), each
 /// product and each sum rounded to double precision.
 struct RasterGrid {
-  double x = 0, y = 0;    ///< the centre of the pixel in row 0 and column 0
-  double dx = 1, dy = 1;  ///< from a pixel to the next one. dx is positive; dy is negative if north is up
-  std::size_t rows = 0, columns = 0;  ///< numbers of pixels; less than 2^31 each
+  double x = 0;             ///< the centre of the pixel in row 0 and column 0
+  double y = 0;             ///< its other coordinate
+  double dx = 1;            ///< from a column to the next one; positive
+  double dy = 1;            ///< from a row to the next one; negative if north is up
+  std::size_t rows = 0;     ///< less than 2^31
+  std::size_t columns = 0;  ///< less than 2^31
 };
 
 /// The options of a raster.
