@@ -38,7 +38,7 @@ def main(path: str) -> None:
     slimness = sides.max(axis=1) / sides.min(axis=1)
 
     figure, axes = plt.subplots(figsize=(7, 7.2), layout="constrained")
-    axes.add_collection(
+    drawn = axes.add_collection(
         PolyCollection(
             triangles,
             array=slimness,
@@ -48,6 +48,7 @@ def main(path: str) -> None:
             linewidth=0.25,
         )
     )
+    figure.colorbar(drawn, label="longest side / shortest side", shrink=0.5, extend="max")
     axes.margins(0.01)
     axes.set_aspect("equal")
     axes.set_axis_off()

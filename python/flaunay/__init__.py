@@ -47,6 +47,7 @@ from flaunay._interpolate import (
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
+from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
 from flaunay._refinement import RefinementReport
@@ -86,6 +87,7 @@ __all__ = [
     "Triangulation",
     "UsageError",
     "Voronoi",
+    "VoronoiPieces",
     "__version__",
     "alpha_shape",
     "devices",

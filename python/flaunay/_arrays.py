@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._errors import UsageError
+from flaunay._optional import optional
 
 if TYPE_CHECKING:
     from typing_extensions import TypeGuard
@@ -98,6 +99,8 @@ _DEVICE_CALLS = {
 _ROWS = 1 << 14
 
 _SINGULAR = {
+    "values_per_point": "value per point",
+    "pieces": "piece",
     "points": "point",
     "triangles": "triangle",
     "constraint_edges": "constraint edge",
@@ -177,12 +180,49 @@ def check_memory(given: Any, name: str) -> None:
         raise UsageError(f"{name} are in the memory of {memory}: copy them to the host before")
 
 
+def geometries_of(given: Any) -> Optional[npt.NDArray[np.object_]]:
+    """The geometries of Shapely that something consists of, such as a GeoSeries or a list; None if it has none."""
+    library = type(given).__module__.partition(".")[0]
+    if library == "geopandas":
+        return np.asarray(given.geometry.values, dtype=object)
+    if library == "shapely" and hasattr(given, "geom_type"):
+        alone = np.empty(1, object)
+        alone[0] = given
+        return alone
+    if isinstance(given, (list, tuple)) or (isinstance(given, np.ndarray) and given.dtype == object):
+        first = given[0] if len(given) else None
+        if type(first).__module__.partition(".")[0] == "shapely":
+            geometries = np.empty(len(given), object)
+            geometries[:] = given
+            return geometries
+    return None
+
+
+def _of_geometries(geometries: npt.NDArray[np.object_], name: str) -> npt.NDArray[Any]:
+    """The coordinates of points, and of the members of a MultiPoint."""
+    shapely = optional("shapely", name)
+    types = shapely.get_type_id(geometries)
+    # 0: Point; 4: MultiPoint, which stands alone so that indices are those of its members.
+    alone = len(geometries) == 1 and types[0] == 4
+    wrong = np.flatnonzero((types != 0) | shapely.is_empty(geometries))
+    if len(wrong) and not alone:
+        first = geometries[int(wrong[0])]
+        kind = "missing" if first is None else f"an empty {first.geom_type}"
+        kind = kind if first is None or first.is_empty else f"a {first.geom_type}"
+        raise UsageError(f"{name}[{wrong[0]}] is {kind}, not a Point")
+    coordinates: npt.NDArray[Any] = shapely.get_coordinates(geometries)
+    return coordinates
+
+
 def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
-    if type(given) is np.ndarray:
+    if type(given) is np.ndarray and given.dtype.kind != "O":
         return given
     if is_masked(given):
         return _of_masked(given, name)
+    geometries = geometries_of(given)
+    if geometries is not None:
+        return _of_geometries(geometries, name)
     library = type(given).__module__.partition(".")[0]
     if hasattr(given, "why_no_array"):
         raise UsageError(f"{name} {given.why_no_array}")

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import operator
+import re
 from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import as_floats, as_points, freeze_all, frozen, summary
+from flaunay._arrays import as_floats, as_points, freeze_all, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
-from flaunay._errors import UsageError
+from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
 
 _Doubles = npt.NDArray[np.float64]
@@ -19,16 +20,31 @@ _Doubles = npt.NDArray[np.float64]
 
 def corners_of(bounds: Any) -> _Doubles:
     """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
-    exterior = getattr(bounds, "exterior", None)
-    if exterior is not None and len(getattr(bounds, "interiors", ())):
-        raise UsageError("bounds must be a convex polygon, but the one given has holes")
-    given = bounds if exterior is None else exterior.coords
+    return _ring_of(bounds)[0]
+
+
+def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
+    """The corners, and whether they came clockwise."""
+    geometries = geometries_of(bounds)
+    if geometries is None:
+        given = bounds
+    else:
+        shapely = optional("shapely", "clipped")
+        parts = shapely.get_parts(geometries)
+        kind = parts[0].geom_type if len(parts) else "no polygon"
+        if len(parts) != 1 or kind != "Polygon" or len(parts[0].interiors):
+            what = f"{len(parts)} of them" if len(parts) > 1 else "one with holes"
+            what = what if kind == "Polygon" else kind
+            raise UsageError(
+                f"bounds must be one convex polygon, not {what}; Voronoi.pieces takes any polygons"
+            )
+        given = np.asarray(parts[0].exterior.coords)[:, :2]
     corners = np.asarray(as_floats(given, "bounds"), np.float64)
     if corners.shape == (4,):
         x0, y0, x1, y1 = corners
         if not (x0 < x1 and y0 < y1):
             raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {corners.tolist()}")
-        return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+        return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), False
     if corners.ndim != 2 or corners.shape[1] != 2:
         raise UsageError(
             "bounds must be (xmin, ymin, xmax, ymax) or the corners of a convex polygon, of shape (m, 2), "
@@ -42,7 +58,7 @@ def corners_of(bounds: Any) -> _Doubles:
         # Neither overflows nor underflows.
         across = across / (np.max(np.abs(across), initial=0.0) or 1.0)
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
-    return corners[::-1] if area < 0 else corners
+    return (corners[::-1], True) if area < 0 else (corners, False)
 
 
 def as_iterations(given: Any) -> int:
@@ -135,9 +151,27 @@ class ClippedVoronoi:
 
 def clip(tri: Delaunay, bounds: Any) -> ClippedVoronoi:
     """As `Voronoi.clipped` says, of the cells of a triangulation's points."""
-    corners = corners_of(bounds)
-    arrays = _calls.clipped_voronoi(_triangulators.of_device(tri._device), tri, corners)
+    corners, is_turned = _ring_of(bounds)
+    try:
+        arrays = _calls.clipped_voronoi(_triangulators.of_device(tri._device), tri, corners)
+    except InputError as error:
+        raise _with_corner(error, len(corners), is_turned) from None
     return ClippedVoronoi(**arrays, bounds=corners)
+
+
+def _with_corner(error: InputError, count: int, is_turned: bool) -> InputError:
+    """The error with the corner's number in the ring that was given."""
+
+    def given(match: re.Match[str]) -> str:
+        return f"corner {count - 1 - int(match[1]) if is_turned else int(match[1])}"
+
+    text = re.sub(r"corner (\d+)", given, str(error))
+    if is_turned:
+        text = text.replace("turns right at", "turns left at")
+    text = text.replace("convex and counter-clockwise", "convex")
+    if "convex" in text:
+        text += "; Voronoi.pieces takes any polygons"
+    return InputError(text, error.code, error.call)
 
 
 def voronoi_polygons(

@@ -11,7 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _export, _raster, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_integers, as_offsets, as_points, summary
+from flaunay._arrays import (
+    ArrayLike,
+    as_floats,
+    as_integers,
+    as_offsets,
+    as_points,
+    geometries_of,
+    summary,
+)
 from flaunay._border import Border
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
@@ -121,11 +129,13 @@ class ConstrainedTriangulation(Queries, Triangulation):
     to_pyvista = _export.to_pyvista
     raster = _raster.raster
     contours = _raster.contours
+    to_geojson = _export.to_geojson
 
     def to_meshio(
         self,
         point_data: Optional[Mapping[str, npt.ArrayLike]] = None,
         cell_data: Optional[Mapping[str, npt.ArrayLike]] = None,
+        z: Optional[npt.ArrayLike] = None,
     ) -> meshio.Mesh:
         """The triangulation as a mesh of meshio, with the constraint edges of triangles as lines.
 
@@ -138,6 +148,8 @@ class ConstrainedTriangulation(Queries, Triangulation):
         ----------
         point_data, cell_data : mapping of str to array_like, optional
             What points and triangles have, one row for each. Lines have zeros, or NaN.
+        z : array_like, shape (npoints,), optional
+            Heights of the points, which then are three-dimensional.
 
         Returns
         -------
@@ -159,7 +171,7 @@ class ConstrainedTriangulation(Queries, Triangulation):
         >>> mesh.to_meshio().write("mesh.msh", file_format="gmsh22")  # doctest: +SKIP
         """
         own = {} if self.vertex_markers is None else {"marker": self.vertex_markers}
-        surface = _export.to_meshio(self, {**own, **(point_data or {})}, cell_data)
+        surface = _export.to_meshio(self, {**own, **(point_data or {})}, cell_data, z)
         # Edges that were left out with their triangles are no lines.
         place = np.array([max(len(self.points), 1), 1])
         kept = self._edges_where(self.constrained) @ place
@@ -405,6 +417,27 @@ def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict
     }
 
 
+def with_lines(points: ArrayLike, segments: npt.ArrayLike) -> tuple[ArrayLike, npt.ArrayLike]:
+    """Lines and polygons of Shapely as segments between their corners, which become points after the others."""
+    geometries = geometries_of(segments)
+    if geometries is None:
+        return points, segments
+    shapely = optional("shapely", "segments")
+    types = shapely.get_type_id(geometries)
+    # 1: LineString; 2: LinearRing; 3: Polygon; 5: MultiLineString; 6: MultiPolygon
+    wrong = np.flatnonzero(~np.isin(types, (-1, 1, 2, 3, 5, 6)))
+    if len(wrong):
+        kind = geometries[int(wrong[0])].geom_type
+        raise UsageError(f"segments[{wrong[0]}] is a {kind}: lines and polygons have segments")
+    parts = shapely.get_parts(geometries[types >= 0])
+    is_polygon = shapely.get_type_id(parts) == 3
+    lines = np.concatenate([parts[~is_polygon], shapely.get_rings(parts[is_polygon])])
+    corners, line = shapely.get_coordinates(lines, return_index=True)
+    given = np.asarray(as_points(points), np.float64)
+    firsts = np.flatnonzero(line[:-1] == line[1:]) + len(given)
+    return np.concatenate([given, corners]), np.stack([firsts, firsts + 1], axis=1)
+
+
 def as_segments(given: npt.ArrayLike, n: int) -> Indices:
     """Pairs of indices of n points; UsageError for what is none."""
     segments = as_integers(given, "segments")
@@ -466,6 +499,7 @@ def arrays_of_constrained(
 
     given: the arguments of `triangulate` that are holes, markers and seeds. wanted: the optional arrays to compute.
     """
+    points, segments = with_lines(points, segments)
     coordinates = np.asarray(as_points(points), np.float64)
     pairs = as_segments(segments, len(coordinates))
     seeds = _as_places(given["seeds"], "seeds", 3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, NoReturn, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
 from flaunay._plot import draw_edges
 from flaunay._queries import KeptLocator, Queries, as_queries
+from flaunay._refinement import Refining
 from flaunay._triangulation import Triangulation, arrays_of_mesh
 
 if TYPE_CHECKING:
@@ -125,6 +126,7 @@ class Delaunay(Queries):
     vertex_neighbor_vertices = cached_property(_graphs.vertex_neighbor_vertices)
     spanning_tree = cached_property(_graphs.spanning_tree)
     areas = cached_property(_graphs.areas)
+    centroids = cached_property(_graphs.centroids)
     circumradii = cached_property(_graphs.circumradii)
 
     # For other packages.
@@ -134,6 +136,8 @@ class Delaunay(Queries):
     to_matplotlib = _export.to_matplotlib
     to_meshio = _export.to_meshio
     to_pyvista = _export.to_pyvista
+    to_shapely = _export.to_shapely
+    to_geojson = _export.to_geojson
 
     # Maps.
     raster = _raster.raster
@@ -148,7 +152,13 @@ class Delaunay(Queries):
         *,
         mode: str = "blocks",
         device: Optional[str] = None,
+        **others: NoReturn,
     ) -> None:
+        for name in others:
+            hint = "; flaunay.refine adds points until angles and areas are as asked for"
+            raise TypeError(
+                f"Delaunay has no argument {name!r}" + hint * (name in Refining.__annotations__)
+            )
         all_must_be_vertices = _scipy.check_options(furthest_site, qhull_options)
         self._device = device
         self._living: Optional[DynamicTriangulation] = None
@@ -561,6 +571,21 @@ class Delaunay(Queries):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         freeze_all(state)
+
+    @cached_property
+    def circumcenters(self) -> Doubles:
+        """The centre of the circle through each simplex's corners, float64, shape (nsimplex, 2).
+
+        As `Voronoi.vertices`: of a slender simplex a rounding error can move it far.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> flaunay.Delaunay([[0, 0], [4, 0], [0, 2]]).circumcenters
+        array([[2., 1.]])
+        """
+        diagram = _calls.voronoi(_triangulators.of_device(self._device), self)
+        return frozen(np.array(diagram["circumcentres"]))
 
     @cached_property
     def _border(self) -> Border:

@@ -28,6 +28,13 @@ def _checked(data: Optional[Data], n: int, name: str) -> dict[str, npt.NDArray[A
     return arrays
 
 
+def _heights(tri: Triangles, z: npt.ArrayLike) -> npt.NDArray[Any]:
+    heights, n = np.asarray(z), len(tri.points)
+    if heights.shape != (n,):
+        raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
+    return heights
+
+
 def to_matplotlib(tri: Triangles) -> matplotlib.tri.Triangulation:
     """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
 
@@ -60,7 +67,10 @@ def to_matplotlib(tri: Triangles) -> matplotlib.tri.Triangulation:
 
 
 def to_meshio(
-    tri: Triangles, point_data: Optional[Data] = None, cell_data: Optional[Data] = None
+    tri: Triangles,
+    point_data: Optional[Data] = None,
+    cell_data: Optional[Data] = None,
+    z: Optional[npt.ArrayLike] = None,
 ) -> meshio.Mesh:
     """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
 
@@ -68,11 +78,13 @@ def to_meshio(
     ----------
     point_data, cell_data : mapping of str to array_like, optional
         What points and simplices have, one row for each.
+    z : array_like, shape (npoints,), optional
+        Heights of the points, which otherwise are two-dimensional.
 
     Returns
     -------
     meshio.Mesh
-        With copies of the arrays, points in two dimensions, and one block of triangles.
+        With copies of the arrays, and one block of triangles.
 
     Raises
     ------
@@ -90,7 +102,7 @@ def to_meshio(
     of_points = _checked(point_data, len(tri.points), "point_data")
     of_cells = _checked(cell_data, len(tri.simplices), "cell_data")
     mesh: meshio.Mesh = optional("meshio", f"{type(tri).__name__}.to_meshio").Mesh(
-        tri.points.copy(),
+        tri.points.copy() if z is None else np.column_stack([tri.points, _heights(tri, z)]),
         [("triangle", tri.simplices.copy())],
         point_data=of_points,
         cell_data={name: [array] for name, array in of_cells.items()},
@@ -124,13 +136,68 @@ def to_pyvista(tri: Triangles, z: Optional[npt.ArrayLike] = None) -> pyvista.Pol
     >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
     >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
     """
-    n = len(tri.points)
-    heights = np.zeros(n) if z is None else np.asarray(z)
-    if heights.shape != (n,):
-        raise UsageError(f"z must have the shape ({n},), not {heights.shape}")
+    heights = np.zeros(len(tri.points)) if z is None else _heights(tri, z)
     sizes = np.full((len(tri.simplices), 1), 3, np.int32)
     surface: pyvista.PolyData = optional("pyvista", f"{type(tri).__name__}.to_pyvista").PolyData(
         np.column_stack([tri.points, heights]),
         faces=np.hstack([sizes, tri.simplices]).ravel(),
     )
     return surface
+
+
+def to_shapely(tri: Triangles) -> npt.NDArray[np.object_]:
+    """The simplices as polygons of Shapely, which ``geopandas.GeoSeries`` takes as they are.
+
+    Returns
+    -------
+    ndarray of shapely.Polygon, shape (nsimplex,)
+
+    Raises
+    ------
+    ImportError
+        Without Shapely 2.
+    """
+    shapely = optional("shapely", f"{type(tri).__name__}.to_shapely")
+    polygons: npt.NDArray[np.object_] = shapely.polygons(tri.points[tri.simplices[:, [0, 1, 2, 0]]])
+    return polygons
+
+
+def to_geojson(tri: Triangles, properties: Optional[Data] = None) -> dict[str, Any]:
+    """The triangles as a FeatureCollection of GeoJSON, which ``json.dump`` writes.
+
+    Coordinates are those of the points: GeoJSON (RFC 7946) means longitude and latitude.
+
+    Parameters
+    ----------
+    properties : mapping of str to array_like, optional
+        What triangles have, one row for each.
+
+    Returns
+    -------
+    dict
+        With one Feature, a Polygon, for each triangle.
+
+    Raises
+    ------
+    UsageError
+        For properties of another length.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+    >>> tri.to_geojson({"height": [7]})["features"][0]["properties"]
+    {'height': 7}
+    """
+    data = _checked(properties, len(tri.simplices), "properties")
+    rings = tri.points[tri.simplices[:, [0, 1, 2, 0]]].tolist()
+    rows = zip(*(array.tolist() for array in data.values())) if data else ([] for _ in rings)
+    features = [
+        {
+            "type": "Feature",
+            "geometry": {"type": "Polygon", "coordinates": [ring]},
+            "properties": dict(zip(data, row)),
+        }
+        for ring, row in zip(rings, rows)
+    ]
+    return {"type": "FeatureCollection", "features": features}

@@ -301,6 +301,20 @@ def areas(tri: Mesh) -> Doubles:
     return frozen(_calls.areas(tri._stand_ins[0], tri.simplices))
 
 
+def centroids(tri: Mesh) -> Doubles:
+    """The centroid of each simplex, float64, shape (nsimplex, 2).
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.Delaunay([[0, 0], [6, 0], [0, 3]]).centroids
+    array([[2., 1.]])
+    """
+    # Divided before they are added, which does not overflow.
+    thirds = np.asarray(tri.points, np.float64)[tri.simplices] / 3
+    return frozen(thirds.sum(axis=1))
+
+
 def circumradii(tri: Mesh) -> Doubles:
     """The radius of each simplex's circumcircle, float64, shape (nsimplex,).
 

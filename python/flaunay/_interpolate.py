@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from typing import Any, Literal, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_masked
+from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_masked, summary
 from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
@@ -145,6 +146,10 @@ class _Interpolator(Fixed):
             self._scale = _Scale(coordinates, rescale)
             self.tri = Delaunay(self._scale(coordinates), device=device)
         self.points = self.tri.points
+
+    def __repr__(self) -> str:
+        columns = math.prod(self.values.shape[1:])
+        return summary(self, points=self.tri.npoints, values_per_point=columns)
 
     @property
     def values(self) -> npt.NDArray[Any]:

@@ -134,7 +134,8 @@ def triangulate(
         Two points each, of the same set, that are to be joined by edges. The result is the constrained
         Delaunay triangulation, which is a function of the sets of points and of segments. A segment through
         other points is a chain of edges; equal segments, overlapping ones and segments between points of
-        equal coordinates are allowed.
+        equal coordinates are allowed. Lines and polygons of Shapely and GeoPandas are taken, too: their corners
+        become points after the others.
     holes : array_like, shape (h, 2), optional
         With segments: what is connected to one of these places without crossing a segment is left out.
     offsets : array_like of int, shape (sets + 1,), optional

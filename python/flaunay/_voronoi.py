@@ -12,6 +12,7 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
 from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
+from flaunay._pieces import VoronoiPieces, pieces
 from flaunay._plot import Bounds, draw_voronoi
 
 if TYPE_CHECKING:
@@ -247,6 +248,36 @@ class Voronoi:
         4
         """
         return clip(self.delaunay, bounds)
+
+    def pieces(self, region: Any) -> VoronoiPieces:
+        """The cells clipped to polygons of any shape, with holes, such as a country.
+
+        A constrained triangulation of the polygons is exact, and so is the clipping of the cells to each of its
+        triangles; so a cell is in convex pieces.
+
+        Parameters
+        ----------
+        region : shapely.Polygon or MultiPolygon, GeoSeries, GeoJSON, or list of polygons
+            As `polygons` takes them. What is in several polygons counts once.
+
+        Returns
+        -------
+        VoronoiPieces
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `polygons`, and for polygons without area.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> frame = [[[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [1, 3], [3, 3], [3, 1]]]
+        >>> cells = flaunay.Voronoi([[1, 2], [3, 2]]).pieces([frame])
+        >>> cells.areas
+        array([6., 6.])
+        """
+        return pieces(self.delaunay, region)
 
     def plot(
         self,

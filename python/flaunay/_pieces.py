@@ -1,0 +1,139 @@
+"""Voronoi cells clipped to any polygons, in convex pieces."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay._arrays import freeze_all, frozen, geometries_of, summary
+from flaunay._cells import clip
+from flaunay._delaunay import Delaunay
+from flaunay._errors import UsageError
+from flaunay._optional import optional
+from flaunay._polygons import polygons
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+
+class VoronoiPieces:
+    """The Voronoi cells of points, clipped to polygons with holes. `Voronoi.pieces` makes it.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (nvertices, 2)
+        Piece k has ``vertices[offsets[k]:offsets[k + 1]]``, counter-clockwise, and is convex.
+    offsets : ndarray of int32, shape (npieces + 1,)
+    owners : ndarray of int32, shape (npieces,)
+        The point whose cell each piece is of, in increasing order.
+    areas : ndarray of float64, shape (npoints,)
+        Of each cell together; 0 for those without pieces.
+    centroids : ndarray of float64, shape (npoints, 2)
+        NaN for cells without pieces.
+    """
+
+    def __init__(
+        self,
+        vertices: Doubles,
+        offsets: Indices,
+        owners: Indices,
+        areas: Doubles,
+        centroids: Doubles,
+    ) -> None:
+        self.vertices: Doubles = frozen(vertices)
+        self.offsets: Indices = frozen(offsets)
+        self.owners: Indices = frozen(owners)
+        self.areas: Doubles = frozen(areas)
+        self.centroids: Doubles = frozen(centroids)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        freeze_all(state)
+
+    def __repr__(self) -> str:
+        return summary(self, points=len(self.areas), pieces=len(self.owners))
+
+    def polygons(self, i: int) -> list[Doubles]:
+        """The pieces of cell i. IndexError for a cell that does not exist; negative numbers count from the end."""
+        n, i = len(self.areas), operator.index(i)
+        if not -n <= i < n:
+            raise IndexError(f"cell {i} of {n}")
+        first, last = np.searchsorted(self.owners, [i % n, i % n + 1])
+        return [self.vertices[self.offsets[k] : self.offsets[k + 1]] for k in range(first, last)]
+
+    def to_shapely(self) -> npt.NDArray[np.object_]:
+        """An array of one geometry of Shapely per point: the union of its pieces, empty if it has none.
+
+        Raises
+        ------
+        ImportError
+            Without Shapely 2.
+        """
+        shapely = optional("shapely", "VoronoiPieces.to_shapely")
+        pieces = [
+            shapely.Polygon(self.vertices[first:last])
+            for first, last in zip(self.offsets[:-1], self.offsets[1:])
+        ]
+        result = np.full(len(self.areas), shapely.Polygon(), dtype=object)
+        bounds = np.searchsorted(self.owners, np.arange(len(self.areas) + 1))
+        for i in np.flatnonzero(np.diff(bounds)):
+            result[i] = shapely.union_all(pieces[bounds[i] : bounds[i + 1]])
+        return result
+
+
+def pieces(tri: Delaunay, region: Any) -> VoronoiPieces:
+    """As `Voronoi.pieces` says, of the cells of a triangulation's points."""
+    geometries: Any = geometries_of(region)
+    if geometries is None:
+        is_alone = hasattr(region, "__geo_interface__") or isinstance(region, dict)
+        geometries = [region] if is_alone else region
+    mesh = polygons(geometries, map=True)
+    triangles = mesh.triangles[mesh.polygon_of >= 0]
+    n = tri.npoints
+    if len(triangles) == 0:
+        raise UsageError("the polygons have no area")
+    if n == 0:
+        nothing = np.empty((0, 2))
+        return VoronoiPieces(
+            nothing, np.zeros(1, np.int32), np.empty(0, np.int32), np.empty(0), nothing
+        )
+    corners = mesh.points[triangles]
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    # Only points whose cells meet a triangle count in it; which those are, boxes around the cells say.
+    cells = clip(tri, (*low, *high))
+    there = np.flatnonzero(np.diff(cells.offsets))
+    margin = 1e-9 * (np.abs([low, high]).max() + (high - low).max())
+    begins = cells.offsets[there]
+    least = np.minimum.reduceat(cells.vertices, begins) - margin
+    most = np.maximum.reduceat(cells.vertices, begins) + margin
+    points = np.asarray(tri.points, np.float64)
+    vertices, sizes, owners, areas, moments = [], [], [], np.zeros(n), np.zeros((n, 2))
+    for triangle in corners:
+        near = (least <= triangle.max(axis=0)).all(axis=1)
+        near &= (most >= triangle.min(axis=0)).all(axis=1)
+        candidates = there[near]
+        part = clip(Delaunay(points[candidates], device=tri._device), triangle)
+        kept = np.flatnonzero(np.diff(part.offsets))
+        vertices.append(part.vertices)
+        sizes.append(np.diff(part.offsets)[kept])
+        owners.append(candidates[kept])
+        areas[candidates] += part.areas
+        moments[candidates[kept]] += part.areas[kept, None] * part.centroids[kept]
+    owner, size = np.concatenate(owners), np.concatenate(sizes)
+    order = np.argsort(owner, kind="stable")
+    ends = np.cumsum(size)
+    lengths = size[order]
+    offsets = np.concatenate([[0], np.cumsum(lengths)])
+    at = np.repeat((ends - size)[order] - offsets[:-1], lengths) + np.arange(offsets[-1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        centroids = moments / areas[:, None]
+    return VoronoiPieces(
+        np.concatenate(vertices)[at],
+        offsets.astype(np.int32),
+        owner[order].astype(np.int32),
+        areas,
+        centroids,
+    )
