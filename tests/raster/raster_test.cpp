@@ -44,9 +44,14 @@ struct Terrain {
   }
 };
 
+Triangulator& on_host() {
+  static Triangulator triangulator("host");
+  return triangulator;
+}
+
 Terrain make_terrain(const Coordinates& points, const std::vector<double>& values) {
   Terrain terrain{points, values, {}};
-  terrain.mesh = testing::triangulator().triangulate(points.data(), points.size() / 2);
+  terrain.mesh = on_host().triangulate(points.data(), points.size() / 2);
   return terrain;
 }
 
@@ -150,11 +155,9 @@ RasterGrid grid_over(const Terrain& terrain, std::size_t rows, std::size_t colum
 void check_terrain(const Terrain& terrain, const RasterGrid& grid) {
   const std::vector<double> pixels = rasterized(testing::triangulator(), terrain, grid);
   expect_right(terrain, grid, pixels);
-  EXPECT_TRUE(same_bytes(pixels, rasterized(testing::triangulator_with("small"), terrain, grid)));
-  static Triangulator on_host("host");
-  EXPECT_TRUE(same_bytes(pixels, rasterized(on_host, terrain, grid)));
+  EXPECT_TRUE(same_bytes(pixels, rasterized(on_host(), terrain, grid)));
   for (const std::uint64_t seed : {1, 2}) {
-    EXPECT_TRUE(same_bytes(pixels, rasterized(on_host, shuffled(terrain, seed), grid))) << seed;
+    EXPECT_TRUE(same_bytes(pixels, rasterized(on_host(), shuffled(terrain, seed), grid))) << seed;
   }
 }
 
@@ -223,7 +226,7 @@ TEST(SmallRaster, NothingGivesNothing) {
   const Terrain empty = make_terrain({}, {});
   EXPECT_EQ(std::vector<double>(4, kFill), rasterized(testing::triangulator(), empty, {0, 0, 1, 1, 2, 2}));
   EXPECT_TRUE(rasterized(testing::triangulator(), terrain_of("uniform", 9), {0, 0, 1, 1, 0, 5}).empty());
-  EXPECT_TRUE(trace_contours(testing::triangulator(), empty.view(), nullptr, {1}).heights.empty());
+  EXPECT_TRUE(trace_contours(on_host(), empty.view(), nullptr, {1}).heights.empty());
 }
 
 template <typename Work>
@@ -251,18 +254,16 @@ TEST(SmallRaster, ErrorsSayWhatIsWrong) {
   expect_error(ErrorKind::input, "too fine", with({0, 0, 0x1p-520, 1, 2, 2}));
   terrain.mesh.triangles[1] = 3;
   expect_error(ErrorKind::usage, "triangle 0", with({0, 0, 1, 1, 2, 2}));
-  expect_error(ErrorKind::usage, "triangle 0", [&] {
-    trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), {1.5});
-  });
+  expect_error(ErrorKind::usage, "triangle 0",
+               [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), {1.5}); });
   terrain.mesh.triangles[1] = 1;
   terrain.mesh.neighbors[0] = 1;
   expect_error(ErrorKind::usage, "triangle 0", with({0.5, 0.5, 1, 1, 1, 1}));
   terrain.points[0] = std::nan("");
   expect_error(ErrorKind::input, "point 0", with({0, 0, 1, 1, 2, 2}));
   for (const std::vector<double>& heights : {std::vector<double>{1, 1}, {2, 1}, {std::nan("")}}) {
-    expect_error(ErrorKind::usage, "heights", [&] {
-      trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), heights);
-    });
+    expect_error(ErrorKind::usage, "heights",
+                 [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), heights); });
   }
 }
 
@@ -287,7 +288,7 @@ using Piece = std::array<Place, 2>;
 
 Contours traced(const Terrain& terrain, const std::vector<double>& heights,
                 double max_edge = std::numeric_limits<double>::infinity()) {
-  return trace_contours(testing::triangulator(), terrain.view(), terrain.values.data(), heights, max_edge);
+  return trace_contours(on_host(), terrain.view(), terrain.values.data(), heights, max_edge);
 }
 
 std::vector<Place> line_of(const Contours& contours, std::size_t i) {
@@ -370,7 +371,7 @@ void check_contours(const Terrain& terrain, const std::vector<double>& heights,
   }
 }
 
-TEST(SmallContours, HaveThePiecesOfAllTriangles) {
+TEST(Contours, HaveThePiecesOfAllTriangles) {
   for (const char* const fixture : {"uniform", "grid", "star", "kuzmin", "collinear"}) {
     SCOPED_TRACE(fixture);
     check_contours(terrain_of(fixture, 60), {-50.0625, 0.0625, 3.03125, 77.03125});
@@ -378,7 +379,7 @@ TEST(SmallContours, HaveThePiecesOfAllTriangles) {
   }
 }
 
-TEST(SmallContours, ValuesThatEqualAHeightCountAsAbove) {
+TEST(Contours, ValuesThatEqualAHeightCountAsAbove) {
   // Few different values: summits, ridges and plains at a height.
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Terrain terrain = terrain_of("grid", 49);
@@ -387,7 +388,7 @@ TEST(SmallContours, ValuesThatEqualAHeightCountAsAbove) {
   }
 }
 
-TEST(SmallContours, AHillHasClosedLinesCounterClockwise) {
+TEST(Contours, AHillHasClosedLinesCounterClockwise) {
   Coordinates points;
   std::vector<double> values;
   for (int i = -4; i <= 4; ++i) {
@@ -410,7 +411,7 @@ TEST(SmallContours, AHillHasClosedLinesCounterClockwise) {
   }
 }
 
-TEST(SmallContours, LeaveOutValuesThatAreNotFinite) {
+TEST(Contours, LeaveOutValuesThatAreNotFinite) {
   Terrain terrain = terrain_of("uniform", 50);
   terrain.values[7] = std::numeric_limits<double>::quiet_NaN();
   terrain.values[8] = std::numeric_limits<double>::infinity();
