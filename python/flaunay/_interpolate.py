@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, Optional, Union
+from typing import TYPE_CHECKING, Any, Literal, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,10 @@ from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_m
 from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
+from flaunay._optional import optional
+
+if TYPE_CHECKING:
+    import scipy.sparse
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -421,6 +425,86 @@ class LinearInterpolator(_Columns):
     ) -> None:
         beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
         super().__init__(points, values, fill_value, rescale, device, beyond)
+
+    def barycentric(self, *xi: Any) -> tuple[Indices, Doubles]:
+        """The triangles of queries and their barycentric coordinates there.
+
+        Parameters
+        ----------
+        *xi
+            As of a call.
+
+        Returns
+        -------
+        triangles : ndarray of int32, shape (...)
+            Of `tri`, -1 outside.
+        coordinates : ndarray of float64, shape (..., 3)
+            Of the triangle's corners in their order: 0 or more, with the sum 1. At a point exactly 1, 0 and 0; NaN
+            outside.
+        """
+        queries, shape = self._queries(xi)
+        queries, are_bad = self._finite(queries)
+        found = self.tri._locator.locate(queries)
+        if are_bad is not None:
+            found[are_bad] = -1
+        areas = np.full((len(queries), 3), np.nan)
+        inside = np.flatnonzero(found >= 0)
+        corners = np.asarray(self.points, np.float64)[self.tri.simplices[found[inside]]]
+        # Scaled, so that areas neither overflow nor vanish.
+        away = corners - queries[inside, None]
+        size = np.abs(away).max(axis=(1, 2), keepdims=True, initial=0.0)
+        away /= np.where(size > 0, size, 1.0)
+        after, before = np.roll(away, -1, axis=1), np.roll(away, -2, axis=1)
+        across = after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]
+        areas[inside] = np.maximum(across, 0.0)
+        # All vanish by rounding in very slender triangles only: there, the nearest corner.
+        totals = areas.sum(axis=1, keepdims=True)
+        flat = np.flatnonzero(totals[:, 0] == 0)
+        if len(flat):
+            distances = np.hypot(*np.moveaxis(away[np.searchsorted(inside, flat)], -1, 0))
+            areas[flat] = np.arange(3) == distances.argmin(axis=1)[:, None]
+            totals[flat] = 1.0
+        coordinates: Doubles = areas / totals
+        return found.reshape(shape), coordinates.reshape(*shape, 3)
+
+    def weights(self, *xi: Any) -> scipy.sparse.csr_array:
+        """What each point counts for at each query, so that ``weights(xi) @ values`` interpolates any values.
+
+        Parameters
+        ----------
+        *xi
+            As of a call. Queries are counted in their order.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (queries, npoints)
+            Up to three weights in a row, with the sum 1. Rows of queries outside are empty, and give 0.
+
+        Raises
+        ------
+        ImportError
+            Without SciPy.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> interpolate = flaunay.LinearInterpolator([[0, 0], [4, 0], [0, 4]], [0, 8, 4])
+        >>> interpolate.weights([[1, 1], [9, 9]]).toarray()
+        array([[0.5 , 0.25, 0.25],
+               [0.  , 0.  , 0.  ]])
+        """
+        sparse = optional("scipy.sparse", "LinearInterpolator.weights")
+        found, coordinates = self.barycentric(*xi)
+        triangles, rows = found.ravel(), coordinates.reshape(-1, 3)
+        counted = rows > 0
+        columns = np.zeros((len(rows), 3), np.int32)
+        columns[triangles >= 0] = self.tri.simplices[triangles[triangles >= 0]]
+        starts = np.concatenate([[0], np.cumsum(counted.sum(axis=1))])
+        matrix: scipy.sparse.csr_array = sparse.csr_array(
+            (rows[counted], columns[counted], starts), shape=(len(rows), self.tri.npoints)
+        )
+        matrix.sort_indices()
+        return matrix
 
 
 class CloughTocherInterpolator(_Columns):

@@ -1,0 +1,83 @@
+"""Barycentric coordinates, and weights as sparse matrices."""
+
+import flaunay
+import numpy as np
+import pytest
+from fractions import Fraction
+
+
+def exact(corners, q):
+    (a, b, c), q = [[Fraction(x) for x in p] for p in corners], [Fraction(x) for x in q]
+
+    def area(p, r, s):
+        return (r[0] - p[0]) * (s[1] - p[1]) - (r[1] - p[1]) * (s[0] - p[0])
+
+    return [float(area(*three) / area(a, b, c)) for three in ((q, b, c), (q, c, a), (q, a, b))]
+
+
+def test_coordinates_are_those_of_fractions():
+    rng = np.random.default_rng(0)
+    grid = np.stack(np.meshgrid(range(6), range(6)), axis=-1).reshape(-1, 2) + [5e5, 4e6]
+    for points in (rng.random((60, 2)), grid, rng.random((60, 2)) * 1e-150, rng.random((60, 2)) * 1e150):
+        interpolate = flaunay.LinearInterpolator(points, points[:, 0])
+        low, high = points.min(axis=0), points.max(axis=0)
+        middles = (points + np.roll(points, 1, axis=0)) / 2
+        queries = np.concatenate([points, middles, low + rng.random((60, 2)) * (high - low)])
+        triangles, coordinates = interpolate.barycentric(queries)
+        assert np.array_equal(triangles, interpolate.tri.find_simplex(queries))
+        for q, t, row in zip(queries.tolist(), triangles, coordinates):
+            if t < 0:
+                assert np.isnan(row).all()
+            else:
+                corners = interpolate.points[interpolate.tri.simplices[t]]
+                assert row == pytest.approx(exact(corners.tolist(), q), abs=1e-9)
+        # At points all is exact.
+        assert sorted(set(coordinates[: len(points)].ravel().tolist())) == [0.0, 1.0]
+
+
+def test_weights_times_values_interpolate():
+    sparse = pytest.importorskip("scipy.sparse")
+    rng = np.random.default_rng(1)
+    points, queries = rng.random((200, 2)), rng.uniform(-0.1, 1.1, (30, 40, 2))
+    interpolate = flaunay.LinearInterpolator(points, np.zeros(200), fill_value=0)
+    weights = interpolate.weights(queries)
+    assert sparse.issparse(weights) and weights.shape == (1200, 200)
+    for _ in range(3):
+        values = rng.random((200, 2))
+        interpolate.values = values
+        assert (weights @ values).reshape(30, 40, 2) == pytest.approx(interpolate(queries), abs=1e-12)
+    sums = np.asarray(weights.sum(axis=1)).ravel()
+    assert sums == pytest.approx((interpolate.tri.find_simplex(queries).ravel() >= 0).astype(float))
+    assert interpolate.weights([[np.nan, 0], [9, 9]]).nnz == 0
+    assert interpolate.weights(0.5, [0.25, 0.5]).shape == (2, 200)
+
+
+def test_weights_in_constrained_triangulations_and_without_triangles():
+    pytest.importorskip("scipy.sparse")
+    ring = [[0, 1], [1, 2], [2, 0]]
+    corners = [[0, 0], [9, 0], [0, 9], [1, 1], [4, 1], [1, 4]]
+    segments = ring + [[a + 3, b + 3] for a, b in ring]
+    mesh = flaunay.triangulate(corners, segments=segments, outside="holes")
+    interpolate = flaunay.LinearInterpolator(mesh, mesh.points[:, 0])
+    queries = [[2, 2], [5, 1], [1, 1]]
+    found = interpolate.weights(queries) @ mesh.points
+    assert found == pytest.approx(np.array([[0, 0], [5, 1], [1, 1]]))
+    line = flaunay.LinearInterpolator([[0, 0], [1, 1]], [1, 2])
+    assert line.weights([[0.5, 0.5]]).nnz == 0
+
+
+def test_coordinates_in_very_slender_triangles_have_the_sum_one():
+    rng = np.random.default_rng(0)
+    inside = 0
+    for _ in range(400):
+        begin, along = rng.random(2), rng.random(2)
+        corners = np.array([begin, begin + along, begin + along * rng.random()])
+        corners[2] = np.nextafter(corners[2], rng.choice([-9, 9], 2))
+        interpolate = flaunay.LinearInterpolator(corners, [0, 1, 2])
+        queries = begin + along * rng.random((50, 1))
+        queries = np.concatenate([queries, np.nextafter(queries, 9), np.nextafter(queries, -9)])
+        triangles, coordinates = interpolate.barycentric(queries)
+        inside += (triangles >= 0).sum()
+        assert coordinates[triangles >= 0].sum(axis=1) == pytest.approx(1)
+        assert (coordinates[triangles >= 0] >= 0).all()
+    assert inside > 100
