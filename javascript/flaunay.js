@@ -20,30 +20,33 @@ const KINDS = ['', 'internal', 'usage', 'input', 'device', 'memory', 'stopped'];
 // ---- The module
 
 let wasm; // its exports
-let heap; // views of its memory, which are made anew when it grows
+let heap; // views of its memory
 let triangulator = 0;
 let place = 0; // where calls write pointers to new handles
 
-function viewMemory() {
+// The views, made anew when the memory has grown, for which any thread may have been the reason.
+function views() {
   const {buffer} = wasm.memory;
-  heap = {
-    int8: new Int8Array(buffer), uint8: new Uint8Array(buffer), int32: new Int32Array(buffer),
-    uint32: new Uint32Array(buffer), float64: new Float64Array(buffer),
-  };
+  if (heap?.uint8.buffer !== buffer) {
+    heap = {
+      int8: new Int8Array(buffer), uint8: new Uint8Array(buffer), int32: new Int32Array(buffer),
+      uint32: new Uint32Array(buffer), float64: new Float64Array(buffer),
+    };
+  }
+  return heap;
 }
 
 // What the C library asks of its system. There are no files, and the environment is empty.
 const NOT_SUPPORTED = 52;
 const IMPORTS = {
-  emscripten_notify_memory_growth: viewMemory,
   clock_time_get(id, precision, to) {
     const nanoseconds = performance.now() * 1e6;
-    heap.uint32[to >>> 2] = nanoseconds;
-    heap.uint32[(to >>> 2) + 1] = nanoseconds / 2 ** 32;
+    views().uint32[to >>> 2] = nanoseconds;
+    views().uint32[(to >>> 2) + 1] = nanoseconds / 2 ** 32;
     return 0;
   },
   environ_sizes_get(count, bytes) {
-    heap.uint32[count >> 2] = heap.uint32[bytes >> 2] = 0;
+    views().uint32[count >> 2] = views().uint32[bytes >> 2] = 0;
     return 0;
   },
   environ_get: () => 0,
@@ -66,10 +69,31 @@ export function start(module) {
     (imports[from] ??= {})[name] = IMPORTS[name] ?? (() => NOT_SUPPORTED);
   }
   wasm = new WebAssembly.Instance(module, imports).exports;
-  viewMemory();
   wasm._initialize();
+  makeReady();
+}
+
+function makeReady() {
   place = wasm.malloc(8);
   triangulator = create(wasm.flaunay_triangulator_create, 0);
+}
+
+/**
+ * Makes the library ready with threads: of a module that Emscripten's own JavaScript starts, as that makes workers.
+ * @param {(settings: object) => Promise<object>} make
+ * @param {object} [settings]
+ */
+export async function startThreads(make, settings = {}) {
+  if (wasm) throw new FlaunayError('flaunay was imported before flaunay/threads: import that alone', 'usage');
+  const memory = new WebAssembly.Memory({initial: 256, maximum: 65536, shared: true});
+  const module = await make({wasmMemory: memory, ...settings});
+  wasm = {memory};
+  // It puts an underscore before the names of C.
+  for (const name in module) {
+    if (name.startsWith('_')) wasm[name.slice(1)] = module[name];
+  }
+  makeReady();
+  return module;
 }
 
 /**
@@ -86,8 +110,8 @@ export async function init(source = new URL('flaunay.wasm', import.meta.url)) {
 // ---- Calls
 
 function stringAt(pointer) {
-  const end = heap.uint8.indexOf(0, pointer);
-  return new TextDecoder().decode(heap.uint8.subarray(pointer, end));
+  const end = views().uint8.indexOf(0, pointer);
+  return new TextDecoder().decode(views().uint8.slice(pointer, end));
 }
 
 function check(status) {
@@ -103,14 +127,14 @@ function allocate(bytes) {
 // Calls a function whose last argument is where it writes a pointer to a new handle.
 function create(make, ...given) {
   check(make(...given, place));
-  return heap.uint32[place >> 2];
+  return views().uint32[place >> 2];
 }
 
 const SHIFTS = {int8: 0, uint8: 0, int32: 2, uint32: 2, float64: 3};
 
 function arrayAt(type, pointer, length) {
   const first = pointer >>> SHIFTS[type];
-  return heap[type].subarray(first, first + length);
+  return views()[type].subarray(first, first + length);
 }
 
 // A view that keeps what it belongs to from being collected.
@@ -134,9 +158,9 @@ class Arguments {
   // A pointer to the values: a copy, unless they lie in the module's memory; 0 for none.
   array(type, values) {
     if (values === undefined || values === null) return 0;
-    if (values.buffer === wasm.memory.buffer && values.constructor === heap[type].constructor) return values.byteOffset;
+    if (values.buffer === wasm.memory.buffer && values.constructor === views()[type].constructor) return values.byteOffset;
     const pointer = this.room(Math.max(values.length << SHIFTS[type], 1));
-    heap[type].set(values, pointer >>> SHIFTS[type]);
+    views()[type].set(values, pointer >>> SHIFTS[type]);
     return pointer;
   }
 
@@ -166,7 +190,7 @@ function call(work) {
 
 // The words of a struct that C returned, by the names of its members, in their order.
 function membersAt(pointer, names) {
-  return Object.fromEntries(names.map((name, k) => [name, heap.uint32[(pointer >>> 2) + k]]));
+  return Object.fromEntries(names.map((name, k) => [name, views().uint32[(pointer >>> 2) + k]]));
 }
 
 function enumerator(names, value, what) {
@@ -264,7 +288,7 @@ export default class Delaunator {
       const handle = create(wasm.triangulate, triangulator, given.array('float64', coords), n, 0, 0, HALFEDGES);
       // Read by number, since this takes a good part of the time for a hundred points.
       const mesh = wasm.flaunay_triangulation_mesh(handle) >>> 2;
-      const [triangleCount, hullCount, triangles, , halfedges, hull] = heap.uint32.subarray(mesh + 2, mesh + 8);
+      const [triangleCount, hullCount, triangles, , halfedges, hull] = views().uint32.subarray(mesh + 2, mesh + 8);
       wasm.turn_clockwise(triangles, halfedges, triangleCount, hull, hullCount);
       this.trianglesLen = 3 * triangleCount;
       this.triangles = arrayAt('uint32', triangles, this.trianglesLen).slice();
@@ -340,7 +364,7 @@ const METHODS = ['linear', 'nearest', 'clough-tocher', 'sibson', 'laplace'];
 // A copy of the caller's points that lives as long as what is computed from them.
 function keep(coords) {
   const kept = new Handle(allocate(Math.max(8 * coords.length, 1)), 'free');
-  heap.float64.set(coords, kept.pointer >>> 3);
+  views().float64.set(coords, kept.pointer >>> 3);
   return kept;
 }
 

@@ -14,21 +14,30 @@ if ! dpkg-query -W -f '' "${packages[@]}" 2>/dev/null; then
   DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${packages[@]}"
 fi
 
-cmake --preset javascript >/dev/null
-cmake --build --preset javascript
+# Emscripten's tool for JavaScript, with threads, needs Debian's acorn.
+export NODE_PATH=/usr/share/nodejs
+for preset in javascript javascript-threads; do
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset"
+done
 
 output=build/javascript
 package=$output/package
 rm -rf "$package" "$output/installed" "$output"/*.tgz
-mkdir -p "$package" "$output/installed"
+mkdir -p "$package/threads" "$output/installed"
 cp javascript/*.{js,md,ts} LICENSE "$output"/javascript/*.wasm "$package"
+# Both ways to load it have one module.
+threads=$output-threads/javascript
+cmp "$threads"/{browser,node}.wasm
+cp "$threads"/{browser.{mjs,wasm,worker.js},node.{js,worker.js}} "$package/threads"
+echo '{"type": "commonjs"}' >"$package/threads/package.json"
 version="$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$output/CMakeCache.txt")"
 sed "s/\"version\": \"0.0.0\"/\"version\": \"$version\"/" javascript/package.json >"$package/package.json"
 
 (cd "$package" && npm pack --silent --pack-destination .. >/dev/null)
 
 # Tests import the package by its name, from the folder that they are in.
-cp "$package"/*.wasm javascript
+cp -r "$package"/{*.wasm,threads} javascript
 if [[ -z ${FLAUNAY_COMMAND-} ]]; then
   cmake --preset release >/dev/null
   cmake --build --preset release --target flaunay_cli

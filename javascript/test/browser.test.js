@@ -8,10 +8,12 @@ import {extname, join} from 'node:path';
 import test from 'node:test';
 
 const folder = process.env.FLAUNAY_PACKAGE;
-const TYPES = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm'};
-// What both triangulate, with a count that they report.
-const WORK = `
-  import Delaunator, {Triangulation} from './index.js';
+const TYPES = {
+  '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm',
+};
+// What each triangulates, with counts that it reports.
+const WORK = (module) => `
+  import Delaunator, {Triangulation} from '${module}';
   const coords = Float64Array.from({length: 20000}, (_, i) => Math.sin(i * i));
   const drop = new Delaunator(coords);
   const cells = Triangulation.from([[0, 0], [1, 0], [0, 1]]).clippedVoronoi([0, 0, 1, 1]);
@@ -23,23 +25,27 @@ const WORK = `
   }
   const done = [drop.triangles.length / 3, drop.hull.length, cells.areas.length, message].join();
 `;
+const page = (program) => `<!doctype html><script>
+    const report = (body) => fetch('/done', {method: 'POST', body});
+    addEventListener('error', ({message}) => report(message));
+    addEventListener('unhandledrejection', ({reason}) => report(String(reason)));
+  </script><script type="module">${program}</script>`;
 const PAGES = {
-  '/page.html': `<!doctype html><script type="module">
-    addEventListener('unhandledrejection', ({reason}) => fetch('/done', {method: 'POST', body: String(reason)}));
-    ${WORK}
+  '/page.html': page(`
+    ${WORK('./index.js')}
     const worker = new Worker('worker.js', {type: 'module'});
-    worker.onerror = ({message}) => fetch('/done', {method: 'POST', body: message});
-    worker.onmessage = ({data}) => fetch('/done', {method: 'POST', body: done + ' ' + data});
-  </script>`,
-  '/worker.js': `${WORK} postMessage(done);`,
+    worker.onerror = ({message}) => report(message);
+    worker.onmessage = ({data}) => report(done + ' ' + data);
+  `),
+  '/worker.js': `${WORK('./index.js')} postMessage(done);`,
+  '/threads.html': page(`${WORK('./threads.js')} report(done);`),
 };
+const COUNTS = '19974,24,3,FlaunayError';
 
-test('page and worker', {skip: !folder, timeout: 60_000}, async () => {
-  const {promise, resolve} = (() => {
-    let settle;
-    const made = new Promise((to) => (settle = to));
-    return {promise: made, resolve: settle};
-  })();
+// What the page reports.
+async function reported(path, headers = {}) {
+  let resolve;
+  const report = new Promise((to) => (resolve = to));
   const server = createServer((request, response) => {
     if (request.url === '/done') {
       request.on('data', (data) => resolve(String(data)));
@@ -48,7 +54,7 @@ test('page and worker', {skip: !folder, timeout: 60_000}, async () => {
     }
     try {
       const body = PAGES[request.url] ?? readFileSync(join(folder, request.url));
-      response.setHeader('Content-Type', TYPES[extname(request.url)]).end(body);
+      response.writeHead(200, {...headers, 'Content-Type': TYPES[extname(request.url)]}).end(body);
     } catch {
       response.writeHead(404).end();
     }
@@ -56,10 +62,9 @@ test('page and worker', {skip: !folder, timeout: 60_000}, async () => {
   await new Promise((listening) => server.listen(0, '127.0.0.1', listening));
   const profile = mkdtempSync(join(tmpdir(), 'flaunay-chromium-'));
   const browser = spawn('chromium', ['--headless', '--no-sandbox', '--disable-gpu', `--user-data-dir=${profile}`,
-    `http://127.0.0.1:${server.address().port}/page.html`], {stdio: 'ignore'});
+    `http://127.0.0.1:${server.address().port}${path}`], {stdio: 'ignore'});
   try {
-    const counts = '19974,24,3,FlaunayError';
-    assert.equal(await promise, `${counts} ${counts}`);
+    return await report;
   } finally {
     await new Promise((over) => {
       browser.on('exit', over);
@@ -69,4 +74,19 @@ test('page and worker', {skip: !folder, timeout: 60_000}, async () => {
     server.closeAllConnections();
     rmSync(profile, {recursive: true, force: true, maxRetries: 5});
   }
+}
+
+const settings = {skip: !folder, timeout: 60_000};
+
+test('page and worker', settings, async () => {
+  assert.equal(await reported('/page.html'), `${COUNTS} ${COUNTS}`);
+});
+
+test('threads, in a page that is cross-origin isolated', settings, async () => {
+  const isolated = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};
+  assert.equal(await reported('/threads.html', isolated), COUNTS);
+});
+
+test('threads, in another page', settings, async () => {
+  assert.match(await reported('/threads.html'), /FlaunayError: .*cross-origin isolated/);
 });
