@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Optional, Union
 
 import numpy as np
@@ -109,6 +109,7 @@ class _Beyond:
     extrapolate: Optional[str] = None
     max_edge: Optional[float] = None
     max_distance: Optional[float] = None
+    is_usual: bool = field(init=False)
 
     def __post_init__(self) -> None:
         for name in ("tol", "max_edge", "max_distance"):
@@ -117,10 +118,8 @@ class _Beyond:
             raise UsageError(
                 f"extrapolate must be 'nearest', 'linear' or None, not {self.extrapolate!r}"
             )
-
-    @property
-    def is_usual(self) -> bool:
-        return self == _Beyond()
+        usual = (self.tol, self.extrapolate, self.max_edge, self.max_distance) == (None,) * 4
+        object.__setattr__(self, "is_usual", usual)
 
 
 class _Interpolator(Fixed):
