@@ -21,7 +21,7 @@ typedef struct {
 
 // Several triangles may write the same value at once.
 static inline void write_pixel(GLOBAL double* at, double value) {
-#ifdef __cplusplus
+#if defined(__cplusplus) && __GCC_ATOMIC_LLONG_LOCK_FREE == 2
   __atomic_store(at, &value, __ATOMIC_RELAXED);
 #else
   *at = value;
