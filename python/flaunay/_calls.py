@@ -339,6 +339,9 @@ class _Refinement:
 
     def _write_areas(self, places: int, count: int, areas: int, _: Any) -> None:
         """Nothing passes on exceptions here, so one is kept, and areas that are no numbers end the call."""
+        if count == 0:
+            # Without places there is no memory either.
+            return
         written: _Doubles = np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))
         try:
             assert self._function is not None
