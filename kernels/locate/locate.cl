@@ -19,8 +19,7 @@
 //    triangulation it ends, whichever edge is tried first: the power of the query with respect to the triangle's circle
 //    falls with each step, except within a cocircular polygon, whose triangles form a tree. In a mesh with constraints
 //    it may circle: find_in_constrained follows with straight walks for queries that took too many steps.
-// 2. nearest_points continues from these triangles, with one work-item per query, and so do the kernels that
-// interpolate
+// 2. nearest_points continues from these triangles, with one work-item per query, as do the kernels that interpolate
 //    (interpolate/). Where a walk to the nearest vertex takes long, nearest_points searches through levels
 //    (locate/nearest_search.h), which are made when the first query needs them (locate/levels.cl).
 
