@@ -7,6 +7,7 @@ import math
 import os
 import struct
 import tempfile
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -382,16 +383,19 @@ class Terrain:
             ],
             object,
         )
-        pyogrio.write(
-            path,
-            geometries,
-            [np.asarray(lines.heights)],
-            np.array(["height"], object),
-            geometry_type="LineString",
-            driver=driver,
-            crs=None if self.crs is None else self.crs.to_wkt(),
-            layer="contours",
-        )
+        with warnings.catch_warnings():
+            # Points without a coordinate system give contours without one.
+            warnings.filterwarnings("ignore", "'crs' was not provided")
+            pyogrio.write(
+                path,
+                geometries,
+                [np.asarray(lines.heights)],
+                np.array(["height"], object),
+                geometry_type="LineString",
+                driver=driver,
+                crs=None if self.crs is None else self.crs.to_wkt(),
+                layer="contours",
+            )
 
 
 class _Grid:

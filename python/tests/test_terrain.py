@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -184,6 +185,13 @@ def test_contours_and_hillshade(scan, tmp_path):
         grey, alpha = file.read()
     assert grey.shape == made.raster.shape and np.ptp(grey[alpha > 0]) > 50
     assert ((alpha == 0) == np.isnan(sum(np.gradient(made.raster)))).all()
+
+
+def test_no_coordinate_system_is_no_reason_to_warn(scan, tmp_path):
+    pytest.importorskip("pyogrio")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        flaunay.terrain(scan, tmp_path / "a.geojson", resolution=1, contours=10)
 
 
 def test_breaklines_are_hard_edges(tmp_path):
