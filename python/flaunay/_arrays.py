@@ -53,17 +53,11 @@ class Searched(Protocol):
     def _stand_ins(self) -> tuple[FloatArray, Indices]: ...
 
 
-class Mesh(Triangles, Protocol):
+class Mesh(Searched, Triangles, Protocol):
     """A Delaunay triangulation, as functions below its class see it."""
 
     @property
-    def neighbors(self) -> Indices: ...
-    @property
-    def hull(self) -> Indices: ...
-    @property
     def representatives(self) -> Indices: ...
-    @property
-    def _stand_ins(self) -> tuple[FloatArray, Indices]: ...
 
     edges: Indices
     edge_lengths: Doubles

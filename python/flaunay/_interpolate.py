@@ -154,6 +154,12 @@ class _Interpolator(Fixed):
         columns = math.prod(self.values.shape[1:])
         return summary(self, points=self.tri.npoints, values_per_point=columns)
 
+    def _are_far(self, queries: Doubles, nearest: Indices, most: float) -> npt.NDArray[np.bool_]:
+        """Which queries are farther than that from their nearest points."""
+        away = self.points[nearest] - queries
+        far: npt.NDArray[np.bool_] = np.hypot(away[:, 0], away[:, 1]) > most
+        return far
+
     @property
     def values(self) -> npt.NDArray[Any]:
         """What the points have, read-only. Other values of as many points can be assigned."""
@@ -299,8 +305,8 @@ class _Columns(_Interpolator):
             longest = np.hypot(sides[..., 0], sides[..., 1]).max(axis=1)
             rows[(found >= 0) & (longest > beyond.max_edge)] = fill
         if beyond.max_distance is not None and tri.npoints:
-            away = self.points[tri._locator.nearest(queries)] - queries
-            rows[np.hypot(away[:, 0], away[:, 1]) > beyond.max_distance] = fill
+            nearest = tri._locator.nearest(queries)
+            rows[self._are_far(queries, nearest, beyond.max_distance)] = fill
 
     def _along_border(
         self,
@@ -706,8 +712,7 @@ class NearestInterpolator(_Interpolator):
         nearest = self.tri._locator.nearest(queries)
         result: npt.NDArray[Any] = values[nearest]
         if most is not None:
-            away = self.points[nearest] - queries
-            far = np.hypot(away[:, 0], away[:, 1]) > most
+            far = self._are_far(queries, nearest, most)
             if far.any():
                 are_bad = far if are_bad is None else far | are_bad
         if are_bad is not None:

@@ -10,20 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, FloatArray, as_floats, check_out, summary
+from flaunay._arrays import ArrayLike, Triangles, as_floats, check_out, summary
 from flaunay._errors import UsageError
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 
-class Surface(Protocol):
+class Surface(Triangles, Protocol):
     """Triangles with neighbours, as functions below the classes see them."""
 
-    @property
-    def points(self) -> FloatArray: ...
-    @property
-    def simplices(self) -> Indices: ...
     @property
     def neighbors(self) -> Optional[Indices]: ...
 
