@@ -93,6 +93,7 @@ struct Locator::Implementation {
     if (all_points.empty()) return *this;
     if (!without_constraints_) {
       call::take_turn(*owner, [&] {
+        if (without_constraints_) return;  // of a call on another thread
         const std::vector<std::size_t> offsets = {0, all_points.size() / 2};
         Options options;
         options.neighbors = true;
@@ -114,6 +115,7 @@ struct Locator::Implementation {
   call::Answerer& doubles() {
     if (!doubles_) {
       call::take_turn(*owner, [&] {
+        if (doubles_) return;  // of a call on another thread
         auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
         made->constrained = constrained;
         const call::Frame from(asked_);
