@@ -126,8 +126,9 @@ void check_index_type(std::uint64_t n, bool has_neighbors) {
 template <typename Index>
 ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
                             const flaunay_mesh_files& files, const ChunkOptions& options) {
+  // First what the input says: it has the same error on every disk.
+  check_index_type<Index>(source.size(), arrays.neighbors != nullptr || files.neighbors != nullptr);
   Results<Index> results(arrays, files, source.size(), options.scratch);
-  check_index_type<Index>(source.size(), results.wants(MeshArray::neighbors));
   ChunkStatistics statistics = triangulate_chunks(source, results, options);
   results.commit();
   return statistics;
