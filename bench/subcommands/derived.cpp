@@ -1,5 +1,5 @@
-// flaunay-bench derived: what is made of a triangulation, beside it: Voronoi cells, relaxation, and
-// interpolation, of natural neighbours beside CGAL's.
+// flaunay-bench derived: what is made of a triangulation, beside it: Voronoi cells, relaxation, rasters,
+// contours, and interpolation, of natural neighbours beside CGAL's.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "bench/peers/peer.hpp"
+#include "flaunay/terrain.hpp"
 
 namespace flaunay::bench::derived {
 namespace {
@@ -45,8 +46,13 @@ struct Data {
   Triangulator triangulator;
   Triangulation mesh;
   Locator locator;
-  std::vector<double> sibson, of_cgal, areas;
+  std::vector<double> sibson, of_cgal, areas, pixels;
 };
+
+MeshView view(const Data& on) {
+  return {on.points.data(), on.n, on.mesh.triangles.data(), on.mesh.neighbors.data(),
+          on.mesh.triangles.size() / 3};
+}
 
 /// NaN if one is NaN where the other is not.
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -95,6 +101,18 @@ void add_jobs(Jobs& jobs, Data& on, const DerivedRequest& request) {
       triangulator.relax(points, n, kUnitSquare, 4, iterations);
     };
     add_call(fmt::format("relax, {} iterations", iterations), relax);
+    add_call("raster, 1.6 pixels per point", [&on, points, n] {
+      const auto side = static_cast<std::size_t>(std::sqrt(1.6 * static_cast<double>(n)));
+      const double step = 1 / static_cast<double>(side);
+      on.pixels.resize(side * side);
+      rasterize(on.triangulator, view(on), on.values.data(),
+                {step / 2, 1 - step / 2, step, -step, side, side}, {}, on.pixels.data());
+    });
+    add_call("contours at 20 heights", [&on] {
+      std::vector<double> heights;
+      for (int k = 0; k < 20; ++k) heights.push_back(-0.95 + 0.1 * k);
+      trace_contours(on.triangulator, view(on), on.values.data(), heights);
+    });
     add_call("locator", [&on, points, n] { Locator(on.triangulator, points, n, on.mesh); });
   }
   add_call("gradients", [&on] { on.locator.gradients(on.values.data(), on.columns); });
@@ -145,7 +163,8 @@ Result measure_derived(const DerivedRequest& request) {
 
 const Subcommand kSubcommand(
     "derived",
-    "Voronoi cells, relaxation and interpolation beside a triangulation, and CGAL's natural neighbours",
+    "Voronoi cells, relaxation, rasters and interpolation beside a triangulation, and CGAL's natural "
+    "neighbours",
     R"(From host memory to host memory. Cells are clipped to the unit square, which relaxation has for its box, too.
 Queries are as many as points, from the same distribution, and values are smooth functions. 'clough-tocher' estimates
 its gradients in each call, as 'gradients' does. CGAL's natural_neighbor_coordinates_2 runs on one thread, with exact

@@ -149,7 +149,7 @@ kernel void scan_triangles(int n, int chunk, pixel_grid grid, SCANNED_MESH(), gl
       continue;
     }
     const pixel_range rows = rows_of(p, grid);
-    if (rows.first > rows.last || has_longer_edge(p, grid.longest)) continue;
+    if (rows.first > rows.last || (grid.longest < INFINITY && has_longer_edge(p, grid.longest))) continue;
     const scanned_triangle triangle = scanned(t, p, triangles, values);
     const sloping_triangle slopes = sloping(triangle.p, grid);
     int is_wrong = 0;
