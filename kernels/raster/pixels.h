@@ -93,6 +93,23 @@ static inline int place_in_triangle(const double2* p, double2 q, int* edge) {
 // point were moved to the right by less than anything, and up by still less.
 static inline int belongs_to_left(double2 a, double2 b) { return (a.y > b.y) | ((a.y == b.y) & (a.x < b.x)); }
 
+static inline int is_lower(double2 a, double2 b) { return (a.y < b.y) | ((a.y == b.y) & (a.x < b.x)); }
+
+// Triangles are scanned from their lowest corner on, and of two the left one, so that results do not depend on how
+// points are numbered.
+static inline int lowest_corner(const double2* p) {
+  const int second = is_lower(p[1], p[0]), third = is_lower(p[2], p[second]);
+  return third ? 2 : second;
+}
+
+static inline double weighted(const double* weight, const double* value) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (weight[k] != 0.0) sum += weight[k] * value[k];
+  }
+  return sum;
+}
+
 static inline double squared_distance(double2 a, double2 b) {
   const double2 d = b - a;
   return d.x * d.x + d.y * d.y;

@@ -11,8 +11,7 @@
 
 // How many triangles ahead corners are fetched.
 #define TRIANGLES_AHEAD 12
-// A triangle from its lowest corner on, and of two the left one, so that results do not depend on how points are
-// numbered. numbers: 3 t + k of its corners.
+// A triangle from its lowest_corner on. numbers: 3 t + k of its corners.
 typedef struct {
   double2 p[3];
   double value[3];
@@ -51,27 +50,16 @@ FETCHING void fetch_triangle(int t, int n, GLOBAL const int* triangles, GLOBAL c
 #endif
 }
 
-static inline int is_lower(double2 a, double2 b) { return (a.y < b.y) | ((a.y == b.y) & (a.x < b.x)); }
-
 static inline scanned_triangle scanned(int t, const double2* q, GLOBAL const int* triangles,
                                        GLOBAL const double* values) {
   scanned_triangle result;
-  const int second = is_lower(q[1], q[0]), third = is_lower(q[2], q[second]);
-  int k = third ? 2 : second;
+  int k = lowest_corner(q);
   for (int i = 0; i < 3; ++i, k = next_corner(k)) {
     result.p[i] = q[k];
     result.numbers[i] = 3 * t + k;
     result.value[i] = values[triangles[3 * t + k]];
   }
   return result;
-}
-
-static inline double weighted(const double* weight, const double* value) {
-  double sum = 0.0;
-  for (int k = 0; k < 3; ++k) {
-    if (weight[k] != 0.0) sum += weight[k] * value[k];
-  }
-  return sum;
 }
 
 // A pixel on an edge, or so near to one that floating point cannot tell, or in a slender triangle. Returns whether the

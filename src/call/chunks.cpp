@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "call/chunks.hpp"
 #include "call/implementation.hpp"
 #include "call/with_errors.hpp"
 #include "geometry/magnitudes.hpp"
@@ -28,6 +29,9 @@ constexpr std::uint64_t kLeastBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kBytesPerPoint = 480;
 // If areas are wanted, those of a chunk and of the one before.
 constexpr std::uint64_t kAreasBytesPerPoint = 2 * 2 * sizeof(double);
+// If points have values: those of a chunk while it is triangulated, while its triangles are scanned, and
+// while the next one is read, and of what is scanned the indices.
+constexpr std::uint64_t kValuesBytesPerPoint = 3 * sizeof(double) + 24;
 // Chunks differ: those of more than one and a half times the points that they should have are cut again.
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
@@ -83,7 +87,7 @@ Devices open_devices(const ChunkOptions& options, bool with_areas) {
 }
 
 chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devices& devices,
-                       bool with_areas) {
+                       std::uint64_t bytes_per_point) {
   const std::uint64_t memory =
       options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
   if (memory < kLeastBytes) {
@@ -93,7 +97,7 @@ chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devic
   chunks::Plan plan;
   plan.buffer_bytes = memory / kBufferShare;
   const std::uint64_t for_chunks = memory - kFixedBytes - plan.buffer_bytes;
-  const std::size_t at_once = for_chunks / (kBytesPerPoint + (with_areas ? kAreasBytesPerPoint : 0));
+  const std::size_t at_once = for_chunks / bytes_per_point;
   plan.largest_chunk = std::min(at_once, devices.capacity);
   if (devices.capacity < at_once) plan.limit = "the smallest device";
   const std::size_t most = std::min(at_once / devices.solvers.size(), devices.capacity);
@@ -143,15 +147,20 @@ void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinat
   std::memcpy(coordinates, coordinates_ + 2 * first, 2 * count * sizeof(double));
 }
 
+ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
+                                         const ChunkOptions& options) {
+  if (points.size() == 0) return ChunkStatistics();
+  check_count(points.size());
+  const bool with_areas = sink.wants(MeshArray::areas);
+  const Devices devices = open_devices(options, with_areas);
+  const std::uint64_t bytes_per_point = kBytesPerPoint + (with_areas ? kAreasBytesPerPoint : 0) +
+                                        (values != nullptr ? kValuesBytesPerPoint : 0);
+  const chunks::Plan plan = make_plan(points.size(), options, devices, bytes_per_point);
+  return chunks::run(points, values, sink, plan, devices.solvers, options);
+}
+
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
-  return with_errors([&] {
-    if (points.size() == 0) return ChunkStatistics();
-    check_count(points.size());
-    const bool with_areas = sink.wants(MeshArray::areas);
-    const Devices devices = open_devices(options, with_areas);
-    const chunks::Plan plan = make_plan(points.size(), options, devices, with_areas);
-    return chunks::run(points, sink, plan, devices.solvers, options);
-  });
+  return with_errors([&] { return call::triangulate_chunks(points, nullptr, sink, options); });
 }
 
 ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,

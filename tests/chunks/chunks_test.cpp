@@ -114,7 +114,7 @@ ChunkStatistics compare(const Coordinates& points, const Plan& plan,
   const Triangulation expected = triangulator().triangulate(points.data(), n, with_areas);
   ArrayPoints source(points.data(), n);
   VectorSink sink;
-  const ChunkStatistics statistics = run(source, sink, plan, solvers, {});
+  const ChunkStatistics statistics = run(source, nullptr, sink, plan, solvers, {});
   EXPECT_EQ(sink.arrays[MeshArray::triangles].size(), expected.triangles.size());
   EXPECT_EQ(sink.arrays[MeshArray::neighbors].size(), expected.neighbors.size());
   EXPECT_EQ(sink.areas.size(), expected.areas.size());
@@ -310,7 +310,8 @@ TEST(Chunks, EndWithTheErrorOfTheLastSolver) {
     ArrayPoints source(points.data(), points.size() / 2);
     VectorSink sink;
     try {
-      run(source, sink, small_plan(100), {failing(first, calls), failing(first / 2, more_calls)}, {});
+      run(source, nullptr, sink, small_plan(100), {failing(first, calls), failing(first / 2, more_calls)},
+          {});
       FAIL() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::device);
@@ -324,7 +325,7 @@ void expect_error(Coordinates points, const ErrorKind kind, const std::string& t
   ArrayPoints source(points.data(), points.size() / 2);
   VectorSink sink;
   try {
-    run(source, sink, plan, {solver()}, {});
+    run(source, nullptr, sink, plan, {solver()}, {});
     FAIL() << "no error; expected " << text;
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), kind);
@@ -363,7 +364,7 @@ TEST(Chunks, WriteNothingAfterAnError) {
   ArrayPoints source(points.data(), points.size() / 2);
   for (const std::size_t first : {1, 2, 20, 60, 150}) {
     FailingSink sink(first);
-    EXPECT_THROW(run(source, sink, small_plan(50), {solver(), solver()}, {}), std::runtime_error);
+    EXPECT_THROW(run(source, nullptr, sink, small_plan(50), {solver(), solver()}, {}), std::runtime_error);
     EXPECT_EQ(sink.calls, first);
   }
 }
@@ -377,7 +378,8 @@ TEST(Chunks, CanBeInterrupted) {
     options.progress = [&](const std::string& stage, int, double) {
       if (stage == when) throw std::runtime_error("enough");
     };
-    EXPECT_THROW(run(source, sink, small_plan(50), {solver(), solver()}, options), std::runtime_error);
+    EXPECT_THROW(run(source, nullptr, sink, small_plan(50), {solver(), solver()}, options),
+                 std::runtime_error);
   }
 }
 

@@ -83,7 +83,7 @@ TEST(ChunkTree, AroundAPointTellsEqualPointsFromOthers) {
 TEST(ChunkWriters, GiveBackWhatTheyGot) {
   ScratchFile file("");
   for (const std::size_t buffer_bytes : {1, 100000}) {
-    ChunkWriters writers(file, 3, buffer_bytes), open_writers(file, 3, buffer_bytes);
+    ChunkWriters writers(file, 3, buffer_bytes, true), open_writers(file, 3, buffer_bytes, true);
     ChunkPoints points;
     testing::FixtureRandom random(1);
     for (std::int64_t id = 0; id < 5000; ++id) {
@@ -91,10 +91,12 @@ TEST(ChunkWriters, GiveBackWhatTheyGot) {
       for (OpenEdge& edge : edges)
         edge = {random.integer(0, 1LL << 50), random.unit(), random.unit(), id, id % 2};
       points.add({random.unit(), random.unit()}, 3 * id, edges.data(), edges.size());
+      points.values.push_back(random.unit());
     }
     // From the last to the first: reading sorts what is handed on.
     for (std::size_t i = points.size(); i-- > 0;) {
-      writers.add(i % 2, points.point(points.size() - 1 - i), points.ids[points.size() - 1 - i]);
+      const std::size_t j = points.size() - 1 - i;
+      writers.add(i % 2, points.point(j), points.ids[j], points.values[j]);
       open_writers.add(i % 2, points, i);
     }
     const std::vector<StoredChunk> stored = writers.take(), open_stored = open_writers.take();
@@ -106,10 +108,15 @@ TEST(ChunkWriters, GiveBackWhatTheyGot) {
                         later = read_chunk(file, open_stored[chunk], false);
       EXPECT_EQ(first.size(), 2500u);
       EXPECT_TRUE(first.is_first_round());
+      ASSERT_EQ(first.values.size(), 2500u);
+      for (std::size_t k = 0; k < first.size(); ++k) {
+        EXPECT_EQ(first.values[k], points.values[static_cast<std::size_t>(first.ids[k] / 3)]);
+      }
       ASSERT_EQ(later.size(), 2500u);
       for (std::size_t k = 0; k < later.size(); ++k, ++read) {
         const auto i = static_cast<std::size_t>(later.ids[k] / 3);
         EXPECT_EQ(i, 2 * k + chunk);
+        EXPECT_EQ(later.values.at(k), points.values[i]);
         ASSERT_EQ(later.edge_count(k), points.edge_count(i));
         for (std::size_t e = 0; e < later.edge_count(k); ++e) {
           const OpenEdge &found = later.edges[later.edge_offsets[k] + e],

@@ -267,6 +267,124 @@ TEST(SmallRaster, ErrorsSayWhatIsWrong) {
   }
 }
 
+class ValuedArray : public ValuedPoints {
+ public:
+  explicit ValuedArray(const Terrain& terrain) : terrain_(terrain) {}
+  std::uint64_t size() const override { return terrain_.values.size(); }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    std::copy_n(&terrain_.points[2 * first], 2 * count, coordinates);
+  }
+  void read_values(std::uint64_t first, std::size_t count, double* values) override {
+    std::copy_n(&terrain_.values[first], count, values);
+  }
+
+ private:
+  const Terrain& terrain_;
+};
+
+std::vector<double> in_chunks(const Terrain& terrain, const RasterGrid& grid, std::size_t chunk_points,
+                              double max_edge = std::numeric_limits<double>::infinity(),
+                              Duplicates duplicates = Duplicates::highest, std::size_t least_chunks = 1) {
+  std::vector<double> pixels(grid.rows * grid.columns, 1e300);
+  ValuedArray points(terrain);
+  ChunkOptions options;
+  options.chunk_points = chunk_points;
+  options.memory_bytes = std::uint64_t{256} << 20;
+  options.devices = {"host", "host"};
+  const ChunkStatistics statistics =
+      rasterize_chunks(points, duplicates, grid, {max_edge, kFill}, pixels.data(), options);
+  EXPECT_GE(statistics.rounds.at(0).chunks, least_chunks);
+  return pixels;
+}
+
+TEST(RasterInChunks, HasTheBytesOfAllTrianglesAtOnce) {
+  for (const char* const fixture : {"uniform", "grid", "circle", "kuzmin"}) {
+    const Terrain terrain = terrain_of(fixture, 4000);
+    const auto [low, high] = std::minmax_element(terrain.points.begin(), terrain.points.end());
+    const double extent = *high - *low;
+    const RasterGrid grid{*low, *high, extent / 128, -extent / 128, 129, 129};
+    for (const double max_edge : {std::numeric_limits<double>::infinity(), extent / 40}) {
+      const std::vector<double> expected = rasterized(on_host(), terrain, grid, max_edge);
+      EXPECT_TRUE(same_bytes(in_chunks(terrain, grid, 0, max_edge), expected)) << fixture;
+      EXPECT_TRUE(same_bytes(in_chunks(terrain, grid, 80, max_edge, Duplicates::highest, 50), expected))
+          << fixture << " " << max_edge;
+    }
+  }
+}
+
+// With integer coordinates, many pixels lie on sides of triangles, also on those between chunks and on the
+// hull.
+TEST(RasterInChunks, PixelsOnSidesBetweenChunksAreThoseOfTheWhole) {
+  FixtureRandom random(5);
+  Coordinates points;
+  for (int i = 0; i < 6000; ++i) {
+    points.push_back(static_cast<double>(random.integer(0, 200)));
+    points.push_back(static_cast<double>(random.integer(0, 200)));
+  }
+  Terrain terrain = make_terrain(points, random_values(6000, 9, 1000));
+  for (std::size_t i = 0; i < terrain.values.size(); ++i) {  // one value per place
+    terrain.values[i] = terrain.values[static_cast<std::size_t>(terrain.mesh.representatives[i])];
+  }
+  const RasterGrid grid{-1, -1, 0.5, 0.5, 405, 405};
+  for (const double max_edge : {std::numeric_limits<double>::infinity(), 4.0}) {
+    const std::vector<double> expected = rasterized(on_host(), terrain, grid, max_edge);
+    EXPECT_TRUE(same_bytes(in_chunks(terrain, grid, 100, max_edge, Duplicates::mean, 50), expected));
+  }
+}
+
+TEST(RasterInChunks, EqualPointsHaveOneValue) {
+  // 40 places, one of which has more points than a chunk; in any order.
+  std::vector<std::array<double, 3>> measured;
+  for (int i = 0; i < 40; ++i) {
+    for (int k = 0; k < (i == 17 ? 3000 : 30); ++k) {
+      measured.push_back(
+          {static_cast<double>(i * 7 % 40), static_cast<double>(i * i % 13), 0.1 * (k * k % 97) + i});
+    }
+  }
+  std::map<std::array<double, 2>, std::vector<double>> places;
+  FixtureRandom(3).shuffle(measured);
+  Coordinates points;
+  std::vector<double> values;
+  for (const auto& [x, y, value] : measured) {
+    points.insert(points.end(), {x, y});
+    values.push_back(value);
+    places[{x, y}].push_back(value);
+  }
+  Terrain given = make_terrain(points, values);
+  const RasterGrid grid{0, 0, 0.5, 0.5, 25, 79};
+  for (const Duplicates duplicates : {Duplicates::highest, Duplicates::lowest, Duplicates::mean}) {
+    Terrain expected = given;
+    for (std::size_t i = 0; i < expected.values.size(); ++i) {
+      std::vector<double>& of_place = places[{points[2 * i], points[2 * i + 1]}];
+      std::sort(of_place.begin(), of_place.end());
+      const double sum = std::accumulate(of_place.begin(), of_place.end(), 0.0);
+      expected.values[i] = duplicates == Duplicates::highest  ? of_place.back()
+                           : duplicates == Duplicates::lowest ? of_place.front()
+                                                              : sum / static_cast<double>(of_place.size());
+    }
+    const std::vector<double> pixels = rasterized(on_host(), expected, grid);
+    for (const std::size_t chunk_points : {0, 100}) {
+      EXPECT_TRUE(same_bytes(
+          in_chunks(given, grid, chunk_points, std::numeric_limits<double>::infinity(), duplicates), pixels));
+    }
+  }
+}
+
+TEST(RasterInChunks, ErrorsSayWhatIsWrong) {
+  Terrain terrain = terrain_of("uniform", 3000);
+  terrain.values[2222] = std::numeric_limits<double>::infinity();
+  const auto message = [&](const RasterGrid& grid) -> std::string {
+    try {
+      in_chunks(terrain, grid, 0);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(message({0, 0, 0.1, 0.1, 5, 5}), "the value of point 2222 is not finite: inf");
+  EXPECT_EQ(message({0, 0, -0.1, 0.1, 5, 5}), "dx = -0.1 must be positive");
+}
+
 TEST(Raster, ManyPointsGiveTheSameOnAnyNumberOfThreads) {
   const Terrain terrain = terrain_of("uniform", 20000);
   const RasterGrid grid = grid_over(terrain, 300, 200, 0.01);

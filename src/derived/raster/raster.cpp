@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "host/launch/vector_operations.hpp"
 #include "launchers/raster/scan.cl.hpp"
+#include "launchers/raster/sides.cl.hpp"
 #include "points/inspect.hpp"
 #include "predicates/bounds.h"
 
@@ -57,6 +59,22 @@ void check_range(const Magnitudes& magnitudes) {
                           kernel::LOWEST_QUERY_EXPONENT, kernel::LARGEST_QUERY_EXPONENT + 1));
 }
 
+kernel::pixel_grid scanned_grid(const RasterGrid& grid, const RasterOptions& options) {
+  kernel::pixel_grid scanned{};
+  scanned.x = grid.x;
+  scanned.y = grid.y;
+  scanned.dx = grid.dx;
+  scanned.dy = grid.dy;
+  scanned.column_margin = margin_of(grid.x, grid.dx, grid.columns);
+  scanned.row_margin = margin_of(grid.y, grid.dy, grid.rows);
+  scanned.longest = options.max_edge * options.max_edge;
+  scanned.rows = static_cast<int>(grid.rows);
+  scanned.columns = static_cast<int>(grid.columns);
+  scanned.columns_by = 1 / grid.dx;
+  scanned.rows_by = 1 / grid.dy;
+  return scanned;
+}
+
 }  // namespace
 
 std::size_t checked_pixels(const RasterGrid& grid, const RasterOptions& options) {
@@ -73,28 +91,21 @@ std::size_t checked_pixels(const RasterGrid& grid, const RasterOptions& options)
 
 void compute(host::Runtime& runtime, const Surface& surface, const RasterGrid& grid,
              const RasterOptions& options, const Buffer<cl_double>& pixels) {
-  host::Arena::Scope scope(runtime.arena());
   runtime.fill(pixels, grid.rows * grid.columns, options.fill);
+  scan(runtime, surface, grid, options, pixels);
+}
+
+void scan(host::Runtime& runtime, const Surface& surface, const RasterGrid& grid,
+          const RasterOptions& options, const Buffer<cl_double>& pixels) {
+  host::Arena::Scope scope(runtime.arena());
   const Magnitudes of_points = points::inspect(runtime, surface.coordinates, surface.points);
   if (of_points.bad != kernel::NO_BAD)
     throw Error(ErrorKind::input, fmt::format("point {} is not finite", of_points.bad));
   check_range(geometry::joined(of_points, magnitudes_of(grid)));
   const auto wrong = runtime.arena().allocate<cl_int>(1);
   runtime.fill(wrong, 1, std::numeric_limits<cl_int>::max());
-  kernel::pixel_grid scanned{};
-  scanned.x = grid.x;
-  scanned.y = grid.y;
-  scanned.dx = grid.dx;
-  scanned.dy = grid.dy;
-  scanned.column_margin = margin_of(grid.x, grid.dx, grid.columns);
-  scanned.row_margin = margin_of(grid.y, grid.dy, grid.rows);
-  scanned.longest = options.max_edge * options.max_edge;
-  scanned.rows = static_cast<int>(grid.rows);
-  scanned.columns = static_cast<int>(grid.columns);
-  scanned.columns_by = 1 / grid.dx;
-  scanned.rows_by = 1 / grid.dy;
   runtime.chunks(surface.count, runtime.sizes().chunk(surface.count),
-                 kernels::scan_triangles{.grid = scanned,
+                 kernels::scan_triangles{.grid = scanned_grid(grid, options),
                                          .scanned_mesh = surface,
                                          .values = surface.values,
                                          .pixels = pixels,
@@ -104,6 +115,34 @@ void compute(host::Runtime& runtime, const Surface& surface, const RasterGrid& g
          fmt::format("triangles: triangle {} has a corner that is none of the {} points, or a neighbour that "
                      "is none of the {} triangles",
                      first_wrong, surface.points, surface.count));
+}
+
+void append_side_pixels(host::Runtime& runtime, const Surface& surface, const Buffer<cl_int>& sides,
+                        std::size_t count, const RasterGrid& grid, const RasterOptions& options,
+                        std::vector<SidePixel>& pixels) {
+  if (count == 0) return;
+  host::Arena::Scope scope(runtime.arena());
+  const kernel::pixel_grid scanned = scanned_grid(grid, options);
+  const auto offsets = runtime.arena().allocate<cl_uint>(count + 1);
+  runtime.map(count, kernels::count_side_pixels{
+                         .grid = scanned, .scanned_mesh = surface, .sides = sides, .counts = offsets});
+  host::exclusive_scan(runtime, offsets, count, offsets);
+  const auto found = static_cast<std::size_t>(runtime.read_one(offsets, count));
+  if (found == 0) return;
+  const auto places = runtime.arena().allocate<cl_ulong>(found);
+  const auto values = runtime.arena().allocate<cl_double>(found);
+  runtime.map(count, kernels::list_side_pixels{.grid = scanned,
+                                               .scanned_mesh = surface,
+                                               .values = surface.values,
+                                               .sides = sides,
+                                               .offsets = offsets,
+                                               .places = places,
+                                               .found = values});
+  std::vector<cl_ulong> all_places(found);
+  std::vector<cl_double> all_values(found);
+  runtime.read(places, 0, found, all_places.data());
+  runtime.read(values, 0, found, all_values.data());
+  for (std::size_t i = 0; i < found; ++i) pixels.push_back({all_places[i], all_values[i]});
 }
 
 }  // namespace flaunay::raster

@@ -1,6 +1,9 @@
 // Rasters of values at the corners of triangles.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "flaunay/terrain.hpp"
 #include "host/runtime.hpp"
 #include "launchers/raster/scan.cl.hpp"
@@ -32,5 +35,21 @@ std::size_t checked_pixels(const RasterGrid& grid, const RasterOptions& options)
 /// Writes all pixels; see rasterize. The grid and the options have been checked. Waits. Throws as rasterize.
 void compute(host::Runtime& runtime, const Surface& surface, const RasterGrid& grid,
              const RasterOptions& options, const Buffer<cl_double>& pixels);
+
+/// Writes the pixels in the triangles alone.
+void scan(host::Runtime& runtime, const Surface& surface, const RasterGrid& grid,
+          const RasterOptions& options, const Buffer<cl_double>& pixels);
+
+/// A pixel on a side of a triangle, by its place in the raster, and the value that the triangle gives it.
+struct SidePixel {
+  std::uint64_t pixel;
+  double value;
+};
+/// Appends the pixels on sides, without their ends, that would belong to a triangle on the other side. They
+/// belong to this one if there is none, or none that has pixels. sides: 3 t + k, opposite to corner k of
+/// triangle t.
+void append_side_pixels(host::Runtime& runtime, const Surface& surface, const Buffer<cl_int>& sides,
+                        std::size_t count, const RasterGrid& grid, const RasterOptions& options,
+                        std::vector<SidePixel>& pixels);
 
 }  // namespace flaunay::raster

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "flaunay/chunks.hpp"
+#include "flaunay/export.h"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay {
@@ -49,6 +51,26 @@ struct RasterOptions {
 /// are not multiples of 2^-511 below 2^509, and for pixels so small that rounding moves them by a quarter.
 FLAUNAY_API void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* values,
                            const RasterGrid& grid, const RasterOptions& options, double* pixels);
+
+/// Points with a value each, such as heights, that are read in pieces.
+class FLAUNAY_API ValuedPoints : public PointSource {
+ public:
+  /// Reads the values of the points [first, first + count), as read() does coordinates.
+  virtual void read_values(std::uint64_t first, std::size_t count, double* values) = 0;
+};
+
+/// Which value a place has where several points are equal. The mean is that of doubles, summed in ascending
+/// order.
+enum class Duplicates { highest, lowest, mean };
+
+/// Computes the raster of points in chunks: triangulates them as triangulate_chunks does, and scans triangles
+/// into pixels as they become final. pixels: as for rasterize, such as a memory-mapped file. The raster is
+/// that of rasterize with all triangles, whatever the chunks. memory_bytes of the chunks' options do not
+/// count the pixels; on disk, values take kScratchBytesPerValue per point. Throws as triangulate_chunks and
+/// rasterize do, and Error(input) for a value that is not finite.
+FLAUNAY_API ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates,
+                                             const RasterGrid& grid, const RasterOptions& options,
+                                             double* pixels, const ChunkOptions& chunks = {});
 
 /// Contour lines at several heights. Those of one height follow each other, in the order of their points.
 struct Contours {

@@ -1,6 +1,9 @@
 #include "large/chunks/distribute.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <numeric>
 #include <optional>
@@ -54,7 +57,7 @@ std::vector<double2> draw_samples(PointSource& source, std::uint64_t wanted, con
 // A piece of the points, and where they go.
 struct Piece {
   std::uint64_t first = 0;
-  std::vector<double> coordinates;
+  std::vector<double> coordinates, values;
   std::vector<std::size_t> leaves;
 
   std::size_t size() const { return coordinates.size() / 2; }
@@ -101,6 +104,15 @@ class Account {
   std::uint64_t largest_in_ = 0, lowest_in_ = 0;  // the pieces with these coordinates
 };
 
+void check_values(const Piece& piece) {
+  const auto bad = std::find_if(piece.values.begin(), piece.values.end(),
+                                [](double value) { return !std::isfinite(value); });
+  if (bad == piece.values.end()) return;
+  throw Error(ErrorKind::input,
+              fmt::format("the value of point {} is not finite: {}",
+                          piece.first + static_cast<std::uint64_t>(bad - piece.values.begin()), *bad));
+}
+
 void find_leaves(host::Threads& threads, const ChunkTree& tree, Piece& piece) {
   piece.leaves.resize(piece.size());
   threads.share(piece.size(), kPart, [&](std::size_t begin, std::size_t end) {
@@ -116,11 +128,16 @@ std::vector<Chunk> chunks_of(const ChunkTree& tree, std::vector<StoredChunk> sto
   return chunks;
 }
 
+// A part of a chunk of the first round.
+StoredChunk part_of(const StoredChunk& chunk, const Extent& extent) {
+  return {{extent}, extent.bytes / first_round_bytes(chunk.has_values), chunk.has_values};
+}
+
 // Calls visit for the points of the first round in a chunk, piece by piece, and releases them.
 template <typename Visit>
 void take_pieces(ScratchFile& file, const StoredChunk& chunk, const Visit& visit) {
   for (const Extent& extent : chunk.extents) {
-    visit(read_chunk(file, {{extent}, extent.bytes / kFirstRoundBytes}, true));
+    visit(read_chunk(file, part_of(chunk, extent), true));
     file.release(extent.begin, extent.bytes);
   }
 }
@@ -128,7 +145,8 @@ void take_pieces(ScratchFile& file, const StoredChunk& chunk, const Visit& visit
 // Chunks that are larger than the tree meant them to be, because the sample was unlucky or points are equal.
 class Splitter {
  public:
-  Splitter(MeshSink& sink, ScratchFile& file, const Plan& plan) : sink_(sink), file_(file), plan_(plan) {}
+  Splitter(const Values* values, MeshSink& sink, ScratchFile& file, const Plan& plan)
+      : values_(values), sink_(sink), file_(file), plan_(plan) {}
 
   void split(Chunk chunk, std::vector<Chunk>& to) {
     // A sample is not exact.
@@ -158,7 +176,7 @@ class Splitter {
         static_cast<std::size_t>(std::min(wanted, kMostSamples)) / chunk.extents.size() + 1;
     std::vector<double2> samples;
     for (const Extent& extent : chunk.extents) {
-      const ChunkPoints points = read_chunk(file_, {{extent}, extent.bytes / kFirstRoundBytes}, true);
+      const ChunkPoints points = read_chunk(file_, part_of(chunk, extent), true);
       const std::size_t stride = std::max<std::size_t>(1, points.size() / per_extent);
       for (std::size_t i = 0; i < points.size(); i += stride) samples.push_back(points.point(i));
     }
@@ -166,36 +184,43 @@ class Splitter {
   }
 
   std::vector<StoredChunk> distribute(const ChunkTree& tree, const StoredChunk& chunk) {
-    ChunkWriters writers(file_, tree.leaves(), plan_.buffer_bytes);
+    ChunkWriters writers(file_, tree.leaves(), plan_.buffer_bytes, chunk.has_values);
     std::vector<std::size_t> leaves;
     take_pieces(file_, chunk, [&](const ChunkPoints& points) {
       leaves.resize(points.size());
       tree.find_leaves(points.coordinates.data(), points.size(), leaves.data());
-      for (std::size_t i = 0; i < points.size(); ++i) writers.add(leaves[i], points.point(i), points.ids[i]);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        writers.add(leaves[i], points.point(i), points.ids[i], chunk.has_values ? points.values[i] : 0);
+      }
     });
     return writers.take();
   }
 
   // Of points that are all equal.
   StoredChunk keep_first(const StoredChunk& chunk) {
-    ChunkWriters writers(file_, 1, plan_.buffer_bytes);
+    ChunkWriters writers(file_, 1, plan_.buffer_bytes, chunk.has_values);
     std::optional<std::int64_t> first;
+    double2 place{};
+    std::vector<double> values;
     RunWriter representatives(sink_, MeshArray::representatives);
     take_pieces(file_, chunk, [&](const ChunkPoints& points) {
       for (std::size_t i = 0; i < points.size(); ++i) {
+        if (chunk.has_values) values.push_back(points.values[i]);
         if (first) {
           representatives.add(static_cast<std::uint64_t>(points.ids[i]), *first);
           ++equal_points_;
         } else {
           first = points.ids[i];
-          writers.add(0, points.point(i), *first);
+          place = points.point(i);
         }
       }
     });
+    writers.add(0, place, *first, chunk.has_values ? common_value(values, values_->duplicates) : 0);
     representatives.flush();
     return std::move(writers.take().front());
   }
 
+  const Values* values_;
   MeshSink& sink_;
   ScratchFile& file_;
   const Plan& plan_;
@@ -216,18 +241,19 @@ std::size_t chunks_for(std::uint64_t points, const Plan& plan) {
   return static_cast<std::size_t>((points + plan.chunk_points - 1) / plan.chunk_points);
 }
 
-FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, const Plan& plan,
-                      host::Threads& threads, const Progress& progress) {
+FirstRound distribute(PointSource& source, const Values* values, MeshSink& sink, ScratchFile& file,
+                      const Plan& plan, host::Threads& threads, const Progress& progress) {
   const std::uint64_t n = source.size();
   const std::size_t chunks = chunks_for(n, plan);
-  file.require_room(n * kFirstRoundBytes, "the points of chunks");
+  const bool has_values = values != nullptr;
+  file.require_room(n * first_round_bytes(has_values), "the points of chunks");
   progress("sampling", 0);
   const ChunkTree tree = chunks == 1
                              ? ChunkTree()
                              : ChunkTree::of_leaves(draw_samples(source, kSamplesPerChunk * chunks, progress),
                                                     chunks, Cuts::at_medians);
 
-  std::optional<ChunkWriters> writers(std::in_place, file, tree.leaves(), plan.buffer_bytes);
+  std::optional<ChunkWriters> writers(std::in_place, file, tree.leaves(), plan.buffer_bytes, has_values);
   Account account;
   const auto read = [&](std::uint64_t first) {
     Piece piece;
@@ -235,6 +261,11 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
     const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, n - first));
     piece.coordinates.resize(2 * size);
     source.read(first, size, piece.coordinates.data());
+    if (has_values) {
+      piece.values.resize(size);
+      values->points.read_values(first, size, piece.values.data());
+      check_values(piece);
+    }
     return piece;
   };
   // If the system refuses a thread, a piece is read when it is asked for.
@@ -247,7 +278,8 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
     find_leaves(threads, tree, piece);
     for (std::size_t i = 0; i < piece.size(); ++i) {
       const double2 p = {piece.coordinates[2 * i], piece.coordinates[2 * i + 1]};
-      writers->add(piece.leaves[i], p, static_cast<std::int64_t>(first + i));
+      writers->add(piece.leaves[i], p, static_cast<std::int64_t>(first + i),
+                   has_values ? piece.values[i] : 0);
     }
     write_own_numbers(sink, piece);
   }
@@ -255,7 +287,7 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
   FirstRound round;
   round.scaling = account.scaling(source);
   round.all = account.box();
-  Splitter splitter(sink, file, plan);
+  Splitter splitter(values, sink, file, plan);
   std::vector<StoredChunk> stored = writers->take();
   writers.reset();
   for (Chunk& chunk : chunks_of(tree, std::move(stored), whole_plane()))
@@ -266,7 +298,7 @@ FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, co
 
 void HandedOn::add(const ChunkPoints& points) {
   if (points.size() == 0) return;
-  ChunkWriters writer(file_, 1, points.size() * kFirstRoundBytes);
+  ChunkWriters writer(file_, 1, points.size() * first_round_bytes(points.has_values()), points.has_values());
   for (std::size_t i = 0; i < points.size(); ++i) {
     writer.add(0, points, i);
     if (points_++ % stride_ != 0) continue;
@@ -285,6 +317,7 @@ ChunkPoints HandedOn::read_all() {
   for (const StoredChunk& batch : batches_) {
     all.extents.insert(all.extents.end(), batch.extents.begin(), batch.extents.end());
     all.points += batch.points;
+    all.has_values = batch.has_values;
   }
   ChunkPoints points = read_chunk(file_, all, false);
   for (const Extent& extent : all.extents) file_.release(extent.begin, extent.bytes);
@@ -293,7 +326,8 @@ ChunkPoints HandedOn::read_all() {
 
 std::vector<Chunk> HandedOn::distribute(const Plan& plan) {
   const ChunkTree tree = ChunkTree::of_leaves(std::move(sample_), chunks_for(points_, plan), Cuts::in_gaps);
-  ChunkWriters writers(file_, tree.leaves(), plan.buffer_bytes);
+  const bool has_values = !batches_.empty() && batches_.front().has_values;
+  ChunkWriters writers(file_, tree.leaves(), plan.buffer_bytes, has_values);
   std::vector<std::size_t> leaves;
   for (const StoredChunk& batch : batches_) {
     const ChunkPoints points = read_chunk(file_, batch, false);

@@ -14,6 +14,7 @@
 #include "large/chunks/points.hpp"
 #include "large/chunks/scratch.hpp"
 #include "large/chunks/tree.hpp"
+#include "large/chunks/values.hpp"
 
 namespace flaunay::chunks {
 
@@ -48,10 +49,11 @@ struct FirstRound {
 };
 
 /// Reads all points twice: some for a sample, then all. Writes that each is its own representative, and the
-/// representatives of duplicates that it leaves out because a chunk would have nothing else. Throws
-/// Error(input) for points that are not finite or whose magnitudes differ too much.
-FirstRound distribute(PointSource& source, MeshSink& sink, ScratchFile& file, const Plan& plan,
-                      host::Threads& threads, const Progress& progress);
+/// representatives of duplicates that it leaves out because a chunk would have nothing else. values: those of
+/// the points, or null. Throws Error(input) for points and values that are not finite, and for points whose
+/// magnitudes differ too much.
+FirstRound distribute(PointSource& source, const Values* values, MeshSink& sink, ScratchFile& file,
+                      const Plan& plan, host::Threads& threads, const Progress& progress);
 
 /// The points that chunks of a round hand on, on disk, with a sample of them.
 class HandedOn {

@@ -185,12 +185,55 @@ ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
   for (std::size_t v = 0, e = 0; v < points_.size(); ++v) {
     own.clear();
     for (; e < open.size() && open[e].at == static_cast<std::int32_t>(v); ++e) own.push_back(open[e].edge);
-    if (goes_on[v] != 0 || !own.empty()) next.add(points_.point(v), points_.ids[v], own.data(), own.size());
+    if (goes_on[v] == 0 && own.empty()) continue;
+    next.add(points_.point(v), points_.ids[v], own.data(), own.size());
+    if (points_.has_values()) next.values.push_back(points_.values[v]);
   }
   return next;
 }
 
+void FinishedChunk::merge_values(Duplicates duplicates) {
+  std::vector<std::pair<std::int32_t, double>> equal;  // representatives, and values of others
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const std::int32_t representative = mesh_.representatives[i];
+    if (representative != static_cast<std::int32_t>(i)) equal.emplace_back(representative, points_.values[i]);
+  }
+  std::sort(equal.begin(), equal.end());
+  std::vector<double> values;
+  for (std::size_t k = 0; k < equal.size();) {
+    const std::int32_t representative = equal[k].first;
+    values = {points_.values[representative]};
+    for (; k < equal.size() && equal[k].first == representative; ++k) values.push_back(equal[k].second);
+    points_.values[representative] = common_value(values, duplicates);
+  }
+}
+
+ChunkSurface FinishedChunk::take_surface() && {
+  ChunkSurface surface;
+  std::vector<std::int32_t>&triangles = mesh_.triangles, &neighbors = mesh_.neighbors;
+  std::size_t row = 0;
+  for (std::size_t t = 0; t < rows_.size(); ++t) {
+    if (rows_[t] < 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t neighbor = neighbors[3 * t + k];
+      const bool is_final = neighbor >= 0 && rows_[neighbor] >= 0;
+      triangles[3 * row + k] = triangles[3 * t + k];
+      neighbors[3 * row + k] = is_final ? rows_[neighbor] : static_cast<std::int32_t>(row);
+    }
+    ++row;
+  }
+  triangles.resize(3 * row);
+  neighbors.resize(3 * row);
+  for (const Border& border : border_) surface.open.push_back(3 * rows_[border.triangle] + border.corner);
+  surface.coordinates = std::move(points_.coordinates);
+  surface.values = std::move(points_.values);
+  surface.triangles = std::move(triangles);
+  surface.neighbors = std::move(neighbors);
+  return surface;
+}
+
 void FinishedChunk::write(MeshSink& sink, std::uint64_t first_row) const {
+  if (!sink.wants(MeshArray::triangles) && !sink.wants(MeshArray::neighbors) && mesh_.areas.empty()) return;
   write_rows(sink, first_row);
   if (sink.wants(MeshArray::neighbors)) write_links(sink, first_row);
 }

@@ -15,6 +15,7 @@
 #include "geometry/magnitudes.hpp"
 #include "host/native/threads.hpp"
 #include "large/chunks/points.hpp"
+#include "large/chunks/values.hpp"
 
 namespace flaunay::chunks {
 
@@ -37,10 +38,15 @@ class FinishedChunk {
   const ChunkPoints& points() const { return points_; }
   const Triangulation& mesh() const { return mesh_; }
 
+  /// Gives representatives the common values of the points that they are equal to. In the first round, before
+  /// anything is handed on.
+  void merge_values(Duplicates duplicates);
   /// The points around which something is missing.
   ChunkPoints handed_on(std::uint64_t first_row) const;
   /// Writes the triangles that are final, their areas, and their neighbours, also those of rounds before.
   void write(MeshSink& sink, std::uint64_t first_row) const;
+  /// The final triangles with the values of their corners. Nothing else may be called after it.
+  ChunkSurface take_surface() &&;
   /// Writes which points are not their own representatives.
   void write_duplicates(MeshSink& sink) const;
   /// Writes the hull, if this is the only chunk of the last round.

@@ -20,8 +20,10 @@ void ChunkPoints::sort() {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
   ChunkPoints sorted;
-  for (const std::size_t i : order)
+  for (const std::size_t i : order) {
     sorted.add(point(i), ids[i], edges.data() + edge_offsets[i], edge_count(i));
+    if (has_values()) sorted.values.push_back(values[i]);
+  }
   *this = std::move(sorted);
 }
 

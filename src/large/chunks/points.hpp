@@ -23,6 +23,7 @@ struct OpenEdge {
 struct ChunkPoints {
   std::vector<double> coordinates;        ///< x0 y0 x1 y1 ...
   std::vector<std::int64_t> ids;          ///< their numbers in the input
+  std::vector<double> values = {};        ///< one per point, or none
   std::vector<std::size_t> edge_offsets;  ///< size() + 1; empty in the first round
   std::vector<OpenEdge> edges;            ///< those of point i are [edge_offsets[i], edge_offsets[i + 1])
 
@@ -32,7 +33,8 @@ struct ChunkPoints {
   std::size_t edge_count(std::size_t i) const {
     return is_first_round() ? 0 : edge_offsets[i + 1] - edge_offsets[i];
   }
-  /// Appends a point with its open edges.
+  bool has_values() const { return !values.empty(); }
+  /// Appends a point with its open edges, but for its value.
   void add(kernel::double2 p, std::int64_t id, const OpenEdge* its_edges, std::size_t count);
   /// Sorts the points by their numbers.
   void sort();

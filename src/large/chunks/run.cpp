@@ -72,6 +72,7 @@ class SharedSink : public MeshSink {
 // What all rounds share.
 struct Call {
   SharedSink& sink;
+  const Values* values;
   ScratchFile& file;
   geometry::Scaling scaling;
   kernel::vertex_box all;
@@ -283,6 +284,7 @@ class Round {
     auto finished = std::make_shared<FinishedChunk>(
         worker.threads, std::move(points), std::move(mesh),
         Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling);
+    if (is_first_ && call_.values != nullptr) finished->merge_values(call_.values->duplicates);
     note_pace(worker.number, host::now() - begin);
     while (const std::optional<std::size_t> before = await_turn(k)) {
       if (!process(worker, *before, load(*before).get())) {
@@ -299,6 +301,7 @@ class Round {
         chunk->write(call_.sink, row);
         if (is_first_) chunk->write_duplicates(call_.sink);
         if (is_last()) chunk->write_hull(call_.sink);
+        if (call_.values != nullptr) call_.values->take(std::move(*chunk).take_surface());
       } catch (...) {
         stop(std::current_exception());
       }
@@ -371,7 +374,7 @@ void require_memory(std::uint64_t points, const Plan& plan) {
 
 }  // namespace
 
-ChunkStatistics run(PointSource& source, MeshSink& given_sink, const Plan& plan,
+ChunkStatistics run(PointSource& source, const Values* values, MeshSink& given_sink, const Plan& plan,
                     const std::vector<Solver>& solvers, const ChunkOptions& options) {
   const double begin = host::now();
   double phase_begin = begin;
@@ -392,13 +395,13 @@ ChunkStatistics run(PointSource& source, MeshSink& given_sink, const Plan& plan,
   SharedSink sink(given_sink);
   ScratchFile file(options.scratch);
   host::Threads threads;
-  FirstRound first = distribute(source, sink, file, plan, threads, [&](const char* step, double done) {
-    progress(step, 0, kDistributed * done);
-  });
+  FirstRound first =
+      distribute(source, values, sink, file, plan, threads,
+                 [&](const char* step, double done) { progress(step, 0, kDistributed * done); });
   statistics.duplicates = first.equal_points;
   end_phase("distribute");
 
-  Call call{sink, file, first.scaling, first.all};
+  Call call{sink, values, file, first.scaling, first.all};
   std::vector<bool> is_lost(solvers.size(), false);
   std::vector<Chunk> chunks = std::move(first.chunks);
   std::optional<ChunkPoints> last;

@@ -23,8 +23,8 @@ struct Solver {
 };
 
 /// Triangulates the points of a source of one point or more; see triangulate_chunks. options: progress and
-/// scratch alone.
-ChunkStatistics run(PointSource& source, MeshSink& sink, const Plan& plan, const std::vector<Solver>& solvers,
-                    const ChunkOptions& options);
+/// scratch alone. values: those of the same points, or null.
+ChunkStatistics run(PointSource& source, const Values* values, MeshSink& sink, const Plan& plan,
+                    const std::vector<Solver>& solvers, const ChunkOptions& options);
 
 }  // namespace flaunay::chunks

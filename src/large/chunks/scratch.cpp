@@ -8,22 +8,21 @@ namespace flaunay::chunks {
 namespace {
 
 constexpr std::size_t kWord = sizeof(std::uint64_t);
-constexpr std::size_t kWordsPerPoint = kFirstRoundBytes / kWord;
 constexpr std::size_t kWordsPerEdge = sizeof(OpenEdge) / kWord;
 static_assert(sizeof(OpenEdge) == kWordsPerEdge * kWord);
 constexpr std::size_t kMostBufferBytes = 96 * kBufferUnit;
 
 }  // namespace
 
-ChunkWriters::ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes)
-    : file_(file), writers_(chunks) {
+ChunkWriters::ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes, bool has_values)
+    : file_(file), has_values_(has_values), writers_(chunks) {
   const std::size_t own_bytes = buffer_bytes / std::max<std::size_t>(1, chunks);
   most_words_ = std::clamp(own_bytes / kBufferUnit * kBufferUnit, kBufferUnit, kMostBufferBytes) / kWord;
 }
 
 void ChunkWriters::add(std::size_t chunk, const ChunkPoints& from, std::size_t i) {
   Writer& writer = writers_[chunk];
-  push(writer, from.point(i), from.ids[i]);
+  push(writer, from.point(i), from.ids[i], has_values_ ? from.values[i] : 0);
   const std::size_t edges = from.edge_count(i);
   writer.words.push_back(edges);
   const std::size_t at = writer.words.size();
@@ -45,6 +44,7 @@ std::vector<StoredChunk> ChunkWriters::take() {
   for (Writer& writer : writers_) {
     flush(writer);
     stored.push_back(std::move(writer.stored));
+    stored.back().has_values = has_values_;
   }
   return stored;
 }
@@ -53,6 +53,8 @@ ChunkPoints read_chunk(const ScratchFile& file, const StoredChunk& chunk, bool i
   ChunkPoints points;
   points.coordinates.reserve(2 * chunk.points);
   points.ids.reserve(chunk.points);
+  if (chunk.has_values) points.values.reserve(chunk.points);
+  const std::size_t words_per_point = first_round_bytes(chunk.has_values) / kWord;
   if (!is_first_round) points.edge_offsets.push_back(0);
   std::vector<std::uint64_t> words;
   std::vector<OpenEdge> edges;
@@ -62,7 +64,8 @@ ChunkPoints read_chunk(const ScratchFile& file, const StoredChunk& chunk, bool i
     for (std::size_t at = 0; at < words.size();) {
       const kernel::double2 p = {kernel::as_double(words[at]), kernel::as_double(words[at + 1])};
       const auto id = static_cast<std::int64_t>(words[at + 2]);
-      at += kWordsPerPoint;
+      if (chunk.has_values) points.values.push_back(kernel::as_double(words[at + 3]));
+      at += words_per_point;
       if (is_first_round) {
         points.coordinates.insert(points.coordinates.end(), {p.x, p.y});
         points.ids.push_back(id);

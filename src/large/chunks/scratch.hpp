@@ -13,11 +13,14 @@
 namespace flaunay::chunks {
 
 /// The bytes of a point of the first round in the scratch file.
-constexpr std::size_t kFirstRoundBytes = kScratchBytesPerPoint;
+constexpr std::size_t first_round_bytes(bool has_values) {
+  return kScratchBytesPerPoint + (has_values ? kScratchBytesPerValue : 0);
+}
 
 /// Buffers for a chunk have a multiple of this many bytes: whole points, and whole blocks of the disk, so
 /// that these can be given back. Smaller ones would be slow to read.
-constexpr std::size_t kBufferUnit = 512 * kFirstRoundBytes;
+constexpr std::size_t kBufferUnit = 512 * kScratchBytesPerPoint;
+static_assert(kBufferUnit % first_round_bytes(true) == 0);
 
 /// A part of the scratch file.
 struct Extent {
@@ -30,17 +33,18 @@ using io::ScratchFile;
 struct StoredChunk {
   std::vector<Extent> extents;
   std::uint64_t points = 0;
+  bool has_values = false;
 };
 
 /// Brings points to chunks in the scratch file, through a buffer for each.
 class ChunkWriters {
  public:
   /// buffer_bytes: of all chunks together.
-  ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes);
+  ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes, bool has_values);
 
-  /// Of the first round.
-  void add(std::size_t chunk, kernel::double2 p, std::int64_t id) {
-    push(writers_[chunk], p, id);
+  /// Of the first round. value: ignored if points have none.
+  void add(std::size_t chunk, kernel::double2 p, std::int64_t id, double value) {
+    push(writers_[chunk], p, id, value);
     count(writers_[chunk]);
   }
   /// Of later rounds: point i of a list, with its open edges.
@@ -53,11 +57,12 @@ class ChunkWriters {
     std::vector<std::uint64_t> words;
     StoredChunk stored;
   };
-  void push(Writer& writer, kernel::double2 p, std::int64_t id) const {
+  void push(Writer& writer, kernel::double2 p, std::int64_t id, double value) const {
     if (writer.words.empty()) writer.words.reserve(most_words_);
     writer.words.push_back(kernel::as_ulong(p.x));
     writer.words.push_back(kernel::as_ulong(p.y));
     writer.words.push_back(static_cast<std::uint64_t>(id));
+    if (has_values_) writer.words.push_back(kernel::as_ulong(value));
   }
   // To be called when all words of a point are there.
   void count(Writer& writer) {
@@ -68,6 +73,7 @@ class ChunkWriters {
 
   ScratchFile& file_;
   std::size_t most_words_ = 0;
+  bool has_values_;
   std::vector<Writer> writers_;
 };
 

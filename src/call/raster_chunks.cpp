@@ -1,0 +1,81 @@
+// The public call for rasters of points in chunks.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+#include "call/chunks.hpp"
+#include "call/frame.hpp"
+#include "derived/raster/raster.hpp"
+
+namespace flaunay {
+namespace {
+
+// Takes no arrays: what is wanted are pixels.
+class NoArrays : public MeshSink {
+ public:
+  bool wants(MeshArray) const override { return false; }
+  void write(MeshArray, std::uint64_t, const std::int64_t*, std::size_t) override {}
+};
+
+// Scans chunks into the pixels, natively, while the next ones are triangulated.
+class Scanner {
+ public:
+  Scanner(const RasterGrid& grid, const RasterOptions& options, double* pixels)
+      : grid_(grid), options_(options), pixels_(pixels) {
+    std::fill_n(pixels_, count(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void scan(const chunks::ChunkSurface& surface) {
+    const std::lock_guard lock(mutex_);
+    call::Frame call(TriangulatorAccess::implementation(host_).native());
+    const raster::Surface scanned{call.in(surface.coordinates), call.in(surface.triangles),
+                                  call.in(surface.neighbors),   call.in(surface.values),
+                                  surface.values.size(),        surface.triangles.size() / 3};
+    raster::scan(call.runtime, scanned, grid_, options_, call.in(pixels_, count()));
+    raster::append_side_pixels(call.runtime, scanned, call.in(surface.open), surface.open.size(), grid_,
+                               options_, on_sides_);
+    call.end();
+  }
+
+  // To be called at the end: a pixel on an open side that no other triangle has written has its own one's
+  // value.
+  void finish() {
+    for (const raster::SidePixel& each : on_sides_) {
+      if (std::isnan(pixels_[each.pixel])) pixels_[each.pixel] = each.value;
+    }
+    if (std::isnan(options_.fill)) return;
+    std::replace_if(
+        pixels_, pixels_ + count(), [](double pixel) { return std::isnan(pixel); }, options_.fill);
+  }
+
+ private:
+  std::size_t count() const { return grid_.rows * grid_.columns; }
+
+  const RasterGrid& grid_;
+  const RasterOptions& options_;
+  double* pixels_;
+  Triangulator host_{"host"};
+  std::vector<raster::SidePixel> on_sides_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
+                                 const RasterOptions& options, double* pixels, const ChunkOptions& chunks) {
+  return with_errors([&] {
+    const std::size_t count = raster::checked_pixels(grid, options);
+    call::expect(count == 0 || pixels != nullptr, "pixels, but no room for them: the pointer is null");
+    Scanner scanner(grid, options, pixels);
+    const chunks::Values values{points, duplicates,
+                                [&](const chunks::ChunkSurface& surface) { scanner.scan(surface); }};
+    NoArrays no_arrays;
+    const ChunkStatistics statistics = call::triangulate_chunks(points, &values, no_arrays, chunks);
+    scanner.finish();
+    return statistics;
+  });
+}
+
+}  // namespace flaunay
