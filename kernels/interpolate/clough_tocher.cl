@@ -8,6 +8,8 @@
 //
 // One pass, with one work-item per query, which computes all columns: values and results are rows of so many numbers.
 
+#include "arithmetic/coordinates.h"
+#include "arithmetic/records.h"
 #include "interpolate/arguments.h"
 #include "interpolate/queries_ahead.h"
 #include "locate/arguments.h"
@@ -65,18 +67,19 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 }
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
-// outside, too. gradients: rows by vertex, in the units of `points`.
-kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, double outside, filter_bound bound,
-                                      int kept, FACES(), global const int* restrict found,
-                                      global const double* restrict values, global const double2* restrict gradients,
-                                      global double* restrict results) {
+// outside, too. gradients: rows by vertex, or else by point; scales: by set, what brings them to the units of `points`.
+kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, double outside,
+                                      filter_bound bound, int kept, FACES(), global const int* restrict found,
+                                      global const double* restrict values, global const double* restrict gradients,
+                                      global const scaling* restrict scales, global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;
     if (found[i] >= 0) {
       fetch_rows(i, n, columns, found, faces, points, source, values);
       const face f = faces[found[i]];
-      const double unit = frames[sets > 1 ? segment_of(i, sets, query_offsets) : 0].unit;
+      const int set = sets > 1 ? segment_of(i, sets, query_offsets) : 0;
+      const double unit = frames[set].unit;
       double2 p[3];
       double weight[3], across[3];
       for (int k = 0; k < 3; ++k) p[k] = unit * points[f.corner[k]];
@@ -99,8 +102,10 @@ kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, doub
         double value[3];
         double2 gradient[3];
         for (int k = 0; k < 3; ++k) {
-          value[k] = values[(size_t)source[f.corner[k]] * columns + c];
-          gradient[k] = gradients[(size_t)f.corner[k] * columns + c];
+          const int point = source[f.corner[k]];
+          value[k] = values[(size_t)point * columns + c];
+          global const double* from = gradients + 2 * ((size_t)(is_by_vertex ? f.corner[k] : point) * columns + c);
+          gradient[k] = VECTOR(double2, scaled(from[0], scales[set]), scaled(from[1], scales[set]));
         }
         result[c] = vertex >= 0 ? value[vertex] : clough_tocher(p, value, gradient, across, weight);
       }

@@ -13,7 +13,7 @@
 // 2. write_edges writes each vertex' neighbours, the weights of the edges, and the inverse of its block.
 // 3. start_gradients computes the first approximation from the values, improve_gradients the next one, as often as the
 //    host says. Columns share all but the approximations.
-// 4. take_gradients brings them to the points, in the caller's units; place_gradients brings the caller's to vertices.
+// 4. take_gradients brings them to the points, in the caller's units.
 // Passes have one work-item per vertex, which walks through its edges.
 
 #include "arithmetic/coordinates.h"
@@ -201,20 +201,6 @@ kernel void take_gradients(int n, int columns, int sets, global const int* restr
       global double* to = results + 2 * ((size_t)source[v] * columns + c);
       to[0] = scaled(gradient.x, scale);
       to[1] = scaled(gradient.y, scale);
-    }
-  }
-}
-
-// scales: the other way.
-kernel void place_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
-                            global const scaling* restrict scales, global const int* restrict source,
-                            global const double* restrict input, global double2* restrict gradients) {
-  const int v = get_global_id(0);
-  if (v < n && v < first_vertices[sets]) {
-    const scaling scale = scales[segment_of(v, sets, first_vertices)];
-    for (int c = 0; c < columns; ++c) {
-      global const double* from = input + 2 * ((size_t)source[v] * columns + c);
-      gradients[(size_t)v * columns + c] = VECTOR(double2, scaled(from[0], scale), scaled(from[1], scale));
     }
   }
 }

@@ -267,6 +267,14 @@ def as_floats(given: ArrayLike, name: str) -> FloatArray:
     return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
 
 
+def are_rows(given: object) -> TypeGuard[Doubles]:
+    """Whether it is an array that calls take as it is: contiguous doubles, two in a row."""
+    if type(given) is not np.ndarray or given.ndim != 2 or given.dtype is not _FLOATS[0]:
+        return False
+    flags = given.flags
+    return given.shape[1] == 2 and flags.c_contiguous and flags.aligned
+
+
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
     if points.ndim != 2:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import _thread
 import ctypes
+import functools
 import operator
 import queue
 import sys
@@ -31,6 +32,7 @@ _Offsets = npt.NDArray[np.int64]
 __version__: str = text_of(library.version())
 
 _ARRAY = np.ndarray
+_addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
 _INT32, _INT64 = np.dtype(np.int32), np.dtype(np.int64)
 _FLOAT64, _FLOAT32 = np.dtype(np.float64), np.dtype(np.float32)
 _BOOL, _UINT8 = np.dtype(np.bool_), np.dtype(np.uint8)
@@ -94,9 +96,12 @@ def _views(
 
 
 def _address_of(array: Any) -> Optional[int]:
-    if array.size and array.flags.writeable:
+    try:
         # Quicker than NumPy's own way.
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+        return _addressof(_from_buffer(array))
+    except (TypeError, ValueError):
+        if array.size and array.flags.writeable:
+            raise
     return cast(Optional[int], array.ctypes.data)
 
 
@@ -1246,12 +1251,50 @@ def contours(
     return points, offsets, _view(made, library.contours_heights(made.pointer), (lines,), _INT32)
 
 
+class Interpolation:
+    """What is interpolated and how, for any number of calls.
+
+    values: a row of some for each point. gradients: x and y for each of them, where the method needs some.
+    """
+
+    def __init__(
+        self, values: _Doubles, method: str, fill: float, gradients: Optional[_Doubles] = None
+    ) -> None:
+        self._made_of = values, method, fill, gradients
+        self.values, self.gradients = _as_doubles(values), gradients
+        self.address, self.columns = _address_of(self.values), values.shape[1]
+        self.options = _declarations.InterpolationOptions(
+            method=_declarations.INTERPOLATION[method],
+            columns=self.columns,
+            has_fill=1,
+            fill=fill,
+        )
+        if gradients is not None:
+            if gradients.shape != (*values.shape, 2):
+                raise UsageError(
+                    f"gradients must have the shape {(*values.shape, 2)}, not {gradients.shape}"
+                )
+            self.gradients = _as_doubles(gradients)
+            self.options.gradients = _address_of(self.gradients)
+
+    def with_fill(self, fill: float) -> Interpolation:
+        values, method, _, gradients = self._made_of
+        return Interpolation(values, method, fill, gradients)
+
+    def of(self, locator: Locator) -> Callable[[_Doubles], _Doubles]:
+        """What interpolates at queries."""
+        return functools.partial(locator.interpolate, self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Interpolation, self._made_of
+
+
 class _Locator(_InTurns):
     _destroy = library.locator_destroy
 
 
 class Locator(_Locator):
-    """Answers queries on a triangulation."""
+    """Answers queries on a triangulation. Queries are contiguous doubles of shape (m, 2): see `are_rows`."""
 
     def __init__(
         self,
@@ -1276,11 +1319,14 @@ class Locator(_Locator):
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:
         """What a function answers to each query."""
-        m = _count_points(queries)
-        queries, answers = _as_doubles(queries), np.empty(m, _INT32)
         # Written out, since for few queries every call counts.
+        m = len(queries)
+        answers = np.empty(m, _INT32)
+        at, out = _address_of(queries), _address_of(answers)
         with self._triangulator.turn:
-            check(function(self.pointer, _address_of(queries), m, None, 0, _address_of(answers)))
+            status = function(self.pointer, at, m, None, 0, out)
+        if status:
+            check(status)
         return answers
 
     def locate(self, queries: _Doubles) -> _Indices:
@@ -1298,38 +1344,17 @@ class Locator(_Locator):
                 "triangulation"
             )
 
-    def interpolate(
-        self,
-        values: _Doubles,
-        method: str,
-        fill: float,
-        queries: _Doubles,
-        gradients: Optional[_Doubles] = None,
-    ) -> _Doubles:
-        """A row of interpolated values at each query. values: a row of some for each point."""
-        self._check_rows(values)
-        values = _as_doubles(values)
-        m = _count_points(queries)
-        queries = _as_doubles(queries)
-        options = _declarations.InterpolationOptions(
-            method=_declarations.INTERPOLATION[method],
-            columns=values.shape[1],
-            has_fill=1,
-            fill=fill,
-        )
-        if gradients is not None:
-            if gradients.shape != (*values.shape, 2):
-                raise UsageError(
-                    f"gradients must have the shape {(*values.shape, 2)}, not {gradients.shape}"
-                )
-            gradients = _as_doubles(gradients)
-            options.gradients = _address_of(gradients)
-        results = np.empty((m, values.shape[1]))
-        first, at, out = _address_of(values), _address_of(queries), _address_of(results)
+    def interpolate(self, table: Interpolation, queries: _Doubles) -> _Doubles:
+        """A row of interpolated values at each query."""
+        self._check_rows(table.values)
+        m = len(queries)
+        results = np.empty((m, table.columns))
+        at, out = _address_of(queries), _address_of(results)
+        interpolate = library.locator_interpolate_with
         with self._triangulator.turn:
-            check(
-                library.locator_interpolate_with(self.pointer, first, at, m, None, 0, options, out)
-            )
+            status = interpolate(self.pointer, table.address, at, m, None, 0, table.options, out)
+        if status:
+            check(status)
         return results
 
     def gradients(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:

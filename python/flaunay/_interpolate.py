@@ -6,16 +6,27 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Optional, Union
+from typing import TYPE_CHECKING, Any, Literal, Optional, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import Fixed, as_any, as_floats, check_memory, frozen, is_masked, summary
+from flaunay._arrays import (
+    Fixed,
+    are_rows,
+    as_any,
+    as_floats,
+    check_memory,
+    frozen,
+    is_masked,
+    summary,
+)
+from flaunay._calls import Interpolation
 from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
+from flaunay._queries import are_finite
 
 if TYPE_CHECKING:
     import scipy.sparse
@@ -23,6 +34,7 @@ if TYPE_CHECKING:
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 Points = Union[npt.ArrayLike, Delaunay, ConstrainedTriangulation]
+_Answers = TypeVar("_Answers", Indices, Doubles)
 
 # Of the tolerances of gradients; each iteration multiplies their error by this.
 _RATE = 2 - 3**0.5
@@ -129,7 +141,7 @@ class _Interpolator(Fixed):
         raise NotImplementedError
 
     # The values, and what is computed from them. It is replaced as a whole: another thread may be reading it.
-    _data: tuple[npt.NDArray[Any], Any, Any]
+    _data: tuple[npt.NDArray[Any], Optional[Interpolation]]
 
     def __init__(self, points: Points, rescale: bool, device: Optional[str]) -> None:
         self.tri: Union[Delaunay, ConstrainedTriangulation]
@@ -175,11 +187,11 @@ class _Interpolator(Fixed):
                 f"values must have the shape ({self.tri.npoints}, ...), not {array.shape}: "
                 "one row for each point"
             )
-        self._data = (array, *self._prepared(array))
+        self._data = array, self._prepared(array)
 
-    def _prepared(self, values: npt.NDArray[Any]) -> tuple[Any, Any]:
+    def _prepared(self, values: npt.NDArray[Any]) -> Optional[Interpolation]:
         """What is computed from values, once for all calls."""
-        return None, None
+        return None
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         array = as_any(values, "values")
@@ -191,17 +203,27 @@ class _Interpolator(Fixed):
         """The queries in rows, in the scale of the points, and the shape in which they came."""
         if not given:
             raise UsageError("xi is missing: where to interpolate")
+        if len(given) == 1 and not self._scale.is_wanted and are_rows(given[0]):
+            return given[0], given[0].shape[:1]
         queries = _as_coordinates(given[0] if len(given) == 1 else given, "xi", may_be_flat=True)
         return self._scale(queries.reshape(-1, 2)), queries.shape[:-1]
 
-    def _finite(self, queries: Doubles) -> tuple[Doubles, Optional[npt.NDArray[np.bool_]]]:
-        """Queries that can be asked, and which of them stand for others that are not finite."""
-        if np.isfinite(queries).all():
-            return queries, None
-        are_bad: npt.NDArray[np.bool_] = ~np.asarray(np.isfinite(queries).all(axis=1))
+    def _asked(
+        self, ask: Callable[[Doubles], _Answers], queries: Doubles
+    ) -> tuple[_Answers, Doubles, Optional[npt.NDArray[np.bool_]]]:
+        """The answers, to which queries, and which of these stand for others that are not finite.
+
+        Those are looked for only when the library has found one, so that others need not wait for it.
+        """
+        try:
+            return ask(queries), queries, None
+        except InputError:
+            are_bad = ~are_finite(queries)
+            if not are_bad.any():
+                raise
         queries = queries.copy()
         queries[are_bad] = self.points[0] if len(self.points) else 0.0
-        return queries, are_bad
+        return ask(queries), queries, are_bad
 
 
 class _Columns(_Interpolator):
@@ -231,10 +253,17 @@ class _Columns(_Interpolator):
     @fill_value.setter
     def fill_value(self, given: complex) -> None:
         fill = _as_fill(given)
-        _check_fill(fill, self.values)
-        self._fill = fill
+        values, table = self._data
+        _check_fill(fill, values)
+        assert table is not None
+        self._data, self._fill = (values, table.with_fill(self._real_fill(fill, values))), fill
 
-    def _prepared(self, values: npt.NDArray[Any]) -> tuple[Doubles, Optional[Doubles]]:
+    @staticmethod
+    def _real_fill(fill: complex, values: npt.NDArray[Any]) -> float:
+        """What rows of numbers have outside; complex ones say that they are outside."""
+        return np.nan if values.dtype.kind == "c" else fill.real
+
+    def _prepared(self, values: npt.NDArray[Any]) -> Interpolation:
         """The numbers of each point in a row, and their gradients."""
         _check_fill(self._fill, values)
         n = self.tri.npoints
@@ -243,7 +272,8 @@ class _Columns(_Interpolator):
             # A further column is 0, but outside of the hull.
             rows = np.concatenate([rows.real, rows.imag, np.zeros((n, 1))], axis=1)
         rows = np.ascontiguousarray(rows)
-        return rows, self._gradients(values, rows)
+        fill = self._real_fill(self._fill, values)
+        return Interpolation(rows, self._method, fill, self._gradients(values, rows))
 
     def _gradients(self, values: npt.NDArray[Any], rows: Doubles) -> Optional[Doubles]:
         return None
@@ -251,20 +281,18 @@ class _Columns(_Interpolator):
     def __call__(self, *xi: Any) -> npt.NDArray[Any]:
         """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast."""
         queries, shape = self._queries(xi)
-        (values, numbers, gradients), fill_value = self._data, self._fill
-        is_complex = values.dtype.kind == "c"
+        (values, table), fill_value = self._data, self._fill
+        assert table is not None
         shape += values.shape[1:]
-        columns = numbers.shape[1]
+        columns = table.columns
         if columns == 0 or len(queries) == 0:
             return np.full(shape, fill_value, values.dtype)
-        queries, are_bad = self._finite(queries)
-        fill = np.nan if is_complex else fill_value.real
-        rows = self.tri._locator.interpolate(numbers, self._method, fill, queries, gradients)
+        rows, queries, are_bad = self._asked(table.of(self.tri._locator), queries)
         if not self._beyond.is_usual:
-            self._go_beyond(queries, rows, fill, numbers, gradients)
+            self._go_beyond(queries, rows, table)
         if are_bad is not None:
-            rows[are_bad] = fill
-        if not is_complex:
+            rows[are_bad] = table.options.fill
+        if values.dtype.kind != "c":
             return rows.reshape(shape)
         k = columns // 2
         result = np.empty((len(rows), k), np.complex128)
@@ -273,16 +301,10 @@ class _Columns(_Interpolator):
         return result.reshape(shape)
 
 
-    def _go_beyond(
-        self,
-        queries: Doubles,
-        rows: Doubles,
-        fill: float,
-        numbers: Doubles,
-        gradients: Optional[Doubles],
-    ) -> None:
+    def _go_beyond(self, queries: Doubles, rows: Doubles, table: Interpolation) -> None:
         """Changes the rows of queries outside, and of those that shall have no value."""
         tri, beyond = self.tri, self._beyond
+        numbers, gradients, fill = table.values, table.gradients, table.options.fill
         found = tri._locator.locate(queries)
         outside = np.flatnonzero(found < 0)
         if len(outside) and tri.nsimplex and (beyond.tol is not None or beyond.extrapolate):
@@ -448,8 +470,7 @@ class LinearInterpolator(_Columns):
             outside.
         """
         queries, shape = self._queries(xi)
-        queries, are_bad = self._finite(queries)
-        found = self.tri._locator.locate(queries)
+        found, queries, are_bad = self._asked(self.tri._locator.locate, queries)
         if are_bad is not None:
             found[are_bad] = -1
         areas = np.full((len(queries), 3), np.nan)
@@ -633,7 +654,9 @@ class CloughTocherInterpolator(_Columns):
 
     @property
     def grad(self) -> npt.NDArray[Any]:
-        values, rows, gradients = self._data
+        values, table = self._data
+        assert table is not None and table.gradients is not None
+        rows, gradients = table.values, table.gradients
         shape = (*values.shape, 2)
         if values.dtype.kind != "c" or values.size == 0:
             return np.asarray(gradients.reshape(shape).astype(values.dtype))
@@ -707,9 +730,8 @@ class NearestInterpolator(_Interpolator):
         if distance_upper_bound is not None:
             most = _as_distance(distance_upper_bound, "distance_upper_bound")
         queries, shape = self._queries(xi)
-        queries, are_bad = self._finite(queries)
         values = self.values
-        nearest = self.tri._locator.nearest(queries)
+        nearest, queries, are_bad = self._asked(self.tri._locator.nearest, queries)
         result: npt.NDArray[Any] = values[nearest]
         if most is not None:
             far = self._are_far(queries, nearest, most)

@@ -6,14 +6,13 @@ import math
 import os
 import threading
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, FloatArray, as_floats, check_out
+from flaunay._arrays import ArrayLike, FloatArray, are_rows, as_floats, check_out
 from flaunay._errors import InputError, UsageError
 
 Indices = npt.NDArray[np.int32]
@@ -26,6 +25,8 @@ _MOST_NUMBERS = 1 << 26
 
 def as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
     """Points one after the other, and the shape in which there were as many."""
+    if are_rows(xi):
+        return xi, xi.shape[:1]
     queries = as_floats(xi, "xi")
     if queries.ndim == 0 or queries.shape[-1] != 2:
         raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
@@ -53,8 +54,10 @@ def _answers(ask: Callable[[Doubles], _Answers], queries: Doubles, nowhere: Any)
     return answers
 
 
-def _given(answers: _Answers, out: Optional[_Answers]) -> _Answers:
-    """The answers, in the caller's array if there is one."""
+def _given(answers: _Answers, shape: tuple[int, ...], out: Optional[_Answers]) -> _Answers:
+    """The answers in a shape, in the caller's array if there is one."""
+    if len(shape) != answers.ndim:
+        answers = answers.reshape(shape)
     if out is None:
         return answers
     out[...] = answers
@@ -163,7 +166,7 @@ class Queries:
         if tol and self.nsimplex:
             outside = np.flatnonzero((found < 0) & are_finite(queries))
             found[outside] = self._near_hull(queries[outside], tol)
-        return _given(found.reshape(shape), out)
+        return _given(found, shape, out)
 
     def nearest(self, xi: ArrayLike, out: Optional[Indices] = None) -> Indices:
         """The points of the triangulation that are nearest to others, exactly.
@@ -200,7 +203,7 @@ class Queries:
             found = _answers(self._locator.nearest, queries, -1)
         else:
             found = np.full(len(queries), -1, np.int32)
-        return _given(found.reshape(shape), out)
+        return _given(found, shape, out)
 
     def interpolate(
         self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None
@@ -247,6 +250,6 @@ class Queries:
         # Each call locates the queries, so that it takes all columns for which a device may have memory.
         step = max(1, _MOST_NUMBERS // max(1, len(queries), len(rows)))
         for k in range(0, rows.shape[1], step):
-            ask = partial(self._locator.interpolate, rows[:, k : k + step], "linear", np.nan)
+            ask = _calls.Interpolation(rows[:, k : k + step], "linear", np.nan).of(self._locator)
             result[:, k : k + step] = _answers(ask, queries, np.nan)
-        return _given(result.reshape(shape + trailing), out)
+        return _given(result.reshape(shape + trailing), shape + trailing, out)

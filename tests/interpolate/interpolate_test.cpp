@@ -577,7 +577,7 @@ TEST(InterpolationKernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 9u);
+  EXPECT_EQ(kernels, 8u);
 }
 
 }  // namespace

@@ -11,17 +11,25 @@ void clough_tocher(host::Runtime& runtime, const Locator& locator, const Table& 
   host::Arena::Scope scope(runtime.arena());
   const locate::LocatedQueries located = locate_by_place(runtime, locator, queries, m, query_offsets);
   if (m == 0) return;
-  const auto at_vertices = at_vertices_of(runtime, locator, table, gradients);
-  runtime.map_in_small_groups(m, kernels::interpolate_clough_tocher{.placed_queries = located,
-                                                                    .columns = table.columns,
-                                                                    .outside = table.outside,
-                                                                    .bound = located.orient_bound,
-                                                                    .kept = locator.kept,
-                                                                    .faces = faces_of(locator),
-                                                                    .found = located.found,
-                                                                    .values = table.values,
-                                                                    .gradients = at_vertices,
-                                                                    .results = results});
+  const bool is_by_vertex = !gradients.are_given;
+  Buffer<cl_double> rows = gradients.given;
+  if (is_by_vertex) {
+    const auto estimated = estimate(runtime, locator, table, gradients);
+    rows = Buffer<cl_double>(estimated.kept_memory(), 2 * estimated.size());
+  }
+  runtime.map_in_small_groups(
+      m, kernels::interpolate_clough_tocher{.placed_queries = located,
+                                            .columns = table.columns,
+                                            .is_by_vertex = is_by_vertex,
+                                            .outside = table.outside,
+                                            .bound = located.orient_bound,
+                                            .kept = locator.kept,
+                                            .faces = faces_of(locator),
+                                            .found = located.found,
+                                            .values = table.values,
+                                            .gradients = rows,
+                                            .scales = slope_scales(runtime, locator, is_by_vertex ? 0 : -1),
+                                            .results = results});
 }
 
 }  // namespace flaunay::interpolate

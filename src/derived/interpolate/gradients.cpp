@@ -75,10 +75,26 @@ Edges find_edges(host::Runtime& runtime, const Locator& locator) {
   return edges;
 }
 
+}  // namespace
+
+Buffer<kernel::scaling> slope_scales(host::Runtime& runtime, const Locator& locator, int sign) {
+  std::vector<kernel::scaling> scales;
+  for (std::size_t s = 0; s < locator.sets; ++s) {
+    scales.push_back(kernel::scale_of(sign * locator.range.shift(s)));
+  }
+  return runtime.upload(runtime.arena(), std::move(scales));
+}
+
+std::size_t iterations_for(double tolerance) {
+  const double wanted = std::max(tolerance, kLeastTolerance) / (2 * kSafety);
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(std::log(wanted) / std::log(kRate))));
+}
+
 Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, const Table& table,
-                            std::size_t iterations) {
+                            const Gradients& wanted) {
   host::Arena& arena = runtime.arena();
   const std::size_t n = vertices_at_most(locator), numbers = n * table.columns;
+  const std::size_t iterations = std::min(wanted.iterations, iterations_for(wanted.tolerance));
   auto result = arena.allocate<cl_double2>(numbers);
   if (iterations == 0) {
     runtime.fill(result, numbers, cl_double2{{0, 0}});
@@ -113,48 +129,12 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
   return result;
 }
 
-// Powers of two between the caller's units and those of the locator's points, by set. sign: 1 for slopes in
-// the caller's units, -1 for the other way.
-Buffer<kernel::scaling> slope_scales(host::Runtime& runtime, const Locator& locator, int sign) {
-  std::vector<kernel::scaling> scales;
-  for (std::size_t s = 0; s < locator.sets; ++s) {
-    scales.push_back(kernel::scale_of(sign * locator.range.shift(s)));
-  }
-  return runtime.upload(runtime.arena(), std::move(scales));
-}
-
-}  // namespace
-
-std::size_t iterations_for(double tolerance) {
-  const double wanted = std::max(tolerance, kLeastTolerance) / (2 * kSafety);
-  return static_cast<std::size_t>(std::max(1.0, std::ceil(std::log(wanted) / std::log(kRate))));
-}
-
-Buffer<cl_double2> at_vertices_of(host::Runtime& runtime, const Locator& locator, const Table& table,
-                                  const Gradients& gradients) {
-  if (!gradients.are_given) {
-    return estimate(runtime, locator, table,
-                    std::min(gradients.iterations, iterations_for(gradients.tolerance)));
-  }
-  const std::size_t n = vertices_at_most(locator);
-  auto placed = runtime.arena().allocate<cl_double2>(n * table.columns);
-  host::Arena::Scope scope(runtime.arena());
-  runtime.map(n, kernels::place_gradients{.columns = table.columns,
-                                          .sets = locator.sets,
-                                          .first_vertices = locator.first_vertices,
-                                          .scales = slope_scales(runtime, locator, -1),
-                                          .source = locator.source,
-                                          .input = gradients.given,
-                                          .gradients = placed});
-  return placed;
-}
-
 void estimate_gradients(host::Runtime& runtime, const Locator& locator, const Table& table,
                         const Gradients& wanted, const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const std::size_t n = vertices_at_most(locator);
   runtime.fill(results, 2 * n * table.columns, table.outside);
-  const auto at_vertices = at_vertices_of(runtime, locator, table, wanted);
+  const auto at_vertices = estimate(runtime, locator, table, wanted);
   runtime.map(n, kernels::take_gradients{.columns = table.columns,
                                          .sets = locator.sets,
                                          .first_vertices = locator.first_vertices,
