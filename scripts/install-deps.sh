@@ -14,6 +14,8 @@ packages=(
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   # MPI, for what FLAUNAY_MPI builds
   libopenmpi-dev openmpi-bin
+  # GeoTIFF, for what FLAUNAY_GDAL builds
+  libgdal-dev
   # tests
   libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
   # libFuzzer, for the readers of files

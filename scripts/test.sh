@@ -29,7 +29,7 @@ build() {
   cmake --build --preset "$1"
 }
 
-build release -DFLAUNAY_MPI=ON
+build release -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
 if ! $quick; then
   build asan
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the

@@ -225,10 +225,10 @@ def _merge_heights(
         first = np.unique(of)
         all_of, owner = np.concatenate([first, others]), np.concatenate([first, of])
         order = np.lexsort((heights[all_of], owner))
-        starts = np.searchsorted(owner[order], first)
-        counts = np.diff([*starts, len(order)])
-        if len(first):
-            heights[first] = np.add.reduceat(heights[all_of][order], starts) / counts
+        # Not by add.reduceat, which sums in pairs: as flaunay terrain does, one after the other.
+        of_first = np.searchsorted(first, owner[order])
+        sums = np.bincount(of_first, weights=heights[all_of][order])
+        heights[first] = sums / np.bincount(of_first)
 
 
 # ---- Breaklines and boundaries

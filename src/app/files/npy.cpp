@@ -285,15 +285,16 @@ class NpyRows : public RowSource {
   std::uint64_t begin_ = 0;  // of the first row, in bytes
 };
 
+template <std::size_t columns>
 PointRecords npy_points(const std::string& path, InputFile& file) {
-  const Layout layout = {"n", 2, {"<f8", "<f4"}};
+  const Layout layout = {"n", columns, {"<f8", "<f4"}};
   const Array array(path, file, layout);
   array.check_size();
-  PointRecords records{array.rows(), array.data_begin()};
+  PointRecords records{array.rows(), array.data_begin(), columns * sizeof(double)};
   if (array.dtype() == "<f4") {
-    records.bytes = 2 * sizeof(float);
+    records.bytes = columns * sizeof(float);
     records.decode = [](const char* from, std::size_t count, double* coordinates) {
-      for (std::size_t i = 0; i < 2 * count; ++i, from += sizeof(float)) {
+      for (std::size_t i = 0; i < columns * count; ++i, from += sizeof(float)) {
         float value;
         std::memcpy(&value, from, sizeof value);
         coordinates[i] = value;
@@ -329,6 +330,8 @@ void write_npy_mesh(OutputFile& file, const MeshContents& contents) {
 
 }  // namespace
 
+PointRecords npy_triples(const std::string& path, InputFile& file) { return npy_points<3>(path, file); }
+
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
 
 std::vector<std::int32_t> read_npy_triangles(const std::string& path) {
@@ -363,7 +366,7 @@ std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t
 
 const Format kNpy = {.ending = ".npy",
                      .content = "a NumPy array of shape (n, 2)",
-                     .records = npy_points,
+                     .records = npy_points<2>,
                      .segments = read_npy_segments,
                      .triangles = read_npy_triangles,
                      .begin_points = begin_npy_points,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "files/npy_header.hpp"
 
 namespace flaunay::io {
@@ -25,6 +26,9 @@ class RowSource {
 /// Opens an .npy file (int32 or int64, m x 3). Throws Error(input) that names the place; values are not
 /// checked.
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path);
+
+/// Finds the rows of an n x 3 array of float64 or float32. decode, if there is one, gives 3 doubles per row.
+PointRecords npy_triples(const std::string& path, InputFile& file);
 
 /// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);

@@ -1,0 +1,25 @@
+#include "app/files/geotiff.hpp"
+#include "files/file.hpp"
+
+namespace flaunay::io {
+
+void require_gdal(const std::string& path) {
+  throw Error(
+      ErrorKind::usage,
+      printable(fmt::format("{}: this flaunay was built without GDAL (-DFLAUNAY_GDAL=ON); take .npy, or "
+                            "flaunay.terrain in Python (pip install flaunay[terrain])",
+                            path)));
+}
+
+std::string crs_text(const std::string& crs, const std::string&) { return crs; }
+
+bool is_same_crs(const std::string& a, const std::string& b) { return a == b; }
+
+int epsg_code(const std::string& crs) {
+  constexpr std::string_view kPrefix = "EPSG:";
+  return crs.rfind(kPrefix, 0) == 0 ? std::atoi(crs.c_str() + kPrefix.size()) : 0;
+}
+
+void write_geotiff(const std::string&, const std::string& name, const GeoRaster&) { require_gdal(name); }
+
+}  // namespace flaunay::io

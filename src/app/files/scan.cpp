@@ -1,0 +1,335 @@
+#include "app/files/scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "app/files/las.hpp"
+#include "app/files/line_pieces.hpp"
+#include "app/files/npy.hpp"
+#include "app/files/text.hpp"
+#include "files/file.hpp"
+#include "files/scratch.hpp"
+
+namespace flaunay::io {
+namespace {
+
+constexpr std::size_t kTriple = 3 * sizeof(double);
+// Records that are read at once.
+constexpr std::size_t kPiece = std::size_t{1} << 15;
+// Chosen points are counted by blocks of so many records, so that any of them is found.
+constexpr std::size_t kCountedBlock = std::size_t{1} << 12;
+
+constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz or .csv";
+
+bool is_text(const std::string& ending) { return ending == ".txt" || ending == ".xyz" || ending == ".csv"; }
+
+Box nothing() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {kInfinity, kInfinity, -kInfinity, -kInfinity};
+}
+
+void widen(Box& box, const Box& other) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    box[k] = std::min(box[k], other[k]);
+    box[k + 2] = std::max(box[k + 2], other[k + 2]);
+  }
+}
+
+/// Appends the points of lines: x, y and z.
+class TripleText {
+ public:
+  explicit TripleText(const std::string& path) : path_(path) {}
+
+  void parse(std::string_view text, std::vector<double>& triples) {
+    Lines lines(path_, text, Lines::Separator::blanks_or_comma, lines_);
+    bool more = lines.next();
+    if (more && std::exchange(is_first_, false) && is_header(lines)) more = lines.next();
+    for (; more; more = lines.next(), ++point_) {
+      for (int axis = 0; axis < 3; ++axis) {
+        std::string_view field;
+        if (!lines.field(field))
+          lines.fail_line("expected three numbers (x, y and z), found {}", lines.count_fields());
+        triples.push_back(lines.coordinate(field, point_));
+      }
+    }
+    lines_ = lines.number();
+  }
+
+ private:
+  const std::string& path_;
+  std::size_t lines_ = 0, point_ = 0;
+  bool is_first_ = true;
+};
+
+}  // namespace
+
+/// The points of a file.
+class Scan::Part {
+ public:
+  Part(std::string path, const ScanChoice& choice, const std::string& scratch)
+      : path_(std::move(path)), ending_(ending_of(path_)) {
+    if (is_text(ending_)) {
+      read_text(scratch);
+    } else if (ending_ == ".las") {
+      InputFile file(path_, "an uncompressed LAS file");
+      file.first(1);  // an error if there is none
+      las_ = read_las_header(path_, file);
+      size_ = las_->size;
+      record_bytes_ = las_->record_bytes;
+      begin_ = las_->begin;
+      if (size_ > 0) box_ = las_->box;
+      is_filtered_ = !choice.takes_all();
+      return;
+    } else if (ending_ == ".npy") {
+      InputFile file(path_, "a NumPy array of shape (n, 3)");
+      file.first(1);
+      const PointRecords records = npy_triples(path_, file);
+      size_ = records.size;
+      record_bytes_ = records.bytes;
+      begin_ = records.begin;
+      decode_ = records.decode;
+    } else if (ending_ == ".laz") {
+      fail(path_,
+           "is compressed (LAZ), which this command does not read: decompress it first, for example with "
+           "\"pdal translate IN.laz OUT.las\", or take flaunay.terrain in Python (pip install "
+           "flaunay[terrain])");
+    } else {
+      fail_ending(path_, kEndings);
+    }
+    if (!choice.takes_all())
+      throw Error(ErrorKind::usage,
+                  printable(fmt::format("{}: classes and returns are those of .las files alone", path_)));
+  }
+
+  const std::string& path() const { return path_; }
+  const Box& box() const { return box_; }
+  std::string crs() const { return las_ ? las_->crs : ""; }
+  std::uint64_t records() const { return size_; }
+  void close() { file_.reset(); }
+
+  /// Finds which points are chosen, which are numbered from `first` on. Returns the number of the one after
+  /// them.
+  std::uint64_t survey(std::uint64_t first, const ScanChoice& choice,
+                       const std::function<void(std::uint64_t records)>& done) {
+    first_ = first;
+    box_ = nothing();
+    std::uint64_t chosen = 0;
+    std::vector<double> triples;
+    for (std::uint64_t at = 0; at < size_; at += kCountedBlock) {
+      if (is_filtered_) chosen_before_.push_back(chosen);
+      if (at % kPiece == 0) done(at);
+      const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kCountedBlock, size_ - at));
+      triples.clear();
+      append(at, count, choice, triples);
+      chosen += triples.size() / 3;
+      check_finite(triples, at);
+    }
+    count_ = chosen;
+    return first_ + count_;
+  }
+
+  std::uint64_t first() const { return first_; }
+  std::uint64_t end() const { return first_ + count_; }
+
+  /// Appends the chosen points [begin, end), counted in the whole set.
+  void read(std::uint64_t begin, std::uint64_t end, const ScanChoice& choice, std::vector<double>& triples) {
+    begin -= first_;
+    end -= first_;
+    if (!is_filtered_) return append(begin, static_cast<std::size_t>(end - begin), choice, triples);
+    auto block = static_cast<std::size_t>(
+        std::upper_bound(chosen_before_.begin(), chosen_before_.end(), begin) - chosen_before_.begin() - 1);
+    std::vector<double> found;
+    for (; begin < end; ++block) {
+      found.clear();
+      const std::uint64_t at = std::uint64_t{block} * kCountedBlock;
+      append(at, static_cast<std::size_t>(std::min<std::uint64_t>(kCountedBlock, size_ - at)), choice, found);
+      const auto skipped = static_cast<std::size_t>(begin - chosen_before_[block]);
+      const std::size_t taken = std::min(found.size() / 3 - skipped, static_cast<std::size_t>(end - begin));
+      const auto from = found.begin() + static_cast<std::ptrdiff_t>(3 * skipped);
+      triples.insert(triples.end(), from, from + static_cast<std::ptrdiff_t>(3 * taken));
+      begin += taken;
+    }
+  }
+
+ private:
+  void read_text(const std::string& scratch) {
+    scratch_ = std::make_unique<ScratchFile>(scratch);
+    LinePieces pieces(path_, "three numbers a line");
+    TripleText parser(path_);
+    std::vector<double> triples;
+    for (std::string_view lines; pieces.next(lines);) {
+      triples.clear();
+      parser.parse(lines, triples);
+      scratch_->append(triples.data(), triples.size() * sizeof(double));
+      size_ += triples.size() / 3;
+    }
+    record_bytes_ = kTriple;
+  }
+
+  // Appends those of some records that are chosen.
+  void append(std::uint64_t first, std::size_t count, const ScanChoice& choice,
+              std::vector<double>& triples) {
+    for (std::size_t done = 0; done < count; done += kPiece) {
+      const std::size_t piece = std::min(count - done, kPiece);
+      records_.resize(piece * record_bytes_);
+      const std::uint64_t place = begin_ + (first + done) * record_bytes_;
+      if (scratch_) {
+        scratch_->read_at(place, records_.size(), records_.data());
+      } else {
+        if (!file_) file_ = std::make_unique<InputFile>(path_, kEndings);
+        file_->read_at(place, records_.size(), records_.data());
+      }
+      const std::size_t kept = is_filtered_ ? keep_chosen(piece, choice) : piece, at = triples.size();
+      triples.resize(at + 3 * kept);
+      if (las_) {
+        las_->decode<3>(records_.data(), kept, triples.data() + at);
+      } else if (decode_) {
+        decode_(records_.data(), kept, triples.data() + at);
+      } else {
+        std::memcpy(triples.data() + at, records_.data(), kept * kTriple);
+      }
+    }
+  }
+
+  // Moves the chosen records to the front. Returns how many they are.
+  std::size_t keep_chosen(std::size_t count, const ScanChoice& choice) {
+    using Returns = ScanChoice::Returns;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const char* const record = records_.data() + i * record_bytes_;
+      const int number = las_->return_number(record);
+      const bool is_chosen =
+          (choice.classes.none() || choice.classes[static_cast<std::size_t>(las_->class_of(record))]) &&
+          (choice.returns == Returns::all ||
+           number == (choice.returns == Returns::first ? 1 : las_->returns(record)));
+      if (!is_chosen) continue;
+      std::memmove(records_.data() + kept++ * record_bytes_, record, record_bytes_);
+    }
+    return kept;
+  }
+
+  void check_finite(const std::vector<double>& triples, std::uint64_t first) {
+    Box box = nothing();
+    double sum = 0;  // not finite if one of them is not
+    for (std::size_t i = 0; i < triples.size(); i += 3) {
+      const double x = triples[i], y = triples[i + 1];
+      widen(box, {x, y, x, y});
+      sum += 0 * x + 0 * y + 0 * triples[i + 2];
+    }
+    if (sum != 0) {
+      fail(path_, "has a point whose coordinates or height are not finite, among the {} from point {} on",
+           triples.size() / 3, first);
+    }
+    widen(box_, box);
+  }
+
+  std::string path_, ending_;
+  std::optional<LasHeader> las_;
+  std::unique_ptr<ScratchFile> scratch_;  // of text
+  std::function<void(const char*, std::size_t, double*)> decode_;
+  std::uint64_t size_ = 0, begin_ = 0;  // of the records
+  std::size_t record_bytes_ = 0;
+  Box box_ = nothing();
+  bool is_filtered_ = false;
+  std::uint64_t first_ = 0, count_ = 0;
+  std::vector<std::uint64_t> chosen_before_;  // by block
+  std::unique_ptr<InputFile> file_;
+  std::vector<char> records_;
+};
+
+Scan::Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch)
+    : choice_(choice) {
+  for (const std::string& path : paths) parts_.push_back(std::make_unique<Part>(path, choice, scratch));
+}
+
+Scan::~Scan() = default;
+
+Box Scan::announced_box() const {
+  Box box = nothing();
+  for (const auto& part : parts_) widen(box, part->box());
+  return box;
+}
+
+std::vector<Scan::System> Scan::systems() const {
+  std::vector<System> systems;
+  for (const auto& part : parts_) {
+    const std::string crs = part->crs();
+    const auto is_it = [&](const System& system) { return system.crs == crs; };
+    if (!crs.empty() && std::none_of(systems.begin(), systems.end(), is_it))
+      systems.push_back({crs, part->path()});
+  }
+  return systems;
+}
+
+Box Scan::survey(const std::function<void(double done)>& progress) {
+  std::uint64_t records = 0, before = 0;
+  for (const auto& part : parts_) records += part->records();
+  Box box = nothing();
+  size_ = 0;
+  for (const auto& part : parts_) {
+    size_ = part->survey(size_, choice_, [&](std::uint64_t done) {
+      progress(static_cast<double>(before + done) / static_cast<double>(records));
+    });
+    part->close();
+    before += part->records();
+    widen(box, part->box());
+  }
+  return box;
+}
+
+void Scan::read_triples(std::uint64_t first, std::size_t count) {
+  triples_.clear();
+  triples_first_ = first;
+  const std::uint64_t end = first + count;
+  const auto ends_later = [](std::uint64_t place, const auto& part) { return place < part->end(); };
+  for (auto part = std::upper_bound(parts_.begin(), parts_.end(), first, ends_later);
+       part != parts_.end() && (*part)->first() < end; ++part) {
+    const std::uint64_t begin = std::max(first, (*part)->first()), stop = std::min(end, (*part)->end());
+    if (begin < stop) (*part)->read(begin, stop, choice_, triples_);
+    if (stop == (*part)->end()) (*part)->close();
+  }
+}
+
+void Scan::read(std::uint64_t first, std::size_t count, double* coordinates) {
+  read_triples(first, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    coordinates[2 * i] = triples_[3 * i];
+    coordinates[2 * i + 1] = triples_[3 * i + 1];
+  }
+}
+
+void Scan::read_values(std::uint64_t first, std::size_t count, double* values) {
+  if (first != triples_first_ || 3 * count != triples_.size()) read_triples(first, count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = triples_[3 * i + 2];
+}
+
+std::vector<std::string> scan_files(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    const std::optional<system::FileStatus> status = system::status_of(path);
+    if (!status || status->kind != system::FileKind::folder) {
+      files.push_back(path);
+      continue;
+    }
+    std::vector<std::string> found;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
+         entry.increment(error)) {
+      const std::string name = entry->path().string(), ending = ending_of(name);
+      if (is_text(ending) || ending == ".las" || ending == ".laz" || ending == ".npy") found.push_back(name);
+    }
+    if (error) fail(path, "cannot be read: {}", error.message());
+    if (found.empty()) fail(path, "has no files that end with {}", kEndings);
+    std::sort(found.begin(), found.end());
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+}  // namespace flaunay::io

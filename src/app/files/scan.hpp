@@ -1,0 +1,75 @@
+// Points with heights of laser scans and other files, as one set that need not fit memory.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flaunay/terrain.hpp"
+
+namespace flaunay::io {
+
+/// Which points of .las files are used.
+struct ScanChoice {
+  enum class Returns { all, first, last };
+
+  std::bitset<256> classes;  ///< none: all
+  Returns returns = Returns::all;
+
+  bool takes_all() const { return classes.none() && returns == Returns::all; }
+};
+
+/// Least x and y, largest x and y.
+using Box = std::array<double, 4>;
+
+/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv
+/// (x, y and z, and what follows them is ignored). Files are opened as they are read, one at a time.
+class Scan : public ValuedPoints {
+ public:
+  /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
+  /// file without a name in `scratch`. Throws Error(usage) for other endings, and for a choice if there is a
+  /// file that is no .las file; Error(input) for files that cannot be read or are truncated.
+  Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch);
+  ~Scan() override;
+
+  /// What the headers of .las files say, and for other files what is known. Low is above high if there is
+  /// nothing.
+  Box announced_box() const;
+  /// The coordinate systems that files have, each once, with the first file that has it.
+  struct System {
+    std::string crs, path;
+  };
+  std::vector<System> systems() const;
+
+  /// Reads all points once, to find which are chosen: before this, there are none to read. Returns the box
+  /// around them. Throws Error(input) for numbers that are not finite. progress: called with the share that
+  /// is done.
+  Box survey(const std::function<void(double done)>& progress);
+
+  std::uint64_t size() const override { return size_; }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override;
+  void read_values(std::uint64_t first, std::size_t count, double* values) override;
+
+ private:
+  class Part;
+
+  void read_triples(std::uint64_t first, std::size_t count);
+
+  ScanChoice choice_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::uint64_t size_ = 0;
+  // The points that were read last, since their values are asked for next.
+  std::vector<double> triples_;
+  std::uint64_t triples_first_ = 0;
+};
+
+/// The files of folders that a Scan reads, in the order of their names, in place of the folders. Throws
+/// Error(input) for a folder without such files.
+std::vector<std::string> scan_files(const std::vector<std::string>& paths);
+
+}  // namespace flaunay::io

@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""`flaunay terrain`: files of all kinds, choices and chunks give the right raster, and errors say what is wrong.
+
+    terrain_command.py FLAUNAY [gdal]     gdal: the command was built with it
+"""
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+FLAUNAY, HAS_GDAL = sys.argv[1], "gdal" in sys.argv[2:]
+GEO_KEYS = 34735
+
+
+def run(*arguments):
+    return subprocess.run(
+        [FLAUNAY, "terrain", *map(str, arguments)], capture_output=True, text=True, timeout=300
+    )
+
+
+def raster(folder, *arguments):
+    path = folder / "out.npy"
+    done = run(*arguments, "-o", path, "--device", "host")
+    assert done.returncode == 0, (arguments, done.stderr)
+    return np.load(path)
+
+
+def las(path, points, classes, returns, epsg=None, scale=0.01, offset=(500000, 5000000, 0), extra=0):
+    """LAS 1.2, point format 1. returns: number and how many of each point."""
+    keys = b""
+    if epsg:
+        content = struct.pack("<8H", 1, 1, 0, 1, 3072, 0, 1, epsg)
+        keys = struct.pack("<H16sHH32s", 0, b"LASF_Projection", GEO_KEYS, len(content), b"") + content
+    head = bytearray(227)
+    head[:4] = b"LASF"
+    head[24:26] = 1, 2
+    struct.pack_into("<HII", head, 94, 227, 227 + len(keys), 1 if epsg else 0)
+    struct.pack_into("<BHI", head, 104, 1, 28, len(points) + extra)
+    struct.pack_into("<6d", head, 131, scale, scale, scale, *offset)
+    for axis in range(3):
+        struct.pack_into("<2d", head, 179 + 16 * axis, points[:, axis].max(), points[:, axis].min())
+    records = np.zeros(len(points), [("at", "<i4", 3), ("i", "<u2"), ("r", "u1"), ("c", "u1"), ("rest", "V12")])
+    records["at"] = np.rint((points - np.array(offset)) / scale)
+    records["r"] = returns[:, 0] + 8 * returns[:, 1]
+    records["c"] = classes
+    path.write_bytes(bytes(head) + keys + records.tobytes())
+
+
+def fails(code, *parts, arguments):
+    done = run(*arguments)
+    assert done.returncode == code, (arguments, done.returncode, done.stderr)
+    for part in parts:
+        assert part in done.stderr, (part, done.stderr)
+
+
+def same(a, b):
+    return a.tobytes() == b.tobytes()
+
+
+def main(folder):
+    random = np.random.default_rng(4)
+    n = 30000
+    points = np.round(random.uniform([500000, 5000000, 0], [500100, 5000060, 50], (n, 3)), 2)
+    points[:, 2] = np.round(points[:, 0] - 500000 + 2 * (points[:, 1] - 5000000), 2)
+    classes = random.choice([2, 9, 31], n).astype(np.uint8)
+    numbers = random.integers(1, 4, n)
+    returns = np.stack([numbers, np.maximum(numbers, random.integers(1, 4, n))], axis=1)
+
+    def npy(name, rows, dtype=np.float64):
+        np.save(folder / name, np.ascontiguousarray(rows, dtype))
+        return folder / name
+
+    whole = npy("whole.npy", points)
+    size = ("--resolution", "0.5")
+    expected = raster(folder, whole, *size)
+
+    # The pixels of a plane. Some have their centres beyond the points.
+    assert expected.shape == (120, 200)
+    x, y = 0.25 + 0.5 * np.arange(200), 59.75 - 0.5 * np.arange(120)
+    plane = x[None, :] + 2 * y[:, None]
+    there = ~np.isnan(expected)
+    assert there.mean() > 0.99
+    np.testing.assert_allclose(expected[there], plane[there], atol=1e-6)
+
+    # Files of all kinds, alone and together, in memory and in chunks.
+    scan = folder / "scan.las"
+    las(scan, points, classes, returns)
+    assert same(raster(folder, scan, *size), expected)
+    text = folder / "scan.xyz"
+    np.savetxt(text, np.column_stack([points, classes]), fmt="%.2f", header="x y z class")
+    assert same(raster(folder, text, *size), expected)
+    comma = folder / "scan.csv"
+    np.savetxt(comma, points[:9000], fmt="%.2f", delimiter=",", header="x,y,z", comments="")
+    tiles = folder / "tiles"
+    tiles.mkdir()
+    las(tiles / "a.las", points[9000:20000], classes[9000:20000], returns[9000:20000], offset=(499000, 5000000, 7))
+    las(tiles / "b.LAS", points[20000:], classes[20000:], returns[20000:], scale=0.001)
+    npy("tiles/c.npy", points[:10], np.float64)
+    assert same(raster(folder, tiles, comma, *size, "--memory", "130M"), expected)
+
+    # Points of some classes and returns.
+    ground = classes != 31
+    chosen = raster(folder, npy("ground.npy", points[ground]), *size)
+    assert same(raster(folder, scan, *size, "--classes", "9,2"), chosen)
+    last = ground & (returns[:, 0] == returns[:, 1])
+    chosen = raster(folder, npy("last.npy", points[last]), *size)
+    assert same(raster(folder, scan, *size, "--classes", "2,9", "--returns", "last"), chosen)
+    chosen = raster(folder, npy("first.npy", points[returns[:, 0] == 1]), *size)
+    assert same(raster(folder, scan, *size, "--returns", "first"), chosen)
+
+    # Equal places.
+    higher = points + [0, 0, 10]
+    twice = npy("twice.npy", np.concatenate([points, higher]))
+    for duplicates, lift in ("lowest", 0), ("mean", 5), ("highest", 10):
+        made = raster(folder, twice, *size, "--duplicates", duplicates)
+        np.testing.assert_allclose(made[there], plane[there] + lift, atol=1e-6)
+
+    # Grids and what is left out.
+    centred = raster(folder, whole, "--resolution", "2", "--pixel-is", "point")
+    assert centred.shape == (31, 51)
+    np.testing.assert_allclose(centred[15, 25], 50 + 2 * 30, atol=1e-6)
+    part = raster(folder, whole, *size, "--bounds", "500010,5000010,500020,5000015")
+    assert same(part, np.ascontiguousarray(expected[90:100, 20:40]))
+    assert np.isnan(raster(folder, whole, *size, "--max-edge", "0.1")).mean() > 0.9
+    boundary = folder / "boundary.geojson"
+    boundary.write_text(
+        '{"type": "MultiPolygon", "coordinates": [[[[500010, 5000010], [500050, 5000010], [500050, 5000050],'
+        "[500010, 5000050], [500010, 5000010]], [[500020, 5000020], [500030, 5000020], [500030, 5000030],"
+        "[500020, 5000030], [500020, 5000020]]]]}"
+    )
+    inside = ((x > 10) & (x < 50))[None, :] & ((y > 10) & (y < 50))[:, None]
+    inside &= ~(((x > 20) & (x < 30))[None, :] & ((y > 20) & (y < 30))[:, None])
+    assert same(raster(folder, whole, *size, "--boundary", boundary), np.where(inside, expected, np.nan))
+
+    # Errors leave what was there.
+    out = folder / "out.npy"
+    out.write_bytes(b"old")
+    to = ("-o", out)
+    fails(3, "no points of the classes 5", arguments=(scan, *size, *to, "--classes", "5"))
+    fails(2, "--resolution 1e-06: makes", "pixels", arguments=(scan, "--resolution", "1e-6", *to))
+    fails(2, "must be positive", arguments=(scan, "--resolution", "-1", *to))
+    fails(2, "of .las files alone", arguments=(whole, *size, *to, "--classes", "2"))
+    cut = folder / "cut.las"
+    las(cut, points, classes, returns, extra=1)
+    fails(3, "cut.las", "truncated", arguments=(cut, *size, *to))
+    other, third = folder / "other.las", folder / "third.las"
+    las(other, points, classes, returns, epsg=25832)
+    las(third, points, classes, returns, epsg=25833)
+    fails(3, "different coordinate systems", "25833", arguments=(other, third, *size, *to))
+    assert run(other, third, *size, "-o", folder / "both.npy", "--crs", "EPSG:25832").returncode == 0
+    fails(2, "dem.asc", ".tif", arguments=(scan, *size, "-o", folder / "dem.asc"))
+    (folder / "scan.laz").write_bytes(scan.read_bytes())
+    fails(3, "LAZ", "flaunay[terrain]", arguments=(folder / "scan.laz", *size, *to))
+    (folder / "bad.txt").write_text("1 2 3\n4 5\n")
+    fails(3, "bad.txt", "line 2", "x, y and z", arguments=(folder / "bad.txt", *size, *to))
+    np.save(folder / "infinite.npy", np.array([[0, 0, 0], [1, 1, np.inf]]))
+    fails(3, "infinite.npy", "finite", arguments=(folder / "infinite.npy", *size, *to))
+    assert out.read_bytes() == b"old"
+    tif = folder / "dem.tif"
+    if HAS_GDAL:
+        assert run(other, *size, "-o", tif).returncode == 0
+        assert b"LAYOUT=IFDS_BEFORE_DATA" in tif.read_bytes()[:1000]
+        fails(3, "--crs", arguments=(scan, *size, *to, "--crs", "EPSG:0"))
+    else:
+        fails(2, "FLAUNAY_GDAL", "flaunay[terrain]", arguments=(scan, *size, "-o", tif))
+    assert not [path.name for path in folder.iterdir() if "partial" in path.name]
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        main(Path(name))
