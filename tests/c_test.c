@@ -1687,6 +1687,24 @@ static void test_relax_on_device(void) {
   clReleaseMemObject(input.memory);
 }
 
+static void test_point_tree(void) {
+  flaunay_point_tree* tree = NULL;
+  REQUIRE(flaunay_point_tree_create(triangulator, kSquare, 4, &tree) == FLAUNAY_SUCCESS);
+  const double query[] = {kSquare[2], kSquare[3]};
+  int32_t found[5];
+  double distances[5];
+  CHECK(flaunay_point_tree_nearest(tree, query, 1, 5, INFINITY, found, distances) == FLAUNAY_SUCCESS);
+  CHECK(found[0] == 1 && distances[0] == 0 && found[3] >= 0 && distances[3] > distances[1]);
+  CHECK(found[4] == -1 && isinf(distances[4]));
+  CHECK(flaunay_point_tree_nearest(tree, query, 1, 2, 0, found, NULL) == FLAUNAY_SUCCESS);
+  CHECK(found[0] == 1 && found[1] == -1);
+  CHECK(
+      fails(flaunay_point_tree_nearest(tree, query, 1, 0, 1, found, NULL), FLAUNAY_ERROR_USAGE, "1 or more"));
+  CHECK(fails(flaunay_point_tree_nearest(tree, query, 1, 1, 1, NULL, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(fails(flaunay_point_tree_nearest(NULL, query, 1, 1, 1, found, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
+  flaunay_point_tree_destroy(tree);
+}
+
 static void test_locator(void) {
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   flaunay_triangulation* mesh = NULL;
@@ -2592,6 +2610,7 @@ static void test_all(void) {
   test_relax();
   test_raster();
   test_locator();
+  test_point_tree();
   test_queries_with_constraints();
   test_derived_on_device();
   test_relax_on_device();

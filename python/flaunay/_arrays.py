@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Optional, Protocol, TypeVar, Union
 
 import numpy as np
@@ -328,7 +329,8 @@ class Fixed:
     """An object that refuses other attributes in place of those that all the rest was computed from."""
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name in self.__dict__ and not name.startswith("_"):
+        is_kept = isinstance(getattr(type(self), name, None), cached_property)
+        if (is_kept or name in self.__dict__) and not name.startswith("_"):
             raise AttributeError(f"{name} cannot be replaced: make another {type(self).__name__}")
         super().__setattr__(name, value)
 

@@ -1369,6 +1369,35 @@ class Locator(_Locator):
         return results
 
 
+class PointTree(_InTurns):
+    """Points arranged for queries for the nearest ones of them."""
+
+    _destroy = library.point_tree_destroy
+
+    def __init__(self, triangulator: Triangulator, points: _Doubles) -> None:
+        super().__init__(triangulator)
+        self.count = _count_points(points)
+        given = triangulator.pointer, _as_doubles(points), self.count, self.place
+        triangulator.call(library.point_tree_create, *given)
+
+    def nearest(
+        self, queries: _Doubles, count: int, max_distance: float
+    ) -> tuple[_Indices, _Doubles]:
+        """A row of so many points for each query, and their distances; -1 and infinity where there are no more.
+
+        queries: as of `Locator`.
+        """
+        m = len(queries)
+        points, distances = np.empty((m, count), _INT32), np.empty((m, count))
+        given = _address_of(queries), m, count, max_distance
+        results = _address_of(points), _address_of(distances)
+        with self._triangulator.turn:
+            status = library.point_tree_nearest(self.pointer, *given, *results)
+        if status:
+            check(status)
+        return points, distances
+
+
 class DeviceLocator(_Locator):
     """Answers queries in device memory. Buffers of results are the caller's to release, 0 if they are empty."""
 

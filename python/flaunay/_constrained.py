@@ -348,11 +348,18 @@ class ConstrainedTriangulation(Queries, Triangulation):
     def _locator(self) -> _calls.Locator:
         return self._kept_locator.get(self._make_locator)
 
-    def _make_locator(self) -> _calls.Locator:
+    def _check_sets(self) -> None:
         if len(self.hull_offsets) != 2:
             raise UsageError(
                 "queries in a triangulation with constraints need one set; polygons are one with map=True"
             )
+
+    def _make_tree(self) -> _calls.PointTree:
+        self._check_sets()
+        return super()._make_tree()
+
+    def _make_locator(self) -> _calls.Locator:
+        self._check_sets()
         return _calls.Locator(
             _triangulators.of_device(None),
             _Searched(self.points, self.triangles, self._neighbors, self.hull, self.representatives),

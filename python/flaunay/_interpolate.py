@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal, Optional, TypeVar, Union
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy.typing as npt
 
 from flaunay._arrays import (
     Fixed,
+    FloatArray,
     are_rows,
     as_any,
     as_floats,
@@ -26,7 +28,7 @@ from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
-from flaunay._queries import are_finite
+from flaunay._queries import KeptTree, are_finite, tree_of
 
 if TYPE_CHECKING:
     import scipy.sparse
@@ -144,27 +146,42 @@ class _Interpolator(Fixed):
     _data: tuple[npt.NDArray[Any], Optional[Interpolation]]
 
     def __init__(self, points: Points, rescale: bool, device: Optional[str]) -> None:
-        self.tri: Union[Delaunay, ConstrainedTriangulation]
+        self._device = device
         if isinstance(points, (Delaunay, ConstrainedTriangulation)):
             if rescale:
                 raise UsageError("rescale needs points, not their triangulation")
-            self.tri = points
+            self.__dict__["tri"] = points
             self._scale = _Scale(np.empty((0, 2)), False)
-        else:
-            if hasattr(points, "simplices"):
-                raise UsageError(
-                    "points must be an array or a flaunay.Delaunay, not another triangulation"
-                )
-            coordinates = _as_coordinates(points, "points")
-            if coordinates.ndim != 2:
-                raise UsageError(f"points must have the shape (n, 2), not {coordinates.shape}")
-            self._scale = _Scale(coordinates, rescale)
-            self.tri = Delaunay(self._scale(coordinates), device=device)
-        self.points = self.tri.points
+            self.points = points.points
+            return
+        if hasattr(points, "simplices"):
+            raise UsageError(
+                "points must be an array or a flaunay.Delaunay, not another triangulation"
+            )
+        coordinates = _as_coordinates(points, "points")
+        if coordinates.ndim != 2:
+            raise UsageError(f"points must have the shape (n, 2), not {coordinates.shape}")
+        self._scale = _Scale(coordinates, rescale)
+        self.points = self._keep(self._scale(coordinates))
+
+    def _keep(self, points: Doubles) -> FloatArray:
+        """Makes what answers queries, and returns what it has for points."""
+        self.__dict__["tri"] = tri = Delaunay(points, device=self._device)
+        return tri.points
+
+    @cached_property
+    def tri(self) -> Union[Delaunay, ConstrainedTriangulation]:
+        """The triangulation, of the rescaled points if they are rescaled."""
+        return Delaunay(self.points, device=self._device)
+
+    @property
+    def _point_count(self) -> int:
+        tri = self.__dict__.get("tri")
+        return len(self.points) if tri is None else tri.npoints
 
     def __repr__(self) -> str:
         columns = math.prod(self.values.shape[1:])
-        return summary(self, points=self.tri.npoints, values_per_point=columns)
+        return summary(self, points=self._point_count, values_per_point=columns)
 
     def _are_far(self, queries: Doubles, nearest: Indices, most: float) -> npt.NDArray[np.bool_]:
         """Which queries are farther than that from their nearest points."""
@@ -182,9 +199,9 @@ class _Interpolator(Fixed):
         check_memory(values, "values")
         # A copy, as the caller may go on writing to an array of its own.
         array = frozen(np.array(self._as_values(values), order="C"))
-        if array.ndim == 0 or len(array) != self.tri.npoints:
+        if array.ndim == 0 or len(array) != self._point_count:
             raise UsageError(
-                f"values must have the shape ({self.tri.npoints}, ...), not {array.shape}: "
+                f"values must have the shape ({self._point_count}, ...), not {array.shape}: "
                 "one row for each point"
             )
         self._data = array, self._prepared(array)
@@ -700,6 +717,9 @@ class NearestInterpolator(_Interpolator):
     array([0., 8.])
     """
 
+    # None if the triangulation answers queries.
+    _kept_tree: Optional[KeptTree] = None
+
     def __init__(
         self,
         points: Points,
@@ -712,8 +732,23 @@ class NearestInterpolator(_Interpolator):
         self._max_distance = _as_distance(max_distance, "max_distance")
         super().__init__(points, rescale, device)
         self.values = values
-        if self.tri.npoints == 0:
+        if self._point_count == 0:
             raise UsageError("there are no points, so none is nearest")
+
+    def _keep(self, points: Doubles) -> FloatArray:
+        if self._device not in (None, "host"):
+            return super()._keep(points)
+        # Nothing else needs a triangulation.
+        self._kept_tree = KeptTree()
+        kept = frozen(points.copy())
+        self._kept_tree.get(partial(tree_of, kept))
+        return kept
+
+    def _nearest(self, queries: Doubles) -> Indices:
+        if self._kept_tree is None:
+            return self.tri._locator.nearest(queries)
+        points, _ = self._kept_tree.get(partial(tree_of, self.points)).nearest(queries, 1, math.inf)
+        return points[:, 0]
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         array = as_any(values, "values")
@@ -731,7 +766,7 @@ class NearestInterpolator(_Interpolator):
             most = _as_distance(distance_upper_bound, "distance_upper_bound")
         queries, shape = self._queries(xi)
         values = self.values
-        nearest, queries, are_bad = self._asked(self.tri._locator.nearest, queries)
+        nearest, queries, are_bad = self._asked(self._nearest, queries)
         result: npt.NDArray[Any] = values[nearest]
         if most is not None:
             far = self._are_far(queries, nearest, most)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Optional, TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, Literal, Optional, TypeVar, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +20,7 @@ from flaunay._errors import InputError, UsageError
 Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 _Answers = TypeVar("_Answers", Indices, Doubles)
+_Made = TypeVar("_Made")
 
 # Of values and of results in a call that interpolates: 512 MiB of each.
 _MOST_NUMBERS = 1 << 26
@@ -64,16 +67,16 @@ def _given(answers: _Answers, shape: tuple[int, ...], out: Optional[_Answers]) -
     return out
 
 
-class KeptLocator:
-    """A locator that is made when the first query comes. Copies make their own, and so do other processes."""
+class Kept(Generic[_Made]):
+    """What answers queries, made when the first one comes. Copies make their own, and so do other processes."""
 
     def __init__(self) -> None:
         # With the process that made it.
-        self._made: Optional[tuple[_calls.Locator, int]] = None
-        # Two threads that ask at the same time should not both make a locator.
+        self._made: Optional[tuple[_Made, int]] = None
+        # Two threads that ask at the same time should not both make one.
         self._lock = threading.Lock()
 
-    def get(self, make: Callable[[], _calls.Locator]) -> _calls.Locator:
+    def get(self, make: Callable[[], _Made]) -> _Made:
         made = self._made
         if made is not None and made[1] == os.getpid():
             return made[0]
@@ -90,8 +93,17 @@ class KeptLocator:
                 _triangulators.keep(self._made)
             self._made = None
 
-    def __reduce__(self) -> tuple[type[KeptLocator], tuple[()]]:
-        return KeptLocator, ()
+    def __reduce__(self) -> tuple[type[Kept[_Made]], tuple[()]]:
+        return Kept, ()
+
+
+KeptLocator = Kept[_calls.Locator]
+KeptTree = Kept[_calls.PointTree]
+
+
+def tree_of(points: FloatArray) -> _calls.PointTree:
+    """Trees are in host memory, whatever the device."""
+    return _calls.PointTree(_triangulators.of_device("host"), np.asarray(points, np.float64))
 
 
 class Queries:
@@ -99,6 +111,8 @@ class Queries:
 
     if TYPE_CHECKING:
 
+        @property
+        def points(self) -> FloatArray: ...
         @property
         def hull(self) -> Indices: ...
         @property
@@ -168,26 +182,79 @@ class Queries:
             found[outside] = self._near_hull(queries[outside], tol)
         return _given(found, shape, out)
 
-    def nearest(self, xi: ArrayLike, out: Optional[Indices] = None) -> Indices:
+    @cached_property
+    def _kept_tree(self) -> KeptTree:
+        return KeptTree()
+
+    @cached_property
+    def _there(self) -> npt.NDArray[np.intp]:
+        """The points that were not removed."""
+        return np.flatnonzero(~np.isnan(self.points[:, 0]))
+
+    def _make_tree(self) -> _calls.PointTree:
+        return tree_of(self.points[self._there])
+
+    @overload
+    def nearest(
+        self,
+        xi: ArrayLike,
+        out: Optional[Indices] = None,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: Literal[False] = False,
+    ) -> Indices: ...
+    @overload
+    def nearest(
+        self,
+        xi: ArrayLike,
+        out: Optional[Indices] = None,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: Literal[True],
+    ) -> tuple[Doubles, Indices]: ...
+    def nearest(
+        self,
+        xi: ArrayLike,
+        out: Optional[Indices] = None,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: bool = False,
+    ) -> Union[Indices, tuple[Doubles, Indices]]:
         """The points of the triangulation that are nearest to others, exactly.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
             Any points.
-        out : ndarray of int32, shape (...), optional
-            Where to write the result, by a copy.
+        out : ndarray of int32, shape (...) or (..., k), optional
+            Where to write the indices, by a copy.
+        k : int, optional
+            How many points. With it, results have a further dimension, the nearest point first.
+        distance_upper_bound : float, optional
+            Points that are farther away, by the rounded distance, are left out.
+        return_distances : bool
+            Return distances and indices, in the order of `scipy.spatial.cKDTree.query`.
 
         Returns
         -------
-        ndarray of int32, shape (...)
-            For each the index of the nearest point, of several the first in the order of x, then y;
-            -1 if the triangulation has no points, and for NaN and infinite points, to which none is nearest.
+        distances : ndarray of float64, shape (...) or (..., k)
+            Only with `return_distances`. Infinity where there is no point.
+        indices : ndarray of int32, shape (...) or (..., k)
+            Of points that are as near, the first in the order of x, then y, then index is first. -1 where
+            there are no more points, and for NaN and infinite points, to which none is nearest.
 
         Raises
         ------
         UsageError, InputError
-            As of `find_simplex`.
+            As of `find_simplex`, for another k than 1 or more, and a bound that is negative or NaN.
+
+        Notes
+        -----
+        What is optional is found by a tree of the points, made when it is first asked for. Equal points all
+        count there.
 
         Examples
         --------
@@ -195,15 +262,41 @@ class Queries:
         >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
         >>> tri.nearest([[3, 0], [100, 3]])
         array([1, 1], dtype=int32)
+        >>> tri.nearest([1, 0], k=2, return_distances=True)
+        (array([1., 3.]), array([0, 1], dtype=int32))
         """
         queries, shape = as_queries(xi)
+        is_alone = k is None
+        count = 1 if k is None else operator.index(k)
+        most = math.inf if distance_upper_bound is None else distance_upper_bound
+        if count < 1:
+            raise UsageError(f"k must be 1 or more, not {k}")
+        if not most >= 0:
+            raise UsageError(f"distance_upper_bound must be 0 or more, not {most}")
+        if not is_alone:
+            shape = (*shape, count)
         if out is not None:
             check_out(out, np.int32, shape, "out")
-        if len(self.hull):
-            found = _answers(self._locator.nearest, queries, -1)
-        else:
-            found = np.full(len(queries), -1, np.int32)
-        return _given(found, shape, out)
+        distances = np.empty(0)
+        if is_alone and most == math.inf and not return_distances:
+            if len(self.hull):
+                found = _answers(self._locator.nearest, queries, -1)
+            else:
+                found = np.full(len(queries), -1, np.int32)
+            return _given(found, shape, out)
+
+        def ask(queries: Doubles) -> Indices:
+            nonlocal distances
+            tree = self._kept_tree.get(self._make_tree)
+            points, distances = tree.nearest(queries, count, most)
+            return points
+
+        found = _answers(ask, queries, -1)
+        distances[found < 0] = math.inf
+        if len(self._there) < len(self.points):
+            found[found >= 0] = self._there[found[found >= 0]]
+        found = _given(found.reshape(shape), shape, out)
+        return (distances.reshape(shape), found) if return_distances else found
 
     def interpolate(
         self, values: ArrayLike, xi: ArrayLike, out: Optional[Doubles] = None

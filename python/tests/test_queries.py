@@ -3,6 +3,7 @@
 import copy
 import pickle
 from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -283,3 +284,82 @@ def test_many_triangulations_come_and_go(points, queries):
     for k in range(20):
         tri = flaunay.Delaunay(points[k:])
         assert (tri.nearest(points[k:]) == np.arange(len(points) - k)).all()
+
+
+def nearest_by_brute_force(points, query, k):
+    """Indices in their order, by exact arithmetic."""
+
+    def order(i):
+        x, y = (Fraction(points[i, axis]) - Fraction(query[axis]) for axis in (0, 1))
+        return x * x + y * y, points[i, 0], points[i, 1], i
+
+    return sorted(range(len(points)), key=order)[:k]
+
+
+@pytest.mark.parametrize("kind", ["uniform", "grid", "circle"])
+def test_several_nearest_points(random, kind):
+    points = random.random((60, 2))
+    if kind == "grid":
+        points = random.integers(0, 4, (60, 2)) / 10
+    if kind == "circle":
+        angles = random.integers(0, 8, 60) * (np.pi / 4)
+        points = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    queries = np.concatenate([points[:9], random.random((20, 2)) * 2 - 1, np.zeros((1, 2))])
+    tri = flaunay.Delaunay(points)
+    for k in (1, 4, 70):
+        distances, found = tri.nearest(queries, k=k, return_distances=True)
+        assert found.dtype == np.int32 and found.shape == distances.shape == (30, k)
+        for row, query in zip(found, queries):
+            assert row.tolist() == nearest_by_brute_force(points, query, k) + [-1] * (k - 60)
+        theirs, _ = scipy.spatial.cKDTree(points).query(queries, k=range(1, k + 1))
+        np.testing.assert_allclose(distances, theirs, rtol=1e-14, atol=0)
+        assert np.array_equal(found, tri.nearest(queries, k=k))
+    assert np.array_equal(tri.nearest(queries, k=1)[:, 0], tri.nearest(queries))
+
+
+def test_a_bound_of_distances(points, queries):
+    tri = flaunay.Delaunay(points)
+    distances, found = tri.nearest(queries, k=5, return_distances=True)
+    near, at = tri.nearest(queries, k=5, distance_upper_bound=0.05, return_distances=True)
+    assert np.array_equal(at, np.where(distances <= 0.05, found, -1))
+    assert np.array_equal(near, np.where(distances <= 0.05, distances, np.inf))
+    alone = tri.nearest(queries, distance_upper_bound=0.05)
+    assert np.array_equal(alone, at[:, 0]) and (alone < 0).any() and (alone >= 0).any()
+
+
+def test_several_nearest_points_of_any_shape(points, queries):
+    tri = flaunay.Delaunay(points)
+    found = tri.nearest(queries, k=3)
+    out = np.empty((5, 100, 3), np.int32)
+    assert tri.nearest(queries.reshape(5, 100, 2), out, k=3) is out
+    assert np.array_equal(out.reshape(-1, 3), found)
+    distance, index = tri.nearest(queries[0], return_distances=True)
+    assert distance.shape == index.shape == () and index == found[0, 0]
+    bad = queries.copy()
+    bad[3, 1] = np.nan
+    distances, with_bad = tri.nearest(bad, k=3, return_distances=True)
+    found[3] = -1
+    assert np.array_equal(with_bad, found) and np.isinf(distances[3]).all()
+    for other in (pickle.loads(pickle.dumps(tri)), copy.deepcopy(tri)):
+        assert np.array_equal(other.nearest(queries, k=3), tri.nearest(queries, k=3))
+    assert flaunay.Delaunay(np.empty((0, 2))).nearest([1, 1], k=2).tolist() == [-1, -1]
+
+
+def test_nearest_points_after_changes(points, queries):
+    tri = flaunay.Delaunay(points, incremental=True)
+    before = tri.nearest(queries, k=4)
+    tri.remove_points([0, 7])
+    tri.add_points(points[:1] + 0.01)
+    rest = np.concatenate([np.setdiff1d(np.arange(400), [0, 7]), [400]])
+    after = tri.nearest(queries, k=4)
+    others = flaunay.Delaunay(tri.points[rest]).nearest(queries, k=4)
+    assert np.array_equal(after, rest[others]) and not np.array_equal(after, before)
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [({"k": 0}, "k must be"), ({"distance_upper_bound": -1}, "distance_upper_bound")],
+)
+def test_wrong_options_of_nearest_points(points, options, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.Delaunay(points).nearest([0, 0], **options)

@@ -6,6 +6,7 @@
 #include "c/handles.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/neighbors.hpp"
 
 using namespace flaunay;
 
@@ -15,6 +16,10 @@ using c::required;
 
 struct flaunay_locator {
   Locator cpp;
+};
+
+struct flaunay_point_tree {
+  PointTree cpp;
 };
 
 namespace {
@@ -182,4 +187,26 @@ flaunay_status flaunay_locator_gradients_device(flaunay_locator* locator, cl_mem
                            const InterpolationOptions checked = c::to_interpolation(options);
                            cpp.gradients(values, buffer, checked.columns, checked.estimation, queued);
                          });
+}
+
+flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator, const double* coordinates,
+                                         size_t n, flaunay_point_tree** tree) {
+  return create(tree, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_point_tree>(flaunay_point_tree{PointTree(cpp, coordinates, n)});
+  });
+}
+
+void flaunay_point_tree_destroy(flaunay_point_tree* tree) { delete tree; }
+
+flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries, size_t m,
+                                          size_t count, double max_distance, int32_t* points,
+                                          double* distances) {
+  return guarded([&] {
+    PointTree& cpp = required(tree, "the tree").cpp;
+    const Neighbors found = cpp.nearest(queries, m, {count, max_distance});
+    if (m > 0) required(points, "the array of results");
+    std::copy(found.points.begin(), found.points.end(), points);
+    if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
+  });
 }

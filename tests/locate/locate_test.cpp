@@ -7,11 +7,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <random>
 #include <regex>
 #include <set>
 #include <string>
@@ -23,6 +25,7 @@
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
 #include "derived/locate/locator.hpp"
+#include "flaunay/neighbors.hpp"
 #include "host/opencl/programs.hpp"
 #include "locate/nearest_search.h"
 #include "locate/off_grid.h"
@@ -958,6 +961,100 @@ TEST(Kernels, AllAreLaunched) {
     }
   }
   EXPECT_EQ(kernels, expected);
+}
+
+// Points of integer coordinates with duplicates, among them many on one circle, times a power of two.
+struct Integers {
+  std::vector<std::int64_t> at;
+  std::vector<double> scaled(double scale) const {
+    std::vector<double> result;
+    for (const std::int64_t x : at) result.push_back(static_cast<double>(x) * scale);
+    return result;
+  }
+  std::size_t size() const { return at.size() / 2; }
+};
+
+Integers some_integers(std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  const std::int64_t circle[][2] = {{0, 5},  {3, 4},  {4, 3},  {5, 0}, {4, -3},
+                                    {3, -4}, {0, -5}, {-3, 4}, {-5, 0}};
+  Integers result;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto draw = [&](int size) {
+      return static_cast<std::int64_t>(random() % static_cast<unsigned>(size));
+    };
+    const std::int64_t* const on_circle = circle[draw(9)];
+    const bool is_on_circle = draw(3) == 0;
+    result.at.push_back(is_on_circle ? on_circle[0] : draw(13) - 6);
+    result.at.push_back(is_on_circle ? on_circle[1] : draw(13) - 6);
+  }
+  return result;
+}
+
+TEST(SmallPointTree, FindsTheNearestInTheirOrder) {
+  Triangulator triangulator("host");
+  for (const std::size_t n : {0, 1, 2, 9, 40, 300}) {
+    const Integers points = some_integers(n, 1), queries = some_integers(30, 2);
+    for (const double scale : {1.0, 0x1p-500, 0x1p500}) {
+      PointTree tree(triangulator, points.scaled(scale).data(), n);
+      for (const std::size_t count : {1, 2, 7, 50}) {
+        const NeighborOptions options{count, 4 * scale};
+        const std::vector<double> asked = queries.scaled(scale);
+        const Neighbors all = tree.nearest(asked.data(), queries.size(), {count});
+        const Neighbors near = tree.nearest(asked.data(), queries.size(), options);
+        ASSERT_EQ(all.points.size(), count * queries.size());
+        for (std::size_t q = 0; q < queries.size(); ++q) {
+          std::vector<std::array<std::int64_t, 4>> expected;
+          for (std::size_t i = 0; i < n; ++i) {
+            const std::int64_t x = points.at[2 * i], y = points.at[2 * i + 1], dx = x - queries.at[2 * q],
+                               dy = y - queries.at[2 * q + 1];
+            expected.push_back({dx * dx + dy * dy, x, y, static_cast<std::int64_t>(i)});
+          }
+          std::sort(expected.begin(), expected.end());
+          for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t place = q * count + k;
+            const bool is_there = k < n, is_near = is_there && expected[k][0] <= 16;
+            EXPECT_EQ(all.points[place], is_there ? expected[k][3] : -1);
+            EXPECT_EQ(near.points[place], is_near ? expected[k][3] : -1);
+            const double distance =
+                is_there ? std::sqrt(static_cast<double>(expected[k][0])) * scale : INFINITY;
+            EXPECT_DOUBLE_EQ(all.distances[place], distance);
+            EXPECT_DOUBLE_EQ(near.distances[place], is_near ? distance : INFINITY);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(SmallPointTree, DistancesThatRoundToTheSameAreCompared) {
+  // From the origin, the second point is nearer by less than doubles can tell.
+  const double points[] = {1, 0x1p-30, 1, 0x1.fffffp-31, 1, 0x1.fffffp-31}, origin[] = {0, 0};
+  Triangulator triangulator("host");
+  const Neighbors found = PointTree(triangulator, points, 3).nearest(origin, 1, {3});
+  EXPECT_EQ(found.distances, std::vector<double>(3, 1.0));
+  EXPECT_EQ(found.points, (std::vector<std::int32_t>{1, 2, 0}));
+}
+
+TEST(SmallPointTree, SaysWhatIsWrong) {
+  Triangulator triangulator("host");
+  const double points[] = {0, 0, 1, 0, 1, NAN}, far[] = {0, 0, 1e300, 0x1p-1000};
+  EXPECT_THROW(PointTree(triangulator, points, 3), Error);
+  PointTree tree(triangulator, points, 2);
+  const auto message = [&](const double* queries, const NeighborOptions& options) -> std::string {
+    try {
+      tree.nearest(queries, 2, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message(points, {0}).find("1 or more"), std::string::npos);
+  EXPECT_NE(message(points, {1, -1}).find("0 or more"), std::string::npos);
+  EXPECT_NE(message(points, {1, NAN}).find("0 or more"), std::string::npos);
+  EXPECT_NE(message(points + 2, {1}).find("query 1 is not finite"), std::string::npos);
+  EXPECT_NE(message(far, {1}).find("query 1 is too"), std::string::npos);
+  EXPECT_NE(message(nullptr, {1}).find("null"), std::string::npos);
 }
 
 }  // namespace

@@ -1361,6 +1361,24 @@ FLAUNAY_API flaunay_status flaunay_locator_interpolate_device(flaunay_locator* l
                                                               const flaunay_enqueue* enqueue,
                                                               cl_mem* results);
 
+/// Points arranged for queries for the nearest ones of them.
+typedef struct flaunay_point_tree flaunay_point_tree;
+/// Makes a tree of n points in host memory, x0 y0 x1 y1 ..., which needs no triangulation. It shares threads
+/// with the triangulator, and may outlive it. FLAUNAY_ERROR_INPUT as of flaunay_triangulate. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator,
+                                                     const double* coordinates, size_t n,
+                                                     flaunay_point_tree** tree);
+/// Destroys a tree. O(1).
+FLAUNAY_API void flaunay_point_tree_destroy(flaunay_point_tree* tree);
+/// Finds for each of m queries the `count` nearest points, the nearest first, by exact comparisons. Of points
+/// that are as near, the first in the order of x, then y, then index is first. Those whose distance, rounded,
+/// is larger than max_distance (INFINITY for none) are left out. points, distances: room for m count values,
+/// -1 and INFINITY where there are no more points; distances may be NULL. FLAUNAY_ERROR_INPUT as of
+/// flaunay_locator_nearest. About O(log n + count log count) per query is expected.
+FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries,
+                                                      size_t m, size_t count, double max_distance,
+                                                      int32_t* points, double* distances);
+
 // ---- Interpolation
 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
