@@ -1,0 +1,293 @@
+// The public calls for points on a sphere.
+#include "flaunay/sphere.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "call/frame.hpp"
+#include "derived/sphere/close.hpp"
+#include "derived/sphere/dual.hpp"
+#include "derived/sphere/places.hpp"
+#include "derived/sphere/walk.hpp"
+
+namespace flaunay {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+using sphere::Point;
+
+std::vector<double> places_of(call::Implementation& self, const double* points, std::size_t n,
+                              SphereCoordinates coordinates, const char* what) {
+  return call::take_turn(self, [&] {
+    call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
+    call::expect(coordinates == SphereCoordinates::directions || coordinates == SphereCoordinates::degrees,
+                 "coordinates of a sphere are directions or degrees");
+    return sphere::to_places(self.native().runtime, points, n, coordinates, what);
+  });
+}
+
+// The points that have a place in the plane.
+struct Plane {
+  std::vector<double> places;
+  std::vector<std::size_t> offsets;
+  Ids points;              // per place; empty if all points have one
+  std::vector<Ids> poles;  // per set, the points at the south pole
+};
+
+Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets) {
+  Plane plane;
+  plane.poles.resize(offsets.size() - 1);
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+      if (sphere::is_pole(sphere::place_at(places, i)))
+        plane.poles[s].push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  if (std::all_of(plane.poles.begin(), plane.poles.end(), [](const Ids& ids) { return ids.empty(); })) {
+    plane.places = places;
+    plane.offsets = offsets;
+    return plane;
+  }
+  plane.offsets = {0};
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+      const Point p = sphere::place_at(places, i);
+      if (sphere::is_pole(p)) continue;
+      plane.places.insert(plane.places.end(), {p.x, p.y});
+      plane.points.push_back(static_cast<std::int32_t>(i));
+    }
+    plane.offsets.push_back(plane.points.size());
+  }
+  return plane;
+}
+
+void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) {
+  if (plane.points.empty()) return;
+  const auto point = [&](std::int32_t v) { return plane.points[static_cast<std::size_t>(v)]; };
+  for (Ids* ids : {&planar.triangles, &planar.hull})
+    std::transform(ids->begin(), ids->end(), ids->begin(), point);
+  Ids representatives(n);
+  for (std::size_t i = 0; i < plane.points.size(); ++i) {
+    representatives[static_cast<std::size_t>(point(static_cast<std::int32_t>(i)))] =
+        point(planar.representatives[i]);
+  }
+  for (const Ids& poles : plane.poles) {
+    for (const std::int32_t i : poles) representatives[static_cast<std::size_t>(i)] = poles.front();
+  }
+  planar.representatives = std::move(representatives);
+}
+
+SphericalTriangulation close_all(const Plane& plane, Triangulation planar, SphericalTriangulation mesh) {
+  mesh.triangle_offsets = {0};
+  mesh.triangles.reserve(6 * mesh.places.size() / 2);
+  mesh.neighbors.reserve(6 * mesh.places.size() / 2);
+  for (std::size_t s = 0; s < plane.poles.size(); ++s) {
+    const std::size_t begin = planar.triangle_offsets[s], end = planar.triangle_offsets[s + 1];
+    const std::size_t first = mesh.triangles.size() / 3;
+    for (std::size_t c = 3 * begin; c < 3 * end; ++c) {
+      const std::int32_t t = planar.neighbors[c];
+      mesh.triangles.push_back(planar.triangles[c]);
+      mesh.neighbors.push_back(
+          t < 0 ? t : static_cast<std::int32_t>(static_cast<std::size_t>(t) - begin + first));
+    }
+    sphere::close(
+        {planar.hull.data() + planar.hull_offsets[s], planar.hull_offsets[s + 1] - planar.hull_offsets[s],
+         first, mesh.triangles.size() / 3, plane.poles[s].empty() ? -1 : plane.poles[s].front()},
+        mesh);
+    mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
+  }
+  mesh.representatives = std::move(planar.representatives);
+  mesh.statistics = std::move(planar.statistics);
+  return mesh;
+}
+
+void check(const SphericalTriangulation& mesh) {
+  const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
+  const auto is_index = [](std::int32_t i, std::size_t end) {
+    return i >= 0 && static_cast<std::size_t>(i) < end;
+  };
+  const bool is_whole = mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 &&
+                        mesh.representatives.size() == n && mesh.neighbors.size() == mesh.triangles.size() &&
+                        !mesh.point_offsets.empty() && mesh.point_offsets.back() == n &&
+                        mesh.triangle_offsets.size() == mesh.point_offsets.size() &&
+                        mesh.triangle_offsets.back() == triangles &&
+                        std::is_sorted(mesh.point_offsets.begin(), mesh.point_offsets.end()) &&
+                        std::is_sorted(mesh.triangle_offsets.begin(), mesh.triangle_offsets.end()) &&
+                        std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                    [&](std::int32_t v) { return is_index(v, n); }) &&
+                        std::all_of(mesh.neighbors.begin(), mesh.neighbors.end(),
+                                    [&](std::int32_t t) { return is_index(t, triangles); });
+  call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
+  // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    const std::int32_t* const t = &mesh.triangles[c / 3 * 3];
+    const std::int32_t* const other = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[c])];
+    const std::int32_t from = t[(c + 1) % 3], to = t[(c + 2) % 3];
+    bool has_edge = false;
+    for (int k = 0; k < 3; ++k) has_edge |= other[k] == to && other[(k + 1) % 3] == from;
+    call::expect(has_edge, "the arrays are not those of a triangulation on the sphere");
+  }
+}
+
+}  // namespace
+
+SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points, std::size_t n,
+                                          SphereCoordinates coordinates) {
+  return triangulate_sphere(triangulator, points, std::vector<std::size_t>{0, n}, coordinates);
+}
+
+SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
+                                          const std::vector<std::size_t>& offsets,
+                                          SphereCoordinates coordinates) {
+  call::expect(!offsets.empty() && offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end()),
+               "the offsets of sets begin with 0 and do not decrease");
+  // The sphere has twice as many triangles as points.
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
+  if (offsets.back() > kMost) {
+    throw Error(ErrorKind::input,
+                "the sphere has too many points: at most " + std::to_string(kMost) + " are possible");
+  }
+  SphericalTriangulation mesh;
+  mesh.places = places_of(TriangulatorAccess::implementation(triangulator), points, offsets.back(),
+                          coordinates, "point");
+  mesh.point_offsets = offsets;
+  const Plane plane = make_plane(mesh.places, offsets);
+  Triangulation planar = triangulator.triangulate(plane.places.data(), plane.offsets);
+  number_by_points(plane, offsets.back(), planar);
+  return close_all(plane, std::move(planar), std::move(mesh));
+}
+
+std::vector<double> directions_of(const std::vector<double>& places) {
+  std::vector<double> directions;
+  directions.reserve(places.size() / 2 * 3);
+  for (std::size_t i = 0; i < places.size() / 2; ++i) {
+    const sphere::Direction d = sphere::direction_of(sphere::place_at(places, i));
+    directions.insert(directions.end(), {d.x, d.y, d.z});
+  }
+  return directions;
+}
+
+SphericalVoronoi voronoi_on_sphere(Triangulator& triangulator, const SphericalTriangulation& triangulation) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    check(triangulation);
+    return sphere::make_dual(self.native().runtime, triangulation);
+  });
+}
+
+struct SphereLocator::Implementation {
+  Implementation(Triangulator& used, const SphericalTriangulation& triangulation)
+      : owner(TriangulatorAccess::shared(used)), mesh(triangulation) {
+    check(mesh);
+    call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
+    walker.emplace(mesh);
+    plane = make_plane(mesh.places, mesh.point_offsets);
+    if (plane.places.empty()) return;
+    const std::size_t n = plane.places.size() / 2;
+    locator.emplace(used, plane.places.data(), n, used.triangulate(plane.places.data(), n));
+  }
+
+  /// Of each query's place a vertex near it; -1 if there are no points.
+  Ids starts(const std::vector<double>& places) {
+    const std::int32_t other = plane.poles[0].empty() ? -1 : plane.poles[0].front();
+    if (!locator) return Ids(places.size() / 2, other);
+    std::vector<double> in_plane = places;
+    for (double& x : in_plane) {
+      if (std::isinf(x)) x = 0;
+    }
+    Ids result = locator->nearest(in_plane.data(), in_plane.size() / 2);
+    if (!plane.points.empty()) {
+      for (std::int32_t& v : result) v = plane.points[static_cast<std::size_t>(v)];
+    }
+    return result;
+  }
+
+  /// Calls work(i, place, start) for each query, on several threads.
+  template <typename Work>
+  void answer(const double* queries, std::size_t m, SphereCoordinates coordinates, const Work& work) {
+    const std::vector<double> places = places_of(*owner, queries, m, coordinates, "query");
+    const Ids start = starts(places);
+    call::take_turn(*owner, [&] {
+      sphere::for_each(owner->native().runtime, m, [&](std::size_t i) {
+        if (start[i] >= 0) work(i, sphere::place_at(places, i), start[i]);
+      });
+    });
+  }
+
+  // A set without triangles has one or two points.
+  std::int32_t nearest_of_two(Point query) const {
+    std::int32_t best = -1;
+    for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+      if (mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
+      const Point p = sphere::place_at(mesh.places, i);
+      const int sign = best < 0 ? 1 : sphere::nearer(query, p, walker->place(best));
+      if (sign > 0 || (sign == 0 && sphere::comes_first(p, walker->place(best))))
+        best = static_cast<std::int32_t>(i);
+    }
+    return best;
+  }
+
+  sphere::Found locate(Point query, std::int32_t start) const {
+    return mesh.triangles.empty() ? sphere::Found() : walker->locate(query, walker->nearest(query, start));
+  }
+  std::int32_t nearest(Point query, std::int32_t start) const {
+    return mesh.triangles.empty() ? nearest_of_two(query) : walker->nearest(query, start);
+  }
+
+  std::shared_ptr<call::Implementation> owner;
+  SphericalTriangulation mesh;
+  std::optional<sphere::Walker> walker;
+  Plane plane;
+  std::optional<Locator> locator;
+};
+
+SphereLocator::SphereLocator(Triangulator& triangulator, const SphericalTriangulation& triangulation)
+    : implementation_(std::make_unique<Implementation>(triangulator, triangulation)) {}
+SphereLocator::~SphereLocator() = default;
+SphereLocator::SphereLocator(SphereLocator&&) noexcept = default;
+SphereLocator& SphereLocator::operator=(SphereLocator&&) noexcept = default;
+
+std::vector<std::int32_t> SphereLocator::locate(const double* queries, std::size_t m,
+                                                SphereCoordinates coordinates) {
+  Ids result(m, -1);
+  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
+    result[i] = implementation_->locate(query, start).triangle;
+  });
+  return result;
+}
+
+std::vector<std::int32_t> SphereLocator::nearest(const double* queries, std::size_t m,
+                                                 SphereCoordinates coordinates) {
+  Ids result(m, -1);
+  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
+    result[i] = implementation_->nearest(query, start);
+  });
+  return result;
+}
+
+std::vector<double> SphereLocator::interpolate(const double* values, std::size_t columns,
+                                               const double* queries, std::size_t m,
+                                               SphereCoordinates coordinates) {
+  call::expect(columns > 0, "columns: at least one number per point is needed");
+  call::expect(values != nullptr || implementation_->mesh.places.empty(), "no values: the pointer is null");
+  std::vector<double> result(columns * m, std::numeric_limits<double>::quiet_NaN());
+  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
+    const sphere::Found found = implementation_->locate(query, start);
+    if (found.triangle < 0) return;
+    const std::array<double, 3> weights = implementation_->walker->weights(found, query);
+    for (std::size_t c = 0; c < columns; ++c) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v =
+            static_cast<std::size_t>(implementation_->walker->corner(found.triangle, static_cast<int>(k)));
+        if (weights[k] != 0) sum += weights[k] * values[columns * v + c];
+      }
+      result[columns * i + c] = sum;
+    }
+  });
+  return result;
+}
+
+}  // namespace flaunay

@@ -1,0 +1,60 @@
+// Points of the unit sphere as places in a plane: the stereographic projection from the south pole.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "flaunay/sphere.hpp"
+#include "geometry/predicates.hpp"
+#include "host/runtime.hpp"
+
+namespace flaunay::sphere {
+
+using geometry::Point;
+
+/// Places are multiples of 2^-65, and below 2^62: what would be farther is the south pole.
+constexpr int kFinestExponent = -65, kLargestExponent = 62;
+
+inline bool is_pole(Point place) { return std::isinf(place.x); }
+inline Point pole() { return {HUGE_VAL, HUGE_VAL}; }
+inline Point place_at(const std::vector<double>& places, std::size_t i) {
+  return {places[2 * i], places[2 * i + 1]};
+}
+
+/// A vector in space.
+struct Direction {
+  double x, y, z;
+};
+inline Direction operator-(const Direction& a, const Direction& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline double dot(const Direction& a, const Direction& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Direction cross(const Direction& a, const Direction& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// The unit vector of a place, rounded.
+Direction direction_of(Point place);
+
+/// Calls work(i) for each i below n, on the runtime's threads.
+template <typename Work>
+void for_each(host::Runtime& runtime, std::size_t n, const Work& work) {
+  constexpr std::size_t kRun = 1 << 12;  // so many at a time
+  runtime.share((n + kRun - 1) / kRun, [&](std::size_t run) {
+    for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) work(i);
+  });
+}
+
+/// The number of coordinates of a point.
+constexpr std::size_t width_of(SphereCoordinates coordinates) {
+  return coordinates == SphereCoordinates::directions ? 3 : 2;
+}
+
+/// Returns x and y per point. The result is the same on every machine: it is made of operations that IEEE 754
+/// rounds correctly. Throws Error(input), with what: the name of a point, for those that are none.
+std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
+                              SphereCoordinates coordinates, const char* what);
+
+}  // namespace flaunay::sphere

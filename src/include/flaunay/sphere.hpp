@@ -1,0 +1,107 @@
+// Points on a sphere: their Delaunay triangulation, Voronoi cells, and queries.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay {
+
+/// How points of the unit sphere are given.
+enum class SphereCoordinates {
+  directions,  ///< x y z: any finite vector but 0; its length does not count
+  degrees,     ///< longitude to the east, any number, and latitude, -90 to 90
+};
+
+/// The Delaunay triangulations of one or more sets of points on the unit sphere: the convex hulls of the
+/// points in space. Points and triangles are numbered over all sets.
+struct SphericalTriangulation {
+  /// x and y per point: where the line from the south pole through it meets the plane of the equator;
+  /// infinite for the south pole. They are rounded once and are then what the point is: every pair of numbers
+  /// is a point that lies on the sphere exactly.
+  std::vector<double> places;
+  /// 3 per triangle, counter-clockwise as seen from outside, smallest index first. A set of n > 2 different
+  /// points has 2 n - 4. If all lie on one circle, they are the two sides of a polygon. Where more than three
+  /// are cocircular, their polygon is a fan from the first of them: the south pole, or else the smallest
+  /// place, x before y.
+  std::vector<std::int32_t> triangles;
+  /// 3 per triangle: the triangle opposite to each vertex. There is always one.
+  std::vector<std::int32_t> neighbors;
+  /// One per point: the smallest index of a point of its set with the same place.
+  std::vector<std::int32_t> representatives;
+  /// sets + 1 values: set s has points [point_offsets[s], point_offsets[s + 1]).
+  std::vector<std::size_t> point_offsets;
+  /// sets + 1 values: set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]).
+  std::vector<std::size_t> triangle_offsets;
+  Statistics statistics;  ///< of the triangulation of places in the plane
+};
+
+/// Triangulates n points of the sphere: their places in the plane, and around the south pole what is beyond
+/// the hull there, which is the farthest-point Delaunay triangulation of the hull (Brown, 1979). So the
+/// result is exact and canonical as that in the plane is. Throws what Triangulator::triangulate throws;
+/// Error(input) also for the direction 0 and for a latitude beyond a pole. O(n log n) work.
+FLAUNAY_API SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
+                                                      std::size_t n, SphereCoordinates coordinates);
+/// Triangulates many sets at once. Set s has points [offsets[s], offsets[s + 1]).
+FLAUNAY_API SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
+                                                      const std::vector<std::size_t>& offsets,
+                                                      SphereCoordinates coordinates);
+
+/// Returns x y z per place: unit vectors, rounded.
+FLAUNAY_API std::vector<double> directions_of(const std::vector<double>& places);
+
+/// The Voronoi cells of points on the unit sphere.
+struct SphericalVoronoi {
+  /// x y z per triangle: the centre of the empty cap whose rim passes through its corners, rounded.
+  std::vector<double> centres;
+  /// n + 1 values: the cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells.
+  std::vector<std::int32_t> cell_offsets;
+  /// The triangles whose centres are the corners of the cells, counter-clockwise as seen from outside,
+  /// smallest first. Points that another point represents have none, nor have one or two points.
+  std::vector<std::int32_t> cells;
+  /// n values: the areas of the cells, of which those of a set sum to 4 pi; rounded by some 1e-15, and if all
+  /// points are within an angle r, by that divided by r^2. Points that another one represents have 0, two
+  /// points a hemisphere each, and a point alone the sphere.
+  std::vector<double> areas;
+};
+
+/// Computes the dual of a triangulation on the sphere. Throws Error(usage) for arrays that are none's. O(n).
+FLAUNAY_API SphericalVoronoi voronoi_on_sphere(Triangulator& triangulator,
+                                               const SphericalTriangulation& triangulation);
+
+/// Answers queries on a sphere with one set of points. Queries are given as points are, and are rounded to
+/// places as these. Of the points' places the plane's locator finds one near the query's, from which an exact
+/// walk goes on over the sphere.
+class FLAUNAY_API SphereLocator {
+ public:
+  /// Makes a locator, which copies what it needs. Throws Error(usage) for several sets and for arrays that
+  /// are no triangulation's. O(n log n).
+  SphereLocator(Triangulator& triangulator, const SphericalTriangulation& triangulation);
+  ~SphereLocator();
+  /// A locator that was moved from can only be destroyed or assigned to.
+  SphereLocator(SphereLocator&&) noexcept;
+  /// Releases the memory of the locator that is assigned to.
+  SphereLocator& operator=(SphereLocator&&) noexcept;
+
+  /// Finds for each of m queries the triangle between whose sides, which are arcs of great circles, it lies;
+  /// exactly. On an arc or at a corner it is the triangle of the smallest index. It is -1 beyond a set that
+  /// lies within a hemisphere.
+  std::vector<std::int32_t> locate(const double* queries, std::size_t m, SphereCoordinates coordinates);
+  /// Finds for each of m queries the nearest point, exactly; of several the south pole, or else the one with
+  /// the smallest place. It is -1 if there are no points.
+  std::vector<std::int32_t> nearest(const double* queries, std::size_t m, SphereCoordinates coordinates);
+  /// Computes for each of m queries the value at the place where its direction meets the triangle in space,
+  /// which is linear there (Renka, 1984): `columns` numbers per point and per query. At a point it is that
+  /// point's value; where there is no triangle, NaN.
+  std::vector<double> interpolate(const double* values, std::size_t columns, const double* queries,
+                                  std::size_t m, SphereCoordinates coordinates);
+
+ private:
+  struct FLAUNAY_LOCAL Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace flaunay

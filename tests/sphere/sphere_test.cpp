@@ -1,0 +1,493 @@
+// Triangulations on the sphere against rational arithmetic: convex hulls, cells and queries by brute force.
+#include "flaunay/sphere.hpp"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/fixtures.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::sphere {
+namespace {
+
+using Numbers = std::vector<double>;
+using Ids = std::vector<std::int32_t>;
+constexpr SphereCoordinates kDirections = SphereCoordinates::directions;
+constexpr SphereCoordinates kDegrees = SphereCoordinates::degrees;
+
+/// A point exactly, times 1 + x^2 + y^2 > 0, which comes last.
+using Exact = std::array<mpq_class, 4>;
+
+Exact exact(double x, double y) {
+  if (std::isinf(x)) return {0, 0, -1, 1};
+  const mpq_class u(x), v(y), square = u * u + v * v;
+  return {2 * u, 2 * v, 1 - square, 1 + square};
+}
+
+mpq_class det3(const Exact& a, const Exact& b, const Exact& c, int i, int j, int k) {
+  const auto at = [](const Exact& p, int index) -> const mpq_class& {
+    return p[static_cast<std::size_t>(index)];
+  };
+  return at(a, i) * (at(b, j) * at(c, k) - at(b, k) * at(c, j)) -
+         at(a, j) * (at(b, i) * at(c, k) - at(b, k) * at(c, i)) +
+         at(a, k) * (at(b, i) * at(c, j) - at(b, j) * at(c, i));
+}
+
+/// 1 if d lies outside of the plane through a, b, c, which are counter-clockwise as seen from there.
+int outside(const Exact& a, const Exact& b, const Exact& c, const Exact& d) {
+  const mpq_class det = d[0] * det3(a, b, c, 1, 2, 3) - d[1] * det3(a, b, c, 0, 2, 3) +
+                        d[2] * det3(a, b, c, 0, 1, 3) - d[3] * det3(a, b, c, 0, 1, 2);
+  return sgn(det);
+}
+
+int turn_of(const Exact& a, const Exact& b, const Exact& c) { return sgn(det3(a, b, c, 0, 1, 2)); }
+
+/// The cosine of two points' angle, exactly.
+mpq_class cosine(const Exact& a, const Exact& b) {
+  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / (a[3] * b[3]);
+}
+
+std::vector<Exact> exact_places(const SphericalTriangulation& mesh) {
+  std::vector<Exact> points;
+  for (std::size_t i = 0; i < mesh.places.size(); i += 2)
+    points.push_back(exact(mesh.places[i], mesh.places[i + 1]));
+  return points;
+}
+
+/// In the canonical order, the south pole is the first.
+bool comes_first(const SphericalTriangulation& mesh, std::int32_t a, std::int32_t b) {
+  const auto place = [&](std::int32_t v) {
+    const double* const p = &mesh.places[2 * static_cast<std::size_t>(v)];
+    return std::isinf(p[0]) ? std::pair(-HUGE_VAL, -HUGE_VAL) : std::pair(p[0], p[1]);
+  };
+  return place(a) < place(b);
+}
+
+/// Of one set: that it is the convex hull, each face a fan from its first vertex, with the right neighbours.
+void expect_hull(const SphericalTriangulation& mesh) {
+  const std::vector<Exact> points = exact_places(mesh);
+  std::set<std::pair<double, double>> different;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto place = std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]);
+    const auto representative = static_cast<std::size_t>(mesh.representatives[i]);
+    ASSERT_EQ(different.insert(place).second, representative == i);
+    ASSERT_EQ(place, std::pair(mesh.places[2 * representative], mesh.places[2 * representative + 1]));
+  }
+  const std::size_t n = different.size(), triangles = mesh.triangles.size() / 3;
+  ASSERT_EQ(n > 2 ? 2 * n - 4 : 0, triangles);
+  ASSERT_EQ(3 * triangles, mesh.neighbors.size());
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const std::int32_t* const v = &mesh.triangles[3 * t];
+    const auto at = [&](std::size_t k) -> const Exact& { return points[static_cast<std::size_t>(v[k % 3])]; };
+    ASSERT_TRUE(v[0] < v[1] && v[0] < v[2] && v[1] != v[2]);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      ASSERT_LE(outside(at(0), at(1), at(2), points[i]), 0) << t << " " << i;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto beyond = static_cast<std::size_t>(mesh.neighbors[3 * t + k]);
+      ASSERT_LT(beyond, triangles);
+      const std::int32_t* const w = &mesh.triangles[3 * beyond];
+      std::size_t opposite = 3;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (w[j] == v[(k + 2) % 3] && w[(j + 1) % 3] == v[(k + 1) % 3]) opposite = (j + 2) % 3;
+      }
+      ASSERT_LT(opposite, 3u);
+      ASSERT_EQ(static_cast<std::int32_t>(t), mesh.neighbors[3 * beyond + opposite]);
+      // The diagonals of a face go from its first vertex. Of a polygon with two sides, border edges are flat,
+      // too.
+      if (outside(at(0), at(1), at(2), points[static_cast<std::size_t>(w[opposite])]) != 0) continue;
+      if (v[k] == w[opposite]) continue;
+      const auto is_first = [&](std::int32_t u) {
+        return !comes_first(mesh, v[0], u) && !comes_first(mesh, v[1], u) && !comes_first(mesh, v[2], u) &&
+               !comes_first(mesh, w[opposite], u);
+      };
+      const bool on_both_sides = std::all_of(
+          points.begin(), points.end(), [&](const Exact& p) { return outside(at(0), at(1), at(2), p) == 0; });
+      if (on_both_sides) continue;
+      ASSERT_TRUE(is_first(v[(k + 1) % 3]) || is_first(v[(k + 2) % 3])) << t;
+    }
+  }
+}
+
+SphericalTriangulation triangulated(const Numbers& points, SphereCoordinates coordinates) {
+  return triangulate_sphere(testing::triangulator(), points.data(),
+                            points.size() / (coordinates == kDirections ? 3 : 2), coordinates);
+}
+
+struct Case {
+  std::string name;
+  SphereCoordinates coordinates;
+  Numbers points;
+};
+
+Numbers random_directions(std::size_t n, std::uint64_t seed) {
+  testing::FixtureRandom random(seed);
+  Numbers points;
+  while (points.size() < 3 * n) {
+    const double x = random.unit() * 2 - 1, y = random.unit() * 2 - 1, z = random.unit() * 2 - 1;
+    const double square = x * x + y * y + z * z;
+    if (square > 0.01 && square < 1) points.insert(points.end(), {x, y, z});
+  }
+  return points;
+}
+
+/// Every degenerate kind of set, all small.
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const std::size_t n : {0, 1, 2, 3, 4, 5, 8, 20, 60}) {
+    all.push_back({"random " + std::to_string(n), kDirections, random_directions(n, 7 + n)});
+  }
+  Numbers lattice, octahedron, cube;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        const Numbers p = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+        if (x != 0 || y != 0 || z != 0) lattice.insert(lattice.end(), p.begin(), p.end());
+        if (std::abs(x) + std::abs(y) + std::abs(z) == 1)
+          octahedron.insert(octahedron.end(), p.begin(), p.end());
+        if (std::abs(x) * std::abs(y) * std::abs(z) == 1) cube.insert(cube.end(), p.begin(), p.end());
+      }
+    }
+  }
+  all.push_back({"lattice", kDirections, lattice});
+  all.push_back({"octahedron", kDirections, octahedron});
+  all.push_back({"cube", kDirections, cube});
+  Numbers globe, parallel, equator, meridian, half_meridian, cap, far_cap;
+  for (int latitude = -90; latitude <= 90; latitude += 30) {
+    for (int longitude = -180; longitude <= 180; longitude += 45) {
+      globe.insert(globe.end(), {static_cast<double>(longitude), static_cast<double>(latitude)});
+    }
+  }
+  for (int k = 0; k < 16; ++k) {
+    parallel.insert(parallel.end(), {22.5 * k, 60.0});
+    equator.insert(equator.end(), {22.5 * k, 0.0});
+    meridian.insert(meridian.end(), {k < 8 ? 0.0 : 180.0, k % 8 * 180.0 / 7 - 90});
+    half_meridian.insert(half_meridian.end(), {90.0, 8.0 * k - 60});
+  }
+  const Numbers directions = random_directions(12, 99);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const double axis = i % 3 == 2 ? 1 : 0;
+    cap.push_back(axis + directions[i] * 0x1p-40);
+    far_cap.push_back(directions[i] * 0x1p-45 - axis);
+  }
+  all.push_back({"globe", kDegrees, globe});
+  all.push_back({"parallel", kDegrees, parallel});
+  all.push_back({"equator", kDegrees, equator});
+  all.push_back({"meridian with both poles", kDegrees, meridian});
+  all.push_back({"half a meridian", kDegrees, half_meridian});
+  all.push_back({"cap in the north", kDirections, cap});
+  all.push_back({"cap in the south", kDirections, far_cap});
+  far_cap.insert(far_cap.end(), {0, 0, -3});
+  all.push_back({"cap around the pole", kDirections, far_cap});
+  all.push_back({"poles", kDegrees, {17, -90, 0, -90, 3, 90}});
+  all.push_back({"poles and one", kDegrees, {17, -90, 5, 5, 3, 90, 17, -90}});
+  // Tangents of the half angle are 3/4 and others: exactly cocircular, on a hull without the pole.
+  Numbers circle;
+  for (const double a : {3.0, 4.0, -3.0, -4.0, 5.0, 0.0, -5.0}) {
+    for (const double sign : {1.0, -1.0}) {
+      const double b = sign * std::sqrt(25 - a * a);
+      circle.insert(circle.end(), {2 * a, 2 * b, 1 - 25.0});
+    }
+  }
+  all.push_back({"circle", kDirections, circle});
+  circle.insert(circle.end(), {0, 0, 1, 1, 1, 20});
+  all.push_back({"circle around others", kDirections, circle});
+  return all;
+}
+
+TEST(SmallSphere, TrianglesAreTheConvexHull) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    expect_hull(triangulated(c.points, c.coordinates));
+  }
+}
+
+TEST(SmallSphere, ResultsDoNotDependOnTheOrderOfPoints) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const std::size_t width = c.coordinates == kDirections ? 3 : 2, n = c.points.size() / width;
+    Numbers turned;
+    for (std::size_t i = n; i-- > 0;) {
+      turned.insert(turned.end(), &c.points[width * i], &c.points[width * i] + width);
+    }
+    const auto faces = [&](const SphericalTriangulation& mesh) {
+      std::multiset<std::array<std::pair<double, double>, 3>> result;
+      for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        std::array<std::pair<double, double>, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double* const p = &mesh.places[2 * static_cast<std::size_t>(mesh.triangles[t + k])];
+          corners[k] = {p[0], p[1]};
+        }
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        result.insert(corners);
+      }
+      return result;
+    };
+    EXPECT_EQ(faces(triangulated(c.points, c.coordinates)), faces(triangulated(turned, c.coordinates)));
+  }
+}
+
+TEST(SmallSphere, ManySetsAreEachAsAlone) {
+  Numbers points;
+  std::vector<std::size_t> offsets = {0};
+  std::vector<SphericalTriangulation> alone;
+  for (const Case& c : cases()) {
+    if (c.coordinates != kDirections) continue;
+    points.insert(points.end(), c.points.begin(), c.points.end());
+    offsets.push_back(points.size() / 3);
+    alone.push_back(triangulated(c.points, kDirections));
+  }
+  const SphericalTriangulation all =
+      triangulate_sphere(testing::triangulator(), points.data(), offsets, kDirections);
+  ASSERT_EQ(alone.size() + 1, all.triangle_offsets.size());
+  for (std::size_t s = 0; s < alone.size(); ++s) {
+    const std::size_t first = all.triangle_offsets[s], last = all.triangle_offsets[s + 1];
+    ASSERT_EQ(alone[s].triangles.size(), 3 * (last - first));
+    for (std::size_t i = 0; i < alone[s].triangles.size(); ++i) {
+      ASSERT_EQ(alone[s].triangles[i] + static_cast<std::int32_t>(offsets[s]), all.triangles[3 * first + i]);
+      ASSERT_EQ(alone[s].neighbors[i] + static_cast<std::int32_t>(first), all.neighbors[3 * first + i]);
+    }
+    for (std::size_t i = 0; i < alone[s].representatives.size(); ++i) {
+      ASSERT_EQ(alone[s].representatives[i] + static_cast<std::int32_t>(offsets[s]),
+                all.representatives[offsets[s] + i]);
+    }
+  }
+}
+
+TEST(SmallSphere, PlacesAreThoseOfTheirDirections) {
+  const SphericalTriangulation mesh =
+      triangulated({0, 0, 0, 90, 90, 0, -90, 0, 180, 0, 123, -90, 540, 0, 30, 90, 45, 30}, kDegrees);
+  const double kFar = HUGE_VAL;
+  const Numbers places = {1, 0, 0, 0, 0, 1, 0, -1, -1, 0, kFar, kFar, -1, 0, 0, 0};
+  EXPECT_EQ(places, Numbers(mesh.places.begin(), mesh.places.end() - 2));
+  EXPECT_EQ((Ids{0, 1, 2, 3, 4, 5, 4, 1, 8}), mesh.representatives);
+  // tan(30 degrees) at 45 degrees.
+  EXPECT_DOUBLE_EQ(std::sqrt(1.0 / 6), mesh.places[16]);
+  EXPECT_DOUBLE_EQ(std::sqrt(1.0 / 6), mesh.places[17]);
+  // Degrees and directions agree, and directions return, to the last bits.
+  testing::FixtureRandom random(5);
+  for (int i = 0; i < 1000; ++i) {
+    const double longitude = random.unit() * 720 - 360, latitude = random.unit() * 180 - 90;
+    const double a = longitude * std::numbers::pi / 180, b = latitude * std::numbers::pi / 180;
+    const Numbers direction = {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)};
+    const Numbers of_degrees = directions_of(triangulated({longitude, latitude}, kDegrees).places);
+    const Numbers of_direction = directions_of(triangulated(direction, kDirections).places);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(direction[k], of_degrees[k], 2e-15);
+      EXPECT_NEAR(direction[k], of_direction[k], 1e-15);
+    }
+  }
+  // Of any length.
+  for (const double length : {1e-320, 1e-160, 1.0, 1e160, 1e308}) {
+    const Numbers of_direction = directions_of(triangulated({length, 0, -length}, kDirections).places);
+    EXPECT_NEAR(std::sqrt(0.5), of_direction[0], 1e-15);
+    EXPECT_NEAR(-std::sqrt(0.5), of_direction[2], 1e-15);
+  }
+}
+
+TEST(SmallSphere, CellsAreThoseOfTheirPoints) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    const SphericalVoronoi dual = voronoi_on_sphere(testing::triangulator(), mesh);
+    const Numbers directions = directions_of(mesh.places);
+    const std::size_t n = directions.size() / 3;
+    const auto across = [](const double* a, const double* b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+      const double* const centre = &dual.centres[3 * t];
+      EXPECT_NEAR(1, across(centre, centre), 1e-15);
+      double nearest = -1;
+      for (std::size_t i = 0; i < n; ++i) nearest = std::max(nearest, across(centre, &directions[3 * i]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(nearest,
+                    across(centre, &directions[3 * static_cast<std::size_t>(mesh.triangles[3 * t + k])]),
+                    1e-12);
+      }
+    }
+    double area = 0;
+    const bool is_cap = c.name.starts_with("cap");  // where nothing is left of areas after rounding
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto first = dual.cells.begin() + dual.cell_offsets[i],
+                 last = dual.cells.begin() + dual.cell_offsets[i + 1];
+      area += dual.areas[i];
+      if (!is_cap) {
+        EXPECT_GE(dual.areas[i], -1e-13);
+      }
+      if (first == last) continue;
+      EXPECT_EQ(*first, *std::min_element(first, last));
+      for (auto at = first; at != last; ++at) {
+        const auto t = static_cast<std::size_t>(*at);
+        const auto next = static_cast<std::size_t>(at + 1 == last ? *first : at[1]);
+        const std::int32_t* const v = &mesh.triangles[3 * t];
+        const auto k = static_cast<std::size_t>(std::find(v, v + 3, static_cast<std::int32_t>(i)) - v);
+        ASSERT_LT(k, 3u);
+        EXPECT_EQ(next, static_cast<std::size_t>(mesh.neighbors[3 * t + (k + 1) % 3]));
+      }
+    }
+    if (!is_cap) {
+      EXPECT_NEAR(n > 0 ? 4 * std::numbers::pi : 0, area, 1e-12);
+    }
+  }
+  const SphericalVoronoi octahedron =
+      voronoi_on_sphere(testing::triangulator(),
+                        triangulated({1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1}, kDirections));
+  for (const double area : octahedron.areas) EXPECT_NEAR(4 * std::numbers::pi / 6, area, 1e-14);
+}
+
+TEST(SmallSphere, QueriesFindTheirTrianglesAndNearestPoints) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    SphereLocator locator(testing::triangulator(), mesh);
+    Numbers queries = random_directions(40, 3);
+    const Numbers own = directions_of(mesh.places);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      queries.push_back(own[i]);
+      if (i % 3 == 2) queries.insert(queries.end(), {-own[i - 2], -own[i - 1], -own[i]});
+    }
+    queries.insert(queries.end(), {0, 0, -1, 0, 0, 1, 1, 0, 0});
+    const std::size_t m = queries.size() / 3;
+    const Ids found = locator.locate(queries.data(), m, kDirections);
+    const Ids nearest = locator.nearest(queries.data(), m, kDirections);
+    const std::vector<Exact> points = exact_places(mesh),
+                             asked = exact_places(triangulated(queries, kDirections));
+    Numbers values;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      values.insert(values.end(), {static_cast<double>(i), own[3 * i] + 2 * own[3 * i + 1]});
+    const Numbers between = locator.interpolate(values.data(), 2, queries.data(), m, kDirections);
+    for (std::size_t q = 0; q < m; ++q) {
+      std::int32_t best = -1;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
+        const auto v = static_cast<std::int32_t>(i);
+        const int sign = best < 0 ? 1
+                                  : cmp(cosine(asked[q], points[i]),
+                                        cosine(asked[q], points[static_cast<std::size_t>(best)]));
+        if (sign > 0 || (sign == 0 && comes_first(mesh, v, best))) best = v;
+      }
+      EXPECT_EQ(best, nearest[q]) << q;
+      std::int32_t within = -1;
+      for (std::size_t t = 0; t < mesh.triangles.size() / 3 && within < 0; ++t) {
+        const auto at = [&](std::size_t k) -> const Exact& {
+          return points[static_cast<std::size_t>(mesh.triangles[3 * t + k % 3])];
+        };
+        if (turn_of(at(0), at(1), at(2)) <= 0) continue;
+        bool is_in = true;
+        for (std::size_t k = 0; k < 3; ++k) is_in = is_in && turn_of(at(k), at(k + 1), asked[q]) >= 0;
+        if (is_in) within = static_cast<std::int32_t>(t);
+      }
+      EXPECT_EQ(within, found[q]) << q;
+      EXPECT_EQ(within < 0, std::isnan(between[2 * q]));
+      if (best >= 0 && within >= 0 && cosine(asked[q], points[static_cast<std::size_t>(best)]) == 1) {
+        EXPECT_EQ(static_cast<double>(best), between[2 * q]);
+      }
+    }
+  }
+}
+
+TEST(SmallSphere, LinearFunctionsInSpaceAreInterpolated) {
+  // On the triangle in space, which is where the values are linear: of x / (the plane's value), at the query.
+  const SphericalTriangulation mesh = triangulated(random_directions(50, 11), kDirections);
+  SphereLocator locator(testing::triangulator(), mesh);
+  const Numbers own = directions_of(mesh.places), queries = random_directions(100, 12);
+  const Ids found = locator.locate(queries.data(), 100, kDirections);
+  const Numbers between = locator.interpolate(own.data(), 3, queries.data(), 100, kDirections);
+  for (std::size_t q = 0; q < 100; ++q) {
+    ASSERT_GE(found[q], 0);
+    // The interpolated position has the query's direction.
+    const double* const p = &between[3 * q];
+    const double* const asked = &queries[3 * q];
+    const double length = std::sqrt(asked[0] * asked[0] + asked[1] * asked[1] + asked[2] * asked[2]);
+    const double size = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(asked[k] / length, p[k] / size, 1e-14);
+  }
+}
+
+template <typename Work>
+void expect_failure(ErrorKind kind, const char* part, const Work& work) {
+  try {
+    work();
+    FAIL() << "no error: " << part;
+  } catch (const Error& error) {
+    EXPECT_EQ(kind, error.kind());
+    EXPECT_NE(std::string::npos, std::string(error.what()).find(part)) << error.what();
+  }
+}
+
+TEST(SmallSphere, ErrorsSayWhatIsWrong) {
+  expect_failure(ErrorKind::input, "point 1: the latitude 90.5", [] {
+    triangulated({0, 0, 7, 90.5}, kDegrees);
+  });
+  expect_failure(ErrorKind::input, "point 1 is the vector 0", [] {
+    triangulated({0, 0, 7, 0, 0, 0}, kDirections);
+  });
+  expect_failure(ErrorKind::input, "point 0 is not finite", [] { triangulated({HUGE_VAL, 0}, kDegrees); });
+  expect_failure(ErrorKind::usage, "null",
+                 [] { triangulate_sphere(testing::triangulator(), nullptr, 3, kDegrees); });
+  expect_failure(ErrorKind::usage, "offsets", [] {
+    const double points[] = {1, 2, 3, 4};
+    triangulate_sphere(testing::triangulator(), points, {1, 2}, kDegrees);
+  });
+  SphericalTriangulation mesh = triangulated(random_directions(9, 1), kDirections);
+  SphereLocator locator(testing::triangulator(), mesh);
+  const double query[] = {0, 100};
+  expect_failure(ErrorKind::input, "query 0: the latitude 100", [&] { locator.nearest(query, 1, kDegrees); });
+  mesh.neighbors[4] = (mesh.neighbors[4] + 1) % 14;
+  expect_failure(ErrorKind::usage, "triangulation on the sphere",
+                 [&] { voronoi_on_sphere(testing::triangulator(), mesh); });
+  expect_failure(ErrorKind::usage, "triangulation on the sphere",
+                 [&] { SphereLocator(testing::triangulator(), mesh); });
+}
+
+TEST(Sphere, ManyPointsHaveAllTriangles) {
+  // A hull of 3,000 points around the pole, and as many elsewhere.
+  Numbers points = random_directions(3000, 21);
+  for (int k = 0; k < 3000; ++k) {
+    const double angle = k * 2 * std::numbers::pi / 3000;
+    points.insert(points.end(), {std::cos(angle), std::sin(angle), -20.0});
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    const double length =
+        std::sqrt(points[i] * points[i] + points[i + 1] * points[i + 1] + points[i + 2] * points[i + 2]);
+    if (points[i + 2] < -20 / std::sqrt(401) * length && points[i + 2] != -20) continue;
+    std::copy_n(&points[i], 3, &points[kept]);
+    kept += 3;
+  }
+  points.resize(kept);
+  const SphericalTriangulation mesh = triangulated(points, kDirections);
+  EXPECT_EQ(2 * kept / 3 - 4, mesh.triangles.size() / 3);
+  const SphericalVoronoi dual = voronoi_on_sphere(testing::triangulator(), mesh);
+  double area = 0;
+  for (const double each : dual.areas) area += each;
+  EXPECT_NEAR(4 * std::numbers::pi, area, 1e-10);
+  // Each edge is locally convex, exactly, and the surface closed: so it is the hull.
+  const std::vector<Exact> exact_points = exact_places(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+    const auto at = [&](std::size_t k) -> const Exact& {
+      return exact_points[static_cast<std::size_t>(mesh.triangles[3 * t + k])];
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t* const w = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[3 * t + k])];
+      for (std::size_t j = 0; j < 3; ++j) {
+        ASSERT_LE(outside(at(0), at(1), at(2), exact_points[static_cast<std::size_t>(w[j])]), 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::sphere
