@@ -1671,6 +1671,54 @@ static void test_raster(void) {
       FLAUNAY_ERROR_USAGE, "NULL"));
 }
 
+static void test_sphere(void) {
+  const double places[] = {0, 0, 90, 0, 0, 90, 0, -90, 0, 90}, values[] = {1, 2, 3, 4, 5};
+  const double queries[] = {10, 20, -100, -80};
+  const int degrees = FLAUNAY_SPHERE_DEGREES;
+  flaunay_spherical *spherical = NULL, *none = NULL;
+  REQUIRE(flaunay_spherical_create(triangulator, places, 5, NULL, 0, degrees, &spherical) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_spherical_point_count(spherical) == 5 && flaunay_spherical_triangle_count(spherical) == 4);
+  const int32_t* const triangles = flaunay_spherical_triangles(spherical);
+  const int32_t* const neighbors = flaunay_spherical_neighbors(spherical);
+  for (size_t c = 0; c < 12; ++c) CHECK(triangles[c] < 4 && neighbors[c] >= 0 && neighbors[c] < 4);
+  CHECK(flaunay_spherical_representatives(spherical)[4] == 2);
+  CHECK(flaunay_spherical_triangle_offsets(spherical)[1] == 4);
+  CHECK(flaunay_spherical_places(spherical)[0] == 1 && isinf(flaunay_spherical_places(spherical)[6]));
+  double directions[15] = {0};
+  REQUIRE(flaunay_spherical_directions(spherical, directions) == FLAUNAY_SUCCESS);
+  CHECK(directions[0] == 1 && directions[4] == 1 && directions[8] == 1 && directions[11] == -1);
+
+  flaunay_spherical_voronoi* voronoi = NULL;
+  REQUIRE(flaunay_spherical_voronoi_create(triangulator, spherical, &voronoi) == FLAUNAY_SUCCESS);
+  double sum = 0;
+  for (size_t i = 0; i < 5; ++i) sum += flaunay_spherical_voronoi_areas(voronoi)[i];
+  CHECK(fabs(sum - 4 * acos(-1)) < 1e-12);
+  CHECK(flaunay_spherical_voronoi_cell_offsets(voronoi)[5] == 12);
+  CHECK(flaunay_spherical_voronoi_cells(voronoi)[0] >= 0);
+  CHECK(fabs(flaunay_spherical_voronoi_centres(voronoi)[0]) <= 1);
+
+  flaunay_spherical_locator* locator = NULL;
+  REQUIRE(flaunay_spherical_locator_create(triangulator, spherical, &locator) == FLAUNAY_SUCCESS);
+  int32_t found[2] = {0}, nearest[2] = {0};
+  double between[2] = {0};
+  REQUIRE(flaunay_spherical_locator_locate(locator, queries, 2, degrees, found) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_spherical_locator_nearest(locator, queries, 2, degrees, nearest) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_spherical_locator_interpolate(locator, values, 1, places, 2, degrees, between) ==
+          FLAUNAY_SUCCESS);
+  CHECK(found[0] >= 0 && found[1] == -1 && nearest[0] == 0 && nearest[1] == 3);
+  CHECK(between[0] == 1 && between[1] == 2);
+  CHECK(fails(flaunay_spherical_locator_nearest(locator, queries, 2, 2, nearest), FLAUNAY_ERROR_USAGE,
+              "2 is no flaunay_sphere_coordinates"));
+  CHECK(fails(flaunay_spherical_locator_nearest(locator, NULL, 2, degrees, nearest), FLAUNAY_ERROR_USAGE,
+              "NULL"));
+  CHECK(fails(flaunay_spherical_create(triangulator, (const double[]){0, 99}, 1, NULL, 0, degrees, &none),
+              FLAUNAY_ERROR_INPUT, "latitude 99"));
+  CHECK(none == NULL && flaunay_spherical_triangles(NULL) == NULL);
+  flaunay_spherical_locator_destroy(locator);
+  flaunay_spherical_voronoi_destroy(voronoi);
+  flaunay_spherical_destroy(spherical);
+}
+
 static void test_relax_on_device(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, places[] = {1, 1, 1, 3};
   const flaunay_device_points input = {.memory = make_buffer(context, sizeof places, places), .count = 2};
@@ -2609,6 +2657,7 @@ static void test_all(void) {
   test_bad_dynamic();
   test_relax();
   test_raster();
+  test_sphere();
   test_locator();
   test_point_tree();
   test_queries_with_constraints();

@@ -51,6 +51,7 @@ from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
 from flaunay._refinement import RefinementReport
+from flaunay._sphere import SphericalDelaunay, SphericalVoronoi, spherical
 from flaunay._terrain import Terrain, terrain
 from flaunay._triangulate import refine, triangulate
 from flaunay._triangulation import Triangulation, modes
@@ -82,6 +83,8 @@ __all__ = [
     "NearestInterpolator",
     "PolygonTriangulation",
     "RefinementReport",
+    "SphericalDelaunay",
+    "SphericalVoronoi",
     "Terrain",
     "TriangleRows",
     "Triangulation",
@@ -97,6 +100,7 @@ __all__ = [
     "refine",
     "relax",
     "relax_device",
+    "spherical",
     "terrain",
     "triangle",
     "triangulate",

@@ -1457,3 +1457,100 @@ class DeviceLocator(_Locator):
         return _buffer_of(
             self._triangulator, function, self.pointer, values or None, options, enqueue
         )
+
+
+# ---- Points on a sphere
+
+
+def _sphere_coordinates(points: _Doubles) -> int:
+    return int(_declarations.SPHERE_COORDINATES["degrees" if points.shape[1] == 2 else "directions"])
+
+
+class _SphericalVoronoi(Handle):
+    _destroy = library.spherical_voronoi_destroy
+
+
+class Spherical(Handle):
+    """Triangulations of points on a sphere, as longitudes and latitudes or x, y and z."""
+
+    _destroy = library.spherical_destroy
+
+    def __init__(
+        self, triangulator: Triangulator, points: _Doubles, given_offsets: Optional[_Offsets]
+    ) -> None:
+        super().__init__()
+        n, points = len(points), _as_doubles(points)
+        offsets, sets = _as_offsets(given_offsets, n)
+        triangulator.call(
+            library.spherical_create,
+            *(triangulator.pointer, points, n, offsets, sets, _sphere_coordinates(points), self.place),
+        )
+        self.point_count, self._sets = n, sets or 1
+
+    def _array(self, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+        return _view(self, getattr(library, f"spherical_{name}")(self.pointer), shape, dtype)
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        n, triangles = self.point_count, library.spherical_triangle_count(self.pointer)
+        directions = np.empty((n, 3))
+        check(library.spherical_directions(self.pointer, _address_of(directions)))
+        return {
+            "directions": directions,
+            "places": self._array("places", (n, 2), _FLOAT64),
+            "triangles": self._array("triangles", (triangles, 3), _INT32),
+            "neighbors": self._array("neighbors", (triangles, 3), _INT32),
+            "representatives": self._array("representatives", (n,), _INT32),
+            "triangle_offsets": self._array("triangle_offsets", (self._sets + 1,), _INT64),
+        }
+
+    def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
+        made = _SphericalVoronoi()
+        triangulator.call(
+            library.spherical_voronoi_create, triangulator.pointer, self.pointer, made.place
+        )
+        n, triangles = self.point_count, library.spherical_triangle_count(self.pointer)
+        return {
+            name: _view(made, getattr(library, f"spherical_voronoi_{of}")(made.pointer), shape, dtype)
+            for name, of, shape, dtype in (
+                ("vertices", "centres", (triangles, 3), _FLOAT64),
+                ("cell_offsets", "cell_offsets", (n + 1,), _INT32),
+                ("cells", "cells", (3 * triangles,), _INT32),
+                ("areas", "areas", (n,), _FLOAT64),
+            )
+        }
+
+
+class SphericalLocator(_InTurns):
+    """Answers queries on a sphere."""
+
+    _destroy = library.spherical_locator_destroy
+
+    def __init__(self, triangulator: Triangulator, spherical: Spherical) -> None:
+        super().__init__(triangulator)
+        triangulator.call(
+            library.spherical_locator_create, triangulator.pointer, spherical.pointer, self.place
+        )
+
+    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+        found = np.empty(len(queries), np.int32)
+        queries = _as_doubles(queries)
+        kind = _sphere_coordinates(queries)
+        self._triangulator.call(function, self.pointer, queries, len(queries), kind, found)
+        return found
+
+    def locate(self, queries: _Doubles) -> _Indices:
+        return self._find(library.spherical_locator_locate, queries)
+
+    def nearest(self, queries: _Doubles) -> _Indices:
+        return self._find(library.spherical_locator_nearest, queries)
+
+    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
+        """A row of values at each query. values: one for each point."""
+        results = np.empty((len(queries), values.shape[1]))
+        values, queries = _as_doubles(values), _as_doubles(queries)
+        self._triangulator.call(
+            library.spherical_locator_interpolate,
+            *(self.pointer, values, values.shape[1], queries, len(queries)),
+            *(_sphere_coordinates(queries), results),
+        )
+        return results

@@ -1378,6 +1378,88 @@ FLAUNAY_API void flaunay_point_tree_destroy(flaunay_point_tree* tree);
 FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries,
                                                       size_t m, size_t count, double max_distance,
                                                       int32_t* points, double* distances);
+// ---- Points on a sphere
+
+/// How points of the unit sphere are given.
+typedef enum flaunay_sphere_coordinates {
+  FLAUNAY_SPHERE_DIRECTIONS = 0,  ///< x y z: any finite vector but 0; its length does not count
+  FLAUNAY_SPHERE_DEGREES = 1      ///< longitude to the east, any number, and latitude, -90 to 90
+} flaunay_sphere_coordinates;
+
+/// The Delaunay triangulations of sets of points on the unit sphere: their convex hulls in space.
+typedef struct flaunay_spherical flaunay_spherical;
+/// Triangulates n points of the sphere. coordinates: one of flaunay_sphere_coordinates. offsets and sets: as
+/// for flaunay_triangulate. Errors are those of flaunay_triangulate; the direction 0 and a latitude beyond a
+/// pole are FLAUNAY_ERROR_INPUT, too. The caller destroys the result. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_spherical_create(flaunay_triangulator* triangulator, const double* points,
+                                                    size_t n, const size_t* offsets, size_t sets,
+                                                    int coordinates, flaunay_spherical** spherical);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_spherical_destroy(flaunay_spherical* spherical);
+/// n, the number of points.
+FLAUNAY_API size_t flaunay_spherical_point_count(const flaunay_spherical* spherical);
+/// t, the number of triangles: 2 n - 4 for each set of n > 2 different points.
+FLAUNAY_API size_t flaunay_spherical_triangle_count(const flaunay_spherical* spherical);
+/// 2 n values: where the line from the south pole through a point meets the plane of the equator; infinite
+/// for the south pole. Rounded once; this is what the point is, and it lies on the sphere exactly.
+FLAUNAY_API const double* flaunay_spherical_places(const flaunay_spherical* spherical);
+/// 3 t values, counter-clockwise as seen from outside, smallest index first.
+FLAUNAY_API const int32_t* flaunay_spherical_triangles(const flaunay_spherical* spherical);
+/// 3 t values: the triangle opposite to each corner. There is always one.
+FLAUNAY_API const int32_t* flaunay_spherical_neighbors(const flaunay_spherical* spherical);
+/// n values: the smallest index of a point of the set with the same place.
+FLAUNAY_API const int32_t* flaunay_spherical_representatives(const flaunay_spherical* spherical);
+/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
+FLAUNAY_API const size_t* flaunay_spherical_triangle_offsets(const flaunay_spherical* spherical);
+/// Writes the unit vectors of points, rounded. directions: room for 3 n values.
+FLAUNAY_API flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical,
+                                                        double* directions);
+
+/// The Voronoi cells of points on the unit sphere.
+typedef struct flaunay_spherical_voronoi flaunay_spherical_voronoi;
+/// Computes the dual. The caller destroys the result. O(n).
+FLAUNAY_API flaunay_status flaunay_spherical_voronoi_create(flaunay_triangulator* triangulator,
+                                                            const flaunay_spherical* spherical,
+                                                            flaunay_spherical_voronoi** voronoi);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_spherical_voronoi_destroy(flaunay_spherical_voronoi* voronoi);
+/// 3 t values: the centre of the empty cap whose rim passes through a triangle's corners, rounded.
+FLAUNAY_API const double* flaunay_spherical_voronoi_centres(const flaunay_spherical_voronoi* voronoi);
+/// n + 1 values: the cell of point i has corners [offsets[i], offsets[i + 1]) of cells.
+FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cell_offsets(const flaunay_spherical_voronoi* voronoi);
+/// 3 t values: the triangles whose centres are the corners of cells, counter-clockwise as seen from outside,
+/// smallest first. Points that another point represents have none, nor have sets of one or two points.
+FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cells(const flaunay_spherical_voronoi* voronoi);
+/// n values: the areas of cells, rounded by some 1e-15, and if all points are within an angle r, by that
+/// divided by r^2. Those of a set sum to 4 pi.
+FLAUNAY_API const double* flaunay_spherical_voronoi_areas(const flaunay_spherical_voronoi* voronoi);
+
+/// Answers queries on a sphere with one set of points. Queries are given as points are.
+typedef struct flaunay_spherical_locator flaunay_spherical_locator;
+/// Makes a locator, which copies what it needs. It may outlive the triangulator. O(n log n).
+FLAUNAY_API flaunay_status flaunay_spherical_locator_create(flaunay_triangulator* triangulator,
+                                                            const flaunay_spherical* spherical,
+                                                            flaunay_spherical_locator** locator);
+/// Releases its memory.
+FLAUNAY_API void flaunay_spherical_locator_destroy(flaunay_spherical_locator* locator);
+/// Finds for each of m queries the triangle between whose sides, which are arcs of great circles, it lies;
+/// exactly. On an arc or at a corner it is the triangle of the smallest index. It is -1 beyond a set that
+/// lies within a hemisphere. triangles: room for m values.
+FLAUNAY_API flaunay_status flaunay_spherical_locator_locate(flaunay_spherical_locator* locator,
+                                                            const double* queries, size_t m, int coordinates,
+                                                            int32_t* triangles);
+/// Finds for each of m queries the nearest point, exactly; of several the south pole, or else the one with
+/// the smallest place, x before y. It is -1 if there are no points. points: room for m values.
+FLAUNAY_API flaunay_status flaunay_spherical_locator_nearest(flaunay_spherical_locator* locator,
+                                                             const double* queries, size_t m, int coordinates,
+                                                             int32_t* points);
+/// Computes for each of m queries the value at the place where its direction meets the triangle in space,
+/// which is linear there (Renka, 1984). values: `columns` numbers per point; results: so many per query. At a
+/// point it is that point's value; where there is no triangle, NaN.
+FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spherical_locator* locator,
+                                                                 const double* values, size_t columns,
+                                                                 const double* queries, size_t m,
+                                                                 int coordinates, double* results);
 
 // ---- Interpolation
 

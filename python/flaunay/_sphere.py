@@ -1,0 +1,294 @@
+"""Points on a sphere: their Delaunay triangulation, Voronoi cells, and queries."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _calls, _triangulators
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._errors import UsageError
+from flaunay._queries import Kept
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+
+def _as_points(given: ArrayLike, name: str) -> Doubles:
+    points = np.asarray(as_floats(given, name), np.float64)
+    if points.ndim == 0 or points.shape[-1] not in (2, 3):
+        raise UsageError(
+            f"{name} must be longitudes and latitudes, shape (..., 2), or x, y and z, "
+            f"shape (..., 3), not {points.shape}"
+        )
+    return points
+
+
+class SphericalVoronoi:
+    """The Voronoi cells of points on the unit sphere. `SphericalDelaunay.voronoi` has them.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (nsimplex, 3)
+        For each simplex the centre of the empty cap whose rim passes through its corners, rounded. Where
+        more than three points are cocircular, centres coincide.
+    cell_offsets : ndarray of int32, shape (npoints + 1,)
+        The cell of point i has the corners ``cells[cell_offsets[i]:cell_offsets[i + 1]]``.
+    cells : ndarray of int32, shape (3 * nsimplex,)
+        The vertices of cells, counter-clockwise as seen from outside. Points that another one represents
+        have none, nor has a set of one or two points.
+    areas : ndarray of float64, shape (npoints,)
+        The areas of cells. Those of a set sum to 4 pi. Rounded by some 1e-15, and if all points are
+        within an angle r, by that divided by the square of r.
+    """
+
+    def __init__(self, vertices: Doubles, cell_offsets: Indices, cells: Indices, areas: Doubles) -> None:
+        self.vertices = vertices
+        self.cell_offsets = cell_offsets
+        self.cells = cells
+        self.areas = areas
+
+    def __repr__(self) -> str:
+        return summary(self, points=len(self.areas), vertices=len(self.vertices))
+
+    @cached_property
+    def regions(self) -> list[list[int]]:
+        """For each point the vertices of its cell, counter-clockwise, as lists."""
+        ends = self.cell_offsets.tolist()
+        return [self.cells[first:last].tolist() for first, last in zip(ends, ends[1:])]
+
+
+class SphericalDelaunay:
+    """Delaunay triangulations of points on the unit sphere: their convex hulls. `spherical` makes them.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, 2) or (npoints, 3)
+        The points as they were given.
+    xyz : ndarray of float64, shape (npoints, 3)
+        Their unit vectors, rounded.
+    places : ndarray of float64, shape (npoints, 2)
+        Where the line from the south pole through a point meets the plane of the equator; infinite for the
+        south pole. Rounded once: this is what the point is, and it lies on the sphere exactly.
+    simplices : ndarray of int32, shape (nsimplex, 3)
+        The corners of triangles, counter-clockwise as seen from outside; 2 n - 4 for each set of n > 2
+        different points.
+    neighbors : ndarray of int32, shape (nsimplex, 3)
+        The triangle opposite to each corner. There is always one.
+    representatives : ndarray of int32, shape (npoints,)
+        The smallest index of a point of the set with the same place.
+    simplex_offsets : ndarray of int64, shape (nsets + 1,)
+        Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
+    """
+
+    def __init__(
+        self,
+        points: Doubles,
+        offsets: Optional[npt.NDArray[np.int64]],
+        device: Optional[str],
+    ) -> None:
+        self._given = points, offsets, device
+        self._handle = _calls.Spherical(_triangulators.of_device(device), points, offsets)
+        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
+        self.points = points
+        self.places: Doubles = arrays["places"]
+        self.xyz: Doubles = arrays["directions"]
+        self.simplices: Indices = arrays["triangles"]
+        self.neighbors: Indices = arrays["neighbors"]
+        self.representatives: Indices = arrays["representatives"]
+        self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
+        self._kept_locator: Kept[_calls.SphericalLocator] = Kept()
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.npoints, triangles=self.nsimplex)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The result is a function of the points.
+        return SphericalDelaunay, self._given
+
+    @property
+    def npoints(self) -> int:
+        return len(self.points)
+
+    @property
+    def nsimplex(self) -> int:
+        return len(self.simplices)
+
+    @cached_property
+    def voronoi(self) -> SphericalVoronoi:
+        """The Voronoi cells, computed when they are first asked for.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> octahedron = [[0, 0], [90, 0], [180, 0], [270, 0], [0, 90], [0, -90]]
+        >>> cells = flaunay.spherical(octahedron).voronoi
+        >>> (cells.areas * 6 / 3.141592653589793).round(9).tolist()
+        [4.0, 4.0, 4.0, 4.0, 4.0, 4.0]
+        >>> len(cells.regions[0])
+        4
+        """
+        arrays = self._handle.voronoi(_triangulators.of_device(self._given[2]))
+        return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()})
+
+    @property
+    def _locator(self) -> _calls.SphericalLocator:
+        return self._kept_locator.get(self._make_locator)
+
+    def _make_locator(self) -> _calls.SphericalLocator:
+        return _calls.SphericalLocator(_triangulators.of_device(self._given[2]), self._handle)
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """The triangles between whose sides, arcs of great circles, points lie, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes in degrees, or x, y and z.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Of several the triangle of the smallest index; -1 beyond points that lie within a hemisphere.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `spherical`; UsageError for several sets, too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
+        >>> tri.find_simplex([[10, 20], [190, -20]])
+        array([ 0, -1], dtype=int32)
+        """
+        queries = _as_points(xi, "xi")
+        found = self._locator.locate(queries.reshape(-1, queries.shape[-1]))
+        return found.reshape(queries.shape[:-1])
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """The points that are nearest to others, exactly; of several the first one.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes in degrees, or x, y and z.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Of several equally near the south pole, or else the one with the smallest place, x before y;
+            -1 if there are no points.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.spherical([[179, 0], [-150, 0], [0, 90], [0, -90]])
+        >>> tri.nearest([[-175, 10], [60, 80]])
+        array([0, 2], dtype=int32)
+        """
+        queries = _as_points(xi, "xi")
+        found = self._locator.nearest(queries.reshape(-1, queries.shape[-1]))
+        return found.reshape(queries.shape[:-1])
+
+    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
+        """Values between points, by linear interpolation in the triangles in space (Renka, 1984).
+
+        Parameters
+        ----------
+        values : array_like, shape (npoints, ...)
+            Real numbers. Of equal points, those of the representative count.
+        xi : array_like, shape (..., 2) or (..., 3)
+            Longitudes and latitudes in degrees, or x, y and z.
+
+        Returns
+        -------
+        ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
+            The value where the direction of a query meets its triangle: continuous, and at a point that
+            point's value. NaN where `find_simplex` says -1.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`; UsageError for another number of values than of points, too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
+        >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
+        array([1.5, 3. ])
+        """
+        queries = _as_points(xi, "xi")
+        numbers = np.asarray(as_floats(values, "values"), np.float64)
+        if numbers.ndim == 0 or len(numbers) != self.npoints:
+            raise UsageError(
+                f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
+            )
+        rows = numbers.reshape(self.npoints, -1) if self.npoints else numbers.reshape(0, 1)
+        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]))
+        return found.reshape(queries.shape[:-1] + numbers.shape[1:])
+
+
+def spherical(
+    points: ArrayLike, offsets: Optional[ArrayLike] = None, *, device: Optional[str] = None
+) -> SphericalDelaunay:
+    """Triangulates points on the sphere.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+        Longitudes, any numbers of degrees to the east, and latitudes, -90 to 90; or x, y and z, vectors of
+        any length but 0, of which the directions count.
+    offsets : array_like of int, optional
+        Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
+        are one set.
+    device : str, optional
+        As of `triangulate`.
+
+    Returns
+    -------
+    SphericalDelaunay
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, and offsets that decrease or do not go from 0 to n.
+    InputError
+        For a point that is not finite, the vector 0, and a latitude beyond a pole.
+    DeviceError
+        As of `triangulate`.
+
+    Notes
+    -----
+    A point is projected from the south pole to the plane of the equator, and rounded there once: so it
+    lies on the sphere exactly, and the result is exact and canonical as that in the plane is. What is
+    around the south pole is the farthest-point Delaunay triangulation of the hull in the plane (Brown,
+    1979). O(n log n).
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.spherical([[0, 0], [120, 0], [240, 0], [0, 90]])
+    >>> tri
+    <flaunay.SphericalDelaunay: 4 points, 4 triangles>
+    >>> tri.simplices
+    array([[1, 2, 3],
+           [0, 3, 2],
+           [0, 1, 3],
+           [0, 2, 1]], dtype=int32)
+    """
+    given = _as_points(points, "points")
+    if given.ndim != 2:
+        raise UsageError(f"points must have the shape (n, 2) or (n, 3), not {given.shape}")
+    given = frozen(given.copy())
+    return SphericalDelaunay(given, None if offsets is None else as_offsets(offsets), device)

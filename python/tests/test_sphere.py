@@ -1,0 +1,136 @@
+"""Points on a sphere, beside SciPy's convex hulls and Voronoi cells."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+import scipy.spatial
+
+import flaunay
+
+
+def on_sphere(random, n):
+    points = random.normal(size=(n, 3))
+    return points / np.linalg.norm(points, axis=1)[:, None]
+
+
+def lonlat_of(xyz):
+    return np.degrees(np.stack([np.arctan2(xyz[:, 1], xyz[:, 0]), np.arcsin(xyz[:, 2])], axis=1))
+
+
+def turned(triangles):
+    """Each from its smallest corner on, sorted."""
+    first = triangles.argmin(axis=1)[:, None]
+    rows = np.take_along_axis(triangles, (first + np.arange(3)) % 3, axis=1)
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def test_triangles_are_scipys_convex_hull(random):
+    points = on_sphere(random, 3000)
+    tri = flaunay.spherical(points)
+    hull = scipy.spatial.ConvexHull(points)
+    simplices = hull.simplices
+    corners = points[simplices]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = (normals * corners[:, 0]).sum(axis=1) < 0
+    simplices[inward] = simplices[inward][:, ::-1]
+    np.testing.assert_array_equal(turned(tri.simplices), turned(simplices))
+    np.testing.assert_allclose(tri.xyz, points, atol=1e-15)
+    assert (tri.neighbors >= 0).all() and tri.nsimplex == 2 * 3000 - 4
+
+
+def test_cells_are_scipys(random):
+    points = on_sphere(random, 500)
+    cells = flaunay.spherical(points).voronoi
+    expected = scipy.spatial.SphericalVoronoi(points)
+    np.testing.assert_allclose(cells.areas, expected.calculate_areas(), rtol=1e-9)
+    assert cells.areas.sum() == pytest.approx(4 * np.pi, abs=1e-12)
+    assert [len(region) for region in cells.regions] == [len(region) for region in expected.regions]
+    distance, _ = scipy.spatial.cKDTree(expected.vertices).query(cells.vertices)
+    assert distance.max() < 1e-9
+    assert repr(cells) == "<flaunay.SphericalVoronoi: 500 points, 996 vertices>"
+
+
+def test_longitudes_and_latitudes_are_directions(random):
+    points = on_sphere(random, 400)
+    lonlat = lonlat_of(points)
+    tri = flaunay.spherical(lonlat)
+    np.testing.assert_allclose(tri.xyz, points, atol=1e-15)
+    np.testing.assert_array_equal(tri.simplices, flaunay.spherical(points).simplices)
+    lonlat[:, 0] += 720
+    np.testing.assert_array_equal(flaunay.spherical(lonlat).simplices, tri.simplices)
+    # A globe of degrees: both poles are one point each.
+    globe = np.stack(np.meshgrid(np.arange(0, 360, 15), np.arange(-90, 91, 15)), axis=-1)
+    tri = flaunay.spherical(globe.reshape(-1, 2))
+    assert len(np.unique(tri.representatives)) == 24 * 11 + 2
+    assert tri.nsimplex == 2 * (24 * 11 + 2) - 4
+
+
+def test_queries_beside_brute_force(random):
+    points, queries = on_sphere(random, 300), on_sphere(random, 1000)
+    tri = flaunay.spherical(points)
+    np.testing.assert_array_equal(tri.nearest(queries), (queries @ points.T).argmax(axis=1))
+    assert tri.nearest(lonlat_of(queries).reshape(10, 100, 2)).shape == (10, 100)
+    found = tri.find_simplex(queries)
+    assert (found >= 0).all()
+    corners = points[tri.simplices[found]]
+    weights = np.linalg.solve(corners.transpose(0, 2, 1), queries[:, :, None])[:, :, 0]
+    assert (weights > 0).all()
+    weights /= weights.sum(axis=1)[:, None]
+    values = random.normal(size=(300, 2))
+    expected = (values[tri.simplices[found]] * weights[:, :, None]).sum(axis=1)
+    np.testing.assert_allclose(tri.interpolate(values, queries), expected, atol=1e-12)
+    np.testing.assert_array_equal(tri.interpolate(values, points), values)
+    # Half of the sphere: beyond it is no triangle.
+    north = flaunay.spherical(points[points[:, 2] > 0.1])
+    assert (north.find_simplex(queries[queries[:, 2] < 0]) == -1).all()
+    assert np.isnan(north.interpolate(np.ones(north.npoints), [0, 0, -1]))
+
+
+def test_sets_are_each_as_alone(random):
+    parts = [on_sphere(random, n) for n in (50, 0, 7, 1, 2, 3)]
+    offsets = np.cumsum([0] + [len(part) for part in parts])
+    tri = flaunay.spherical(np.concatenate(parts), offsets)
+    for s, part in enumerate(parts):
+        alone = flaunay.spherical(part)
+        own = slice(tri.simplex_offsets[s], tri.simplex_offsets[s + 1])
+        np.testing.assert_array_equal(tri.simplices[own] - offsets[s], alone.simplices)
+        areas = tri.voronoi.areas[offsets[s] : offsets[s + 1]]
+        np.testing.assert_array_equal(areas, alone.voronoi.areas)
+    with pytest.raises(flaunay.UsageError, match="one set"):
+        tri.nearest([0, 0])
+
+
+def test_copies_and_every_device_agree(random):
+    points = on_sphere(random, 900)
+    tri = flaunay.spherical(points, device="host")
+    tri.nearest([0, 0])
+    for other in (flaunay.spherical(points, device="#0"), pickle.loads(pickle.dumps(tri))):
+        np.testing.assert_array_equal(other.simplices, tri.simplices)
+        np.testing.assert_array_equal(other.nearest([[9, 9]]), tri.nearest([[9, 9]]))
+        assert other.voronoi.areas.tobytes() == tri.voronoi.areas.tobytes()
+    with pytest.raises(ValueError, match="read-only"):
+        tri.simplices[0] = 0
+
+
+def test_errors_say_what_is_wrong():
+    cases = [
+        ([[0, 91]], flaunay.InputError, "point 0: the latitude 91"),
+        ([[1, 0, 0], [0, 0, 0]], flaunay.InputError, "point 1 is the vector 0"),
+        ([[0, np.nan]], flaunay.InputError, "point 0 is not finite"),
+        ([[1, 2, 3, 4]], flaunay.UsageError, "longitudes and latitudes"),
+        ([1, 2], flaunay.UsageError, r"\(n, 2\) or \(n, 3\)"),
+        ([["a", "b"]], flaunay.UsageError, "real numbers"),
+    ]
+    for points, kind, message in cases:
+        with pytest.raises(kind, match=message):
+            flaunay.spherical(points)
+    tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
+    with pytest.raises(flaunay.InputError, match="query 1: the latitude"):
+        tri.find_simplex([[0, 0], [0, -100]])
+    with pytest.raises(flaunay.UsageError, match="one row per point, 3"):
+        tri.interpolate([1, 2], [0, 0])
+    with pytest.raises(flaunay.UsageError, match="offsets"):
+        flaunay.spherical([[0, 0], [1, 1]], [0, 3])

@@ -1,0 +1,141 @@
+// The C interface to points on a sphere.
+#include "flaunay/sphere.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "c/errors.hpp"
+#include "c/handles.hpp"
+#include "flaunay/flaunay.h"
+
+using namespace flaunay;
+
+using c::create;
+using c::guarded;
+using c::read;
+using c::required;
+
+struct flaunay_spherical {
+  SphericalTriangulation cpp;
+};
+
+struct flaunay_spherical_voronoi {
+  SphericalVoronoi cpp;
+};
+
+struct flaunay_spherical_locator {
+  SphereLocator cpp;
+};
+
+namespace {
+
+static_assert(FLAUNAY_SPHERE_DIRECTIONS == static_cast<int>(SphereCoordinates::directions) &&
+              FLAUNAY_SPHERE_DEGREES == static_cast<int>(SphereCoordinates::degrees));
+
+SphereCoordinates to_coordinates(int given) {
+  return c::to_enum<SphereCoordinates>(given, FLAUNAY_SPHERE_DEGREES, "flaunay_sphere_coordinates");
+}
+
+// Answers queries by answer(locator, coordinates) into the caller's array.
+template <typename Value, typename Answer>
+flaunay_status answer(flaunay_spherical_locator* locator, const double* queries, size_t m, int coordinates,
+                      Value* to, const Answer& answer) {
+  return guarded([&] {
+    SphereLocator& cpp = required(locator, "the locator").cpp;
+    if (m > 0) {
+      required(queries, "the queries");
+      required(to, "the room for results");
+    }
+    const std::vector<Value> found = answer(cpp, to_coordinates(coordinates));
+    std::copy(found.begin(), found.end(), to);
+  });
+}
+
+}  // namespace
+
+flaunay_status flaunay_spherical_create(flaunay_triangulator* triangulator, const double* points, size_t n,
+                                        const size_t* offsets, size_t sets, int coordinates,
+                                        flaunay_spherical** spherical) {
+  return create(spherical, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_spherical>(flaunay_spherical{
+        triangulate_sphere(cpp, points, c::to_offsets(offsets, sets, n), to_coordinates(coordinates))});
+  });
+}
+
+void flaunay_spherical_destroy(flaunay_spherical* spherical) { delete spherical; }
+
+size_t flaunay_spherical_point_count(const flaunay_spherical* spherical) {
+  return read(spherical, [](const auto& handle) { return handle.cpp.representatives.size(); });
+}
+
+size_t flaunay_spherical_triangle_count(const flaunay_spherical* spherical) {
+  return read(spherical, [](const auto& handle) { return handle.cpp.triangles.size() / 3; });
+}
+
+flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical, double* directions) {
+  return guarded([&] {
+    const std::vector<double> all = directions_of(required(spherical, "the triangulation").cpp.places);
+    if (!all.empty()) std::copy(all.begin(), all.end(), &required(directions, "the room for directions"));
+  });
+}
+
+flaunay_status flaunay_spherical_voronoi_create(flaunay_triangulator* triangulator,
+                                                const flaunay_spherical* spherical,
+                                                flaunay_spherical_voronoi** voronoi) {
+  return create(voronoi, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_spherical_voronoi>(
+        flaunay_spherical_voronoi{voronoi_on_sphere(cpp, required(spherical, "the triangulation").cpp)});
+  });
+}
+
+void flaunay_spherical_voronoi_destroy(flaunay_spherical_voronoi* voronoi) { delete voronoi; }
+
+#define ACCESSOR(type, handle_type, name)                                                 \
+  const type* handle_type##_##name(const handle_type* result) {                           \
+    return read(result, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
+  }
+ACCESSOR(double, flaunay_spherical, places)
+ACCESSOR(int32_t, flaunay_spherical, triangles)
+ACCESSOR(int32_t, flaunay_spherical, neighbors)
+ACCESSOR(int32_t, flaunay_spherical, representatives)
+ACCESSOR(size_t, flaunay_spherical, triangle_offsets)
+ACCESSOR(double, flaunay_spherical_voronoi, centres)
+ACCESSOR(int32_t, flaunay_spherical_voronoi, cell_offsets)
+ACCESSOR(int32_t, flaunay_spherical_voronoi, cells)
+ACCESSOR(double, flaunay_spherical_voronoi, areas)
+#undef ACCESSOR
+
+flaunay_status flaunay_spherical_locator_create(flaunay_triangulator* triangulator,
+                                                const flaunay_spherical* spherical,
+                                                flaunay_spherical_locator** locator) {
+  return create(locator, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_spherical_locator>(
+        flaunay_spherical_locator{SphereLocator(cpp, required(spherical, "the triangulation").cpp)});
+  });
+}
+
+void flaunay_spherical_locator_destroy(flaunay_spherical_locator* locator) { delete locator; }
+
+flaunay_status flaunay_spherical_locator_locate(flaunay_spherical_locator* locator, const double* queries,
+                                                size_t m, int coordinates, int32_t* triangles) {
+  return answer(locator, queries, m, coordinates, triangles,
+                [&](SphereLocator& cpp, SphereCoordinates given) { return cpp.locate(queries, m, given); });
+}
+
+flaunay_status flaunay_spherical_locator_nearest(flaunay_spherical_locator* locator, const double* queries,
+                                                 size_t m, int coordinates, int32_t* points) {
+  return answer(locator, queries, m, coordinates, points,
+                [&](SphereLocator& cpp, SphereCoordinates given) { return cpp.nearest(queries, m, given); });
+}
+
+flaunay_status flaunay_spherical_locator_interpolate(flaunay_spherical_locator* locator, const double* values,
+                                                     size_t columns, const double* queries, size_t m,
+                                                     int coordinates, double* results) {
+  return answer(locator, queries, m, coordinates, results, [&](SphereLocator& cpp, SphereCoordinates given) {
+    return cpp.interpolate(values, columns, queries, m, given);
+  });
+}
