@@ -108,6 +108,12 @@ flaunay_test(
   SOURCES io/io_test.cpp io/generate_test.cpp io/map_test.cpp io/stream_test.cpp
   LIBRARIES flaunay_io flaunay_core fmt::fmt nlohmann_json::nlohmann_json
   LABELS asan)
+if(FLAUNAY_GDAL)
+  flaunay_test(
+    test_geotiff UNOPTIMISED
+    SOURCES io/geotiff_test.cpp
+    LIBRARIES flaunay_io fmt::fmt GDAL::GDAL)
+endif()
 # These compare with a device: Wine finds those of this system, QEMU none. What is kept for one has the files of POSIX.
 if(WIN32 OR NOT CMAKE_CROSSCOMPILING)
   set(NATIVE_TESTS call/native_test.cpp host/threads_test.cpp)

@@ -3,6 +3,7 @@
 
     terrain_command.py FLAUNAY [gdal]     gdal: the command was built with it
 """
+import json
 import struct
 import subprocess
 import sys
@@ -135,6 +136,32 @@ def main(folder):
     inside &= ~(((x > 20) & (x < 30))[None, :] & ((y > 20) & (y < 30))[:, None])
     assert same(raster(folder, whole, *size, "--boundary", boundary), np.where(inside, expected, np.nan))
 
+    # A ridge across a square, and again with one of its heights from the points; it hides a diagonal.
+    square = npy("square.npy", np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [4, 4, 8]]))
+    ridge = folder / "ridge.geojson"
+
+    def with_ridge(*line):
+        ridge.write_text(json.dumps({"type": "LineString", "coordinates": line}))
+        return raster(folder, square, "--resolution", 2, "--pixel-is", "point", "--breaklines", ridge)[1, 1]
+
+    assert with_ridge([0, 4, 4], [4, 0, 6]) == 5
+    assert with_ridge([0, 4], [4, 0, 6]) == 3
+
+    # Contours of the plane.
+    lines = folder / "lines.geojson"
+    done = run(scan, *size, "-o", lines, "-o", folder / "with.npy", "--contours", 20, "--crs", "EPSG:25832")
+    assert done.returncode == 0, done.stderr
+    assert same(np.load(folder / "with.npy"), expected)
+    collection = json.loads(lines.read_text())
+    assert collection["crs"]["properties"]["name"] == "urn:ogc:def:crs:EPSG::25832"
+    heights = set()
+    for feature in collection["features"]:
+        height = feature["properties"]["height"]
+        heights.add(height)
+        at = np.array(feature["geometry"]["coordinates"]) - [500000, 5000000]
+        np.testing.assert_allclose(at[:, 0] + 2 * at[:, 1], height, atol=0.02)
+    assert heights == set(range(20, 220, 20))
+
     # Errors leave what was there.
     out = folder / "out.npy"
     out.write_bytes(b"old")
@@ -159,6 +186,10 @@ def main(folder):
     np.save(folder / "infinite.npy", np.array([[0, 0, 0], [1, 1, np.inf]]))
     fails(3, "infinite.npy", "finite", arguments=(folder / "infinite.npy", *size, *to))
     assert out.read_bytes() == b"old"
+    fails(2, "lines.geojson", "--contours", arguments=(scan, *size, "-o", lines))
+    fails(2, "in memory at once", arguments=(scan, *size, "-o", lines, "--contours", "5", "--memory", "1G"))
+    ridge.write_text('{"type": "MultiLineString", "coordinates": [[[0, 0], [4, 4]], [[0, 3], [3, 0]]]}')
+    fails(3, "ridge.geojson", "segment", arguments=(square, *size, *to, "--breaklines", ridge))
     tif = folder / "dem.tif"
     if HAS_GDAL:
         assert run(other, *size, "-o", tif).returncode == 0

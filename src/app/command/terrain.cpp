@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/command/terrain_mesh.hpp"
 #include "app/files/geotiff.hpp"
 #include "app/files/map.hpp"
 #include "app/files/scan.hpp"
@@ -42,13 +44,17 @@ struct TerrainRequest {
   std::vector<int> classes;
   Returns returns = Returns::all;
   Duplicates duplicates = Duplicates::highest;
-  std::string boundary, crs;
+  std::string breaklines, boundary, crs;
+  std::vector<double> contours;
   RasterOptions raster;
   bool is_point = false;
   double nodata = -9999;
   std::string device, scratch;
   std::uint64_t memory = 0;
   bool quiet = false;
+
+  /// Whether all points are in memory at once.
+  bool in_memory() const { return !breaklines.empty() || !contours.empty(); }
 };
 
 [[noreturn]] void fail_usage(const std::string& message) {
@@ -209,12 +215,18 @@ bool is_tiff(const std::string& path) {
   return ending == ".tif" || ending == ".tiff";
 }
 
-void announce(OutputFiles& outputs, const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) {
+bool is_npy(const std::string& path) { return io::ending_of(path) == ".npy"; }
+bool is_lines(const std::string& path) { return io::ending_of(path) == ".geojson"; }
+
+void announce(OutputFiles& outputs, const TerrainRequest& request) {
+  for (const std::string& path : request.outputs) {
     if (is_tiff(path)) {
       io::require_gdal(path);
-    } else if (io::ending_of(path) != ".npy") {
-      io::fail_ending(path, ".tif or .npy");
+    } else if (is_lines(path)) {
+      if (request.contours.empty())
+        fail_usage(fmt::format("{}: needs --contours, the interval of heights", path));
+    } else if (!is_npy(path)) {
+      io::fail_ending(path, ".tif, .npy or .geojson");
     }
     outputs.announce(path);
   }
@@ -251,9 +263,11 @@ void write_tiffs(OutputFiles& outputs, const TerrainRequest& request, const Grid
 int make_terrain(const TerrainRequest& request) {
   const std::vector<std::string> files = io::scan_files(request.inputs);
   std::vector<std::string> inputs = files;
-  if (!request.boundary.empty()) inputs.push_back(request.boundary);
+  for (const std::string& map : {request.boundary, request.breaklines}) {
+    if (!map.empty()) inputs.push_back(map);
+  }
   OutputFiles outputs(inputs);
-  announce(outputs, request.outputs);
+  announce(outputs, request);
 
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
@@ -284,17 +298,33 @@ int make_terrain(const TerrainRequest& request) {
   const Grid grid(bounds ? *bounds : box, request.resolution, request.is_point);
   const std::uint64_t memory = request.memory != 0 ? request.memory : host::memory_left().bytes / 2;
   Pixels pixels(grid.count(), memory, request.scratch);
-  ChunkOptions chunks;
-  chunks.memory_bytes = memory - pixels.bytes_in_memory();
-  chunks.scratch = request.scratch;
-  if (!request.device.empty()) chunks.devices = {request.device};
-  chunks.progress = [&](const std::string& stage, int, double done) { progress.update(stage, -1, done); };
-  rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), chunks);
+  if (request.in_memory()) {
+    progress.update("triangulating");
+    Triangulator triangulator(request.device);
+    const TerrainMesh terrain = triangulate_scan(triangulator, scan, request.breaklines, request.duplicates);
+    rasterize(triangulator, terrain.view(), terrain.heights.data(), grid.pixels, request.raster,
+              pixels.data());
+    const std::vector<double> heights = contour_heights(request.contours, terrain.heights);
+    if (std::any_of(request.outputs.begin(), request.outputs.end(), is_lines)) {
+      const Contours contours = trace_contours(triangulator, terrain.view(), terrain.heights.data(), heights,
+                                               request.raster.max_edge);
+      for (const std::string& path : request.outputs) {
+        if (is_lines(path)) write_contours(outputs, path, contours, heights, crs);
+      }
+    }
+  } else {
+    ChunkOptions chunks;
+    chunks.memory_bytes = memory - pixels.bytes_in_memory();
+    chunks.scratch = request.scratch;
+    if (!request.device.empty()) chunks.devices = {request.device};
+    chunks.progress = [&](const std::string& stage, int, double done) { progress.update(stage, -1, done); };
+    rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), chunks);
+  }
   if (boundary) leave_out(*boundary, grid.pixels, pixels.data());
 
   progress.update("writing");
   for (const std::string& path : request.outputs) {
-    if (!is_tiff(path)) write_npy(outputs, path, grid, pixels.data());
+    if (is_npy(path)) write_npy(outputs, path, grid, pixels.data());
   }
   write_tiffs(outputs, request, grid, crs, pixels.data());
   outputs.commit();
@@ -310,6 +340,20 @@ void check(const TerrainRequest& request) {
   if (!(request.resolution > 0 && std::isfinite(request.resolution)))
     fail_usage(fmt::format("--resolution must be positive, not {}", request.resolution));
   if (!std::isfinite(request.nodata)) fail_usage("--nodata must be finite");
+  if (request.in_memory() && request.memory != 0) {
+    fail_usage(
+        "--memory: with --breaklines or --contours all points are in memory at once, about 200 bytes each");
+  }
+  if (!request.contours.empty() && !request.boundary.empty()) {
+    fail_usage("--contours: are not cut at a --boundary; flaunay.terrain in Python does that");
+  }
+  const std::vector<double>& heights = request.contours;
+  const bool are_finite =
+      std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
+  if (!are_finite || (heights.size() == 1 && !(heights.front() > 0)) ||
+      std::adjacent_find(heights.begin(), heights.end(), std::greater_equal<>()) != heights.end()) {
+    fail_usage("--contours: expected an interval above 0, or heights that increase");
+  }
 }
 
 }  // namespace
@@ -324,10 +368,10 @@ void add_terrain(CLI::App& app, Action& action) {
           "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), or folders of these")
       ->required();
   command
-      ->add_option(
-          "-o,--output", request->outputs,
-          "The raster: .tif (cloud-optimised GeoTIFF of float32) or .npy (float64); several outputs are all "
-          "written or none")
+      ->add_option("-o,--output", request->outputs,
+                   "The raster: .tif (cloud-optimised GeoTIFF of float32) or .npy (float64); contours: "
+                   ".geojson; several outputs are all "
+                   "written or none")
       ->required();
   command->add_option("--resolution", request->resolution, "The size of a pixel")->required();
   command
@@ -348,6 +392,13 @@ void add_terrain(CLI::App& app, Action& action) {
       NamedChoices<Duplicates>{
           {"highest", Duplicates::highest}, {"lowest", Duplicates::lowest}, {"mean", Duplicates::mean}})
       ->default_str("highest");
+  add_path(command, "--breaklines", request->breaklines,
+           "A map of lines that become edges of the triangulation, with heights or else those of the points "
+           "around");
+  command
+      ->add_option("--contours", request->contours,
+                   "The interval of contours' heights, or several heights, for an output .geojson")
+      ->delimiter(',');
   add_path(command, "--boundary", request->boundary,
            "A map of polygons, outside of which the raster is empty");
   command->add_option("--max-edge", request->raster.max_edge, "Triangles with a longer edge are left out")

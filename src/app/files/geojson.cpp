@@ -167,6 +167,8 @@ class GeoJsonReader {
       fail(path_, "has more than {} positions", std::numeric_limits<std::int32_t>::max());
     }
     for (int axis = 0; axis < 2; ++axis) map_.points.coordinates.push_back(value[axis].get<double>());
+    const bool has_height = value.size() > 2 && value[2].is_number();
+    map_.heights.push_back(has_height ? value[2].get<double>() : std::numeric_limits<double>::quiet_NaN());
   }
   /// Returns the index of the first point.
   std::size_t read_positions(const Json& values, const Place& at) {
@@ -199,6 +201,7 @@ class GeoJsonReader {
                            coordinates[2 * first + 1] == coordinates[2 * end - 1];
     if (is_closed) {
       coordinates.resize(2 * --end);
+      map_.heights.resize(end);
     } else {
       ++unclosed_;
     }

@@ -20,6 +20,8 @@ struct PolyRegion {
 /// Points with segments between them, and what the file says about the inside.
 struct Map {
   Points points;
+  /// Of GeoJSON: the third coordinate of each point, or NaN.
+  std::vector<double> heights = {};
   /// 2 points per segment, in the order of the file: of rings, if there are polygons.
   std::vector<std::int32_t> segments;
   /// Further segments: those of lines beside polygons, which bound nothing.
@@ -43,7 +45,7 @@ bool is_map(const std::string& path);
 /// Reads a map from path, by its ending (any case):
 ///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
 ///                    vertices, those of the .node file beside it
-///   .geojson .json   GeoJSON (RFC 7946): any object; coordinates after the second are ignored, and rings
+///   .geojson .json   GeoJSON (RFC 7946): any object; coordinates after the third are ignored, and rings
 ///                    that are not closed are read as closed
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.
