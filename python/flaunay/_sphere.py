@@ -240,7 +240,7 @@ class SphericalDelaunay:
 
 
 def spherical(
-    points: ArrayLike, offsets: Optional[ArrayLike] = None, *, device: Optional[str] = None
+    points: ArrayLike, offsets: Optional[npt.ArrayLike] = None, *, device: Optional[str] = None
 ) -> SphericalDelaunay:
     """Triangulates points on the sphere.
 

@@ -30,10 +30,13 @@ std::vector<double> places_of(call::Implementation& self, const double* points, 
 
 // The points that have a place in the plane.
 struct Plane {
-  std::vector<double> places;
+  const std::vector<double>* all = nullptr;  // of the sphere, if none is at the pole
+  std::vector<double> some;
   std::vector<std::size_t> offsets;
   Ids points;              // per place; empty if all points have one
   std::vector<Ids> poles;  // per set, the points at the south pole
+
+  const std::vector<double>& places() const { return all != nullptr ? *all : some; }
 };
 
 Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets) {
@@ -46,7 +49,7 @@ Plane make_plane(const std::vector<double>& places, const std::vector<std::size_
     }
   }
   if (std::all_of(plane.poles.begin(), plane.poles.end(), [](const Ids& ids) { return ids.empty(); })) {
-    plane.places = places;
+    plane.all = &places;
     plane.offsets = offsets;
     return plane;
   }
@@ -55,7 +58,7 @@ Plane make_plane(const std::vector<double>& places, const std::vector<std::size_
     for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
       const Point p = sphere::place_at(places, i);
       if (sphere::is_pole(p)) continue;
-      plane.places.insert(plane.places.end(), {p.x, p.y});
+      plane.some.insert(plane.some.end(), {p.x, p.y});
       plane.points.push_back(static_cast<std::int32_t>(i));
     }
     plane.offsets.push_back(plane.points.size());
@@ -79,19 +82,28 @@ void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) 
   planar.representatives = std::move(representatives);
 }
 
+// Appends the triangles of one set in the plane.
+void append(const Triangulation& planar, std::size_t set, SphericalTriangulation& mesh) {
+  const std::size_t begin = planar.triangle_offsets[set], first = mesh.triangles.size() / 3;
+  const auto shift = static_cast<std::int32_t>(first) - static_cast<std::int32_t>(begin);
+  for (std::size_t c = 3 * begin; c < 3 * planar.triangle_offsets[set + 1]; ++c) {
+    mesh.triangles.push_back(planar.triangles[c]);
+    mesh.neighbors.push_back(planar.neighbors[c] < 0 ? -1 : planar.neighbors[c] + shift);
+  }
+}
+
 SphericalTriangulation close_all(const Plane& plane, Triangulation planar, SphericalTriangulation mesh) {
   mesh.triangle_offsets = {0};
-  mesh.triangles.reserve(6 * mesh.places.size() / 2);
-  mesh.neighbors.reserve(6 * mesh.places.size() / 2);
-  for (std::size_t s = 0; s < plane.poles.size(); ++s) {
-    const std::size_t begin = planar.triangle_offsets[s], end = planar.triangle_offsets[s + 1];
-    const std::size_t first = mesh.triangles.size() / 3;
-    for (std::size_t c = 3 * begin; c < 3 * end; ++c) {
-      const std::int32_t t = planar.neighbors[c];
-      mesh.triangles.push_back(planar.triangles[c]);
-      mesh.neighbors.push_back(
-          t < 0 ? t : static_cast<std::int32_t>(static_cast<std::size_t>(t) - begin + first));
-    }
+  const std::size_t sets = plane.poles.size(), most = 3 * mesh.places.size();  // corners
+  if (sets == 1) {
+    mesh.triangles = std::move(planar.triangles);
+    mesh.neighbors = std::move(planar.neighbors);
+  }
+  mesh.triangles.reserve(most);
+  mesh.neighbors.reserve(most);
+  for (std::size_t s = 0; s < sets; ++s) {
+    const std::size_t first = mesh.triangle_offsets.back();
+    if (sets > 1) append(planar, s, mesh);
     sphere::close(
         {planar.hull.data() + planar.hull_offsets[s], planar.hull_offsets[s + 1] - planar.hull_offsets[s],
          first, mesh.triangles.size() / 3, plane.poles[s].empty() ? -1 : plane.poles[s].front()},
@@ -154,7 +166,7 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
                           coordinates, "point");
   mesh.point_offsets = offsets;
   const Plane plane = make_plane(mesh.places, offsets);
-  Triangulation planar = triangulator.triangulate(plane.places.data(), plane.offsets);
+  Triangulation planar = triangulator.triangulate(plane.places().data(), plane.offsets);
   number_by_points(plane, offsets.back(), planar);
   return close_all(plane, std::move(planar), std::move(mesh));
 }
@@ -184,9 +196,9 @@ struct SphereLocator::Implementation {
     call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
     walker.emplace(mesh);
     plane = make_plane(mesh.places, mesh.point_offsets);
-    if (plane.places.empty()) return;
-    const std::size_t n = plane.places.size() / 2;
-    locator.emplace(used, plane.places.data(), n, used.triangulate(plane.places.data(), n));
+    if (plane.places().empty()) return;
+    const std::size_t n = plane.places().size() / 2;
+    locator.emplace(used, plane.places().data(), n, used.triangulate(plane.places().data(), n));
   }
 
   /// Of each query's place a vertex near it; -1 if there are no points.

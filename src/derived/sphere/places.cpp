@@ -26,10 +26,15 @@ Point rounded_place(double x, double y) {
 }
 
 Point place_of_direction(const double* p) {
-  int exponent = 0;
-  std::frexp(std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}), &exponent);
-  const double x = std::ldexp(p[0], -exponent), y = std::ldexp(p[1], -exponent),
-               z = std::ldexp(p[2], -exponent);
+  double x = p[0], y = p[1], z = p[2];
+  const double most = std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
+  if (!(most > 0x1p-200 && most < 0x1p200)) {
+    // So that squares neither overflow nor vanish.
+    const int exponent = -std::ilogb(most);
+    x = std::ldexp(x, exponent);
+    y = std::ldexp(y, exponent);
+    z = std::ldexp(z, exponent);
+  }
   const double across = x * x + y * y, length = std::sqrt(across + z * z);
   // In the south without a difference of nearly equal numbers.
   const double factor = z >= 0 ? 1 / (length + z) : (length - z) / across;
