@@ -4,6 +4,7 @@
     bench/python.py points          triangles and neighbours of points uniform in a square
     bench/python.py polygons        triangles of polygons with two holes each
     bench/python.py interpolation   interpolators, from points, values and queries to results
+    bench/python.py queries         few queries at a time, and griddata as a whole
     bench/python.py updates         points added to an incremental triangulation, in one call
     bench/python.py points --json bench/results/python-host-2-cores.json --runs 9
 
@@ -157,6 +158,36 @@ def interpolation(arguments):
                 rows["scipy"]["outside_of_one_only"] = int(outside.sum())
 
 
+def queries(arguments):
+    """Calls on triangulations and interpolators that are there; those of griddata make them, too."""
+    random = np.random.default_rng(1)
+    for n in (100, 1000, arguments.points or 100_000):
+        xy = random.random((n, 2))
+        values, device = np.sin(7 * xy[:, 0]) * np.cos(5 * xy[:, 1]), arguments.device
+        mine, theirs = flaunay.Delaunay(xy, device=device), function("scipy.spatial.Delaunay")(xy)
+        tree = function("scipy.spatial.cKDTree")(xy)
+        pairs = {"find_simplex": (mine.find_simplex, theirs.find_simplex), "nearest": (mine.nearest, tree.query),
+                 "nearest, k=8": (lambda at: mine.nearest(at, k=8), lambda at: tree.query(at, k=8))}
+        for name, path, of in (("Linear", "LinearND", theirs), ("CloughTocher", "CloughTocher2D", theirs),
+                               ("Nearest", "NearestND", xy)):
+            pairs[name] = (getattr(flaunay, f"{name}Interpolator")(mine, values),
+                           function(f"scipy.interpolate.{path}Interpolator")(of, values))
+        for method in ("nearest", "linear", "cubic"):
+            pairs[f"griddata, {method}"] = (
+                lambda at, method=method: flaunay.griddata(xy, values, at, method, device=device),
+                lambda at, method=method: function("scipy.interpolate.griddata")(xy, values, at, method))
+        for m in (1, 10, 100, 1000):
+            places = random.random((m, 2))
+            for name, both in pairs.items():
+                if name.startswith("griddata") and n > 10_000 and m in (10, 100):
+                    continue  # its time is that of triangulation
+                # Enough of them for the clock.
+                times = max(1, 1000 // (m + n if name.startswith("griddata") else m))
+                yield ({"what": name, "n": n, "queries": m, "times": times},
+                       {package: lambda call=call: [call(places) for _ in range(times)]
+                        for package, call in zip(("flaunay", "scipy"), both)})
+
+
 def updates(arguments):
     """SciPy's add_points makes all arrays; flaunay's leaves them until they are asked for."""
     random, n = np.random.default_rng(1), arguments.points or 1_000_000
@@ -173,20 +204,21 @@ def updates(arguments):
             "scipy, add_points": lambda: theirs.add_points(new())}
 
 
-EXPERIMENTS = {"points": points, "polygons": polygons, "interpolation": interpolation, "updates": updates}
+EXPERIMENTS = {"points": points, "polygons": polygons, "interpolation": interpolation, "queries": queries,
+               "updates": updates}
 
 
 # ---- Measuring and records
 
 
 def measured(keys, calls, runs):
-    """A row for each call: medians and minima of the clock and of CPU time."""
-    times = {name: [] for name in calls}
+    """A row for each call: medians and minima of the clock and of CPU time, of one of its `times`."""
+    times, each = {name: [] for name in calls}, keys.get("times", 1)
     for _ in range(1 + runs):
         for name, call in calls.items():
             wall, cpu = time.perf_counter(), time.process_time()
             call()
-            times[name].append((time.perf_counter() - wall, time.process_time() - cpu))
+            times[name].append(((time.perf_counter() - wall) / each, (time.process_time() - cpu) / each))
     return {name: {"call": name, **keys, "runs": runs,
                    **{f"{clock}_{what}": reduce(values)
                       for what, reduce in (("median", statistics.median), ("min", min))
