@@ -42,6 +42,13 @@ numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
 # The annotations of the package, as it is installed, and of what its users are shown.
 "$python" -m mypy --strict --package flaunay
 "$python" -m mypy --strict examples/python
+# The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
+# no annotations.
+types=build/types
+[[ -x $types/bin/python ]] || "$system_python" -m venv "$types"
+"$types/bin/python" -m pip install --quiet basedpyright matplotlib numpy pyopencl scipy-stubs
+"$types/bin/python" -m pip install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
+PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
 
 # The programs in the guide and the tutorials.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/tutorials/*.md

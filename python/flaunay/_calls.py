@@ -14,6 +14,7 @@ import queue
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any, Optional, Union, cast
 
 import numpy as np
@@ -420,7 +421,7 @@ class Triangulator(DeviceHandle):
     def __init__(self, create: Any, *arguments: Any) -> None:
         super().__init__()
         # One thread can come here twice: if the garbage collector destroys a locator while the thread has the turn.
-        self.turn = threading.RLock()
+        self.turn: AbstractContextManager[Any] = threading.RLock()
         check(create(*arguments, self.place))
 
     @staticmethod
@@ -776,7 +777,7 @@ class DevicePoints:
         device_offsets: int = 0,
         sets: int = 0,
     ) -> None:
-        self.struct = _declarations.DevicePoints(
+        self.struct: _declarations.DevicePoints = _declarations.DevicePoints(
             memory=memory or None,
             count=count,
             precision=PRECISION["float32" if single else "float64"],
@@ -795,7 +796,7 @@ class Enqueue:
     def __init__(self, queue: int, wait_for: list[int]) -> None:
         self._wait_for = (ctypes.c_void_p * len(wait_for))(*wait_for)
         self._event = ctypes.c_void_p()
-        self.struct = _declarations.Enqueue(
+        self.struct: _declarations.Enqueue = _declarations.Enqueue(
             queue=queue or None,
             wait_for=ctypes.addressof(self._wait_for) if wait_for else None,
             wait_for_count=len(wait_for),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _export, _raster, _triangulators
+from flaunay import _calls, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     as_floats,
@@ -23,9 +23,11 @@ from flaunay._arrays import (
 from flaunay._border import Border
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
+from flaunay._export import ExportMethods
 from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
 from flaunay._queries import KeptLocator, Queries
+from flaunay._raster import MapMethods
 from flaunay._refinement import RefinementReport, Refining, as_refinement
 from flaunay._triangulation import Triangulation
 
@@ -38,7 +40,7 @@ Doubles = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstrainedTriangulation(Queries, Triangulation):
+class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation):
     """Triangulations with segments as edges: `triangulate` makes them if there are segments.
 
     Every edge that is no constraint is locally Delaunay, and of cocircular points the triangles are
@@ -125,12 +127,6 @@ class ConstrainedTriangulation(Queries, Triangulation):
             sets=len(self.hull_offsets) - 1,
         )
 
-    to_matplotlib = _export.to_matplotlib
-    to_pyvista = _export.to_pyvista
-    raster = _raster.raster
-    contours = _raster.contours
-    to_geojson = _export.to_geojson
-
     def to_meshio(
         self,
         point_data: Optional[Mapping[str, npt.ArrayLike]] = None,
@@ -171,7 +167,7 @@ class ConstrainedTriangulation(Queries, Triangulation):
         >>> mesh.to_meshio().write("mesh.msh", file_format="gmsh22")  # doctest: +SKIP
         """
         own = {} if self.vertex_markers is None else {"marker": self.vertex_markers}
-        surface = _export.to_meshio(self, {**own, **(point_data or {})}, cell_data, z)
+        surface = super().to_meshio({**own, **(point_data or {})}, cell_data, z)
         # Edges that were left out with their triangles are no lines.
         place = np.array([max(len(self.points), 1), 1])
         kept = self._edges_where(self.constrained) @ place

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _export, _graphs, _raster, _scipy, _triangulators
+from flaunay import _calls, _graphs, _scipy, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     FloatArray,
@@ -23,8 +23,11 @@ from flaunay._arrays import (
 from flaunay._border import Border, ConvexBorder
 from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
+from flaunay._export import ExportMethods
+from flaunay._graphs import GraphMethods
 from flaunay._plot import draw_edges
 from flaunay._queries import KeptLocator, Queries, as_queries
+from flaunay._raster import MapMethods
 from flaunay._refinement import Refining
 from flaunay._triangulation import Triangulation, arrays_of_mesh
 
@@ -46,7 +49,7 @@ def _check_points(indices: Indices, n: int, name: str) -> None:
         raise UsageError(f"{name} were changed: {indices[wrong[0]]} is none of the {n} points")
 
 
-class Delaunay(Queries):
+class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one
@@ -118,30 +121,20 @@ class Delaunay(Queries):
     furthest_site = False
 
     # Its edges, and what is computed of triangles.
-    edges = cached_property(_graphs.edges)
-    edge_lengths = cached_property(_graphs.edge_lengths)
-    edge_simplices = cached_property(_graphs.edge_simplices)
-    _edge_order = cached_property(_graphs.edge_order)
-    is_gabriel = cached_property(_graphs.is_gabriel)
-    vertex_neighbor_vertices = cached_property(_graphs.vertex_neighbor_vertices)
-    spanning_tree = cached_property(_graphs.spanning_tree)
-    areas = cached_property(_graphs.areas)
-    centroids = cached_property(_graphs.centroids)
-    circumradii = cached_property(_graphs.circumradii)
-
-    # For other packages.
-    adjacency = _graphs.adjacency
-    simplex_adjacency = _graphs.simplex_adjacency
-    to_networkx = _graphs.to_networkx
-    to_matplotlib = _export.to_matplotlib
-    to_meshio = _export.to_meshio
-    to_pyvista = _export.to_pyvista
-    to_shapely = _export.to_shapely
-    to_geojson = _export.to_geojson
-
-    # Maps.
-    raster = _raster.raster
-    contours = _raster.contours
+    edges: cached_property[Indices] = cached_property(_graphs.edges)
+    edge_lengths: cached_property[Doubles] = cached_property(_graphs.edge_lengths)
+    edge_simplices: cached_property[Indices] = cached_property(_graphs.edge_simplices)
+    _edge_order: cached_property[tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]] = (
+        cached_property(_graphs.edge_order)
+    )
+    is_gabriel: cached_property[npt.NDArray[np.bool_]] = cached_property(_graphs.is_gabriel)
+    vertex_neighbor_vertices: cached_property[tuple[Indices, Indices]] = cached_property(
+        _graphs.vertex_neighbor_vertices
+    )
+    spanning_tree: cached_property[Indices] = cached_property(_graphs.spanning_tree)
+    areas: cached_property[Doubles] = cached_property(_graphs.areas)
+    centroids: cached_property[Doubles] = cached_property(_graphs.centroids)
+    circumradii: cached_property[Doubles] = cached_property(_graphs.circumradii)
 
     def __init__(
         self,

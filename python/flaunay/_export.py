@@ -35,169 +35,168 @@ def _heights(tri: Triangles, z: npt.ArrayLike) -> npt.NDArray[Any]:
     return heights
 
 
-def to_matplotlib(tri: Triangles) -> matplotlib.tri.Triangulation:
-    """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
+class ExportMethods:
+    """Triangles for other packages."""
 
-    Returns
-    -------
-    matplotlib.tri.Triangulation
-        Made of these triangles, so Matplotlib runs no triangulation of its own. It has none if
-        there are no simplices, which Matplotlib refuses.
+    def to_matplotlib(self: Triangles) -> matplotlib.tri.Triangulation:
+        """The triangulation for Matplotlib's ``triplot``, ``tripcolor``, ``tricontourf`` and others.
 
-    Raises
-    ------
-    UsageError
-        If there are no simplices.
-    ImportError
-        Without Matplotlib.
+        Returns
+        -------
+        matplotlib.tri.Triangulation
+            Made of these triangles, so Matplotlib runs no triangulation of its own. It has none if
+            there are no simplices, which Matplotlib refuses.
 
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> tri.to_matplotlib().triangles
-    array([[0, 1, 2]], dtype=int32)
-    """
-    if len(tri.simplices) == 0:
-        raise UsageError("Matplotlib takes no triangulation without triangles")
-    triangulations = optional("matplotlib.tri", f"{type(tri).__name__}.to_matplotlib")
-    x, y = tri.points.T
-    result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, tri.simplices)
-    return result
+        Raises
+        ------
+        UsageError
+            If there are no simplices.
+        ImportError
+            Without Matplotlib.
 
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_matplotlib().triangles
+        array([[0, 1, 2]], dtype=int32)
+        """
+        if len(self.simplices) == 0:
+            raise UsageError("Matplotlib takes no triangulation without triangles")
+        triangulations = optional("matplotlib.tri", f"{type(self).__name__}.to_matplotlib")
+        x, y = self.points.T
+        result: matplotlib.tri.Triangulation = triangulations.Triangulation(x, y, self.simplices)
+        return result
 
-def to_meshio(
-    tri: Triangles,
-    point_data: Optional[Data] = None,
-    cell_data: Optional[Data] = None,
-    z: Optional[npt.ArrayLike] = None,
-) -> meshio.Mesh:
-    """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
+    def to_meshio(
+        self: Triangles,
+        point_data: Optional[Data] = None,
+        cell_data: Optional[Data] = None,
+        z: Optional[npt.ArrayLike] = None,
+    ) -> meshio.Mesh:
+        """The triangulation as a mesh of meshio, which writes VTK, XDMF, Gmsh, STL and other files.
 
-    Parameters
-    ----------
-    point_data, cell_data : mapping of str to array_like, optional
-        What points and simplices have, one row for each.
-    z : array_like, shape (npoints,), optional
-        Heights of the points, which otherwise are two-dimensional.
+        Parameters
+        ----------
+        point_data, cell_data : mapping of str to array_like, optional
+            What points and simplices have, one row for each.
+        z : array_like, shape (npoints,), optional
+            Heights of the points, which otherwise are two-dimensional.
 
-    Returns
-    -------
-    meshio.Mesh
-        With copies of the arrays, and one block of triangles.
+        Returns
+        -------
+        meshio.Mesh
+            With copies of the arrays, and one block of triangles.
 
-    Raises
-    ------
-    UsageError
-        For data of another length.
-    ImportError
-        Without meshio.
+        Raises
+        ------
+        UsageError
+            For data of another length.
+        ImportError
+            Without meshio.
 
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> tri.to_meshio(point_data={"height": [1, 2, 3]}).write("hills.vtk")  # doctest: +SKIP
-    """
-    of_points = _checked(point_data, len(tri.points), "point_data")
-    of_cells = _checked(cell_data, len(tri.simplices), "cell_data")
-    mesh: meshio.Mesh = optional("meshio", f"{type(tri).__name__}.to_meshio").Mesh(
-        tri.points.copy() if z is None else np.column_stack([tri.points, _heights(tri, z)]),
-        [("triangle", tri.simplices.copy())],
-        point_data=of_points,
-        cell_data={name: [array] for name, array in of_cells.items()},
-    )
-    return mesh
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_meshio(point_data={"height": [1, 2, 3]}).write("hills.vtk")  # doctest: +SKIP
+        """
+        of_points = _checked(point_data, len(self.points), "point_data")
+        of_cells = _checked(cell_data, len(self.simplices), "cell_data")
+        mesh: meshio.Mesh = optional("meshio", f"{type(self).__name__}.to_meshio").Mesh(
+            self.points.copy() if z is None else np.column_stack([self.points, _heights(self, z)]),
+            [("triangle", self.simplices.copy())],
+            point_data=of_points,
+            cell_data={name: [array] for name, array in of_cells.items()},
+        )
+        return mesh
 
+    def to_pyvista(self: Triangles, z: Optional[npt.ArrayLike] = None) -> pyvista.PolyData:
+        """The triangulation as a surface of PyVista.
 
-def to_pyvista(tri: Triangles, z: Optional[npt.ArrayLike] = None) -> pyvista.PolyData:
-    """The triangulation as a surface of PyVista.
+        Parameters
+        ----------
+        z : array_like, shape (npoints,), optional
+            Heights of the points; zero without.
 
-    Parameters
-    ----------
-    z : array_like, shape (npoints,), optional
-        Heights of the points; zero without.
+        Returns
+        -------
+        pyvista.PolyData
+            With copies of the arrays.
 
-    Returns
-    -------
-    pyvista.PolyData
-        With copies of the arrays.
+        Raises
+        ------
+        UsageError
+            For another number of heights than of points.
+        ImportError
+            Without PyVista.
 
-    Raises
-    ------
-    UsageError
-        For another number of heights than of points.
-    ImportError
-        Without PyVista.
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
+        """
+        heights = np.zeros(len(self.points)) if z is None else _heights(self, z)
+        sizes = np.full((len(self.simplices), 1), 3, np.int32)
+        surface: pyvista.PolyData = optional("pyvista", f"{type(self).__name__}.to_pyvista").PolyData(
+            np.column_stack([self.points, heights]),
+            faces=np.hstack([sizes, self.simplices]).ravel(),
+        )
+        return surface
 
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> tri.to_pyvista(z=[0, 1, 2]).plot()  # doctest: +SKIP
-    """
-    heights = np.zeros(len(tri.points)) if z is None else _heights(tri, z)
-    sizes = np.full((len(tri.simplices), 1), 3, np.int32)
-    surface: pyvista.PolyData = optional("pyvista", f"{type(tri).__name__}.to_pyvista").PolyData(
-        np.column_stack([tri.points, heights]),
-        faces=np.hstack([sizes, tri.simplices]).ravel(),
-    )
-    return surface
+    def to_shapely(self: Triangles) -> npt.NDArray[np.object_]:
+        """The simplices as polygons of Shapely, which ``geopandas.GeoSeries`` takes as they are.
 
+        Returns
+        -------
+        ndarray of shapely.Polygon, shape (nsimplex,)
 
-def to_shapely(tri: Triangles) -> npt.NDArray[np.object_]:
-    """The simplices as polygons of Shapely, which ``geopandas.GeoSeries`` takes as they are.
+        Raises
+        ------
+        ImportError
+            Without Shapely 2.
+        """
+        shapely = optional("shapely", f"{type(self).__name__}.to_shapely")
+        polygons: npt.NDArray[np.object_] = shapely.polygons(self.points[self.simplices[:, [0, 1, 2, 0]]])
+        return polygons
 
-    Returns
-    -------
-    ndarray of shapely.Polygon, shape (nsimplex,)
+    def to_geojson(self: Triangles, properties: Optional[Data] = None) -> dict[str, Any]:
+        """The triangles as a FeatureCollection of GeoJSON, which ``json.dump`` writes.
 
-    Raises
-    ------
-    ImportError
-        Without Shapely 2.
-    """
-    shapely = optional("shapely", f"{type(tri).__name__}.to_shapely")
-    polygons: npt.NDArray[np.object_] = shapely.polygons(tri.points[tri.simplices[:, [0, 1, 2, 0]]])
-    return polygons
+        Coordinates are those of the points: GeoJSON (RFC 7946) means longitude and latitude.
 
+        Parameters
+        ----------
+        properties : mapping of str to array_like, optional
+            What triangles have, one row for each.
 
-def to_geojson(tri: Triangles, properties: Optional[Data] = None) -> dict[str, Any]:
-    """The triangles as a FeatureCollection of GeoJSON, which ``json.dump`` writes.
+        Returns
+        -------
+        dict
+            With one Feature, a Polygon, for each triangle.
 
-    Coordinates are those of the points: GeoJSON (RFC 7946) means longitude and latitude.
+        Raises
+        ------
+        UsageError
+            For properties of another length.
 
-    Parameters
-    ----------
-    properties : mapping of str to array_like, optional
-        What triangles have, one row for each.
-
-    Returns
-    -------
-    dict
-        With one Feature, a Polygon, for each triangle.
-
-    Raises
-    ------
-    UsageError
-        For properties of another length.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> tri.to_geojson({"height": [7]})["features"][0]["properties"]
-    {'height': 7}
-    """
-    data = _checked(properties, len(tri.simplices), "properties")
-    rings = tri.points[tri.simplices[:, [0, 1, 2, 0]]].tolist()
-    rows = zip(*(array.tolist() for array in data.values())) if data else ([] for _ in rings)
-    features = [
-        {
-            "type": "Feature",
-            "geometry": {"type": "Polygon", "coordinates": [ring]},
-            "properties": dict(zip(data, row)),
-        }
-        for ring, row in zip(rings, rows)
-    ]
-    return {"type": "FeatureCollection", "features": features}
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.to_geojson({"height": [7]})["features"][0]["properties"]
+        {'height': 7}
+        """
+        data = _checked(properties, len(self.simplices), "properties")
+        rings = self.points[self.simplices[:, [0, 1, 2, 0]]].tolist()
+        rows = zip(*(array.tolist() for array in data.values())) if data else ([] for _ in rings)
+        features = [
+            {
+                "type": "Feature",
+                "geometry": {"type": "Polygon", "coordinates": [ring]},
+                "properties": dict(zip(data, row)),
+            }
+            for ring, row in zip(rings, rows)
+        ]
+        return {"type": "FeatureCollection", "features": features}

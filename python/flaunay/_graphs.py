@@ -123,128 +123,10 @@ def edge_simplices(tri: Mesh) -> Indices:
     return frozen(np.stack(sides, axis=1))
 
 
-def adjacency(tri: Mesh, weights: Optional[str] = "length") -> scipy.sparse.csr_array:
-    """The graph of points and edges as a sparse matrix, for `scipy.sparse.csgraph` and others.
-
-    Parameters
-    ----------
-    weights : "length" or None
-        What the matrix has for an edge: its length, float64, or 1, int32.
-
-    Returns
-    -------
-    scipy.sparse.csr_array, shape (npoints, npoints)
-        Symmetric, with sorted indices. Needs SciPy.
-
-    Raises
-    ------
-    UsageError
-        For other weights.
-    ImportError
-        Without SciPy.
-
-    Examples
-    --------
-    The shortest way along edges:
-
-    >>> import flaunay
-    >>> from scipy.sparse.csgraph import dijkstra
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [8, 3], [0, 3]])
-    >>> float(dijkstra(tri.adjacency(), indices=0)[2])
-    9.0
-    """
-    _check_weights(weights)
-    sparse = optional("scipy.sparse", "Delaunay.adjacency")
-    starts, ends = _neighbors_of_points(tri)
-    lengths = None
-    if weights is not None:
-        lengths = _lengths(tri.points, np.stack(_directed_edges(tri), axis=1))
-    n = len(tri.points)
-    # Copies, since the matrix is the caller's.
-    values = _ones_or_lengths(lengths, len(ends))
-    matrix: scipy.sparse.csr_array = sparse.csr_array(
-        (values, ends.copy(), starts.copy()), shape=(n, n)
-    )
-    return matrix
 
 
-def simplex_adjacency(tri: Mesh, weights: Optional[str] = None) -> scipy.sparse.csr_array:
-    """The graph of simplices that have a common edge, as a sparse matrix.
-
-    Parameters
-    ----------
-    weights : "length" or None
-        What the matrix has for two neighbours: the length of their common edge, float64, or 1, int32.
-
-    Returns
-    -------
-    scipy.sparse.csr_array, shape (nsimplex, nsimplex)
-        Symmetric, with sorted indices. Needs SciPy.
-
-    Raises
-    ------
-    UsageError
-        For other weights.
-    ImportError
-        Without SciPy.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [4, 3], [0, 4]])
-    >>> tri.simplex_adjacency("length").toarray()
-    array([[0., 5.],
-           [5., 0.]])
-    """
-    _check_weights(weights)
-    sparse = optional("scipy.sparse", "Delaunay.simplex_adjacency")
-    n = len(tri.simplices)
-    # In each row the neighbours in increasing order; the -1 beyond the hull come first.
-    order = np.argsort(tri.neighbors, axis=1)
-    ends = np.take_along_axis(tri.neighbors, order, axis=1)
-    row, place = np.nonzero(ends >= 0)
-    starts = np.zeros(n + 1, np.int32)
-    np.cumsum((ends >= 0).sum(axis=1), out=starts[1:])
-    lengths = None
-    if weights is not None:
-        corner = order[row, place]
-        sides = [tri.simplices[row, (corner + k) % 3] for k in (1, 2)]
-        lengths = _lengths(tri.points, np.stack(sides, axis=1))
-    values = _ones_or_lengths(lengths, len(row))
-    matrix: scipy.sparse.csr_array = sparse.csr_array(
-        (values, ends[row, place], starts), shape=(n, n)
-    )
-    return matrix
 
 
-def to_networkx(tri: Mesh) -> networkx.Graph:
-    """The graph of points and edges for NetworkX.
-
-    Returns
-    -------
-    networkx.Graph
-        The nodes are the indices of points, with their coordinates as ``pos``; edges have their
-        ``length``. Needs NetworkX, and much more memory and time than `edges` and `adjacency`.
-
-    Raises
-    ------
-    ImportError
-        Without NetworkX.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> graph = flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).to_networkx()  # doctest: +SKIP
-    >>> graph.edges[1, 2]["length"]  # doctest: +SKIP
-    5.0
-    """
-    graph: networkx.Graph = optional("networkx", "Delaunay.to_networkx").Graph()
-    graph.add_nodes_from((i, {"pos": tuple(p)}) for i, p in enumerate(tri.points.tolist()))
-    graph.add_weighted_edges_from(
-        ((i, j, length) for (i, j), length in zip(tri.edges.tolist(), tri.edge_lengths.tolist())),
-        weight="length",
-    )
-    return graph
 
 
 def is_gabriel(tri: Mesh) -> Mask:
@@ -345,3 +227,128 @@ def minimum_spanning_forest(
     graph = sparse.coo_array((ranks, (edges[:, 0], edges[:, 1])), shape=(n, n)).tocsr()
     kept = csgraph.minimum_spanning_tree(graph).data.astype(np.intp) - 1
     return np.sort(order[kept])
+
+
+class GraphMethods:
+    """Those of a triangulation that is a graph."""
+
+    def adjacency(self: Mesh, weights: Optional[str] = "length") -> scipy.sparse.csr_array:
+        """The graph of points and edges as a sparse matrix, for `scipy.sparse.csgraph` and others.
+
+        Parameters
+        ----------
+        weights : "length" or None
+            What the matrix has for an edge: its length, float64, or 1, int32.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (npoints, npoints)
+            Symmetric, with sorted indices. Needs SciPy.
+
+        Raises
+        ------
+        UsageError
+            For other weights.
+        ImportError
+            Without SciPy.
+
+        Examples
+        --------
+        The shortest way along edges:
+
+        >>> import flaunay
+        >>> from scipy.sparse.csgraph import dijkstra
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [8, 3], [0, 3]])
+        >>> float(dijkstra(tri.adjacency(), indices=0)[2])
+        9.0
+        """
+        _check_weights(weights)
+        sparse = optional("scipy.sparse", "Delaunay.adjacency")
+        starts, ends = _neighbors_of_points(self)
+        lengths = None
+        if weights is not None:
+            lengths = _lengths(self.points, np.stack(_directed_edges(self), axis=1))
+        n = len(self.points)
+        # Copies, since the matrix is the caller's.
+        values = _ones_or_lengths(lengths, len(ends))
+        matrix: scipy.sparse.csr_array = sparse.csr_array(
+            (values, ends.copy(), starts.copy()), shape=(n, n)
+        )
+        return matrix
+
+    def simplex_adjacency(self: Mesh, weights: Optional[str] = None) -> scipy.sparse.csr_array:
+        """The graph of simplices that have a common edge, as a sparse matrix.
+
+        Parameters
+        ----------
+        weights : "length" or None
+            What the matrix has for two neighbours: the length of their common edge, float64, or 1, int32.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (nsimplex, nsimplex)
+            Symmetric, with sorted indices. Needs SciPy.
+
+        Raises
+        ------
+        UsageError
+            For other weights.
+        ImportError
+            Without SciPy.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [4, 3], [0, 4]])
+        >>> tri.simplex_adjacency("length").toarray()
+        array([[0., 5.],
+               [5., 0.]])
+        """
+        _check_weights(weights)
+        sparse = optional("scipy.sparse", "Delaunay.simplex_adjacency")
+        n = len(self.simplices)
+        # In each row the neighbours in increasing order; the -1 beyond the hull come first.
+        order = np.argsort(self.neighbors, axis=1)
+        ends = np.take_along_axis(self.neighbors, order, axis=1)
+        row, place = np.nonzero(ends >= 0)
+        starts = np.zeros(n + 1, np.int32)
+        np.cumsum((ends >= 0).sum(axis=1), out=starts[1:])
+        lengths = None
+        if weights is not None:
+            corner = order[row, place]
+            sides = [self.simplices[row, (corner + k) % 3] for k in (1, 2)]
+            lengths = _lengths(self.points, np.stack(sides, axis=1))
+        values = _ones_or_lengths(lengths, len(row))
+        matrix: scipy.sparse.csr_array = sparse.csr_array(
+            (values, ends[row, place], starts), shape=(n, n)
+        )
+        return matrix
+
+    def to_networkx(self: Mesh) -> networkx.Graph[Any]:
+        """The graph of points and edges for NetworkX.
+
+        Returns
+        -------
+        networkx.Graph
+            The nodes are the indices of points, with their coordinates as ``pos``; edges have their
+            ``length``. Needs NetworkX, and much more memory and time than `edges` and `adjacency`.
+
+        Raises
+        ------
+        ImportError
+            Without NetworkX.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> graph = flaunay.Delaunay([[0, 0], [4, 0], [0, 3]]).to_networkx()  # doctest: +SKIP
+        >>> graph.edges[1, 2]["length"]  # doctest: +SKIP
+        5.0
+        """
+        graph: networkx.Graph = optional("networkx", "Delaunay.to_networkx").Graph()
+        graph.add_nodes_from((i, {"pos": tuple(p)}) for i, p in enumerate(self.points.tolist()))
+        graph.add_weighted_edges_from(
+            ((i, j, length) for (i, j), length in zip(self.edges.tolist(), self.edge_lengths.tolist())),
+            weight="length",
+        )
+        return graph

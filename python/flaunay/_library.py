@@ -64,7 +64,7 @@ class Handle:
     _destroy: Any
 
     def __init__(self) -> None:
-        self.pointer = ctypes.c_void_p()
+        self.pointer: ctypes.c_void_p = ctypes.c_void_p()
 
     @property
     def place(self) -> Any:

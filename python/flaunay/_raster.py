@@ -64,87 +64,6 @@ def rasterize(
     )
 
 
-def raster(
-    tri: Surface,
-    values: ArrayLike,
-    shape: tuple[int, int],
-    bounds: Optional[Sequence[float]] = None,
-    *,
-    max_edge: Optional[float] = None,
-    fill_value: float = np.nan,
-    out: Optional[Doubles] = None,
-    device: Optional[str] = None,
-) -> Doubles:
-    """A raster of values at the points, by linear interpolation in the triangles.
-
-    Parameters
-    ----------
-    values : array_like, shape (npoints,)
-        One number per point, such as its height. Of equal points, that of the representative counts.
-    shape : tuple of int
-        Numbers of rows and columns.
-    bounds : (xmin, ymin, xmax, ymax), optional
-        What the pixels cover together, from edge to edge; the box of the points by default. The first
-        row is the one with the largest y, as in pictures and maps.
-    max_edge : float, optional
-        Pixels in triangles with a longer edge have no value, so that bays and gaps are not bridged.
-    fill_value : float, optional
-        The value of pixels that are in no triangle.
-    out : ndarray of float64, optional
-        An array of this shape for the result.
-    device : str, optional
-        As of `triangulate`.
-
-    Returns
-    -------
-    ndarray of float64, of the shape
-        The values at the centres of pixels, ``x = xmin + dx / 2 + column * dx`` and
-        ``y = ymax - dy / 2 - row * dy``.
-
-    Raises
-    ------
-    UsageError
-        For another number of values than of points, a shape or bounds that make no sense, and a
-        triangulation of several sets.
-    InputError
-        For pixels that are too small for doubles.
-    DeviceError
-        As of `triangulate`.
-
-    Notes
-    -----
-    Which triangle a pixel's centre lies in is decided exactly. The border belongs to the triangles, and a
-    centre on an edge between two of them to one of both, always to the same one: the result depends
-    on the points and values alone. O(triangles + pixels).
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> tri.raster([0, 8, 4], shape=(2, 4))
-    array([[ 4., nan, nan, nan],
-           [ 2.,  4.,  6., nan]])
-    """
-    rows, columns = (operator.index(number) for number in shape)
-    if min(rows, columns) < 1:
-        raise UsageError(f"shape must be numbers of rows and columns, not {tuple(shape)}")
-    if bounds is None:
-        if len(tri.simplices) == 0:
-            raise UsageError("bounds are needed, as there are no triangles")
-        low, high = np.nanmin(tri.points, axis=0), np.nanmax(tri.points, axis=0)
-        box = np.array([*low, *high], np.float64)
-    else:
-        box = np.asarray(as_floats(bounds, "bounds"), np.float64)
-    if box.shape != (4,) or not (box[0] < box[2] and box[1] < box[3]):
-        raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {box.tolist()}")
-    if out is None:
-        out = np.empty((rows, columns))
-    else:
-        check_out(out, np.float64, (rows, columns), "out")
-    dx, dy = (box[2] - box[0]) / columns, (box[3] - box[1]) / rows
-    grid = (box[0] + dx / 2, box[3] - dy / 2, dx, -dy)
-    rasterize(tri, values, grid, out, max_edge, fill_value, device)
-    return out
 
 
 class Contours:
@@ -211,57 +130,142 @@ class Contours:
         return {"type": "FeatureCollection", "features": features}
 
 
-def contours(
-    tri: Surface,
-    values: ArrayLike,
-    heights: Union[ArrayLike, float],
-    *,
-    max_edge: Optional[float] = None,
-    device: Optional[str] = None,
-) -> Contours:
-    """Contour lines of values at the points, which are linear in the triangles.
+class MapMethods:
+    """Maps of values at the points of a triangulation."""
 
-    Parameters
-    ----------
-    values : array_like, shape (npoints,)
-        One number per point. Triangles with one that is not finite have no lines.
-    heights : array_like
-        The heights of lines, or one of them, in any order.
-    max_edge : float, optional
-        Triangles with a longer edge have no lines.
-    device : str, optional
-        As of `triangulate`; lines are traced on the host.
+    def raster(
+        self: Surface,
+        values: ArrayLike,
+        shape: tuple[int, int],
+        bounds: Optional[Sequence[float]] = None,
+        *,
+        max_edge: Optional[float] = None,
+        fill_value: float = np.nan,
+        out: Optional[Doubles] = None,
+        device: Optional[str] = None,
+    ) -> Doubles:
+        """A raster of values at the points, by linear interpolation in the triangles.
 
-    Returns
-    -------
-    Contours
-        Sorted by height. Higher values are on the left of a line. It is closed, or begins and ends at
-        the border of the triangles; lines do not cross. A value that equals a height counts as above it.
+        Parameters
+        ----------
+        values : array_like, shape (npoints,)
+            One number per point, such as its height. Of equal points, that of the representative counts.
+        shape : tuple of int
+            Numbers of rows and columns.
+        bounds : (xmin, ymin, xmax, ymax), optional
+            What the pixels cover together, from edge to edge; the box of the points by default. The first
+            row is the one with the largest y, as in pictures and maps.
+        max_edge : float, optional
+            Pixels in triangles with a longer edge have no value, so that bays and gaps are not bridged.
+        fill_value : float, optional
+            The value of pixels that are in no triangle.
+        out : ndarray of float64, optional
+            An array of this shape for the result.
+        device : str, optional
+            As of `triangulate`.
 
-    Raises
-    ------
-    UsageError
-        For another number of values than of points, heights that are not finite, and a
-        triangulation of several sets.
+        Returns
+        -------
+        ndarray of float64, of the shape
+            The values at the centres of pixels, ``x = xmin + dx / 2 + column * dx`` and
+            ``y = ymax - dy / 2 - row * dy``.
 
-    Notes
-    -----
-    The result depends on points and values alone, not on their order. O(triangles + points of lines).
+        Raises
+        ------
+        UsageError
+            For another number of values than of points, a shape or bounds that make no sense, and a
+            triangulation of several sets.
+        InputError
+            For pixels that are too small for doubles.
+        DeviceError
+            As of `triangulate`.
 
-    Examples
-    --------
-    >>> import flaunay
-    >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
-    >>> for height, line in tri.contours([0, 4, 4], [1, 2]):
-    ...     print(height, line.tolist())
-    1.0 [[0.0, 1.0], [1.0, 0.0]]
-    2.0 [[0.0, 2.0], [2.0, 0.0]]
-    """
-    levels = np.unique(np.asarray(as_floats(heights, "heights"), np.float64))
-    points, offsets, numbers = _calls.contours(
-        _triangulators.of_device(device),
-        *_arrays_of(tri, values),
-        heights=levels,
-        max_edge=as_length(max_edge, "max_edge"),
-    )
-    return Contours(points, offsets, levels[numbers])
+        Notes
+        -----
+        Which triangle a pixel's centre lies in is decided exactly. The border belongs to the triangles, and a
+        centre on an edge between two of them to one of both, always to the same one: the result depends
+        on the points and values alone. O(triangles + pixels).
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> tri.raster([0, 8, 4], shape=(2, 4))
+        array([[ 4., nan, nan, nan],
+               [ 2.,  4.,  6., nan]])
+        """
+        rows, columns = (operator.index(number) for number in shape)
+        if min(rows, columns) < 1:
+            raise UsageError(f"shape must be numbers of rows and columns, not {tuple(shape)}")
+        if bounds is None:
+            if len(self.simplices) == 0:
+                raise UsageError("bounds are needed, as there are no triangles")
+            low, high = np.nanmin(self.points, axis=0), np.nanmax(self.points, axis=0)
+            box = np.array([*low, *high], np.float64)
+        else:
+            box = np.asarray(as_floats(bounds, "bounds"), np.float64)
+        if box.shape != (4,) or not (box[0] < box[2] and box[1] < box[3]):
+            raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {box.tolist()}")
+        if out is None:
+            out = np.empty((rows, columns))
+        else:
+            check_out(out, np.float64, (rows, columns), "out")
+        dx, dy = (box[2] - box[0]) / columns, (box[3] - box[1]) / rows
+        grid = (box[0] + dx / 2, box[3] - dy / 2, dx, -dy)
+        rasterize(self, values, grid, out, max_edge, fill_value, device)
+        return out
+
+    def contours(
+        self: Surface,
+        values: ArrayLike,
+        heights: Union[ArrayLike, float],
+        *,
+        max_edge: Optional[float] = None,
+        device: Optional[str] = None,
+    ) -> Contours:
+        """Contour lines of values at the points, which are linear in the triangles.
+
+        Parameters
+        ----------
+        values : array_like, shape (npoints,)
+            One number per point. Triangles with one that is not finite have no lines.
+        heights : array_like
+            The heights of lines, or one of them, in any order.
+        max_edge : float, optional
+            Triangles with a longer edge have no lines.
+        device : str, optional
+            As of `triangulate`; lines are traced on the host.
+
+        Returns
+        -------
+        Contours
+            Sorted by height. Higher values are on the left of a line. It is closed, or begins and ends at
+            the border of the triangles; lines do not cross. A value that equals a height counts as above it.
+
+        Raises
+        ------
+        UsageError
+            For another number of values than of points, heights that are not finite, and a
+            triangulation of several sets.
+
+        Notes
+        -----
+        The result depends on points and values alone, not on their order. O(triangles + points of lines).
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
+        >>> for height, line in tri.contours([0, 4, 4], [1, 2]):
+        ...     print(height, line.tolist())
+        1.0 [[0.0, 1.0], [1.0, 0.0]]
+        2.0 [[0.0, 2.0], [2.0, 0.0]]
+        """
+        levels = np.unique(np.asarray(as_floats(heights, "heights"), np.float64))
+        points, offsets, numbers = _calls.contours(
+            _triangulators.of_device(device),
+            *_arrays_of(self, values),
+            heights=levels,
+            max_edge=as_length(max_edge, "max_edge"),
+        )
+        return Contours(points, offsets, levels[numbers])

@@ -303,8 +303,8 @@ class Terrain:
         self.mesh = mesh
         self.heights = heights
         self.crs = crs
-        self.resolution = grid.resolution
-        self.bounds = grid.bounds
+        self.resolution: float = grid.resolution
+        self.bounds: tuple[float, ...] = grid.bounds
         self._grid = grid
         self._boundary = boundary
         self._max_edge: Optional[float] = None
@@ -326,7 +326,7 @@ class Terrain:
                     f"contours every {step} between {low} and {high} are more than a million"
                 )
             levels = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
-        lines = _raster.contours(self.mesh, self.heights, levels, max_edge=self._max_edge)
+        lines = self.mesh.contours(self.heights, levels, max_edge=self._max_edge)
         return lines if self._boundary is None else self._clipped(lines)
 
     def _clipped(self, lines: Contours) -> Contours:
@@ -415,15 +415,17 @@ class _Grid:
                 f"resolution {resolution:g} makes {columns:,.0f} x {rows:,.0f} pixels of "
                 f"{box[2] - box[0]:g} x {box[3] - box[1]:g}; at most {_MOST_PIXELS:,} are possible"
             )
-        self.resolution, self.is_point = resolution, is_point
-        self.rows, self.columns = int(rows), int(columns)
+        self.resolution: float = resolution
+        self.is_point: bool = is_point
+        self.rows: int = int(rows)
+        self.columns: int = int(columns)
         half = 0.5 * is_point
         x0, y0 = float(low[0]) - half, float(low[1]) - half
-        self.bounds = tuple(
+        self.bounds: tuple[float, ...] = tuple(
             float(edge) * resolution for edge in (x0, y0, x0 + self.columns, y0 + self.rows)
         )
         # The centre of the first pixel, and the steps to the next ones.
-        self.steps = (
+        self.steps: tuple[float, float, float, float] = (
             (x0 + 0.5) * resolution,
             (y0 + self.rows - 0.5) * resolution,
             resolution,

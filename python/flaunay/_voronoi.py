@@ -102,7 +102,7 @@ class Voronoi:
         mode: str = "blocks",
         device: Optional[str] = None,
     ) -> None:
-        self.delaunay = Delaunay(
+        self.delaunay: Delaunay = Delaunay(
             points, furthest_site, incremental, qhull_options, mode=mode, device=device
         )
         self._merge, self._device = merge, device
