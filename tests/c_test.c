@@ -1807,6 +1807,22 @@ static void test_locator(void) {
   CHECK(fails(flaunay_locator_nearest(locator, kQueries, 3, (const size_t[]){0, 2}, 1, nearest), usage,
               "offsets"));
   CHECK(flaunay_locator_locate(locator, NULL, 0, NULL, 1, NULL) == FLAUNAY_SUCCESS);
+  flaunay_natural_weights* weights = NULL;
+  REQUIRE(flaunay_natural_weights_compute(locator, kQueries, kQueryCount, FLAUNAY_INTERPOLATION_SIBSON,
+                                          &weights) == FLAUNAY_SUCCESS);
+  const size_t* const rows_of_weights = flaunay_natural_weights_offsets(weights);
+  double sum = 0;
+  for (size_t k = rows_of_weights[0]; k < rows_of_weights[1]; ++k) {
+    CHECK(flaunay_natural_weights_points(weights)[k] < 4);
+    sum += flaunay_natural_weights_weights(weights)[k];
+  }
+  CHECK(fabs(sum - 1) < 1e-12 || rows_of_weights[0] == rows_of_weights[1]);
+  CHECK(rows_of_weights[kQueryCount] > 0);
+  flaunay_natural_weights_destroy(weights);
+  CHECK(fails(flaunay_natural_weights_compute(locator, kQueries, 1, FLAUNAY_INTERPOLATION_LINEAR, &weights),
+              usage, "Sibson"));
+  CHECK(fails(flaunay_natural_weights_compute(locator, kQueries, 1, 17, &weights), usage,
+              "flaunay_interpolation"));
   flaunay_locator_destroy(locator);
   flaunay_locator_destroy(NULL);
   CHECK(fails(flaunay_locator_create(triangulator, kSquare, 3, NULL, 1, mesh, &locator), usage, "points"));

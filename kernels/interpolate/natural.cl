@@ -53,21 +53,33 @@ typedef struct {
 typedef struct {
   int columns, is_by_vertex;
   global const double* values;  // a row per point, or per vertex
-  global double* row;
+  global double* row;           // of values; without columns the weights themselves, as many as there is room for
+  global int* neighbors;
+  int room, count;
 } receiver;
 
 static inline void give(receiver* to, natural_mesh mesh, int vertex, double weight) {
+  if (to->columns == 0) {
+    if (to->count < to->room) {
+      to->neighbors[to->count] = mesh.source[vertex];
+      to->row[to->count] = weight;
+    }
+    ++to->count;
+    return;
+  }
   global const double* row = to->values + (size_t)(to->is_by_vertex ? vertex : mesh.source[vertex]) * to->columns;
   for (int c = 0; c < to->columns; ++c) to->row[c] += weight * row[c];
 }
 
 static inline void clear_row(receiver* to, double value) {
+  to->count = 0;
   for (int c = 0; c < to->columns; ++c) to->row[c] = value;
 }
 
 // What the receiver has got by the sum of the weights.
 static inline void divide_by(receiver* to, double sum) {
-  for (int c = 0; c < to->columns; ++c) to->row[c] /= sum;
+  const int numbers = to->columns == 0 ? min(to->count, to->room) : to->columns;
+  for (int c = 0; c < numbers; ++c) to->row[c] /= sum;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -570,7 +582,7 @@ kernel void interpolate_natural(int n, PLACED_QUERIES(), int columns, int is_by_
     fetch_query(i, n, found, faces, points);
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns};
+    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0, 0};
     int outcome = WEIGHED;
     if (found[i] >= 0) {
       clear_row(&to, 0.0);
@@ -590,10 +602,29 @@ kernel void interpolate_natural_exactly(int n, PLACED_QUERIES(), int columns, in
   if (i < n && left[i]) {
     const int s = set_of_query(i, sets, query_offsets);
     const natural_mesh mesh = {points, source, faces, frames[s].unit};
-    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns};
+    receiver to = {columns, is_by_vertex, values, results + (size_t)order[i] * columns, 0, 0, 0};
     clear_row(&to, 0.0);
     if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, &to) != WEIGHED) {
       clear_row(&to, outside);
     }
+  }
+}
+
+// Writes the neighbours of each query and their weights from firsts[query] on, as many as there is room for before that
+// of the next query, and how many there are to counts.
+kernel void list_natural(int n, PLACED_QUERIES(), int method, global const mesh_set* restrict records, FACES(),
+                         global const int* restrict found, global const int* restrict firsts,
+                         global int* restrict counts, global int* restrict neighbors, global double* restrict weights) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    fetch_query(i, n, found, faces, points);
+    const int s = set_of_query(i, sets, query_offsets), q = order[i];
+    const natural_mesh mesh = {points, source, faces, frames[s].unit};
+    receiver to = {0, 0, 0, weights + firsts[q], neighbors + firsts[q], firsts[q + 1] - firsts[q], 0};
+    if (found[i] >= 0 && weigh_by_estimate(mesh, placed[i], found[i], method, &to) != WEIGHED) {
+      clear_row(&to, 0.0);
+      if (weigh_exactly(mesh, placed[i], found[i], records[s].triangles, method, &to) != WEIGHED) clear_row(&to, 0.0);
+    }
+    counts[q] = to.count;
   }
 }

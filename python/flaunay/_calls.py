@@ -1338,6 +1338,22 @@ class Locator(_Locator):
         """The point that is nearest to each query; -1 if there is none."""
         return self._find(library.locator_nearest, queries)
 
+    def natural_weights(
+        self, queries: _Doubles, method: str
+    ) -> tuple[_Offsets, _Indices, _Doubles]:
+        """Where the rows of queries begin, points, and their weights."""
+        made = _NaturalWeights()
+        by = _declarations.INTERPOLATION[method]
+        given = self.pointer, queries, len(queries), by, made.place
+        self._triangulator.call(library.natural_weights_compute, *given)
+        offsets = _view(
+            made, library.natural_weights_offsets(made.pointer), (len(queries) + 1,), _INT64
+        )
+        shape = (int(offsets[-1]),)
+        points = _view(made, library.natural_weights_points(made.pointer), shape, _INT32)
+        weights = _view(made, library.natural_weights_weights(made.pointer), shape, _FLOAT64)
+        return offsets, points, weights
+
     def _check_rows(self, values: _Doubles) -> None:
         if len(values) != self._point_count:
             raise UsageError(
@@ -1368,6 +1384,10 @@ class Locator(_Locator):
         results = np.empty((*values.shape, 2))
         self._triangulator.call(library.locator_gradients, self.pointer, values, options, results)
         return results
+
+
+class _NaturalWeights(Handle):
+    _destroy = library.natural_weights_destroy
 
 
 class PointTree(_InTurns):

@@ -394,6 +394,17 @@ class _Columns(_Interpolator):
         return np.stack([x, y], axis=-1)
 
 
+def _as_rows(
+    sparse: Any, weights: Doubles, points: Indices, starts: npt.NDArray[np.int64], count: int
+) -> scipy.sparse.csr_array:
+    """A matrix with a column per point, in whose rows points are in order."""
+    matrix: scipy.sparse.csr_array = sparse.csr_array(
+        (weights, points, starts), shape=(len(starts) - 1, count), copy=True
+    )
+    matrix.sum_duplicates()
+    return matrix
+
+
 class LinearInterpolator(_Columns):
     """Linear interpolation in the triangles, as `scipy.interpolate.LinearNDInterpolator`.
 
@@ -543,11 +554,7 @@ class LinearInterpolator(_Columns):
         columns = np.zeros((len(rows), 3), np.int32)
         columns[triangles >= 0] = self.tri.simplices[triangles[triangles >= 0]]
         starts = np.concatenate([[0], np.cumsum(counted.sum(axis=1))])
-        matrix: scipy.sparse.csr_array = sparse.csr_array(
-            (rows[counted], columns[counted], starts), shape=(len(rows), self.tri.npoints)
-        )
-        matrix.sort_indices()
-        return matrix
+        return _as_rows(sparse, rows[counted], columns[counted], starts, self.tri.npoints)
 
 
 class CloughTocherInterpolator(_Columns):
@@ -855,6 +862,40 @@ class NaturalNeighborInterpolator(_Columns):
         self._method = method
         beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
         super().__init__(points, values, fill_value, rescale, device, beyond)
+
+    def weights(self, *xi: Any) -> scipy.sparse.csr_array:
+        """What each point counts for at each query, so that ``weights(xi) @ values`` interpolates any values.
+
+        Parameters
+        ----------
+        *xi
+            As of a call. Queries are counted in their order.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (queries, npoints)
+            The weights of the natural neighbours, with the sum 1. Rows of queries outside are empty, and give 0.
+
+        Raises
+        ------
+        ImportError
+            Without SciPy.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> points = [[0, 0], [4, 0], [0, 4], [4, 4]]
+        >>> interpolate = flaunay.NaturalNeighborInterpolator(points, [0, 8, 4, 0])
+        >>> interpolate.weights([[2, 2], [9, 9]]).toarray()
+        array([[0.25, 0.25, 0.25, 0.25],
+               [0.  , 0.  , 0.  , 0.  ]])
+        """
+        sparse = optional("scipy.sparse", "NaturalNeighborInterpolator.weights")
+        queries, _ = self._queries(xi)
+        asked = are_finite(queries)
+        starts, columns, weights = self.tri._locator.natural_weights(queries[asked], self._method)
+        starts = starts[np.concatenate([[0], np.cumsum(asked)])]
+        return _as_rows(sparse, weights, columns, starts, self.tri.npoints)
 
 
 def griddata(

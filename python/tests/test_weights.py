@@ -81,3 +81,27 @@ def test_coordinates_in_very_slender_triangles_have_the_sum_one():
         assert coordinates[triangles >= 0].sum(axis=1) == pytest.approx(1)
         assert (coordinates[triangles >= 0] >= 0).all()
     assert inside > 100
+
+
+@pytest.mark.parametrize("method", ["sibson", "laplace"])
+@pytest.mark.parametrize("is_constrained", [False, True])
+def test_weights_of_natural_neighbours(method, is_constrained):
+    sparse = pytest.importorskip("scipy.sparse")
+    rng = np.random.default_rng(2)
+    grid = np.stack(np.meshgrid(range(5), range(5)), axis=-1).reshape(-1, 2) / 4
+    points = np.concatenate([rng.random((100, 2)), grid, grid[:3]])
+    queries = np.concatenate([points, rng.uniform(-0.1, 1.1, (200, 2)), [[np.nan, 0], [9, 9]]])
+    segments = [[100, 124], [105, 119]]
+    mesh = flaunay.triangulate(points, segments=segments, crossings="split") if is_constrained else points
+    count = len(mesh.points) if is_constrained else len(mesh)
+    interpolate = flaunay.NaturalNeighborInterpolator(mesh, np.zeros(count), method, fill_value=0)
+    weights = interpolate.weights(queries)
+    assert sparse.issparse(weights) and weights.shape == (len(queries), count)
+    for _ in range(3):
+        values = rng.random((count, 2))
+        interpolate.values = values
+        assert weights @ values == pytest.approx(interpolate(queries), abs=1e-12)
+    sums = np.asarray(weights.sum(axis=1)).ravel()
+    assert sums == pytest.approx((interpolate.tri.find_simplex(queries) >= 0).astype(float))
+    assert weights.data.min() >= 0 and np.diff(weights.indptr).max() > 4
+    assert interpolate.weights(0.5, [0.25, 0.5]).shape == (2, count)

@@ -12,10 +12,15 @@ using namespace flaunay;
 
 using c::create;
 using c::guarded;
+using c::read;
 using c::required;
 
 struct flaunay_locator {
   Locator cpp;
+};
+
+struct flaunay_natural_weights {
+  NaturalWeights cpp;
 };
 
 struct flaunay_point_tree {
@@ -188,6 +193,27 @@ flaunay_status flaunay_locator_gradients_device(flaunay_locator* locator, cl_mem
                            cpp.gradients(values, buffer, checked.columns, checked.estimation, queued);
                          });
 }
+
+flaunay_status flaunay_natural_weights_compute(flaunay_locator* locator, const double* queries, size_t m,
+                                               int method, flaunay_natural_weights** weights) {
+  return create(weights, [&] {
+    Locator& cpp = required(locator, "the locator").cpp;
+    const auto by = c::to_enum<Interpolation>(method, FLAUNAY_INTERPOLATION_LAPLACE, "flaunay_interpolation");
+    return std::make_unique<flaunay_natural_weights>(
+        flaunay_natural_weights{cpp.natural_weights(queries, m, by)});
+  });
+}
+
+void flaunay_natural_weights_destroy(flaunay_natural_weights* weights) { delete weights; }
+
+#define ACCESSOR(type, name)                                                               \
+  const type* flaunay_natural_weights_##name(const flaunay_natural_weights* weights) {     \
+    return read(weights, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
+  }
+ACCESSOR(size_t, offsets)
+ACCESSOR(int32_t, points)
+ACCESSOR(double, weights)
+#undef ACCESSOR
 
 flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator, const double* coordinates,
                                          size_t n, flaunay_point_tree** tree) {

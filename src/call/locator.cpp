@@ -422,6 +422,25 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
                           });
 }
 
+NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
+  Implementation& self = *implementation_;
+  call::Answerer& by = self.doubles();
+  return call::take_turn(*self.owner, [&] {
+    const auto weighed = Implementation::natural_weights(method);
+    Implementation::check_queries(m, 1);
+    call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
+    NaturalWeights result;
+    call::Frame call(by.place.engine);
+    const flaunay::interpolate::NaturalLists lists(
+        call.runtime, by.locator, weighed, call.points(call::HostPoints{queries, nullptr, m}), m, {0, m});
+    result.offsets = lists.offsets();
+    const auto points = call.out<cl_int>(result.points, result.offsets.back());
+    lists.write(points, call.out<cl_double>(result.weights, result.offsets.back()));
+    call.end();
+    return result;
+  });
+}
+
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;

@@ -199,6 +199,25 @@ std::vector<double> table_for(const Case& input) {
   return table;
 }
 
+// Lists of weights are what values of 1 at one point get.
+void check_lists(host::Runtime& runtime, const Case& input, const NaturalLists& lists,
+                 const std::vector<double>& results) {
+  const std::size_t count = lists.offsets().back(), columns = columns_for(input);
+  const auto neighbors = guarded<cl_int>(runtime, count);
+  const auto weights = guarded<cl_double>(runtime, count);
+  lists.write(neighbors, weights);
+  const std::vector<cl_int> points = download(runtime, neighbors, count);
+  const std::vector<double> all = download(runtime, weights, count);
+  ASSERT_EQ(lists.offsets().size(), input.query_count() + 1);
+  for (std::size_t q = 0; q < input.query_count(); ++q) {
+    const std::size_t first = lists.offsets()[q], last = lists.offsets()[q + 1];
+    std::vector<double> row(input.size(), first == last ? kOutside : 0);
+    for (std::size_t k = first; k < last; ++k) row[static_cast<std::size_t>(points[k])] += all[k];
+    const double* const expected = results.data() + q * columns + kColumns;
+    ASSERT_EQ(row, std::vector<double>(expected, expected + input.size())) << "query " << q;
+  }
+}
+
 NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWeights method) {
   host::Arena own(runtime.memory());
   if (runtime.sizes().separate_buffers) own.separate_buffers();
@@ -210,6 +229,8 @@ NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWei
   const auto results = guarded<cl_double>(runtime, columns * m),
              exact = guarded<cl_double>(runtime, columns * m);
   natural(runtime, locator, method, {values, columns, kOutside}, queries, m, input.query_offsets, results);
+  check_lists(runtime, input, {runtime, locator, method, queries, m, input.query_offsets},
+              download(runtime, results, columns * m));
 
   // All by the exact kernel, except outside of the hull, which is not left to it.
   const locate::LocatedQueries located =

@@ -19,4 +19,29 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
              const Buffer<cl_double>& queries, std::size_t m, const std::vector<std::size_t>& query_offsets,
              const Buffer<cl_double>& results);
 
+/// The natural neighbours of queries and their weights, which are written in a second pass.
+class NaturalLists {
+ public:
+  /// Counts them. Waits once. The arguments are those of natural(); they must exist until the end of the
+  /// call.
+  NaturalLists(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
+               const Buffer<cl_double>& queries, std::size_t m,
+               const std::vector<std::size_t>& query_offsets);
+  /// Query i has the rows [offsets()[i], offsets()[i + 1]); those outside have none.
+  const std::vector<std::size_t>& offsets() const { return offsets_; }
+  /// Enqueues what writes them.
+  void write(const Buffer<cl_int>& neighbors, const Buffer<cl_double>& weights) const;
+
+ private:
+  void list(const Buffer<cl_int>& firsts, const Buffer<cl_int>& counts, const Buffer<cl_int>& neighbors,
+            const Buffer<cl_double>& weights) const;
+
+  host::Runtime& runtime_;
+  const Locator& locator_;
+  NaturalWeights method_;
+  std::size_t m_;
+  locate::LocatedQueries located_;
+  std::vector<std::size_t> offsets_;
+};
+
 }  // namespace flaunay::interpolate

@@ -1477,6 +1477,22 @@ FLAUNAY_API flaunay_status flaunay_locator_interpolate_with(flaunay_locator* loc
 FLAUNAY_API flaunay_status flaunay_locator_interpolate_with_device(
     flaunay_locator* locator, cl_mem values, const flaunay_device_points* queries,
     const flaunay_interpolation_options* options, const flaunay_enqueue* enqueue, cl_mem* results);
+/// The natural neighbours of queries and their weights.
+typedef struct flaunay_natural_weights flaunay_natural_weights;
+/// Computes the weights by which FLAUNAY_INTERPOLATION_SIBSON or _LAPLACE interpolates any values at m
+/// queries in host memory, in a triangulation of one set; queries outside have none. The caller destroys the
+/// result. Errors are those of flaunay_locator_locate.
+FLAUNAY_API flaunay_status flaunay_natural_weights_compute(flaunay_locator* locator, const double* queries,
+                                                           size_t m, int method,
+                                                           flaunay_natural_weights** weights);
+/// Destroys weights. O(1).
+FLAUNAY_API void flaunay_natural_weights_destroy(flaunay_natural_weights* weights);
+/// m + 1 values: query i has the points and weights from the i-th to the (i + 1)-th.
+FLAUNAY_API const size_t* flaunay_natural_weights_offsets(const flaunay_natural_weights* weights);
+/// Points, without an order; of duplicates the representative.
+FLAUNAY_API const int32_t* flaunay_natural_weights_points(const flaunay_natural_weights* weights);
+/// The weight of each, 0 or more, with the sum 1 per query.
+FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_weights* weights);
 /// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
 /// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
 /// and y per number, the caller's array. They are NaN at points that another one represents, and at those of

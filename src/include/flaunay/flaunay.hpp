@@ -438,6 +438,13 @@ struct InterpolationOptions {
   GradientOptions estimation;         ///< how gradients are estimated if none are given
 };
 
+/// What points count for at queries: query i has the points and weights [offsets[i], offsets[i + 1]).
+struct NaturalWeights {
+  std::vector<std::size_t> offsets;  ///< one more than there are queries
+  std::vector<std::int32_t> points;  ///< without an order; of duplicates the representative
+  std::vector<double> weights;       ///< 0 or more, with the sum 1
+};
+
 /// Answers queries on a triangulation: the containing triangle, the nearest point, an interpolated value. A
 /// search tree leads to a vertex near the query, and from there an exact walk goes from triangle to triangle.
 /// One call answers any number of queries. If the triangulation has several sets, there must be as many sets
@@ -525,6 +532,11 @@ class FLAUNAY_API Locator {
   /// Answers queries in device memory; see locate. values and results: double, 8 bytes per number.
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const InterpolationOptions& options, const Enqueue& enqueue = own_queue());
+
+  /// Returns the natural neighbours of m queries with the weights by which Interpolation::sibson or laplace
+  /// interpolates any values; none outside. Throws Error(usage) for another method and for several sets.
+  NaturalWeights natural_weights(const double* queries, std::size_t m,
+                                 Interpolation method = Interpolation::sibson);
 
   /// Estimates the gradients of values at the points, for Interpolation::clough_tocher. values: rows of
   /// `columns` numbers, one row per input point. Returns x and y per number. It is NaN at points that another
