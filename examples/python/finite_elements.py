@@ -33,13 +33,11 @@ def cross_section(
     angles = np.linspace(0, 2 * np.pi, CORNERS, endpoint=False)
     points = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     border = [[k, (k + 1) % CORNERS] for k in range(CORNERS)]
-    # Not mesh.find_simplex, which is a call within the call that refines.
-    triangle_at = mesh.to_matplotlib().get_trifinder()
     return flaunay.refine(
         np.concatenate([points, [[0, 0]]]),
         [*border, [0, CORNERS]],
         min_angle=30,
-        areas_at=lambda places: areas[triangle_at(*places.T)],
+        areas_at=lambda places: areas[mesh.find_simplex(places)],
     )
 
 

@@ -317,15 +317,18 @@ def frozen(array: _Array) -> _Array:
     return array
 
 
-def freeze_all(state: Mapping[str, Any]) -> None:
-    """Makes an object's arrays read-only, which pickling forgets."""
-    for value in state.values():
-        for array in value if isinstance(value, tuple) else (value,):
-            if isinstance(array, np.ndarray):
-                frozen(array)
+class Frozen:
+    """An object whose arrays are read-only, which pickling forgets."""
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for value in state.values():
+            for array in value if isinstance(value, tuple) else (value,):
+                if isinstance(array, np.ndarray):
+                    frozen(array)
 
 
-class Fixed:
+class Fixed(Frozen):
     """An object that refuses other attributes in place of those that all the rest was computed from."""
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -333,10 +336,6 @@ class Fixed:
         if (is_kept or name in self.__dict__) and not name.startswith("_"):
             raise AttributeError(f"{name} cannot be replaced: make another {type(self).__name__}")
         super().__setattr__(name, value)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
 
 def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], name: str) -> None:

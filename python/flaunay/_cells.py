@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import as_floats, as_points, freeze_all, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, as_floats, as_points, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
@@ -68,7 +68,7 @@ def as_iterations(given: Any) -> int:
     return iterations
 
 
-class ClippedVoronoi:
+class ClippedVoronoi(Frozen):
     """The Voronoi cells of points, clipped to a box or a convex polygon. `Voronoi.clipped` makes it.
 
     Which vertices a cell has is decided exactly; their coordinates are rounded. Vertices that cells
@@ -101,10 +101,6 @@ class ClippedVoronoi:
         self.areas: _Doubles = frozen(areas)
         self.centroids: _Doubles = frozen(centroids)
         self.bounds: _Doubles = frozen(bounds)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=len(self.areas), vertices=len(self.vertices))

@@ -523,8 +523,8 @@ def arrays_of_constrained(
         }.items()
     }
     carried["seed_attributes"] = np.ascontiguousarray(seeds[:, 2])
-    triangulator = _triangulators.of_device(device)
     refinement = as_refinement(refining, len(pairs), len(seeds))
+    triangulator = _triangulators.of_device(device, "areas_at" in refinement)
     result = _calls.triangulate_constrained(
         *(triangulator, coordinates, offsets, pairs, places, carried),
         *(rules, refinement, wanted | {"areas"}),

@@ -13,10 +13,10 @@ from flaunay import _calls, _graphs, _scipy, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     FloatArray,
+    Frozen,
     as_floats,
     as_points,
     check_out,
-    freeze_all,
     frozen,
     summary,
 )
@@ -49,7 +49,7 @@ def _check_points(indices: Indices, n: int, name: str) -> None:
         raise UsageError(f"{name} were changed: {indices[wrong[0]]} is none of the {n} points")
 
 
-class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods):
+class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
     """The Delaunay triangulation of points in the plane, with the attributes of SciPy's.
 
     `scipy.spatial.Delaunay` can be replaced by it, in two dimensions; where both give an answer, this one
@@ -560,10 +560,6 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods):
         # What lives is the object's own, and what is in device memory is made again where it is needed.
         self._settle()
         return {**self.__dict__, "_living": None, "_kept_locator": KeptLocator()}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
     @cached_property
     def circumcenters(self) -> Doubles:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import freeze_all, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, frozen, geometries_of, summary
 from flaunay._cells import clip
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -19,7 +19,7 @@ Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 
-class VoronoiPieces:
+class VoronoiPieces(Frozen):
     """The Voronoi cells of points, clipped to polygons with holes. `Voronoi.pieces` makes it.
 
     Attributes
@@ -48,10 +48,6 @@ class VoronoiPieces:
         self.owners: Indices = frozen(owners)
         self.areas: Doubles = frozen(areas)
         self.centroids: Doubles = frozen(centroids)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=len(self.areas), pieces=len(self.owners))
@@ -84,6 +80,26 @@ class VoronoiPieces:
         return result
 
 
+def _boxes_that_meet(triangles: Doubles, least: Doubles, most: Doubles) -> list[npt.NDArray[np.intp]]:
+    """For each triangle the boxes that meet its own: of ever smaller groups of triangles, those that meet the group's."""
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    result = [np.empty(0, np.intp)] * len(triangles)
+    groups = [(np.arange(len(triangles)), np.arange(len(least)))]
+    while groups:
+        group, boxes = groups.pop()
+        meets = (least[boxes] <= high[group].max(axis=0)).all(axis=1)
+        meets &= (most[boxes] >= low[group].min(axis=0)).all(axis=1)
+        boxes = boxes[meets]
+        if len(group) == 1:
+            result[group[0]] = boxes
+            continue
+        centres = low[group] + high[group]
+        group = group[np.argsort(centres[:, np.ptp(centres, axis=0).argmax()], kind="stable")]
+        half = len(group) // 2
+        groups += [(group[:half], boxes), (group[half:], boxes)]
+    return result
+
+
 def pieces(tri: Delaunay, region: Any) -> VoronoiPieces:
     """As `Voronoi.pieces` says, of the cells of a triangulation's points."""
     geometries: Any = geometries_of(region)
@@ -111,9 +127,7 @@ def pieces(tri: Delaunay, region: Any) -> VoronoiPieces:
     most = np.maximum.reduceat(cells.vertices, begins) + margin
     points = np.asarray(tri.points, np.float64)
     vertices, sizes, owners, areas, moments = [], [], [], np.zeros(n), np.zeros((n, 2))
-    for triangle in corners:
-        near = (least <= triangle.max(axis=0)).all(axis=1)
-        near &= (most >= triangle.min(axis=0)).all(axis=1)
+    for triangle, near in zip(corners, _boxes_that_meet(corners, least, most)):
         candidates = there[near]
         part = clip(Delaunay(points[candidates], device=tri._device), triangle)
         kept = np.flatnonzero(np.diff(part.offsets))

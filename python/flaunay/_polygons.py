@@ -420,8 +420,8 @@ def polygons(
                 "geometries have collections inside of collections, too deep"
             ) from None
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
-    triangulator = _triangulators.of_device(device)
     refinement = as_refinement(refining, len(points), 0)
+    triangulator = _triangulators.of_device(device, "areas_at" in refinement)
     result = _calls.triangulate_polygons(
         *(triangulator, points, rings, outer, parts, rules, refinement, wanted | {"areas"})
     )

@@ -26,7 +26,8 @@ _log = logging.getLogger("flaunay")
 _HOST = "host"
 
 _lock = threading.Lock()
-_by_name: dict[str, _calls.Triangulator] = {}
+# By name, and whether they call functions of the caller.
+_by_name: dict[tuple[str, bool], _calls.Triangulator] = {}
 _by_handles: OrderedDict[tuple[int, int], _calls.Triangulator] = OrderedDict()
 _inherited: list[Any] = []
 _used = False
@@ -66,8 +67,11 @@ def check_process() -> None:
     _drivers.add_drivers()
 
 
-def of_device(device: Optional[str]) -> _calls.Triangulator:
-    """The triangulator of a device; in a forked child the host's, if flaunay may choose."""
+def of_device(device: Optional[str], calls_back: bool = False) -> _calls.Triangulator:
+    """The triangulator of a device; in a forked child the host's, if flaunay may choose.
+
+    calls_back: whether it is to call functions of the caller. It is another one then, so that these can use this one.
+    """
     name = _name_of(device)
     if _forked and not name:
         name = _HOST
@@ -75,7 +79,7 @@ def of_device(device: Optional[str]) -> _calls.Triangulator:
         check_process()
     dropped: list[_calls.Triangulator] = []
     with _lock:
-        found = _by_name.get(name)
+        found = _by_name.get((name, calls_back))
         if found is None:
             if name not in ("", _HOST):
                 _log.info(
@@ -84,14 +88,14 @@ def of_device(device: Optional[str]) -> _calls.Triangulator:
             # The environment is left to the triangulator, which names it in its errors.
             found = _calls.Triangulator.of_name(_HOST if name == _HOST else device or "")
             # A device has more than one name; what it holds, it should hold once.
-            for other_name, other in _by_name.items():
-                if {name, other_name} & {"", _HOST}:
-                    continue  # not a device, or not yet
+            for (other_name, other_calls_back), other in _by_name.items():
+                if other_calls_back != calls_back or {name, other_name} & {"", _HOST}:
+                    continue  # another one, not a device, or not yet
                 if other.device == found.device:
                     dropped.append(found)
                     found = other
                     break
-            _by_name[name] = found
+            _by_name[name, calls_back] = found
         return found
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, FloatArray, freeze_all, frozen, summary
+from flaunay._arrays import ArrayLike, FloatArray, Frozen, frozen, summary
 from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
 from flaunay._pieces import VoronoiPieces, pieces
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Indices = npt.NDArray[np.int32]
 
 
-class Voronoi:
+class Voronoi(Frozen):
     """The Voronoi diagram of points in the plane, with the attributes of SciPy's.
 
     It has a vertex for each Delaunay triangle. Where more than three points are cocircular, vertices
@@ -129,10 +129,6 @@ class Voronoi:
         self.vertices: npt.NDArray[np.float64] = frozen(vertices)
         self.cell_offsets: Indices = frozen(offsets)
         self.cells: Indices = frozen(cells)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        freeze_all(state)
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, vertices=len(self.vertices))

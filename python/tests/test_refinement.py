@@ -231,3 +231,19 @@ def test_wrong_requests(options, message):
 def test_unknown_keywords():
     with pytest.raises(TypeError, match="min_angel"):
         flaunay.triangulate(SQUARE, RING, min_angel=30)
+
+
+def test_areas_at_may_query_other_meshes():
+    rng = np.random.default_rng(5)
+    coarse = flaunay.Delaunay(rng.random((50, 2)) * 1.2 - 0.1)
+    interpolate = flaunay.LinearInterpolator(coarse, rng.random(50) / 50, extrapolate="nearest")
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+
+    def areas_at(places):
+        assert (coarse.find_simplex(places) >= -1).all()
+        return interpolate(places)
+
+    meshes = [flaunay.refine(square, areas_at=areas_at, device=device) for device in (None, "host")]
+    wanted = interpolate(meshes[0].points[meshes[0].triangles].mean(axis=1))
+    assert (meshes[0].areas <= wanted * (1 + 1e-9)).all() and len(wanted) > 50
+    assert np.array_equal(meshes[0].triangles, meshes[1].triangles)
