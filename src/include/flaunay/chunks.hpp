@@ -41,8 +41,10 @@ class FLAUNAY_API MeshSink {
   virtual void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count);
 };
 
-/// Bytes in the scratch folder for each point, and for its value, if points have some.
-constexpr std::size_t kScratchBytesPerPoint = 24, kScratchBytesPerValue = 8;
+/// Bytes in the scratch folder for each point.
+constexpr std::size_t kScratchBytesPerPoint = 24;
+/// Further bytes for the value of a point, if points have some.
+constexpr std::size_t kScratchBytesPerValue = 8;
 
 /// The options of triangulate_chunks.
 struct ChunkOptions {
