@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -357,7 +357,7 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
     def _make_locator(self) -> _calls.Locator:
         self._check_sets()
         return _calls.Locator(
-            _triangulators.of_device(None),
+            _triangulators.of_device(self.__dict__.get("_device")),
             _Searched(self.points, self.triangles, self._neighbors, self.hull, self.representatives),
             self.constrained,
         )
@@ -372,6 +372,9 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
 
     def _near_hull(self, outside: Doubles, tol: float) -> Indices:
         raise UsageError("with constraints, find_simplex is exact: it takes no tol")
+
+
+_Mesh = TypeVar("_Mesh", bound=ConstrainedTriangulation)
 
 
 @dataclass(frozen=True)
@@ -477,6 +480,12 @@ def _as_markers(given: Optional[npt.ArrayLike], name: str, count: int) -> Option
     if (kept != markers).any():
         raise UsageError(f"{name} must be int32: {markers[kept != markers][0]} is too large")
     return kept
+
+
+def with_device(mesh: _Mesh, device: Optional[str]) -> _Mesh:
+    """The mesh, whose queries use a device."""
+    mesh.__dict__["_device"] = device
+    return mesh
 
 
 def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from flaunay._constrained import (
     ConstrainedTriangulation,
     number_of,
     rules_of,
+    with_device,
     with_points,
 )
 from flaunay._declarations import OVERLAPS
@@ -425,6 +426,7 @@ def polygons(
     result = _calls.triangulate_polygons(
         *(triangulator, points, rings, outer, parts, rules, refinement, wanted | {"areas"})
     )
-    return PolygonTriangulation(
+    mesh = PolygonTriangulation(
         **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)
     )
+    return with_device(mesh, device)

@@ -10,7 +10,12 @@ import numpy.typing as npt
 
 from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
 from flaunay._calls import TRIANGULATION
-from flaunay._constrained import ConstrainedTriangulation, arrays_of_constrained, rules_of
+from flaunay._constrained import (
+    ConstrainedTriangulation,
+    arrays_of_constrained,
+    rules_of,
+    with_device,
+)
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._refinement import Doubles, Refining
@@ -270,7 +275,9 @@ def triangulate(
         )
     if places:
         _write(result, places)
-    return Triangulation(**result) if segments is None else ConstrainedTriangulation(**result)
+    if segments is None:
+        return Triangulation(**result)
+    return with_device(ConstrainedTriangulation(**result), device)
 
 
 def _given_mesh(mesh: Union[ConstrainedTriangulation, Delaunay]) -> dict[str, Any]:

@@ -717,3 +717,25 @@ def test_relaxation_on_another_queue(random, context, queue):
     other = cl.CommandQueue(context, properties=OUT_OF_ORDER)
     relaxed = flaunay.relax_device(given, BOX, 2, queue=other, wait_for=given.events)
     assert relaxed.queue is other and same(relaxed, flaunay.relax(points, BOX, 2))
+
+
+@pytest.mark.parametrize("is_map", [False, True])
+def test_queries_in_constrained_triangulations(random, queue, is_map):
+    points = np.concatenate([random.random((60, 2)), [[0.1, 0.1], [0.9, 0.2], [0.4, 0.8]]])
+    ring = [[60, 61], [61, 62], [62, 60]]
+    values, queries = random.random(63), random.random((200, 2))
+    name = queue.device.name
+
+    def answers(device):
+        if is_map:
+            mesh = flaunay.polygons([[points[60:]]], map=True, device=device)
+        else:
+            mesh = flaunay.triangulate(points, segments=ring, device=device)
+        of_points = values[: len(mesh.points)]
+        kinds = [kind(mesh, of_points) for kind in METHODS.values()]
+        return mesh, [mesh.find_simplex(queries), *(kind(queries) for kind in kinds)]
+
+    mesh, mine = answers(name)
+    assert mesh._locator._triangulator is flaunay._triangulators.of_device(name)
+    for one, expected in zip(mine, answers("host")[1]):
+        assert same(one, expected)
