@@ -171,6 +171,9 @@ class Queries:
         >>> tri.find_simplex([[1, 1], [3, 3]])
         array([ 0, -1], dtype=int32)
         """
+        if tol is None and out is None and are_rows(xi):
+            # The usual call. If queries come one by one, each step counts.
+            return _answers(self._locator.locate, xi, -1)
         if tol is not None and not tol >= 0:
             raise UsageError(f"tol must be 0 or more, not {tol}")
         queries, shape = as_queries(xi)
