@@ -413,12 +413,18 @@ TEST_F(BenchTest, LaterEmbeddedCallsAllocateNothing) {
 TEST_F(BenchTest, DerivedIsBesideATriangulation) {
   const auto record = run_well("derived --sizes 3000 --columns 1,2 --iterations 2 --cgal");
   const bool cgal = record.contains("answers");
-  EXPECT_EQ(record["results"].size(), 2u * 8 + 4 + (cgal ? 2 : 0));
+  EXPECT_EQ(record["results"].size(), 2u * 8 + 6 + (cgal ? 2 : 0));
   for (const auto& row : record["results"]) {
     expect_times(row);
     EXPECT_GT(row.value("of_triangulate", 0.0), 0) << row;
   }
   if (cgal) EXPECT_LT(record["answers"][0].value("largest_difference", 1.0), 1e-9);
+}
+
+TEST_F(BenchTest, PointsOnASphereAreBesideCgal) {
+  const auto record = run_well("sphere --sizes 3000");
+  EXPECT_GE(record["results"].size(), 7u);
+  for (const auto& row : record["results"]) expect_times(row);
 }
 
 TEST_F(BenchTest, ConstrainedIsBesideCgal) {

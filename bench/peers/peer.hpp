@@ -74,6 +74,12 @@ inline std::unique_ptr<CgalQueries> (*make_cgal_queries)(const std::vector<doubl
 /// manual has it.
 inline Outcome (*run_cgal_constrained)(const ConstrainedInput& input) = nullptr;
 
+// ---- Points on a sphere
+
+/// CGAL's Delaunay_triangulation_on_sphere_2 of directions, x y z each, projected to the sphere as its
+/// traits do, and sorted: the seconds, and the number of triangles. Null if this build is without CGAL.
+inline Outcome (*run_cgal_on_sphere)(const std::vector<double>& directions) = nullptr;
+
 // ---- Refined meshes
 
 /// What a mesh is refined to: a smallest angle in degrees, and a largest area; 0 for any.
