@@ -34,8 +34,9 @@ namespace {
 using Returns = io::ScanChoice::Returns;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-// 32 GiB.
-constexpr double kMostPixels = 0x1p32;
+// 32 GiB, or less where sizes have 32 bits.
+constexpr double kMostPixels =
+    std::min(0x1p32, static_cast<double>(std::numeric_limits<std::size_t>::max() / sizeof(double)));
 
 struct TerrainRequest {
   std::vector<std::string> inputs, outputs;
