@@ -332,10 +332,13 @@ class Fixed(Frozen):
     """An object that refuses other attributes in place of those that all the rest was computed from."""
 
     def __setattr__(self, name: str, value: Any) -> None:
-        is_kept = isinstance(getattr(type(self), name, None), cached_property)
-        if (is_kept or name in self.__dict__) and not name.startswith("_"):
-            raise AttributeError(f"{name} cannot be replaced: make another {type(self).__name__}")
-        super().__setattr__(name, value)
+        if not name.startswith("_"):
+            is_kept = isinstance(getattr(type(self), name, None), cached_property)
+            if is_kept or name in self.__dict__:
+                raise AttributeError(
+                    f"{name} cannot be replaced: make another {type(self).__name__}"
+                )
+        object.__setattr__(self, name, value)
 
 
 def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], name: str) -> None:

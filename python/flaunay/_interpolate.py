@@ -759,7 +759,7 @@ class NearestInterpolator(_Interpolator):
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         array = as_any(values, "values")
-        return array.astype(np.float64) if array.dtype.kind in "biuf" else array
+        return array.astype(np.float64, copy=False) if array.dtype.kind in "biuf" else array
 
     def __call__(
         self, *xi: Any, distance_upper_bound: Optional[float] = None
