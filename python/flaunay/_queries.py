@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import operator
-import os
 import threading
 from collections.abc import Callable
 from functools import cached_property
@@ -78,18 +77,18 @@ class Kept(Generic[_Made]):
 
     def get(self, make: Callable[[], _Made]) -> _Made:
         made = self._made
-        if made is not None and made[1] == os.getpid():
+        if made is not None and made[1] == _triangulators.process_id:
             return made[0]
         with self._lock:
-            if self._made is None or self._made[1] != os.getpid():
+            if self._made is None or self._made[1] != _triangulators.process_id:
                 # A forked child must not use its parent's device, not even to release memory.
                 _triangulators.keep(self._made)
-                self._made = make(), os.getpid()
+                self._made = make(), _triangulators.process_id
             return self._made[0]
 
     def drop(self) -> None:
         with self._lock:
-            if self._made is not None and self._made[1] != os.getpid():
+            if self._made is not None and self._made[1] != _triangulators.process_id:
                 _triangulators.keep(self._made)
             self._made = None
 

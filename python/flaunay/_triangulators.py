@@ -32,10 +32,13 @@ _by_handles: OrderedDict[tuple[int, int], _calls.Triangulator] = OrderedDict()
 _inherited: list[Any] = []
 _used = False
 _forked = False
+# Quicker to read than to ask for.
+process_id = os.getpid()
 
 
 def _after_fork() -> None:
-    global _forked, _lock
+    global _forked, _lock, process_id
+    process_id = os.getpid()
     _lock = threading.Lock()
     _forked = _used
     # A thread that is not here any more may have been at work in one of these.
