@@ -19,7 +19,12 @@ from flaunay import _raster
 from flaunay._arrays import as_floats, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
-from flaunay._interpolate import LinearInterpolator, NearestInterpolator
+from flaunay._interpolate import (
+    CloughTocherInterpolator,
+    LinearInterpolator,
+    NaturalNeighborInterpolator,
+    NearestInterpolator,
+)
 from flaunay._optional import optional
 from flaunay._raster import Contours
 from flaunay._triangulate import triangulate
@@ -33,6 +38,14 @@ _TEXT = {".txt", ".xyz", ".csv"}
 _SUFFIXES = sorted(_LAS | _TEXT | {".npy"})
 _RASTERS = {".tif": "COG", ".tiff": "COG", ".png": "PNG"}
 _LINES = {".geojson": "GeoJSON", ".gpkg": "GPKG", ".shp": "ESRI Shapefile"}
+_MESHES = (".ply", ".obj", ".stl", ".vtk", ".vtu")
+_METHODS: dict[str, Any] = {
+    "linear": None,
+    "natural": NaturalNeighborInterpolator,
+    "clough-tocher": CloughTocherInterpolator,
+}
+# Pixels that are interpolated at a time, by other methods than the linear one.
+_PIXELS_AT_ONCE = 1 << 20
 _DUPLICATES = ("highest", "lowest", "mean")
 # 32 GiB as float64.
 _MOST_PIXELS = 1 << 32
@@ -265,6 +278,15 @@ def _lines_of(geometries: Iterable[Any]) -> Iterator[Doubles]:
                 yield shapely.get_coordinates(line, include_z=True)
 
 
+def _polygons_of(geometries: Iterable[Any]) -> list[Any]:
+    shapely = optional("shapely", _PURPOSE)
+    parts = [part for geometry in geometries for part in shapely.get_parts(geometry)]
+    for part in parts:
+        if part.geom_type != "Polygon":
+            raise UsageError(f"flat must be polygons, not {part.geom_type}")
+    return parts
+
+
 # ---- Results
 
 
@@ -374,6 +396,14 @@ class Terrain:
             file.update_tags(AREA_OR_POINT="Point" if grid.is_point else "Area")
             file.write(np.where(np.isnan(self.raster), nodata, self.raster).astype(np.float32), 1)
 
+    def _write_mesh(self, path: str) -> None:
+        corners, points = self.mesh.simplices, self.mesh.points
+        if self._max_edge is not None:
+            edges = points[np.roll(corners, -1, axis=1)] - points[corners]
+            corners = corners[((edges**2).sum(axis=2) <= self._max_edge**2).all(axis=1)]
+        surface = np.column_stack([points, self.heights])
+        optional("meshio", _PURPOSE).Mesh(surface, [("triangle", corners)]).write(path)
+
     def _write_lines(self, path: str, driver: str, lines: Contours) -> None:
         pyogrio = optional("pyogrio.raw", _PURPOSE)
         geometries = np.array(
@@ -453,7 +483,7 @@ def _checked_outputs(given: Any, contours: Any) -> list[Path]:
         return []
     given = [given] if isinstance(given, (str, os.PathLike)) else given
     paths = [Path(path) for path in given]
-    known = {**_RASTERS, **{k: v for k, v in _LINES.items() if k != ".shp"}}
+    known = [*_RASTERS, *(k for k in _LINES if k != ".shp"), *_MESHES]
     for path in paths:
         if path.suffix.lower() not in known:
             raise UsageError(f"output {path} must end with {', '.join(known)}")
@@ -464,27 +494,21 @@ def _checked_outputs(given: Any, contours: Any) -> list[Path]:
                 raise UsageError(f"output {path} needs contours=, the interval of their heights")
             optional("pyogrio.raw", _PURPOSE)
         else:
-            optional("rasterio", _PURPOSE)
+            optional("meshio" if path.suffix.lower() in _MESHES else "rasterio", _PURPOSE)
     return paths
 
 
-def _with_breaklines(
-    points: Doubles, heights: Doubles, breaklines: Any, crs: Any, device: Optional[str]
+def _with_lines(
+    points: Doubles, heights: Doubles, lines: list[Doubles], device: Optional[str]
 ) -> tuple[Any, Doubles, int]:
     """The mesh with breaklines, whose points come first; heights of all points, and the number of those."""
-    lines = [line for line in _lines_of(_geometries(breaklines, crs, "breaklines")) if len(line)]
     firsts = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
     along = np.concatenate([np.empty((0, 3)), *lines])
     segments = np.stack([np.arange(len(along)), np.arange(1, len(along) + 1)], axis=1)
     segments = np.delete(segments, firsts[1:] - 1, axis=0)
     missing = np.isnan(along[:, 2])
     if missing.any():
-        tri = Delaunay(points, device=device)
-        places = along[missing, :2]
-        found = LinearInterpolator(tri, heights)(places)
-        beyond = np.isnan(found)
-        found[beyond] = NearestInterpolator(tri, heights)(places[beyond])
-        along[missing, 2] = found
+        along[missing, 2] = _heights_at(along[missing, :2], points, heights, device)
     try:
         mesh = triangulate(
             np.concatenate([along[:, :2], points]), segments=segments, device=device, neighbors=True
@@ -492,6 +516,47 @@ def _with_breaklines(
     except InputError as error:
         raise InputError(f"breaklines: {error}") from error
     return mesh, np.concatenate([along[:, 2], heights]), len(along)
+
+
+def _heights_at(
+    places: Doubles, points: Doubles, heights: Doubles, device: Optional[str]
+) -> Doubles:
+    """Heights between points, and beyond them that of the nearest one."""
+    tri = Delaunay(points, device=device)
+    found = LinearInterpolator(tri, heights)(places)
+    beyond = np.isnan(found)
+    found[beyond] = NearestInterpolator(tri, heights)(places[beyond])
+    return found
+
+
+def _shores(
+    lakes: list[Any], points: Doubles, heights: Doubles, device: Optional[str]
+) -> tuple[list[Doubles], npt.NDArray[np.bool_]]:
+    """The rings of lakes, each lake at one height, and which points lie in none of them."""
+    shapely = optional("shapely", _PURPOSE)
+    shores = []
+    for lake in lakes:
+        rings = [ring for ring in _lines_of([lake]) if len(ring)]
+        if not rings:
+            continue
+        level = rings[0][0, 2]
+        if np.isnan(level):
+            # Water lies no higher than the lowest place of its shore.
+            level = _heights_at(np.concatenate(rings)[:, :2], points, heights, device).min()
+        shores += [np.column_stack([ring[:, :2], np.full(len(ring), level)]) for ring in rings]
+    inside = shapely.intersects_xy(shapely.union_all(lakes), points[:, 0], points[:, 1])
+    return shores, ~inside
+
+
+def _interpolate_pixels(result: Terrain, method: str) -> None:
+    """Values at the centres of pixels, by another method than the linear one."""
+    interpolate = _METHODS[method](result.mesh, result.heights, max_edge=result._max_edge)
+    x, y, dx, dy = result._grid.steps
+    rows, columns = result.raster.shape
+    across, at_once = x + np.arange(columns) * dx, max(1, _PIXELS_AT_ONCE // columns)
+    for first in range(0, rows, at_once):
+        down = y + np.arange(first, min(rows, first + at_once)) * dy
+        result.raster[first : first + at_once] = interpolate(*np.meshgrid(across, down))
 
 
 def terrain(
@@ -505,6 +570,8 @@ def terrain(
     duplicates: str = "highest",
     breaklines: Any = None,
     boundary: Any = None,
+    flat: Any = None,
+    method: str = "linear",
     max_edge: Optional[float] = None,
     contours: Union[None, float, npt.ArrayLike] = None,
     crs: Any = None,
@@ -521,7 +588,8 @@ def terrain(
         x, y and z.
     output : path or list of paths, optional
         Files to write: ``.tif`` (a cloud-optimised GeoTIFF of float32), ``.png`` (shaded hills),
-        ``.geojson`` or ``.gpkg`` (contours). All are written, or none is.
+        ``.geojson`` or ``.gpkg`` (contours), ``.ply``, ``.obj``, ``.stl``, ``.vtk`` or ``.vtu`` (the
+        triangles, by meshio). All are written, or none is.
     resolution : float
         The size of a pixel.
     bounds : (xmin, ymin, xmax, ymax), optional
@@ -537,6 +605,12 @@ def terrain(
         points around them. They must not cross.
     boundary : path or geometry of Shapely, optional
         Polygons, outside of which the map is empty.
+    flat : path or geometries of Shapely, optional
+        Polygons that are held flat, such as lakes: at the height of the first point of their border, or
+        if that has none, at the lowest height along it. Points in them do not count.
+    method : {"linear", "natural", "clough-tocher"}
+        How heights of pixels are interpolated: linearly in triangles, or smoothly, as
+        `NaturalNeighborInterpolator` and `CloughTocherInterpolator` do.
     max_edge : float, optional
         Triangles with a longer edge are left out.
     contours : float or array_like, optional
@@ -580,6 +654,7 @@ def terrain(
     _check_one_of(returns, (None, "first", "last"), "returns")
     _check_one_of(duplicates, _DUPLICATES, "duplicates")
     _check_one_of(pixel_is, ("area", "point"), "pixel_is")
+    _check_one_of(method, tuple(_METHODS), "method")
     chosen = None if classes is None else frozenset(classes)
     outputs = _checked_outputs(output, contours)
     sources = _sources(points)
@@ -600,6 +675,10 @@ def terrain(
         area = optional("shapely", _PURPOSE).union_all(_geometries(boundary, system, "boundary"))
         optional("rasterio.features", _PURPOSE)
 
+    lakes: list[Any] = []
+    if flat is not None:
+        lakes = _polygons_of(_geometries(flat, system, "flat"))
+
     measured = np.concatenate([source.read(chosen, returns) for source in sources])
     if not len(measured):
         raise InputError(
@@ -612,14 +691,25 @@ def terrain(
     places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
     mesh: Any
     fixed = 0
-    if breaklines is None:
-        mesh = Delaunay(places, device=device)
+    lines_kept: list[Doubles] = []
+    if breaklines is not None:
+        given = _geometries(breaklines, system, "breaklines")
+        lines_kept = [line for line in _lines_of(given) if len(line)]
+    if lakes:
+        shores, is_dry = _shores(lakes, places, heights, device)
+        lines_kept += shores
+        places, heights = places[is_dry], heights[is_dry]
+    if lines_kept:
+        mesh, heights, fixed = _with_lines(places, heights, lines_kept, device)
     else:
-        mesh, heights, fixed = _with_breaklines(places, heights, breaklines, system, device)
+        mesh = Delaunay(places, device=device)
     _merge_heights(heights, mesh.representatives, fixed, duplicates)
     result = Terrain(mesh, heights, grid, system, area)
     result._max_edge = max_edge
-    _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
+    if method == "linear":
+        _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
+    else:
+        _interpolate_pixels(result, method)
     if area is not None:
         rasterio = optional("rasterio", _PURPOSE)
         origin = rasterio.transform.from_origin(
@@ -635,6 +725,8 @@ def terrain(
             suffix = Path(name).suffix.lower()
             if suffix in _RASTERS:
                 result._write_raster(name, _RASTERS[suffix], nodata)
+            elif suffix in _MESHES:
+                result._write_mesh(name)
             else:
                 assert contours is not None
                 lines = result.contours(contours) if lines is None else lines

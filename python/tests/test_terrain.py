@@ -240,3 +240,56 @@ def test_boundary_cuts_raster_and_contours(scan, tmp_path):
             assert shapely.LineString(line).difference(area.buffer(1e-6)).length < 1e-9
     with pytest.raises(flaunay.InputError, match="coordinate system"):
         flaunay.terrain(scan, resolution=1, boundary=path, crs="EPSG:32634")
+
+
+def test_lakes_are_flat(scan):
+    shapely = pytest.importorskip("shapely")
+    shore = np.array([[15, 10], [40, 8], [45, 30], [20, 28]]) + [500000, 4500000]
+    island = np.array([[25, 15], [30, 15], [28, 20]]) + [500000, 4500000]
+    lake = shapely.Polygon(shore, [island])
+    made = flaunay.terrain(scan, resolution=0.5, flat=lake)
+    x0, y0, _, y1 = made.bounds
+    x, y = np.meshgrid(x0 + 0.25 + np.arange(120) / 2, y1 - 0.25 - np.arange(80) / 2)
+    inside = shapely.contains_xy(lake, x, y)
+    level = made.raster[inside][0]
+    np.testing.assert_allclose(made.raster[inside], level, rtol=1e-14)
+    plain = flaunay.terrain(scan, resolution=0.5)
+    corners = flaunay.LinearInterpolator(plain.mesh, plain.heights)(np.concatenate([shore, island]))
+    assert level == pytest.approx(corners.min(), abs=1e-12)
+    # On the island and far from the lake, nothing has changed.
+    far = ~shapely.intersects_xy(shapely.Polygon(shore).buffer(6), x, y)
+    np.testing.assert_allclose(made.raster[far], plain.raster[far], rtol=0, atol=1e-9)
+    at = shapely.Polygon([(*p, 77.5) for p in shore])
+    made = flaunay.terrain(scan, resolution=0.5, flat=[at])
+    assert made.raster[shapely.contains_xy(at, x, y)] == pytest.approx(77.5, abs=1e-12)
+    with pytest.raises(flaunay.UsageError, match="flat must be polygons"):
+        flaunay.terrain(scan, resolution=1, flat=shapely.LineString(shore))
+
+
+@pytest.mark.parametrize("method", ["natural", "clough-tocher"])
+def test_other_methods_are_those_of_interpolators(scan, method):
+    made = flaunay.terrain(scan, resolution=2, method=method, max_edge=3)
+    kinds = {
+        "natural": flaunay.NaturalNeighborInterpolator,
+        "clough-tocher": flaunay.CloughTocherInterpolator,
+    }
+    interpolate = kinds[method](made.mesh, made.heights, max_edge=3)
+    x, y = np.meshgrid(500001 + 2.0 * np.arange(30), 4500039 - 2.0 * np.arange(20))
+    np.testing.assert_array_equal(made.raster, interpolate(x, y))
+    linear = flaunay.terrain(scan, resolution=2, max_edge=3)
+    np.testing.assert_array_equal(np.isnan(made.raster), np.isnan(linear.raster))
+    assert 0 < np.nanmax(np.abs(made.raster - linear.raster)) < 2
+    with pytest.raises(flaunay.UsageError, match="'clough-tocher', not 'cubic'"):
+        flaunay.terrain(scan, resolution=2, method="cubic")
+
+
+def test_the_triangles_are_written(scan, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    outputs = [tmp_path / "tin.vtk", tmp_path / "tin.obj"]
+    made = flaunay.terrain(scan, outputs, resolution=2)
+    for path in outputs:
+        mesh = meshio.read(path)
+        np.testing.assert_allclose(mesh.points[:, 2], made.heights, atol=1e-3)
+        assert len(mesh.cells_dict["triangle"]) == made.mesh.nsimplex
+    flaunay.terrain(scan, outputs[0], resolution=2, max_edge=2)
+    assert len(meshio.read(outputs[0]).cells_dict["triangle"]) < made.mesh.nsimplex
