@@ -1719,6 +1719,35 @@ static void test_sphere(void) {
   flaunay_spherical_destroy(spherical);
 }
 
+static void test_periodic(void) {
+  enum { SIDE = 6, COUNT = SIDE * SIDE };
+  double places[2 * COUNT], areas[COUNT];
+  for (size_t i = 0; i < COUNT; ++i) {
+    places[2 * i] = (double)(i % SIDE);
+    places[2 * i + 1] = (double)(i / SIDE) * 2 - 40;
+  }
+  flaunay_periodic *periodic = NULL, *none = NULL;
+  REQUIRE(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, SIDE, 2 * SIDE, &periodic) ==
+          FLAUNAY_SUCCESS);
+  const size_t triangles = flaunay_periodic_triangle_count(periodic);
+  REQUIRE(flaunay_periodic_point_count(periodic) == COUNT && triangles == 2 * COUNT);
+  CHECK(flaunay_periodic_image_count(periodic) > 0);
+  for (size_t c = 0; c < 3 * triangles; ++c) {
+    CHECK(flaunay_periodic_triangles(periodic)[c] < COUNT && flaunay_periodic_neighbors(periodic)[c] >= 0);
+    CHECK(abs(flaunay_periodic_offsets(periodic)[2 * c]) <= 1);
+  }
+  CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
+  CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
+  REQUIRE(flaunay_periodic_cell_areas(periodic, areas) == FLAUNAY_SUCCESS);
+  for (size_t i = 0; i < COUNT; ++i) CHECK(fabs(areas[i] - 2) < 1e-12);
+  CHECK(fails(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 1, 1, &none), FLAUNAY_ERROR_INPUT,
+              "empty circle"));
+  CHECK(fails(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), FLAUNAY_ERROR_USAGE,
+              "period"));
+  CHECK(none == NULL && fails(flaunay_periodic_cell_areas(NULL, areas), FLAUNAY_ERROR_USAGE, "NULL"));
+  flaunay_periodic_destroy(periodic);
+}
+
 static void test_relax_on_device(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4}, places[] = {1, 1, 1, 3};
   const flaunay_device_points input = {.memory = make_buffer(context, sizeof places, places), .count = 2};
@@ -2674,6 +2703,7 @@ static void test_all(void) {
   test_relax();
   test_raster();
   test_sphere();
+  test_periodic();
   test_locator();
   test_point_tree();
   test_queries_with_constraints();

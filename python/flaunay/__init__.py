@@ -47,6 +47,7 @@ from flaunay._interpolate import (
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
+from flaunay._periodic import PeriodicDelaunay, periodic
 from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
@@ -81,6 +82,7 @@ __all__ = [
     "LivingConstraints",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
+    "PeriodicDelaunay",
     "PolygonTriangulation",
     "RefinementReport",
     "SphericalDelaunay",
@@ -96,6 +98,7 @@ __all__ = [
     "devices",
     "griddata",
     "modes",
+    "periodic",
     "polygons",
     "refine",
     "relax",

@@ -1575,3 +1575,40 @@ class SphericalLocator(_InTurns):
             *(_sphere_coordinates(queries), results),
         )
         return results
+
+
+# ---- Points on a torus
+
+
+class _Periodic(Handle):
+    _destroy = library.periodic_destroy
+
+
+def periodic(
+    triangulator: Triangulator,
+    points: _Doubles,
+    period: tuple[float, float],
+    given_offsets: Optional[_Offsets],
+) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of a triangulation on a torus."""
+    n, points, made = len(points), _as_doubles(points), _Periodic()
+    offsets, sets = _as_offsets(given_offsets, n)
+    triangulator.call(
+        library.periodic_create,
+        *(triangulator.pointer, points, n, offsets, sets, *period, made.place),
+    )
+    triangles = library.periodic_triangle_count(made.pointer)
+    areas = np.empty(n)
+    check(library.periodic_cell_areas(made.pointer, _address_of(areas)))
+    views = {
+        name: _view(made, getattr(library, f"periodic_{name}")(made.pointer), shape, np.dtype(dtype))
+        for name, shape, dtype in (
+            ("places", (n, 2), np.float64),
+            ("triangles", (triangles, 3), np.int32),
+            ("offsets", (triangles, 3, 2), np.int8),
+            ("neighbors", (triangles, 3), np.int32),
+            ("representatives", (n,), np.int32),
+            ("triangle_offsets", ((sets or 1) + 1,), np.int64),
+        )
+    }
+    return {**views, "areas": areas}

@@ -1461,6 +1461,45 @@ FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spheric
                                                                  const double* queries, size_t m,
                                                                  int coordinates, double* results);
 
+// ---- Points on a torus
+
+/// The Delaunay triangulations of sets of points in a plane that repeats itself in x and y.
+typedef struct flaunay_periodic flaunay_periodic;
+/// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period.
+/// offsets and sets: as for flaunay_triangulate. If an empty circle is half as wide as the smaller period, or
+/// wider, it is FLAUNAY_ERROR_INPUT: a set has too few points, or too large a gap, and has to be repeated.
+/// Otherwise errors are those of flaunay_triangulate; a period that is none is FLAUNAY_ERROR_USAGE. The
+/// caller destroys the result. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points,
+                                                   size_t n, const size_t* offsets, size_t sets,
+                                                   double period_x, double period_y,
+                                                   flaunay_periodic** periodic);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_periodic_destroy(flaunay_periodic* periodic);
+/// n, the number of points.
+FLAUNAY_API size_t flaunay_periodic_point_count(const flaunay_periodic* periodic);
+/// t, the number of triangles: 2 n for each set of n different points.
+FLAUNAY_API size_t flaunay_periodic_triangle_count(const flaunay_periodic* periodic);
+/// Images that were triangulated besides the points.
+FLAUNAY_API size_t flaunay_periodic_image_count(const flaunay_periodic* periodic);
+/// 2 n values: places in [0, period), rounded once to multiples of the period's last bit. This is what the
+/// points are.
+FLAUNAY_API const double* flaunay_periodic_places(const flaunay_periodic* periodic);
+/// 3 t values, counter-clockwise, smallest index first.
+FLAUNAY_API const int32_t* flaunay_periodic_triangles(const flaunay_periodic* periodic);
+/// 6 t values, x and y per corner, -1 to 1: with the first corner in its place, the corner is at its place +
+/// offset * period.
+FLAUNAY_API const int8_t* flaunay_periodic_offsets(const flaunay_periodic* periodic);
+/// 3 t values: the triangle opposite to each corner. There is always one.
+FLAUNAY_API const int32_t* flaunay_periodic_neighbors(const flaunay_periodic* periodic);
+/// n values: the smallest index of a point of the set with the same place.
+FLAUNAY_API const int32_t* flaunay_periodic_representatives(const flaunay_periodic* periodic);
+/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
+FLAUNAY_API const size_t* flaunay_periodic_triangle_offsets(const flaunay_periodic* periodic);
+/// Writes the areas of the points' Voronoi cells, rounded; those of a set sum to that of the period. areas:
+/// room for n values.
+FLAUNAY_API flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas);
+
 // ---- Interpolation
 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
