@@ -140,7 +140,7 @@ Numbers uniform(std::size_t n, const Period& period, std::uint64_t seed) {
   return points;
 }
 
-TEST(SmallPeriodic, TrianglesAreThoseOfAllImages) {
+TEST(Periodic, TrianglesAreThoseOfAllImages) {
   const Period unit, odd{0.1, 0.3}, far{0x1.fffffffffffffp20, 0x1.0000000000001p20};
   for (const Period& period : {unit, odd, far}) {
     SCOPED_TRACE(period.x);
@@ -171,7 +171,7 @@ std::set<std::array<int, 9>> sorted_triangles(const PeriodicTriangulation& mesh)
   return all;
 }
 
-TEST(SmallPeriodic, LatticesAreFans) {
+TEST(Periodic, LatticesAreFans) {
   for (const int size : {5, 8, 12}) {
     Numbers points;
     for (int x = 0; x < size; ++x) {
@@ -190,7 +190,7 @@ TEST(SmallPeriodic, LatticesAreFans) {
   }
 }
 
-TEST(SmallPeriodic, ShiftsByPeriodsChangeNothing) {
+TEST(Periodic, ShiftsByPeriodsChangeNothing) {
   const Period period{0.75, 1.25};
   Numbers points = uniform(150, period, 9);
   for (double& x : points) x = std::ldexp(std::nearbyint(std::ldexp(x, 30)), -30);
@@ -205,7 +205,7 @@ TEST(SmallPeriodic, ShiftsByPeriodsChangeNothing) {
   EXPECT_EQ(first.places, second.places);
 }
 
-TEST(SmallPeriodic, ManySetsAreEachAsAlone) {
+TEST(Periodic, ManySetsAreEachAsAlone) {
   const Period period{2, 2};
   Numbers points;
   std::vector<std::size_t> offsets = {0, 0};
@@ -241,7 +241,7 @@ void expect_refusal(ErrorKind kind, const char* part, const Work& work) {
   }
 }
 
-TEST(SmallPeriodic, ErrorsSayWhatIsWrong) {
+TEST(Periodic, ErrorsSayWhatIsWrong) {
   const Numbers few = {0.5, 0.5, 0.2, 0.1};
   expect_refusal(ErrorKind::input, "the 2 different points of set 0 leave an empty circle",
                  [&] { triangulated(few, {}); });

@@ -206,14 +206,14 @@ std::vector<Case> cases() {
   return all;
 }
 
-TEST(SmallSphere, TrianglesAreTheConvexHull) {
+TEST(Sphere, TrianglesAreTheConvexHull) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     expect_hull(triangulated(c.points, c.coordinates));
   }
 }
 
-TEST(SmallSphere, ResultsDoNotDependOnTheOrderOfPoints) {
+TEST(Sphere, ResultsDoNotDependOnTheOrderOfPoints) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const std::size_t width = c.coordinates == kDirections ? 3 : 2, n = c.points.size() / width;
@@ -238,7 +238,7 @@ TEST(SmallSphere, ResultsDoNotDependOnTheOrderOfPoints) {
   }
 }
 
-TEST(SmallSphere, ManySetsAreEachAsAlone) {
+TEST(Sphere, ManySetsAreEachAsAlone) {
   Numbers points;
   std::vector<std::size_t> offsets = {0};
   std::vector<SphericalTriangulation> alone;
@@ -265,7 +265,7 @@ TEST(SmallSphere, ManySetsAreEachAsAlone) {
   }
 }
 
-TEST(SmallSphere, PlacesAreThoseOfTheirDirections) {
+TEST(Sphere, PlacesAreThoseOfTheirDirections) {
   const SphericalTriangulation mesh =
       triangulated({0, 0, 0, 90, 90, 0, -90, 0, 180, 0, 123, -90, 540, 0, 30, 90, 45, 30}, kDegrees);
   const double kFar = HUGE_VAL;
@@ -296,7 +296,7 @@ TEST(SmallSphere, PlacesAreThoseOfTheirDirections) {
   }
 }
 
-TEST(SmallSphere, CellsAreThoseOfTheirPoints) {
+TEST(Sphere, CellsAreThoseOfTheirPoints) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
@@ -347,7 +347,7 @@ TEST(SmallSphere, CellsAreThoseOfTheirPoints) {
   for (const double area : octahedron.areas) EXPECT_NEAR(4 * std::numbers::pi / 6, area, 1e-14);
 }
 
-TEST(SmallSphere, QueriesFindTheirTrianglesAndNearestPoints) {
+TEST(Sphere, QueriesFindTheirTrianglesAndNearestPoints) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
@@ -398,7 +398,7 @@ TEST(SmallSphere, QueriesFindTheirTrianglesAndNearestPoints) {
   }
 }
 
-TEST(SmallSphere, LinearFunctionsInSpaceAreInterpolated) {
+TEST(Sphere, LinearFunctionsInSpaceAreInterpolated) {
   // On the triangle in space, which is where the values are linear: of x / (the plane's value), at the query.
   const SphericalTriangulation mesh = triangulated(random_directions(50, 11), kDirections);
   SphereLocator locator(testing::triangulator(), mesh);
@@ -427,7 +427,7 @@ void expect_failure(ErrorKind kind, const char* part, const Work& work) {
   }
 }
 
-TEST(SmallSphere, ErrorsSayWhatIsWrong) {
+TEST(Sphere, ErrorsSayWhatIsWrong) {
   expect_failure(ErrorKind::input, "point 1: the latitude 90.5", [] {
     triangulated({0, 0, 7, 90.5}, kDegrees);
   });
