@@ -63,6 +63,8 @@ class Scanner {
 
 }  // namespace
 
+ValuedPoints::~ValuedPoints() = default;
+
 ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
                                  const RasterOptions& options, double* pixels, const ChunkOptions& chunks) {
   return with_errors([&] {

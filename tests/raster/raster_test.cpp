@@ -88,7 +88,8 @@ std::vector<double> rasterized(Triangulator& triangulator, const Terrain& terrai
 }
 
 bool same_bytes(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
 bool has_longer_edge(const Terrain& terrain, std::size_t t, double longest) {

@@ -55,6 +55,7 @@ FLAUNAY_API void rasterize(Triangulator& triangulator, const MeshView& mesh, con
 /// Points with a value each, such as heights, that are read in pieces.
 class FLAUNAY_API ValuedPoints : public PointSource {
  public:
+  ~ValuedPoints() override;
   /// Reads the values of the points [first, first + count), as read() does coordinates.
   virtual void read_values(std::uint64_t first, std::size_t count, double* values) = 0;
 };
