@@ -1580,35 +1580,44 @@ class SphericalLocator(_InTurns):
 # ---- Points on a torus
 
 
-class _Periodic(Handle):
+class Periodic(Handle):
+    """Triangulations of points on a torus."""
+
     _destroy = library.periodic_destroy
 
-
-def periodic(
-    triangulator: Triangulator,
-    points: _Doubles,
-    period: tuple[float, float],
-    given_offsets: Optional[_Offsets],
-) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of a triangulation on a torus."""
-    n, points, made = len(points), _as_doubles(points), _Periodic()
-    offsets, sets = _as_offsets(given_offsets, n)
-    triangulator.call(
-        library.periodic_create,
-        *(triangulator.pointer, points, n, offsets, sets, *period, made.place),
-    )
-    triangles = library.periodic_triangle_count(made.pointer)
-    areas = np.empty(n)
-    check(library.periodic_cell_areas(made.pointer, _address_of(areas)))
-    views = {
-        name: _view(made, getattr(library, f"periodic_{name}")(made.pointer), shape, np.dtype(dtype))
-        for name, shape, dtype in (
-            ("places", (n, 2), np.float64),
-            ("triangles", (triangles, 3), np.int32),
-            ("offsets", (triangles, 3, 2), np.int8),
-            ("neighbors", (triangles, 3), np.int32),
-            ("representatives", (n,), np.int32),
-            ("triangle_offsets", ((sets or 1) + 1,), np.int64),
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: _Doubles,
+        period: tuple[float, float],
+        given_offsets: Optional[_Offsets],
+    ) -> None:
+        super().__init__()
+        n, points = len(points), _as_doubles(points)
+        offsets, sets = _as_offsets(given_offsets, n)
+        triangulator.call(
+            library.periodic_create,
+            *(triangulator.pointer, points, n, offsets, sets, *period, self.place),
         )
-    }
-    return {**views, "areas": areas}
+        self._point_count, self._sets = n, sets or 1
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        n, triangles = self._point_count, library.periodic_triangle_count(self.pointer)
+        return {
+            name: _view(
+                self, getattr(library, f"periodic_{name}")(self.pointer), shape, np.dtype(dtype)
+            )
+            for name, shape, dtype in (
+                ("places", (n, 2), np.float64),
+                ("triangles", (triangles, 3), np.int32),
+                ("offsets", (triangles, 3, 2), np.int8),
+                ("neighbors", (triangles, 3), np.int32),
+                ("representatives", (n,), np.int32),
+                ("triangle_offsets", (self._sets + 1,), np.int64),
+            )
+        }
+
+    def cell_areas(self) -> _Doubles:
+        areas = np.empty(self._point_count)
+        check(library.periodic_cell_areas(self.pointer, _address_of(areas)))
+        return areas

@@ -38,9 +38,6 @@ class PeriodicDelaunay:
         The smallest index of a point of the set with the same place.
     simplex_offsets : ndarray of int64, shape (nsets + 1,)
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
-    cell_areas : ndarray of float64, shape (npoints,)
-        The areas of the points' Voronoi cells, rounded; those of a set sum to that of the period. Points
-        that another one represents have 0.
     """
 
     def __init__(
@@ -51,8 +48,8 @@ class PeriodicDelaunay:
         device: Optional[str],
     ) -> None:
         self._given = points, period, offsets, device
-        made = _calls.periodic(_triangulators.of_device(device), points, period, offsets)
-        arrays = {name: frozen(array) for name, array in made.items()}
+        self._handle = _calls.Periodic(_triangulators.of_device(device), points, period, offsets)
+        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
         self.points = points
         self.period = period
         self.places: Doubles = arrays["places"]
@@ -61,7 +58,6 @@ class PeriodicDelaunay:
         self.neighbors: Indices = arrays["neighbors"]
         self.representatives: Indices = arrays["representatives"]
         self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
-        self.cell_areas: Doubles = arrays["areas"]
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex)
@@ -77,6 +73,14 @@ class PeriodicDelaunay:
     @property
     def nsimplex(self) -> int:
         return len(self.simplices)
+
+    @cached_property
+    def cell_areas(self) -> Doubles:
+        """The areas of the points' Voronoi cells, rounded, shape (npoints,).
+
+        Those of a set sum to that of the period. Points that another one represents have 0.
+        """
+        return frozen(self._handle.cell_areas())
 
     @cached_property
     def corners(self) -> Doubles:
