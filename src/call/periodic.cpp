@@ -75,8 +75,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                            const std::vector<std::size_t>& offsets, const Period& period) {
   check(period);
-  call::expect(!offsets.empty() && offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end()),
-               "the offsets of sets begin with 0 and do not decrease");
+  geometry::check_offsets(offsets);
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
   PeriodicTriangulation mesh;

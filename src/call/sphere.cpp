@@ -153,8 +153,7 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
 SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
                                           const std::vector<std::size_t>& offsets,
                                           SphereCoordinates coordinates) {
-  call::expect(!offsets.empty() && offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end()),
-               "the offsets of sets begin with 0 and do not decrease");
+  geometry::check_offsets(offsets);
   // The sphere has twice as many triangles as points.
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
   if (offsets.back() > kMost) {

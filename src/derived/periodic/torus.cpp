@@ -1,7 +1,6 @@
 #include "derived/periodic/torus.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 

@@ -22,7 +22,7 @@ struct Unrolled {
   std::size_t originals = 0;          ///< come first, in their order
 };
 
-/// Appends a set's points [first, last) and their images. margin: at most half the smaller period. O(n).
+/// The points [first, last) of a set, and their images. margin: at most half the smaller period. O(n).
 Unrolled unroll(const std::vector<double>& places, std::size_t first, std::size_t last, const Period& period,
                 double margin);
 

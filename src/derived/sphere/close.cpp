@@ -4,10 +4,13 @@
 #include <array>
 
 #include "derived/sphere/places.hpp"
+#include "geometry/halfedges.hpp"
 
 namespace flaunay::sphere {
 namespace {
 
+using geometry::next_halfedge;
+using geometry::previous_halfedge;
 using Ids = std::vector<std::int32_t>;
 using Corners = std::array<std::int32_t, 3>;
 
@@ -39,7 +42,6 @@ class FarthestTriangulation {
       at(next, at(previous, v)) = at(next, v);
       at(previous, at(next, v)) = at(previous, v);
     }
-    outside_.resize(n);
     const std::int32_t a = order[0], b = at(next, a), c = at(next, b);
     add({a, b, c});
     outside_ = Ids(n, -1);
@@ -53,8 +55,6 @@ class FarthestTriangulation {
   const std::vector<Corners>& triangles() const { return triangles_; }
 
  private:
-  // Half-edge 3 t + k goes from corner k of triangle t to the next one.
-  static std::int32_t next_of(std::int32_t e) { return e % 3 == 2 ? e - 2 : e + 1; }
   std::int32_t& from(std::int32_t e) {
     return triangles_[static_cast<std::size_t>(e / 3)][static_cast<std::size_t>(e % 3)];
   }
@@ -87,7 +87,7 @@ class FarthestTriangulation {
       const std::int32_t edge = open.back();
       open.pop_back();
       if (twin(edge) < 0 || !has_to_go(edge)) continue;
-      open.push_back(next_of(twin(edge)));
+      open.push_back(next_halfedge(twin(edge)));
       swap(edge);
       open.push_back(edge);
     }
@@ -96,8 +96,8 @@ class FarthestTriangulation {
   // Whether the other diagonal is the right one.
   bool has_to_go(std::int32_t edge) {
     const std::int32_t other = twin(edge);
-    const Point a = place(from(edge)), b = place(from(other)), c = place(from(next_of(next_of(edge)))),
-                d = place(from(next_of(next_of(other))));
+    const Point a = place(from(edge)), b = place(from(other)), c = place(from(previous_halfedge(edge))),
+                d = place(from(previous_halfedge(other)));
     const int sign = kernel::circle_sign(a, b, c, d, CIRCLE_BOUND);
     if (sign != 0) return sign < 0;
     const auto is_first = [&](Point p) {
@@ -110,8 +110,8 @@ class FarthestTriangulation {
   // Of the triangles a b c and b a d, whose common edge a b is, makes c d b and d c a: half-edge `edge` goes
   // from d to b then, and is opposite to c.
   void swap(std::int32_t edge) {
-    const std::int32_t other = twin(edge), to_c = next_of(edge), to_a = next_of(to_c), to_d = next_of(other),
-                       to_b = next_of(to_d);
+    const std::int32_t other = twin(edge), to_c = next_halfedge(edge), to_a = next_halfedge(to_c),
+                       to_d = next_halfedge(other), to_b = next_halfedge(to_d);
     const std::int32_t beyond_a = twin(to_a), beyond_b = twin(to_b);
     from(edge) = from(to_b);
     from(other) = from(to_a);

@@ -1,7 +1,6 @@
 // Points on a torus: a plane that repeats itself in x and y.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
