@@ -157,6 +157,11 @@ TEST_F(LasTest, WrongFiles) {
   expect_bad(with(139, raw<double>({NAN})), {"scale nan", "for y"});
   expect_bad(with(163, raw<double>({INFINITY})), {"offset inf", "for y"});
   expect_bad(good.substr(0, good.size() - 1), {"truncated", "5 points of 30 bytes from byte 375 on"});
+  // The fuzzer found that a file without points got as much memory as its header said.
+  for (const std::string& file : {good, LasFile().bytes()}) {
+    std::string far = file;
+    expect_bad(far.replace(96, 4, "\xff\xff\xff\xff"), {"truncated", "from byte 4294967295 on"});
+  }
   for (const std::uint64_t claimed : {std::uint64_t{1}, std::uint64_t{1} << 60, ~std::uint64_t{5}}) {
     LasFile scan = some_scan();
     scan.claimed = claimed;

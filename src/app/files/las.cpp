@@ -72,28 +72,35 @@ void check_format(const std::string& path, int format, std::size_t record_bytes)
 }
 
 void check_size(const std::string& path, const LasHeader& points, std::uint64_t bytes) {
-  const std::uint64_t found = bytes - std::min(bytes, points.begin);
   // What follows the points, such as further records of variable length, is not read.
-  if (points.size > found / points.record_bytes) {
+  if (points.begin > bytes || points.size > (bytes - points.begin) / points.record_bytes) {
     fail(path, "is truncated: {} points of {} bytes from byte {} on, but the file has {} bytes", points.size,
          points.record_bytes, points.begin, bytes);
   }
 }
 
 /// The coordinate system in records of variable length, which lie between the header and the points: WKT, or
-/// else the number of EPSG in the keys of GeoTIFF.
-std::string find_crs(std::string_view header, std::string_view records) {
+/// else the number of EPSG in the keys of GeoTIFF. Other records are passed by, however large they are.
+std::string find_crs(const InputFile& file, std::string_view header, std::uint64_t end) {
   constexpr std::size_t kRecordHeader = 54, kId = 18, kLength = 20;
   constexpr int kWkt = 2112, kGeoKeys = 34735;
   constexpr std::array kEpsgKeys = {3072, 2048};  // of projected systems, and of others
   constexpr int kUserDefined = 32767;
   std::string wkt;
   std::array<int, kEpsgKeys.size()> codes{};
-  for (auto left = value_at<std::uint32_t>(header, kVariableCount);
-       left > 0 && records.size() >= kRecordHeader; --left) {
-    const int id = value_at<std::uint16_t>(records, kId);
-    const std::size_t length = value_at<std::uint16_t>(records, kLength);
-    const std::string_view content = records.substr(kRecordHeader, length);
+  std::uint64_t next = value_at<std::uint16_t>(header, kHeaderSize);
+  for (auto left = value_at<std::uint32_t>(header, kVariableCount); left > 0 && end - next >= kRecordHeader;
+       --left) {
+    std::array<char, kRecordHeader> bytes{};
+    file.read_at(next, bytes.size(), bytes.data());
+    next += kRecordHeader;
+    const std::string_view record(bytes.data(), bytes.size());
+    const int id = value_at<std::uint16_t>(record, kId);
+    const std::uint64_t length =
+        std::min<std::uint64_t>(end - next, value_at<std::uint16_t>(record, kLength));
+    std::string content(id == kWkt || id == kGeoKeys ? length : 0, '\0');
+    file.read_at(next, content.size(), content.data());
+    next += length;
     if (id == kWkt) wkt = content.substr(0, content.find('\0'));
     for (std::size_t key = 8; id == kGeoKeys && key + 8 <= content.size(); key += 8) {
       const int code = value_at<std::uint16_t>(content, key + 6);
@@ -103,7 +110,6 @@ std::string find_crs(std::string_view header, std::string_view records) {
           codes[k] = code;
       }
     }
-    records.remove_prefix(std::min(records.size(), kRecordHeader + length));
   }
   if (!wkt.empty()) return wkt;
   const int code = codes[0] != 0 ? codes[0] : codes[1];
@@ -155,9 +161,7 @@ LasHeader read_las_header(const std::string& path, InputFile& file) {
   }
   file.load_pipe();
   check_size(path, found, static_cast<std::uint64_t>(file.size()));
-  std::string records(found.begin - header_bytes, '\0');
-  file.read_at(header_bytes, records.size(), records.data());
-  found.crs = find_crs(header, records);
+  found.crs = find_crs(file, header, found.begin);
   return found;
 }
 
