@@ -2200,6 +2200,16 @@ static int read_nothing(uint64_t first, size_t count, double* coordinates, void*
   return 7;
 }
 
+static int read_values(uint64_t first, size_t count, double* values, void* all) {
+  memcpy(values, (const double*)all + first, count * sizeof *values);
+  return 0;
+}
+
+static int read_no_values(uint64_t first, size_t count, double* values, void* data) {
+  (void)first, (void)count, (void)values, (void)data;
+  return -4;
+}
+
 // What a sink has got: triangles in a file, the other parts in arrays.
 typedef struct {
   FILE* triangles;
@@ -2390,6 +2400,81 @@ static void test_bad_chunks(void) {
     if (k == 0) continue;
     CHECK(fails(flaunay_triangulate_chunks(kSquare, counts[k], &wide, NULL, &report), input, "too many"));
   }
+}
+
+// From records with fields and by functions, as of all triangles at once.
+static void test_raster_in_chunks(void) {
+  typedef struct scanned {
+    float z, x, y;
+  } scanned;
+  enum { kRows = 50, kColumns = 40 };
+  const double step = 300000;
+  scanned* const scan = calloc(kPoints, sizeof *scan);
+  double* const values = make_doubles(kPoints);
+  double* const pixels = make_doubles(2 * (size_t)kRows * kColumns);
+  double* const expected = pixels + (size_t)kRows * kColumns;
+  REQUIRE(scan != NULL);
+  for (size_t i = 0; i < kPoints; ++i) {
+    values[i] = (double)(i % 100);
+    scan[i] = (scanned){(float)values[i], (float)points[2 * i], (float)points[2 * i + 1]};
+  }
+  const flaunay_raster raster = {
+      .x = step, .y = step, .dx = step, .dy = step, .rows = kRows, .columns = kColumns};
+  flaunay_triangulation* mesh = on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS);
+  REQUIRE(flaunay_rasterize(triangulator, points, kPoints, flaunay_triangulation_triangles(mesh),
+                            flaunay_triangulation_neighbors(mesh), flaunay_triangulation_triangle_count(mesh),
+                            values, &raster, expected) == FLAUNAY_SUCCESS);
+  flaunay_triangulation_destroy(mesh);
+
+  const flaunay_strided_points of_records = {.coordinates = &scan->x,
+                                             .count = kPoints,
+                                             .precision = FLAUNAY_FLOAT32,
+                                             .point_stride = sizeof *scan,
+                                             .coordinate_stride = sizeof scan->x};
+  const flaunay_strided_values heights = {
+      .values = &scan->z, .precision = FLAUNAY_FLOAT32, .stride = sizeof *scan};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, &kSmallChunks, &report) ==
+          FLAUNAY_SUCCESS);
+  CHECK(memcmp(pixels, expected, kRows * kColumns * sizeof *pixels) == 0);
+  CHECK(flaunay_chunk_report_statistics(report)->points == kPoints);
+  CHECK(flaunay_chunk_report_statistics(report)->rounds[0].chunks > 1);
+  flaunay_chunk_report_destroy(report);
+
+  FILE* file = tmpfile();
+  REQUIRE(file != NULL && fwrite(points, sizeof points, 1, file) == 1);
+  const flaunay_point_source source = {.count = kPoints, .read = read_file, .data = file};
+  const flaunay_value_source read = {.read = read_values, .data = values};
+  memset(pixels, 0, kRows * kColumns * sizeof *pixels);
+  REQUIRE(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, &kSmallChunks, &report) ==
+          FLAUNAY_SUCCESS);
+  CHECK(memcmp(pixels, expected, kRows * kColumns * sizeof *pixels) == 0);
+  flaunay_chunk_report_destroy(report);
+
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  const flaunay_value_source broken = {.read = read_no_values}, unread = {NULL};
+  const flaunay_strided_values none = {.stride = 8}, strange = {.values = scan, .reserved = {1}};
+  CHECK(fails(flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, &report),
+              FLAUNAY_ERROR_STOPPED, "read of values returned -4"));
+  CHECK(report == NULL);
+  CHECK(
+      fails(flaunay_rasterize_streams(&source, &unread, 0, &raster, pixels, NULL, &report), usage, "values"));
+  CHECK(fails(flaunay_rasterize_streams(&source, NULL, 0, &raster, pixels, NULL, &report), usage, "values"));
+  CHECK(fails(flaunay_rasterize_streams(NULL, &read, 0, &raster, pixels, NULL, &report), usage, "points"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &none, 0, &raster, pixels, NULL, &report), usage,
+              "values"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &strange, 0, &raster, pixels, NULL, &report), usage,
+              "flaunay_strided_values"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 3, &raster, pixels, NULL, &report), usage,
+              "flaunay_duplicates"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, NULL, pixels, NULL, &report), usage,
+              "raster"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, NULL, NULL, &report), usage,
+              "pixels"));
+  fclose(file);
+  free(scan);
+  free(values);
+  free(pixels);
 }
 
 static void test_bad_streams(void) {
@@ -2716,6 +2801,7 @@ static void test_all(void) {
   test_chunks_of_no_points();
   test_bad_chunk_options();
   test_bad_chunks();
+  test_raster_in_chunks();
   test_bad_streams();
   tear_down();
 }

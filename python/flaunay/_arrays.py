@@ -341,6 +341,14 @@ class Fixed(Frozen):
         object.__setattr__(self, name, value)
 
 
+def number_of(names: Mapping[str, int], given: object, name: str) -> int:
+    """The number of a choice; UsageError for what is none."""
+    if not isinstance(given, str) or given not in names:
+        choices = ", ".join(repr(key) for key in names)
+        raise UsageError(f"{name} must be one of {choices}, not {given!r}")
+    return names[given]
+
+
 def check_out(out: Any, dtype: npt.DTypeLike, shape: tuple[Optional[int], ...], name: str) -> None:
     """UsageError unless results of a type and shape can be written to an array; None is any size."""
     wanted = (

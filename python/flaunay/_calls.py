@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any, Optional, Union, cast
 
 import numpy as np
@@ -993,40 +994,15 @@ class _ChunkReport(Handle):
 
 
 class _ChunkCall:
-    """One triangulation in chunks: its arguments, which must live as long as it, and its outcome."""
+    """One call for points in chunks, to be made with options and the place of a report, and its outcome."""
 
     def __init__(
         self,
-        points: FloatArray,
-        wanted: dict[str, Optional[bytes]],
-        wide: bool,
+        function: Callable[[_declarations.ChunkOptions, Any], int],
         options: _declarations.ChunkOptions,
         names: list[bytes],
     ) -> None:
-        n = _count_points(points)
-        if points.dtype not in (_FLOAT64, _FLOAT32):
-            raise UsageError("points must be float64 or float32")
-        self._points = points
-        self._struct = _declarations.StridedPoints(
-            coordinates=points.__array_interface__["data"][0] if n else None,
-            count=n,
-            precision=PRECISION["float64" if points.dtype == _FLOAT64 else "float32"],
-            point_stride=points.strides[0],
-            coordinate_stride=points.strides[1],
-        )
-        self.arrays: dict[str, npt.NDArray[Any]] = {}
-        self._places = _declarations.MeshArrays(index_type=INDEX_TYPE["int64" if wide else "int32"])
-        self._files = _declarations.MeshFiles()
-        for name, path in wanted.items():
-            if path is not None:
-                setattr(self._files, name, path)
-                continue
-            # Room for as many rows as there may be. What is never written is never in memory.
-            dtype, row, columns, _ = TRIANGULATION[name]
-            shape = _shape(2 * n if row == "triangle" else n, columns)
-            element = _INT64 if wide and dtype == _INT32 else dtype
-            self.arrays[name] = np.empty(shape, element)
-            setattr(self._places, name, self.arrays[name].ctypes.data if n else None)
+        self._function = function
         self._names = (ctypes.c_char_p * len(names))(*names)
         self._options = options
         options.devices = ctypes.addressof(self._names) if names else None
@@ -1053,11 +1029,7 @@ class _ChunkCall:
         if not self.begins():
             return
         try:
-            check(
-                library.triangulate_chunks_to_files(
-                    self._struct, self._places, self._files, self._options, self.report.place
-                )
-            )
+            check(self._function(self._options, self.report.place))
         except Exception as error:
             self.error = error
         finally:
@@ -1074,57 +1046,133 @@ class _ChunkCall:
                 self.answers.put(True)
 
 
+Progress = Optional[Callable[[str, int, float], object]]
+
+
+@dataclass
+class Chunks:
+    """How points are triangulated in chunks."""
+
+    memory: int
+    scratch: bytes
+    devices: list[str]
+    chunk_points: int
+    progress: Progress
+
+    def run(self, function: Callable[[_declarations.ChunkOptions, Any], int]) -> dict[str, Any]:
+        """Makes a call of the library. Returns its statistics.
+
+        The library works on a thread of its own, while this one waits for its reports. So an exception of `progress`,
+        and one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on
+        the main thread anywhere, and what one raised as the library calls back would be lost.
+        """
+        options = _declarations.ChunkOptions(
+            memory_bytes=self.memory, scratch=self.scratch, chunk_points=self.chunk_points
+        )
+        call = _ChunkCall(function, options, [_encoded(name) for name in self.devices])
+        progress = self.progress
+        raised: Optional[BaseException] = None
+        is_started = False
+        while not call.is_over:
+            # A signal can interrupt this anywhere.
+            try:
+                if not is_started:
+                    is_started = True
+                    _thread.start_new_thread(call.work, ())
+                call.follow(progress)
+            except BaseException as error:
+                if call.begins():
+                    raise  # the thread has not, and will find that it need not
+                raised, progress = error, None
+                call.answers.put(False)
+        if raised is not None:
+            raise raised
+        if call.error is not None:
+            raise call.error
+        return _chunk_statistics_of(library.chunk_report_statistics(call.report.pointer)[0])
+
+
+def _precision_of(numbers: FloatArray, name: str) -> int:
+    if numbers.dtype not in (_FLOAT64, _FLOAT32):
+        raise UsageError(f"{name} must be float64 or float32")
+    return int(PRECISION["float64" if numbers.dtype == _FLOAT64 else "float32"])
+
+
+def _first_of(numbers: FloatArray) -> Optional[int]:
+    return numbers.__array_interface__["data"][0] if len(numbers) else None
+
+
+def _strided_points(points: FloatArray) -> _declarations.StridedPoints:
+    return _declarations.StridedPoints(
+        coordinates=_first_of(points),
+        count=_count_points(points),
+        precision=_precision_of(points, "points"),
+        point_stride=points.strides[0],
+        coordinate_stride=points.strides[1],
+    )
+
+
 def triangulate_chunks(
-    points: FloatArray,
-    wanted: dict[str, Optional[bytes]],
-    wide: bool,
-    memory: int,
-    scratch: bytes,
-    devices: list[str],
-    chunk_points: int,
-    progress: Optional[Callable[[str, int, float], object]],
+    points: FloatArray, wanted: dict[str, Optional[bytes]], wide: bool, chunks: Chunks
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
 
     Returns the arrays in memory, and the statistics.
-
-    The library works on a thread of its own, while this one waits for its reports. So an exception of `progress`, and
-    one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on the
-    main thread anywhere, and what one raised as the library calls back would be lost.
     """
-    options = _declarations.ChunkOptions(
-        memory_bytes=memory, scratch=scratch, chunk_points=chunk_points
-    )
-    call = _ChunkCall(points, wanted, wide, options, [_encoded(name) for name in devices])
-    raised: Optional[BaseException] = None
-    is_started = False
-    while not call.is_over:
-        # A signal can interrupt this anywhere.
-        try:
-            if not is_started:
-                is_started = True
-                _thread.start_new_thread(call.work, ())
-            call.follow(progress)
-        except BaseException as error:
-            if call.begins():
-                raise  # the thread has not, and will find that it need not
-            raised, progress = error, None
-            call.answers.put(False)
-    if raised is not None:
-        raise raised
-    if call.error is not None:
-        raise call.error
-    statistics = _chunk_statistics_of(library.chunk_report_statistics(call.report.pointer)[0])
+    given, n = _strided_points(points), len(points)
+    places = _declarations.MeshArrays(index_type=INDEX_TYPE["int64" if wide else "int32"])
+    files = _declarations.MeshFiles()
+    arrays: dict[str, npt.NDArray[Any]] = {}
+    for name, path in wanted.items():
+        if path is not None:
+            setattr(files, name, path)
+            continue
+        # Room for as many rows as there may be. What is never written is never in memory.
+        dtype, row, columns, _ = TRIANGULATION[name]
+        shape = _shape(2 * n if row == "triangle" else n, columns)
+        arrays[name] = np.empty(shape, _INT64 if wide and dtype == _INT32 else dtype)
+        setattr(places, name, arrays[name].ctypes.data if n else None)
+
+    def call(options: _declarations.ChunkOptions, report: Any) -> int:
+        return int(library.triangulate_chunks_to_files(given, places, files, options, report))
+
+    statistics = chunks.run(call)
     counts = {
         "triangle": statistics["triangles"],
         "hull_vertex": statistics["hull_vertices"],
         "point": statistics["points"],
     }
-    arrays = {name: array[: counts[TRIANGULATION[name][1]]] for name, array in call.arrays.items()}
+    arrays = {name: array[: counts[TRIANGULATION[name][1]]] for name, array in arrays.items()}
     if "hull" in arrays:
         # It had room for all points.
         arrays["hull"] = arrays["hull"].copy()
     return arrays, statistics
+
+
+def rasterize_chunks(
+    points: FloatArray,
+    values: FloatArray,
+    duplicates: int,
+    grid: tuple[float, float, float, float],
+    max_edge: float,
+    fill: float,
+    pixels: _Doubles,
+    chunks: Chunks,
+) -> None:
+    """`rasterize` for points with values, in chunks. duplicates: a number of DUPLICATES."""
+    given = _strided_points(points)
+    heights = _declarations.StridedValues(
+        values=_first_of(values), precision=_precision_of(values, "values"), stride=values.strides[0]
+    )
+    raster = _raster_of(grid, max_edge, fill, pixels)
+    place = _address_of(pixels)
+
+    def call(options: _declarations.ChunkOptions, report: Any) -> int:
+        return int(
+            library.rasterize_chunks(given, heights, duplicates, raster, place, options, report)
+        )
+
+    chunks.run(call)
 
 
 # ---- Voronoi diagrams and queries
@@ -1215,6 +1263,16 @@ def _mesh_arguments(
     return coordinates, n, corners, beyond, len(corners), _as_doubles(values)
 
 
+def _raster_of(
+    grid: tuple[float, float, float, float], max_edge: float, fill: float, pixels: _Doubles
+) -> _declarations.Raster:
+    rows, columns = pixels.shape
+    return _declarations.Raster(
+        **dict(zip(("x", "y", "dx", "dy"), grid)),
+        **{"rows": rows, "columns": columns, "max_edge": max_edge, "fill": fill},
+    )
+
+
 def rasterize(
     triangulator: Triangulator,
     *surface: Any,
@@ -1224,11 +1282,7 @@ def rasterize(
     pixels: _Doubles,
 ) -> None:
     """Writes values at pixels. grid: the first pixel's x and y, and the steps to the next ones."""
-    rows, columns = pixels.shape
-    names = ("x", "y", "dx", "dy")
-    raster = _declarations.Raster(
-        **dict(zip(names, grid)), rows=rows, columns=columns, max_edge=max_edge, fill=fill
-    )
+    raster = _raster_of(grid, max_edge, fill, pixels)
     given = (triangulator.pointer, *_mesh_arguments(*surface), ctypes.byref(raster), pixels)
     with triangulator.turn:
         _call_with_mesh(library.rasterize, *given)

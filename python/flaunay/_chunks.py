@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+import contextlib
 import operator
 import os
 import re
-from collections.abc import Callable, Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _declarations, _triangulators
-from flaunay._arrays import FloatArray, as_points, check_points_shape, is_masked, summary
+from flaunay import _calls, _declarations, _raster, _triangulators
+from flaunay._arrays import (
+    FloatArray,
+    as_floats,
+    as_points,
+    check_out,
+    check_points_shape,
+    is_masked,
+    number_of,
+    summary,
+)
 from flaunay._errors import UsageError
 
 Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
@@ -144,6 +156,24 @@ def _is_wide(index: Optional[int], n: int, wanted: dict[str, Optional[str]]) -> 
     return index == 64
 
 
+def _chunks(
+    memory: Union[None, int, str],
+    scratch: Union[None, str, os.PathLike[str]],
+    devices: Union[None, str, Sequence[str]],
+    chunk_points: Optional[int],
+    progress: _calls.Progress,
+) -> _calls.Chunks:
+    if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
+        raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
+    return _calls.Chunks(
+        _as_bytes(memory),
+        b"" if scratch is None else os.fsencode(scratch),
+        _triangulators.names_for_chunks(devices),
+        0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
+        progress,
+    )
+
+
 def triangulate_chunks(
     points: npt.ArrayLike,
     *,
@@ -242,17 +272,11 @@ def triangulate_chunks(
     given = locals()
     source = _as_source(points)
     wanted = _as_wanted({name: given[name] for name in _declarations.MESH_ARRAYS}, points)
-    if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
-        raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
     in_memory, statistics = _calls.triangulate_chunks(
         source,
         {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
         _is_wide(index, len(source), wanted),
-        _as_bytes(memory),
-        b"" if scratch is None else os.fsencode(scratch),
-        _triangulators.names_for_chunks(devices),
-        0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
-        progress,
+        _chunks(memory, scratch, devices, chunk_points, progress),
     )
     arrays: dict[str, Any] = dict.fromkeys(_declarations.MESH_ARRAYS)
     arrays |= in_memory
@@ -260,3 +284,118 @@ def triangulate_chunks(
         if path is not None:
             arrays[name] = np.load(path, mmap_mode="r")
     return ChunkedTriangulation(**arrays, statistics=statistics)
+
+
+@contextlib.contextmanager
+def all_or_none(paths: Sequence[Path]) -> Iterator[list[str]]:
+    """Names of temporary files, which take the place of files when all are written."""
+    with contextlib.ExitStack() as stack:
+        names = []
+        for path in paths:
+            folder = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix=".flaunay-", dir=path.parent)
+            )
+            names.append(os.path.join(folder, path.name))
+        yield names
+        for name, path in zip(names, paths):
+            os.replace(name, path)
+
+
+def _new_pixels(path: str, shape: tuple[int, int]) -> npt.NDArray[np.float64]:
+    """A file that is mapped into memory, with room on the disk: without it, writing would end the process."""
+    open_memmap: Callable[..., npt.NDArray[np.float64]] = np.lib.format.open_memmap
+    pixels = open_memmap(path, "w+", np.float64, shape)
+    if hasattr(os, "posix_fallocate"):
+        with open(path, "r+b") as file:
+            os.posix_fallocate(file.fileno(), 0, os.path.getsize(path))
+    return pixels
+
+
+def rasterize_chunks(
+    points: npt.ArrayLike,
+    values: npt.ArrayLike,
+    shape: tuple[int, int],
+    bounds: Optional[Sequence[float]] = None,
+    *,
+    duplicates: str = "highest",
+    max_edge: Optional[float] = None,
+    fill_value: float = np.nan,
+    out: Union[None, str, os.PathLike[str], npt.NDArray[np.float64]] = None,
+    memory: Union[None, int, str] = None,
+    scratch: Union[None, str, os.PathLike[str]] = None,
+    devices: Union[None, str, Sequence[str]] = None,
+    chunk_points: Optional[int] = None,
+    progress: Optional[Callable[[str, int, float], object]] = None,
+) -> npt.NDArray[np.float64]:
+    """The raster of more points than fit memory: what `Delaunay.raster` makes of all, triangulated in chunks.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        As of `triangulate_chunks`: arrays of float64 and float32 are read in pieces, whatever their strides, such as
+        ``scan[:, :2]`` of a ``numpy.load(path, mmap_mode="r")`` with x, y and z.
+    values : array_like, shape (n,)
+        One number per point, such as ``scan[:, 2]``, read in pieces likewise.
+    shape, bounds, max_edge, fill_value
+        As of `Delaunay.raster`.
+    duplicates : {"highest", "lowest", "mean"}
+        The value of a place where several points are equal.
+    out : path or ndarray of float64, optional
+        A file whose path ends in ``.npy``, which is written as a whole or stays as it was, or an array of this shape.
+    memory, scratch, devices, chunk_points, progress
+        As of `triangulate_chunks`. Memory does not count the raster; the scratch folder takes 32 bytes per point.
+
+    Returns
+    -------
+    ndarray or memmap of float64, of the shape
+        A file is mapped into memory, and cannot be written to.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As `triangulate_chunks` and `Delaunay.raster`.
+    OSError
+        If the file cannot be made or the disk has no room for it.
+
+    Notes
+    -----
+    The raster has the same bytes whatever the chunks and the order of points. O(n log n + pixels).
+
+    Examples
+    --------
+    >>> import flaunay, numpy as np
+    >>> scan = np.array([[0, 0, 0], [4, 0, 8], [0, 4, 4.0]])
+    >>> flaunay.rasterize_chunks(scan[:, :2], scan[:, 2], shape=(2, 4))
+    array([[ 4., nan, nan, nan],
+           [ 2.,  4.,  6., nan]])
+    """
+    source = _as_source(points)
+    if isinstance(values, np.ndarray) and values.dtype in _COORDINATES and not is_masked(values):
+        numbers: FloatArray = values
+    else:
+        numbers = as_floats(values, "values")
+    if numbers.shape != (len(source),):
+        raise UsageError(f"values must have the shape ({len(source)},), not {numbers.shape}")
+    kind = number_of(_declarations.DUPLICATES, duplicates, "duplicates")
+    if bounds is None and not len(source):
+        raise UsageError("bounds are needed, as there are no points")
+    shape, grid = _raster.grid_of(shape, bounds, source)
+    longest = _raster.as_length(max_edge, "max_edge")
+    chunks = _chunks(memory, scratch, devices, chunk_points, progress)
+
+    def rasterize(pixels: npt.NDArray[np.float64]) -> None:
+        _calls.rasterize_chunks(
+            source, numbers, kind, grid, longest, float(fill_value), pixels, chunks
+        )
+
+    if out is None:
+        out = np.empty(shape)
+    elif not isinstance(out, np.ndarray):
+        path = _as_wanted({"out": out}, points)["out"]
+        assert path is not None
+        with all_or_none([Path(path)]) as (name,):
+            rasterize(_new_pixels(name, shape))
+        return np.load(path, mmap_mode="r")  # type: ignore[no-any-return]
+    check_out(out, np.float64, shape, "out")
+    rasterize(out)
+    return out

@@ -18,6 +18,7 @@ from flaunay._arrays import (
     as_offsets,
     as_points,
     geometries_of,
+    number_of,
     summary,
 )
 from flaunay._border import Border
@@ -403,14 +404,6 @@ def neighbors_of(triangles: Indices) -> Indices:
     found = order[places] if len(keys) else places
     beyond = np.where(keys[found] == wanted, found // 3, -1) if len(keys) else found
     return beyond.astype(np.int32).reshape(-1, 3)
-
-
-def number_of(names: Mapping[str, int], given: object, name: str) -> int:
-    """The number of a choice; UsageError for what is none."""
-    if not isinstance(given, str) or given not in names:
-        choices = ", ".join(repr(key) for key in names)
-        raise UsageError(f"{name} must be one of {choices}, not {given!r}")
-    return names[given]
 
 
 def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict[str, int]:

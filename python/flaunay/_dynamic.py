@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_integers, as_points, summary
-from flaunay._constrained import as_segments, number_of
+from flaunay._arrays import ArrayLike, as_integers, as_points, number_of, summary
+from flaunay._constrained import as_segments
 from flaunay._declarations import CROSSINGS
 from flaunay._device_arrays import DeviceCall, is_on_device, queue_for, view
 from flaunay._errors import UsageError

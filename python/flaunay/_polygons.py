@@ -10,10 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, names_of, summary
+from flaunay._arrays import (
+    ArrayLike,
+    as_floats,
+    as_offsets,
+    as_points,
+    frozen,
+    names_of,
+    number_of,
+    summary,
+)
 from flaunay._constrained import (
     ConstrainedTriangulation,
-    number_of,
     rules_of,
     with_device,
     with_points,

@@ -10,11 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, Triangles, as_floats, check_out, summary
+from flaunay._arrays import ArrayLike, FloatArray, Triangles, as_floats, check_out, summary
 from flaunay._errors import UsageError
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
+# The centre of the first pixel, and the steps to the next ones.
+Grid = tuple[float, float, float, float]
 
 
 class Surface(Triangles, Protocol):
@@ -43,10 +45,31 @@ def as_length(given: Optional[float], name: str) -> float:
     return float(given)
 
 
+def grid_of(
+    shape: tuple[int, int], bounds: Optional[Sequence[float]], points: FloatArray
+) -> tuple[tuple[int, int], Grid]:
+    """Numbers of rows and columns, and the first pixel with the steps to the next ones.
+
+    Without bounds, those of the points, of which there are some.
+    """
+    rows, columns = (operator.index(number) for number in shape)
+    if min(rows, columns) < 1:
+        raise UsageError(f"shape must be numbers of rows and columns, not {tuple(shape)}")
+    if bounds is None:
+        low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
+        box = np.array([*low, *high], np.float64)
+    else:
+        box = np.asarray(as_floats(bounds, "bounds"), np.float64)
+    if box.shape != (4,) or not (box[0] < box[2] and box[1] < box[3]):
+        raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {box.tolist()}")
+    dx, dy = (box[2] - box[0]) / columns, (box[3] - box[1]) / rows
+    return (rows, columns), (box[0] + dx / 2, box[3] - dy / 2, dx, -dy)
+
+
 def rasterize(
     tri: Surface,
     values: ArrayLike,
-    grid: tuple[float, float, float, float],
+    grid: Grid,
     pixels: Doubles,
     max_edge: Optional[float],
     fill_value: float,
@@ -194,24 +217,13 @@ class MapMethods:
         array([[ 4., nan, nan, nan],
                [ 2.,  4.,  6., nan]])
         """
-        rows, columns = (operator.index(number) for number in shape)
-        if min(rows, columns) < 1:
-            raise UsageError(f"shape must be numbers of rows and columns, not {tuple(shape)}")
-        if bounds is None:
-            if len(self.simplices) == 0:
-                raise UsageError("bounds are needed, as there are no triangles")
-            low, high = np.nanmin(self.points, axis=0), np.nanmax(self.points, axis=0)
-            box = np.array([*low, *high], np.float64)
-        else:
-            box = np.asarray(as_floats(bounds, "bounds"), np.float64)
-        if box.shape != (4,) or not (box[0] < box[2] and box[1] < box[3]):
-            raise UsageError(f"bounds must be xmin < xmax and ymin < ymax, not {box.tolist()}")
+        if bounds is None and len(self.simplices) == 0:
+            raise UsageError("bounds are needed, as there are no triangles")
+        shape, grid = grid_of(shape, bounds, self.points)
         if out is None:
-            out = np.empty((rows, columns))
+            out = np.empty(shape)
         else:
-            check_out(out, np.float64, (rows, columns), "out")
-        dx, dy = (box[2] - box[0]) / columns, (box[3] - box[1]) / rows
-        grid = (box[0] + dx / 2, box[3] - dy / 2, dx, -dy)
+            check_out(out, np.float64, shape, "out")
         rasterize(self, values, grid, out, max_edge, fill_value, device)
         return out
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 import struct
-import tempfile
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -17,6 +15,7 @@ import numpy.typing as npt
 
 from flaunay import _raster
 from flaunay._arrays import as_floats, summary
+from flaunay._chunks import all_or_none
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._interpolate import (
@@ -463,21 +462,6 @@ class _Grid:
         )
 
 
-@contextlib.contextmanager
-def _all_or_none(paths: Sequence[Path]) -> Iterator[list[str]]:
-    """Names of temporary files, which take the place of files when all are written."""
-    with contextlib.ExitStack() as stack:
-        names = []
-        for path in paths:
-            folder = stack.enter_context(
-                tempfile.TemporaryDirectory(prefix=".flaunay-", dir=path.parent)
-            )
-            names.append(os.path.join(folder, path.name))
-        yield names
-        for name, path in zip(names, paths):
-            os.replace(name, path)
-
-
 def _checked_outputs(given: Any, contours: Any) -> list[Path]:
     if given is None:
         return []
@@ -720,7 +704,7 @@ def terrain(
         )
         result.raster[outside] = np.nan
     lines = None
-    with _all_or_none(outputs) as names:
+    with all_or_none(outputs) as names:
         for name in names:
             suffix = Path(name).suffix.lower()
             if suffix in _RASTERS:

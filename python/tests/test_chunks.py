@@ -414,3 +414,92 @@ def test_a_full_disk(tmp_path):
     with pytest.raises(flaunay.InputError, match="has room for"):
         flaunay.triangulate_chunks(many, triangles=tmp_path / "t.npy", neighbors=tmp_path / "n.npy")
     assert os.listdir(tmp_path) == []
+
+
+# ---- Rasters
+
+
+@pytest.fixture
+def scan(random):
+    """x, y and z, with places that were measured twice."""
+    given = np.round(random.random((6000, 3)) * [40, 30, 100], 1)
+    given[100:200, :2] = given[:100, :2]
+    return given
+
+
+def whole_raster(scan, shape, bounds=None, **options):
+    """Of all triangles at once, each place at its highest value."""
+    tri = flaunay.Delaunay(scan[:, :2])
+    highest = np.full(len(scan), -np.inf)
+    np.maximum.at(highest, tri.representatives, scan[:, 2])
+    return tri.raster(highest, shape, bounds, **options)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_raster_of_a_file_to_a_file(scan, tmp_path, dtype):
+    scan = scan.astype(dtype)
+    np.save(tmp_path / "scan.npy", scan)
+    mapped = np.load(tmp_path / "scan.npy", mmap_mode="r")
+    path = tmp_path / "dem.npy"
+    shape, bounds = (60, 80), (-1, 0, 41, 30)
+    made = flaunay.rasterize_chunks(
+        mapped[:, :2], mapped[:, 2], shape, bounds, out=path, memory="200M", **SMALL
+    )
+    expected = whole_raster(scan.astype(np.float64), shape, bounds)
+    assert isinstance(made, np.memmap) and not made.flags.writeable
+    assert np.load(path).tobytes() == made.tobytes() == expected.tobytes()
+    assert sorted(os.listdir(tmp_path)) == ["dem.npy", "scan.npy"]
+
+
+def test_raster_to_memory(scan):
+    options = {"max_edge": 1.5, "fill_value": -9}
+    expected = whole_raster(scan, (20, 30), **options)
+    assert (expected == -9).any() and (expected >= 0).any()
+    stages = set()
+    made = flaunay.rasterize_chunks(
+        *(scan[:, :2], scan[:, 2].tolist(), (20, 30)),
+        progress=lambda stage, round, done: stages.add(stage),
+        **options,
+        **SMALL,
+    )
+    assert made.tobytes() == expected.tobytes() and "triangulating" in stages
+    out = np.zeros((20, 30))
+    given = scan[::-1]
+    same = flaunay.rasterize_chunks(given[:, :2], given[:, 2], (20, 30), out=out, **options)
+    assert same is out and out.tobytes() == expected.tobytes()
+
+
+@pytest.mark.parametrize("duplicates, expected", [("highest", 9), ("lowest", 1), ("mean", 4)])
+def test_raster_of_equal_points(duplicates, expected):
+    points, values = [[0, 0], [4, 0], [0, 0], [0, 4], [0, 0]], [9, 5, 1, 5, 2]
+    made = flaunay.rasterize_chunks(points, values, (2, 2), (-2, -2, 6, 6), duplicates=duplicates)
+    assert made[1, 0] == expected
+
+
+@pytest.mark.parametrize(
+    "changed, message",
+    [
+        ({"values": [1, 2]}, r"values must have the shape \(3,\)"),
+        ({"shape": (0, 4)}, "shape"),
+        ({"bounds": (0, 0, 0, 1)}, "bounds"),
+        ({"duplicates": "any"}, "duplicates"),
+        ({"max_edge": -1}, "max_edge"),
+        ({"out": "dem.tif"}, ".npy"),
+        ({"out": np.zeros((2, 3))}, "out"),
+        ({"memory": "much"}, "memory"),
+        ({"chunk_points": 0}, "chunk_points"),
+        ({"points": np.empty((0, 2)), "values": []}, "bounds"),
+    ],
+)
+def test_raster_with_wrong_arguments(changed, message):
+    given = {"points": [[0, 0], [4, 0], [0, 4]], "values": [0, 1, 2], "shape": (2, 2), **changed}
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.rasterize_chunks(**given)
+
+
+def test_a_raster_that_fails_leaves_what_was_there(tmp_path):
+    path = tmp_path / "dem.npy"
+    path.write_bytes(b"old")
+    with pytest.raises(flaunay.InputError, match="finite"):
+        flaunay.rasterize_chunks([[0, 0], [4, 0], [0, 4]], [0, np.nan, 2], (2, 2), out=path)
+    assert os.listdir(tmp_path) == ["dem.npy"] and path.read_bytes() == b"old"

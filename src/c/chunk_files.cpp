@@ -1,14 +1,13 @@
 #include "c/chunk_files.hpp"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "c/strided_points.hpp"
 #include "files/file.hpp"
 #include "files/mesh_stream.hpp"
 #include "files/output.hpp"
@@ -16,38 +15,6 @@
 
 namespace flaunay::c {
 namespace {
-
-template <typename Coordinate>
-class StridedPoints : public PointSource {
- public:
-  explicit StridedPoints(const flaunay_strided_points& given)
-      : data_(static_cast<const char*>(given.coordinates)),
-        n_(given.count),
-        point_(given.point_stride),
-        coordinate_(given.coordinate_stride) {}
-
-  std::uint64_t size() const override { return n_; }
-
-  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
-    const char* point = data_ + static_cast<std::ptrdiff_t>(first) * point_;
-    for (std::size_t k = 0; k < count; ++k, point += point_) {
-      coordinates[2 * k] = at(point);
-      coordinates[2 * k + 1] = at(point + coordinate_);
-    }
-  }
-
- private:
-  // A coordinate may be anywhere, as in a field of records.
-  static double at(const char* place) {
-    Coordinate value;
-    std::memcpy(&value, place, sizeof value);
-    return value;
-  }
-
-  const char* data_;
-  std::uint64_t n_;
-  std::ptrdiff_t point_, coordinate_;
-};
 
 using Paths = std::array<std::string, io::kMeshArrays>;
 
@@ -134,8 +101,13 @@ ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arra
   return statistics;
 }
 
-ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
-                            const flaunay_mesh_files& files, const ChunkOptions& options) {
+}  // namespace
+
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
+                                     const flaunay_mesh_files& files, const ChunkOptions& options) {
+  check_reserved(arrays, "flaunay_mesh_arrays");
+  check_reserved(files, "flaunay_mesh_files");
+  StridedPoints source(points);
   switch (arrays.index_type) {
     case FLAUNAY_INT32:
       return triangulate<std::int32_t>(source, arrays, files, options);
@@ -143,22 +115,6 @@ ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arra
       return triangulate<std::int64_t>(source, arrays, files, options);
   }
   throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", arrays.index_type));
-}
-
-}  // namespace
-
-ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
-                                     const flaunay_mesh_files& files, const ChunkOptions& options) {
-  check_reserved(points, "flaunay_strided_points");
-  check_reserved(arrays, "flaunay_mesh_arrays");
-  check_reserved(files, "flaunay_mesh_files");
-  if (points.count > 0) required(static_cast<const char*>(points.coordinates), "the coordinates of points");
-  if (to_precision(points.precision) == Precision::float64) {
-    StridedPoints<double> source(points);
-    return triangulate(source, arrays, files, options);
-  }
-  StridedPoints<float> source(points);
-  return triangulate(source, arrays, files, options);
 }
 
 }  // namespace flaunay::c

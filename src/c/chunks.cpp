@@ -11,7 +11,10 @@
 #include "c/chunk_files.hpp"
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "c/raster.hpp"
+#include "c/strided_points.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/terrain.hpp"
 
 using namespace flaunay;
 
@@ -114,6 +117,54 @@ class CallersPoints : public PointSource {
   const flaunay_point_source& given_;
 };
 
+class StridedValuedPoints : public ValuedPoints {
+ public:
+  StridedValuedPoints(const flaunay_strided_points& points, const flaunay_strided_values& values)
+      : points_(points), values_(values.values, values.precision, values.stride) {
+    c::check_reserved(values, "flaunay_strided_values");
+    if (points.count > 0) required(static_cast<const char*>(values.values), "the values of points");
+  }
+  std::uint64_t size() const override { return points_.size(); }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    points_.read(first, count, coordinates);
+  }
+  void read_values(std::uint64_t first, std::size_t count, double* values) override {
+    values_.read(first, count, values, 1);
+  }
+
+ private:
+  c::StridedPoints points_;
+  c::StridedNumbers values_;
+};
+
+class CallersValuedPoints : public ValuedPoints {
+ public:
+  CallersValuedPoints(const flaunay_point_source& points, const flaunay_value_source& values)
+      : points_(points), values_(values) {
+    c::check_reserved(values, "flaunay_value_source");
+    if (points.count > 0) required(values.read, "the function that reads values");
+  }
+  std::uint64_t size() const override { return points_.size(); }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    points_.read(first, count, coordinates);
+  }
+  void read_values(std::uint64_t first, std::size_t count, double* values) override {
+    stop_unless_zero(values_.read(first, count, values, values_.data), "read of values");
+  }
+
+ private:
+  CallersPoints points_;
+  const flaunay_value_source& values_;
+};
+
+std::unique_ptr<flaunay_chunk_report> rasterize(ValuedPoints& points, int duplicates,
+                                                const flaunay_raster& raster, double* pixels,
+                                                const flaunay_chunk_options* options) {
+  return std::make_unique<flaunay_chunk_report>(rasterize_chunks(
+      points, c::to_enum<Duplicates>(duplicates, FLAUNAY_DUPLICATES_MEAN, "flaunay_duplicates"),
+      c::to_grid(raster), c::to_options(raster), pixels, to_options(options)));
+}
+
 // Bit k of flaunay_part stands for the k-th array.
 unsigned part_of(MeshArray array) { return 1u << kMeshArrayIndices[static_cast<std::size_t>(array)]; }
 
@@ -180,6 +231,27 @@ flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points*
     return std::make_unique<flaunay_chunk_report>(
         c::triangulate_to_files(required(points, "the points"), arrays != nullptr ? *arrays : no_arrays,
                                 files != nullptr ? *files : no_files, to_options(options)));
+  });
+}
+
+flaunay_status flaunay_rasterize_chunks(const flaunay_strided_points* points,
+                                        const flaunay_strided_values* values, int duplicates,
+                                        const flaunay_raster* raster, double* pixels,
+                                        const flaunay_chunk_options* options, flaunay_chunk_report** report) {
+  return create(report, [&] {
+    StridedValuedPoints source(required(points, "the points"), required(values, "the values"));
+    return rasterize(source, duplicates, required(raster, "the raster"), pixels, options);
+  });
+}
+
+flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
+                                         const flaunay_value_source* values, int duplicates,
+                                         const flaunay_raster* raster, double* pixels,
+                                         const flaunay_chunk_options* options,
+                                         flaunay_chunk_report** report) {
+  return create(report, [&] {
+    CallersValuedPoints source(required(points, "the points"), required(values, "the values"));
+    return rasterize(source, duplicates, required(raster, "the raster"), pixels, options);
   });
 }
 

@@ -2,11 +2,11 @@
 #include "flaunay/terrain.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
+#include "c/raster.hpp"
 #include "flaunay/flaunay.h"
 
 using namespace flaunay;
@@ -20,24 +20,14 @@ struct flaunay_contours {
   Contours cpp;
 };
 
-namespace {
-
-double longest_of(double max_edge) {
-  return max_edge == 0 ? std::numeric_limits<double>::infinity() : max_edge;
-}
-
-}  // namespace
-
 flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                  const int32_t* triangles, const int32_t* neighbors, size_t t,
                                  const double* values, const flaunay_raster* raster, double* pixels) {
   return guarded([&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     const flaunay_raster& wanted = required(raster, "the raster");
-    c::check_reserved(wanted, "flaunay_raster");
-    rasterize(cpp, {coordinates, n, triangles, neighbors, t}, values,
-              {wanted.x, wanted.y, wanted.dx, wanted.dy, wanted.rows, wanted.columns},
-              {longest_of(wanted.max_edge), wanted.fill}, pixels);
+    rasterize(cpp, {coordinates, n, triangles, neighbors, t}, values, c::to_grid(wanted),
+              c::to_options(wanted), pixels);
   });
 }
 
@@ -50,7 +40,7 @@ flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator, cons
     const double* const first = height_count == 0 ? nullptr : &required(heights, "the heights");
     return std::make_unique<flaunay_contours>(
         flaunay_contours{trace_contours(cpp, {coordinates, n, triangles, neighbors, t}, values,
-                                        {first, first + height_count}, longest_of(max_edge))});
+                                        {first, first + height_count}, c::to_longest(max_edge))});
   });
 }
 

@@ -171,6 +171,14 @@ typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_LAPLACE = 4
 } flaunay_interpolation;
 
+/// Which value a place has where several points are equal. The mean is that of doubles, summed in ascending
+/// order.
+typedef enum flaunay_duplicates {
+  FLAUNAY_DUPLICATES_HIGHEST = 0,
+  FLAUNAY_DUPLICATES_LOWEST = 1,
+  FLAUNAY_DUPLICATES_MEAN = 2
+} flaunay_duplicates;
+
 /// Owns the programs and memory of a device. The context is the triangulator's own or the caller's.
 typedef struct flaunay_triangulator flaunay_triangulator;
 /// The triangulations of one or more point sets, in host memory.
@@ -361,6 +369,22 @@ typedef struct flaunay_point_source {
   void* data;             ///< passed to read unchanged
   uintptr_t reserved[4];  ///< 0
 } flaunay_point_source;
+
+/// Values in memory, one for each of some points.
+typedef struct flaunay_strided_values {
+  const void* values;     ///< the first one; it need not be aligned
+  int precision;          ///< a flaunay_precision: values are double or float
+  ptrdiff_t stride;       ///< bytes from one value to the next; may be 0 or negative
+  uintptr_t reserved[4];  ///< 0
+} flaunay_strided_values;
+
+/// Values that a function of the caller's reads in pieces, one for each of some points.
+typedef struct flaunay_value_source {
+  /// Reads the values of the points [first, first + count), as flaunay_point_source reads these.
+  int (*read)(uint64_t first, size_t count, double* values, void* data);
+  void* data;             ///< passed to read unchanged
+  uintptr_t reserved[4];  ///< 0
+} flaunay_value_source;
 
 /// Where a function of the caller's writes a triangulation in pieces.
 typedef struct flaunay_mesh_sink {
@@ -1266,6 +1290,24 @@ FLAUNAY_API flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator,
                                              size_t n, const int32_t* triangles, const int32_t* neighbors,
                                              size_t t, const double* values, const flaunay_raster* raster,
                                              double* pixels);
+
+/// flaunay_rasterize of points that need not fit memory: triangulates them in chunks, as
+/// flaunay_triangulate_chunks_to_files does, and scans triangles into pixels as they become final. The raster
+/// is that of all triangles, whatever the chunks. duplicates: a flaunay_duplicates. pixels: as of
+/// flaunay_rasterize, such as a file that is mapped into memory; they do not count as memory of the options.
+/// Values take 8 bytes per point in the scratch folder. Errors are those of both functions, and
+/// FLAUNAY_ERROR_INPUT for a value that is not finite. The caller destroys the report.
+FLAUNAY_API flaunay_status flaunay_rasterize_chunks(const flaunay_strided_points* points,
+                                                    const flaunay_strided_values* values, int duplicates,
+                                                    const flaunay_raster* raster, double* pixels,
+                                                    const flaunay_chunk_options* options,
+                                                    flaunay_chunk_report** report);
+/// flaunay_rasterize_chunks for points and values that are nowhere in memory as a whole.
+FLAUNAY_API flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
+                                                     const flaunay_value_source* values, int duplicates,
+                                                     const flaunay_raster* raster, double* pixels,
+                                                     const flaunay_chunk_options* options,
+                                                     flaunay_chunk_report** report);
 
 /// Contour lines.
 typedef struct flaunay_contours flaunay_contours;
