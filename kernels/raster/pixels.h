@@ -5,6 +5,7 @@
 #include "arithmetic/language.h"
 #include "mesh/halfedges.h"
 #include "predicates/planar.h"
+#include "raster/edges.h"
 #include "raster/records.h"
 
 BEGIN_SHARED
@@ -108,16 +109,6 @@ static inline double weighted(const double* weight, const double* value) {
     if (weight[k] != 0.0) sum += weight[k] * value[k];
   }
   return sum;
-}
-
-static inline double squared_distance(double2 a, double2 b) {
-  const double2 d = b - a;
-  return d.x * d.x + d.y * d.y;
-}
-
-static inline int has_longer_edge(const double2* p, double longest) {
-  return squared_distance(p[0], p[1]) > longest || squared_distance(p[1], p[2]) > longest ||
-         squared_distance(p[2], p[0]) > longest;
 }
 
 END_SHARED

@@ -7,10 +7,6 @@
 
 namespace flaunay::call {
 
-void expect(bool holds, const char* what) {
-  if (!holds) throw Error(ErrorKind::usage, what);
-}
-
 Place with_doubles(Implementation& self, Engine& asked) {
   Engine& engine = self.with_doubles(asked);
   return {engine, !engine.runtime.is_native() ? &engine : !asked.runtime.is_native() ? &asked : nullptr};

@@ -16,6 +16,7 @@
 #include "call/handles.hpp"
 #include "call/implementation.hpp"
 #include "flaunay/device_memory.hpp"
+#include "geometry/expect.hpp"
 #include "geometry/magnitudes.hpp"
 #include "points/download.hpp"
 
@@ -30,8 +31,7 @@ struct HostPoints {
   std::size_t count = 0;
 };
 
-/// Throws Error(usage) with the message `what` unless the condition holds.
-void expect(bool holds, const char* what);
+using flaunay::expect;
 
 /// Where a call is computed.
 struct Place {

@@ -1,9 +1,6 @@
 // The public calls for rasters and contours.
 #include "derived/raster/raster.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <limits>
 
 #include "call/frame.hpp"
@@ -55,12 +52,11 @@ Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const 
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     check(mesh, values);
-    call::expect(std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); }),
-                 "heights of contours must be finite");
-    call::expect(std::adjacent_find(heights.begin(), heights.end(), std::greater_equal<>()) == heights.end(),
-                 "heights of contours must increase");
-    call::expect(max_edge >= 0, "max_edge must be a length");
-    return contours::compute(self.native().runtime, mesh, values, heights, max_edge);
+    contours::check(heights, max_edge);
+    host::Runtime& runtime = self.native().runtime;
+    contours::Lines lines(heights, max_edge);
+    lines.add(runtime, mesh, values);
+    return lines.finish(runtime);
   });
 }
 

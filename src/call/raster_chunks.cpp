@@ -1,4 +1,4 @@
-// The public call for rasters of points in chunks.
+// The public calls for rasters and contours of points in chunks.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +7,7 @@
 
 #include "call/chunks.hpp"
 #include "call/frame.hpp"
+#include "derived/contours/contours.hpp"
 #include "derived/raster/raster.hpp"
 
 namespace flaunay {
@@ -19,23 +20,23 @@ class NoArrays : public MeshSink {
   void write(MeshArray, std::uint64_t, const std::int64_t*, std::size_t) override {}
 };
 
-// Scans chunks into the pixels, natively, while the next ones are triangulated.
+// Scans chunks into the pixels and traces lines, natively, while the next ones are triangulated.
 class Scanner {
  public:
-  Scanner(const RasterGrid& grid, const RasterOptions& options, double* pixels)
-      : grid_(grid), options_(options), pixels_(pixels) {
+  Scanner(const RasterGrid& grid, const RasterOptions& options, double* pixels,
+          const std::vector<double>& heights)
+      : grid_(grid), options_(options), pixels_(pixels), lines_(heights, options.max_edge) {
     std::fill_n(pixels_, count(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void scan(const chunks::ChunkSurface& surface) {
+  void take(const chunks::ChunkSurface& surface) {
     const std::lock_guard lock(mutex_);
     call::Frame call(TriangulatorAccess::implementation(host_).native());
-    const raster::Surface scanned{call.in(surface.coordinates), call.in(surface.triangles),
-                                  call.in(surface.neighbors),   call.in(surface.values),
-                                  surface.values.size(),        surface.triangles.size() / 3};
-    raster::scan(call.runtime, scanned, grid_, options_, call.in(pixels_, count()));
-    raster::append_side_pixels(call.runtime, scanned, call.in(surface.open), surface.open.size(), grid_,
-                               options_, on_sides_);
+    lines_.add(call.runtime,
+               {surface.coordinates.data(), surface.values.size(), surface.triangles.data(),
+                surface.neighbors.data(), surface.triangles.size() / 3},
+               surface.values.data());
+    if (count() > 0) scan(call, surface);
     call.end();
   }
 
@@ -50,12 +51,24 @@ class Scanner {
         pixels_, pixels_ + count(), [](double pixel) { return std::isnan(pixel); }, options_.fill);
   }
 
+  Contours contours() { return lines_.finish(TriangulatorAccess::implementation(host_).native().runtime); }
+
  private:
   std::size_t count() const { return grid_.rows * grid_.columns; }
+
+  void scan(call::Frame& call, const chunks::ChunkSurface& surface) {
+    const raster::Surface scanned{call.in(surface.coordinates), call.in(surface.triangles),
+                                  call.in(surface.neighbors),   call.in(surface.values),
+                                  surface.values.size(),        surface.triangles.size() / 3};
+    raster::scan(call.runtime, scanned, grid_, options_, call.in(pixels_, count()));
+    raster::append_side_pixels(call.runtime, scanned, call.in(surface.open), surface.open.size(), grid_,
+                               options_, on_sides_);
+  }
 
   const RasterGrid& grid_;
   const RasterOptions& options_;
   double* pixels_;
+  contours::Lines lines_;
   Triangulator host_{"host"};
   std::vector<raster::SidePixel> on_sides_;
   std::mutex mutex_;
@@ -66,18 +79,28 @@ class Scanner {
 ValuedPoints::~ValuedPoints() = default;
 
 ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
-                                 const RasterOptions& options, double* pixels, const ChunkOptions& chunks) {
+                                 const RasterOptions& options, double* pixels,
+                                 const std::vector<double>& heights, Contours& contours,
+                                 const ChunkOptions& chunks) {
   return with_errors([&] {
     const std::size_t count = raster::checked_pixels(grid, options);
     call::expect(count == 0 || pixels != nullptr, "pixels, but no room for them: the pointer is null");
-    Scanner scanner(grid, options, pixels);
+    contours::check(heights, options.max_edge);
+    Scanner scanner(grid, options, pixels, heights);
     const chunks::Values values{points, duplicates,
-                                [&](const chunks::ChunkSurface& surface) { scanner.scan(surface); }};
+                                [&](const chunks::ChunkSurface& surface) { scanner.take(surface); }};
     NoArrays no_arrays;
     const ChunkStatistics statistics = call::triangulate_chunks(points, &values, no_arrays, chunks);
     scanner.finish();
+    contours = scanner.contours();
     return statistics;
   });
+}
+
+ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
+                                 const RasterOptions& options, double* pixels, const ChunkOptions& chunks) {
+  Contours none;
+  return rasterize_chunks(points, duplicates, grid, options, pixels, {}, none, chunks);
 }
 
 }  // namespace flaunay

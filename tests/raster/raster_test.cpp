@@ -453,6 +453,12 @@ std::vector<Piece> pieces_of(const Terrain& terrain, double height, double max_e
   return pieces;
 }
 
+void expect_same(const Contours& found, const Contours& expected) {
+  EXPECT_TRUE(same_bytes(found.coordinates, expected.coordinates));
+  EXPECT_EQ(found.offsets, expected.offsets);
+  EXPECT_EQ(found.heights, expected.heights);
+}
+
 void check_contours(const Terrain& terrain, const std::vector<double>& heights,
                     double max_edge = std::numeric_limits<double>::infinity()) {
   const Contours contours = traced(terrain, heights, max_edge);
@@ -483,10 +489,7 @@ void check_contours(const Terrain& terrain, const std::vector<double>& heights,
     EXPECT_TRUE(std::includes(expected.begin(), expected.end(), found[level].begin(), found[level].end()));
   }
   for (const std::uint64_t seed : {1, 2}) {
-    const Contours others = traced(shuffled(terrain, seed), heights, max_edge);
-    EXPECT_TRUE(same_bytes(contours.coordinates, others.coordinates));
-    EXPECT_EQ(contours.offsets, others.offsets);
-    EXPECT_EQ(contours.heights, others.heights);
+    expect_same(traced(shuffled(terrain, seed), heights, max_edge), contours);
   }
 }
 
@@ -527,6 +530,42 @@ TEST(Contours, AHillHasClosedLinesCounterClockwise) {
       area += line[p - 1][0] * line[p][1] - line[p - 1][1] * line[p][0];
     }
     EXPECT_GT(area, 0);
+  }
+}
+
+// Alone, and in one pass with a raster.
+TEST(ContoursInChunks, HaveTheBytesOfAllTrianglesAtOnce) {
+  for (const char* const fixture : {"uniform", "grid", "circle", "kuzmin"}) {
+    SCOPED_TRACE(fixture);
+    // Few different values: lines through vertices, many of which are on sides between chunks.
+    for (const bool has_few_values : {false, true}) {
+      Terrain terrain = terrain_of(fixture, 4000);
+      if (has_few_values) terrain.values = random_values(terrain.values.size(), 6, 2);
+      for (std::size_t i = 0; i < terrain.values.size(); ++i) {  // one value per place
+        terrain.values[i] = terrain.values[static_cast<std::size_t>(terrain.mesh.representatives[i])];
+      }
+      const auto [low, high] = std::minmax_element(terrain.points.begin(), terrain.points.end());
+      const double extent = *high - *low;
+      const std::vector<double> heights = {-0.25, -0.125, 0, 0.125, 3.0625};
+      for (const double max_edge : {std::numeric_limits<double>::infinity(), extent / 40}) {
+        const Contours expected = traced(terrain, heights, max_edge);
+        const RasterGrid grid{*low, *high, extent / 64, -extent / 64, 65, 65};
+        ValuedArray points(terrain);
+        for (const std::size_t chunk_points : {0, 80}) {
+          ChunkOptions options;
+          options.chunk_points = chunk_points;
+          options.devices = {"host", "host"};
+          std::vector<double> pixels(grid.rows * grid.columns);
+          Contours alone, together;
+          rasterize_chunks(points, Duplicates::mean, {}, {max_edge}, nullptr, heights, alone, options);
+          rasterize_chunks(points, Duplicates::mean, grid, {max_edge, kFill}, pixels.data(), heights,
+                           together, options);
+          expect_same(alone, expected);
+          expect_same(together, expected);
+          EXPECT_TRUE(same_bytes(pixels, rasterized(on_host(), terrain, grid, max_edge)));
+        }
+      }
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/expect.hpp"
 #include "predicates/planar.h"
 
 namespace flaunay::constrained {
@@ -237,10 +238,6 @@ Ids rows_of(const std::vector<std::size_t>& offsets) {
               fmt::format("polygons {} and {} overlap, at the triangle of points {}, {} and {}",
                           polygons.first, polygons.second, mesh.triangles[3 * t], mesh.triangles[3 * t + 1],
                           mesh.triangles[3 * t + 2]));
-}
-
-void expect(bool holds, const char* otherwise) {
-  if (!holds) throw Error(ErrorKind::usage, otherwise);
 }
 
 }  // namespace

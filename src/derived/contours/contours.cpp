@@ -1,26 +1,28 @@
 #include "derived/contours/contours.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
 #include <utility>
+
+#include "derived/surface.hpp"
+#include "geometry/expect.hpp"
+#include "raster/edges.h"
 
 namespace flaunay::contours {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-struct Place {
-  double x, y;
-};
-bool operator==(Place a, Place b) { return a.x == b.x && a.y == b.y; }
-bool operator<(Place a, Place b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
-using Line = std::vector<Place>;
-
 // Triangles are shared among threads in runs of so many.
 constexpr std::size_t kRun = 1 << 16;
+
+void append(Line& line, const Place& place) {
+  if (!(place == line.back())) line.push_back(place);
+}
 
 class Surface {
  public:
@@ -34,9 +36,14 @@ class Surface {
   double value(std::int32_t v) const { return values_[v]; }
   /// The triangle opposite to a corner, or -1 if there is none that has lines.
   std::int32_t beyond(std::int32_t t, int corner) const {
-    const std::int32_t u =
-        mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(corner)];
-    return u >= 0 && is_part(u) ? u : -1;
+    const std::int32_t u = neighbor(t, corner);
+    return u >= 0 && u != t && is_part(u) ? u : -1;
+  }
+  /// The side opposite to a corner if its other triangle belongs to another part.
+  std::optional<Side> open_side(std::int32_t t, int corner) const {
+    if (neighbor(t, corner) != t) return std::nullopt;
+    const Place a = place(corners(t)[(corner + 1) % 3]), b = place(corners(t)[(corner + 2) % 3]);
+    return Side{std::min(a, b), std::max(a, b)};
   }
   /// Whether the triangle has lines.
   bool is_part(std::int32_t t) const {
@@ -44,11 +51,10 @@ class Surface {
     for (int k = 0; k < 3; ++k) {
       if (!std::isfinite(values_[v[k]])) return false;
     }
-    for (int k = 0; k < 3 && std::isfinite(longest_); ++k) {
-      const Place a = place(v[k]), b = place(v[(k + 1) % 3]);
-      if ((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y) > longest_) return false;
-    }
-    return true;
+    if (!std::isfinite(longest_)) return true;
+    const Place a = place(v[0]), b = place(v[1]), c = place(v[2]);
+    const kernel::double2 places[] = {{a.x, a.y}, {b.x, b.y}, {c.x, c.y}};
+    return kernel::has_longer_edge(places, longest_) == 0;
   }
   /// Throws Error(usage) unless all indices are those of points and triangles.
   void check(std::size_t first, std::size_t last) const {
@@ -57,10 +63,7 @@ class Surface {
       if (v >= 0 && static_cast<std::size_t>(v) < mesh_.points && u >= -1 &&
           u < static_cast<std::int64_t>(mesh_.count))
         continue;
-      throw Error(ErrorKind::usage,
-                  fmt::format("triangles: triangle {} has a corner that is none of the {} points, or a "
-                              "neighbour that is none of the {} triangles",
-                              c / 3, mesh_.points, mesh_.count));
+      refuse_triangle(c / 3, mesh_.points, mesh_.count);
     }
   }
   /// Where an edge has the height, which one of its ends is below, and the other one not.
@@ -76,6 +79,9 @@ class Surface {
   }
 
  private:
+  std::int32_t neighbor(std::int32_t t, int corner) const {
+    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(corner)];
+  }
   Place place(std::int32_t v) const {
     const double* const p = mesh_.coordinates + 2 * static_cast<std::size_t>(v);
     return {p[0], p[1]};
@@ -89,13 +95,15 @@ class Surface {
   double longest_;
 };
 
-// The lines of one height.
+// The pieces of one height.
 class Tracer {
  public:
-  Tracer(const Surface& surface, double height) : surface_(surface), height_(height) {}
+  Tracer(const Surface& surface, double height, std::vector<Piece>& pieces)
+      : surface_(surface), height_(height), pieces_(pieces) {}
 
   /// crossed: all triangles with corners on both sides.
-  std::vector<Line> lines(const Ids& crossed) {
+  void trace_all(const Ids& crossed) {
+    if (crossed.empty()) return;
     is_traced_.assign(surface_.size(), false);
     for (const std::int32_t t : crossed) {
       if (surface_.beyond(t, entry(t)) < 0) trace(t);
@@ -103,8 +111,6 @@ class Tracer {
     for (const std::int32_t t : crossed) {
       if (!is_traced_[static_cast<std::size_t>(t)]) trace(t);
     }
-    std::sort(lines_.begin(), lines_.end());
-    return std::move(lines_);
   }
 
  private:
@@ -127,41 +133,83 @@ class Tracer {
   }
 
   void trace(std::int32_t first) {
-    Line line = {crossing(first, entry(first))};
+    Piece piece{{crossing(first, entry(first))}, surface_.open_side(first, entry(first)), std::nullopt};
     std::int32_t t = first;
     do {
       is_traced_[static_cast<std::size_t>(t)] = true;
       const int k = exit(t);
-      const Place place = crossing(t, k);
-      if (!(place == line.back())) line.push_back(place);
+      append(piece.line, crossing(t, k));
+      piece.end = surface_.open_side(t, k);
       t = surface_.beyond(t, k);
     } while (t >= 0 && !is_traced_[static_cast<std::size_t>(t)]);
-    // Also if it begins and ends at the same vertex of the border.
-    const bool is_closed = line.front() == line.back();
-    if (line.size() < (is_closed ? 4 : 2)) return;
-    if (is_closed) begin_at_smallest(line);
-    lines_.push_back(std::move(line));
-  }
-  // Of a closed line, which may have its smallest point more than once.
-  static void begin_at_smallest(Line& line) {
-    line.pop_back();
-    const Place smallest = *std::min_element(line.begin(), line.end());
-    Line best;
-    for (auto at = line.begin(); at != line.end(); ++at) {
-      if (!(*at == smallest)) continue;
-      Line turned(at, line.end());
-      turned.insert(turned.end(), line.begin(), at);
-      if (best.empty() || turned < best) best = std::move(turned);
-    }
-    line = std::move(best);
-    line.push_back(line.front());
+    pieces_.push_back(std::move(piece));
   }
 
   const Surface& surface_;
   double height_;
+  std::vector<Piece>& pieces_;
   std::vector<bool> is_traced_;
-  std::vector<Line> lines_;
 };
+
+// Of a closed line, which may have its smallest point more than once.
+void begin_at_smallest(Line& line) {
+  line.pop_back();
+  const Place smallest = *std::min_element(line.begin(), line.end());
+  Line best;
+  for (auto at = line.begin(); at != line.end(); ++at) {
+    if (!(*at == smallest)) continue;
+    Line turned(at, line.end());
+    turned.insert(turned.end(), line.begin(), at);
+    if (best.empty() || turned < best) best = std::move(turned);
+  }
+  line = std::move(best);
+  line.push_back(line.front());
+}
+
+// Joins pieces of one height where one ends on the side on which another one begins.
+std::vector<Line> joined(std::vector<Piece>& pieces) {
+  constexpr auto kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::pair<Side, std::size_t>> begins;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].begin) begins.emplace_back(*pieces[i].begin, i);
+  }
+  std::sort(begins.begin(), begins.end());
+  std::vector<std::size_t> next(pieces.size(), kNone);
+  std::vector<bool> is_continued(pieces.size(), false), is_joined(pieces.size(), false);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!pieces[i].end) continue;
+    const auto found =
+        std::lower_bound(begins.begin(), begins.end(), std::pair(*pieces[i].end, std::size_t{0}));
+    if (found == begins.end() || !(found->first == *pieces[i].end)) continue;
+    next[i] = found->second;
+    is_continued[found->second] = true;
+  }
+  std::vector<Line> lines;
+  const auto join = [&](std::size_t i) {
+    Line line;
+    for (; i != kNone && !is_joined[i]; i = next[i]) {
+      is_joined[i] = true;
+      if (line.empty()) {
+        line.swap(pieces[i].line);
+      } else {
+        for (const Place& place : pieces[i].line) append(line, place);
+      }
+    }
+    // Also if it begins and ends at the same vertex of the border.
+    const bool is_closed = line.front() == line.back();
+    if (line.size() < (is_closed ? 4 : 2)) return;
+    if (is_closed) begin_at_smallest(line);
+    lines.push_back(std::move(line));
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!is_continued[i]) join(i);
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!is_joined[i]) join(i);
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
 
 // For each run of triangles and each height the triangles with corners on both sides.
 std::vector<Ids> find_crossed(host::Runtime& runtime, const Surface& surface,
@@ -187,28 +235,43 @@ std::vector<Ids> find_crossed(host::Runtime& runtime, const Surface& surface,
 
 }  // namespace
 
-Contours compute(host::Runtime& runtime, const MeshView& mesh, const double* values,
-                 const std::vector<double>& heights, double max_edge) {
-  const Surface surface(mesh, values, max_edge);
-  const std::size_t levels = heights.size();
-  std::vector<Ids> crossed = find_crossed(runtime, surface, heights);
-  std::vector<std::vector<Line>> lines(levels);
+void check(const std::vector<double>& heights, double max_edge) {
+  expect(std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); }),
+         "heights of contours must be finite");
+  expect(std::adjacent_find(heights.begin(), heights.end(), std::greater_equal<>()) == heights.end(),
+         "heights of contours must increase");
+  expect(max_edge >= 0, "max_edge must be a length");
+}
+
+void Lines::add(host::Runtime& runtime, const MeshView& mesh, const double* values) {
+  const Surface surface(mesh, values, max_edge_);
+  const std::size_t levels = heights_.size();
+  std::vector<Ids> crossed = find_crossed(runtime, surface, heights_);
   runtime.share(levels, [&](std::size_t level) {
     Ids all;
     for (std::size_t i = level; i < crossed.size(); i += levels) {
       all.insert(all.end(), crossed[i].begin(), crossed[i].end());
       crossed[i] = {};
     }
-    lines[level] = Tracer(surface, heights[level]).lines(all);
+    Tracer(surface, heights_[level], pieces_[level]).trace_all(all);
+  });
+}
+
+Contours Lines::finish(host::Runtime& runtime) {
+  std::vector<std::vector<Line>> lines(heights_.size());
+  runtime.share(heights_.size(), [&](std::size_t level) {
+    lines[level] = joined(pieces_[level]);
+    pieces_[level] = {};
   });
   Contours result;
   result.offsets.push_back(0);
-  for (std::size_t level = 0; level < levels; ++level) {
+  for (std::size_t level = 0; level < lines.size(); ++level) {
     for (const Line& line : lines[level]) {
       for (const Place& place : line) result.coordinates.insert(result.coordinates.end(), {place.x, place.y});
       result.offsets.push_back(result.coordinates.size() / 2);
       result.heights.push_back(static_cast<std::int32_t>(level));
     }
+    lines[level] = {};
   }
   return result;
 }

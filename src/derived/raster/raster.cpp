@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "derived/surface.hpp"
+#include "geometry/expect.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/raster/scan.cl.hpp"
 #include "launchers/raster/sides.cl.hpp"
@@ -15,10 +17,6 @@ namespace flaunay::raster {
 namespace {
 
 using geometry::Magnitudes;
-
-void expect(bool holds, const std::string& what) {
-  if (!holds) throw Error(ErrorKind::usage, what);
-}
 
 // How far a computed row or column can be from the right one: a few roundings of numbers of pixels, and of
 // coordinates in units of pixels.
@@ -111,10 +109,8 @@ void scan(host::Runtime& runtime, const Surface& surface, const RasterGrid& grid
                                          .pixels = pixels,
                                          .wrong = wrong});
   const cl_int first_wrong = runtime.read_one(wrong, 0);
-  expect(first_wrong == std::numeric_limits<cl_int>::max(),
-         fmt::format("triangles: triangle {} has a corner that is none of the {} points, or a neighbour that "
-                     "is none of the {} triangles",
-                     first_wrong, surface.points, surface.count));
+  if (first_wrong != std::numeric_limits<cl_int>::max())
+    refuse_triangle(static_cast<std::size_t>(first_wrong), surface.points, surface.count);
 }
 
 void append_side_pixels(host::Runtime& runtime, const Surface& surface, const Buffer<cl_int>& sides,

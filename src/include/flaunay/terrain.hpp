@@ -52,6 +52,27 @@ struct RasterOptions {
 FLAUNAY_API void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* values,
                            const RasterGrid& grid, const RasterOptions& options, double* pixels);
 
+/// Contour lines at several heights. Those of one height follow each other, in the order of their points.
+struct Contours {
+  std::vector<double> coordinates;    ///< x and y per point of a line
+  std::vector<std::size_t> offsets;   ///< lines + 1 values: line i has points [offsets[i], offsets[i + 1])
+  std::vector<std::int32_t> heights;  ///< per line the number of its height
+};
+
+/// Computes the contour lines of values that are linear in each triangle. Heights must increase. Higher
+/// values are on the left of a line. It is closed, with its first point again at the end, or begins and ends
+/// at the border of the triangles. A closed line begins at its lexicographically smallest point. A value that
+/// equals a height counts as above it; so no two lines cross, but they can have points in common at such a
+/// vertex. Triangles with a longer edge than max_edge, and those with a value that is not finite, are left
+/// out. Points are rounded, on each edge the same for both triangles; equal ones that follow each other are
+/// one, and lines of one point, and closed ones of two, are none. So the result depends on points, values and
+/// triangles alone, not on their order or the number of threads. It runs on threads of the host. O(triangles
+/// log heights + points of lines). Throws Error(usage) for heights that do not increase or are not finite,
+/// and for triangles of other points.
+FLAUNAY_API Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const double* values,
+                                    const std::vector<double>& heights,
+                                    double max_edge = std::numeric_limits<double>::infinity());
+
 /// Points with a value each, such as heights, that are read in pieces.
 class FLAUNAY_API ValuedPoints : public PointSource {
  public:
@@ -73,25 +94,11 @@ FLAUNAY_API ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates du
                                              const RasterGrid& grid, const RasterOptions& options,
                                              double* pixels, const ChunkOptions& chunks = {});
 
-/// Contour lines at several heights. Those of one height follow each other, in the order of their points.
-struct Contours {
-  std::vector<double> coordinates;    ///< x and y per point of a line
-  std::vector<std::size_t> offsets;   ///< lines + 1 values: line i has points [offsets[i], offsets[i + 1])
-  std::vector<std::int32_t> heights;  ///< per line the number of its height
-};
-
-/// Computes the contour lines of values that are linear in each triangle. Heights must increase. Higher
-/// values are on the left of a line. It is closed, with its first point again at the end, or begins and ends
-/// at the border of the triangles. A closed line begins at its lexicographically smallest point. A value that
-/// equals a height counts as above it; so no two lines cross, but they can have points in common at such a
-/// vertex. Triangles with a longer edge than max_edge, and those with a value that is not finite, are left
-/// out. Points are rounded, on each edge the same for both triangles; equal ones that follow each other are
-/// one, and lines of one point, and closed ones of two, are none. So the result depends on points, values and
-/// triangles alone, not on their order or the number of threads. It runs on threads of the host. O(triangles
-/// log heights + points of lines). Throws Error(usage) for heights that do not increase or are not finite,
-/// and for triangles of other points.
-FLAUNAY_API Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const double* values,
-                                    const std::vector<double>& heights,
-                                    double max_edge = std::numeric_limits<double>::infinity());
+/// In the same pass the contours of trace_contours, with the max_edge of the options; the grid may have no
+/// pixels. Lines are in memory, at last twice. Throws as trace_contours, too.
+FLAUNAY_API ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates,
+                                             const RasterGrid& grid, const RasterOptions& options,
+                                             double* pixels, const std::vector<double>& heights,
+                                             Contours& contours, const ChunkOptions& chunks = {});
 
 }  // namespace flaunay
