@@ -2424,6 +2424,12 @@ static void test_raster_in_chunks(void) {
   REQUIRE(flaunay_rasterize(triangulator, points, kPoints, flaunay_triangulation_triangles(mesh),
                             flaunay_triangulation_neighbors(mesh), flaunay_triangulation_triangle_count(mesh),
                             values, &raster, expected) == FLAUNAY_SUCCESS);
+  const double levels[] = {20.5, 70.5};
+  flaunay_contours *lines = NULL, *expected_lines = NULL;
+  REQUIRE(flaunay_contours_compute(triangulator, points, kPoints, flaunay_triangulation_triangles(mesh),
+                                   flaunay_triangulation_neighbors(mesh),
+                                   flaunay_triangulation_triangle_count(mesh), values, levels, 2, 0,
+                                   &expected_lines) == FLAUNAY_SUCCESS);
   flaunay_triangulation_destroy(mesh);
 
   const flaunay_strided_points of_records = {.coordinates = &scan->x,
@@ -2434,8 +2440,17 @@ static void test_raster_in_chunks(void) {
   const flaunay_strided_values heights = {
       .values = &scan->z, .precision = FLAUNAY_FLOAT32, .stride = sizeof *scan};
   flaunay_chunk_report* report = NULL;
-  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, &kSmallChunks, &report) ==
-          FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, levels, 2, &lines,
+                                   &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  const size_t line_count = flaunay_contours_line_count(lines);
+  REQUIRE(line_count > 0 && line_count == flaunay_contours_line_count(expected_lines));
+  const size_t corners = flaunay_contours_offsets(lines)[line_count];
+  CHECK(
+      same_sizes(flaunay_contours_offsets(lines), flaunay_contours_offsets(expected_lines), line_count + 1));
+  CHECK(memcmp(flaunay_contours_coordinates(lines), flaunay_contours_coordinates(expected_lines),
+               2 * corners * sizeof(double)) == 0);
+  flaunay_contours_destroy(lines);
+  flaunay_contours_destroy(expected_lines);
   CHECK(memcmp(pixels, expected, kRows * kColumns * sizeof *pixels) == 0);
   CHECK(flaunay_chunk_report_statistics(report)->points == kPoints);
   CHECK(flaunay_chunk_report_statistics(report)->rounds[0].chunks > 1);
@@ -2446,31 +2461,38 @@ static void test_raster_in_chunks(void) {
   const flaunay_point_source source = {.count = kPoints, .read = read_file, .data = file};
   const flaunay_value_source read = {.read = read_values, .data = values};
   memset(pixels, 0, kRows * kColumns * sizeof *pixels);
-  REQUIRE(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, &kSmallChunks, &report) ==
-          FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 0, NULL, &kSmallChunks,
+                                    &report) == FLAUNAY_SUCCESS);
   CHECK(memcmp(pixels, expected, kRows * kColumns * sizeof *pixels) == 0);
   flaunay_chunk_report_destroy(report);
 
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   const flaunay_value_source broken = {.read = read_no_values}, unread = {NULL};
   const flaunay_strided_values none = {.stride = 8}, strange = {.values = scan, .reserved = {1}};
-  CHECK(fails(flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, &report),
+  CHECK(fails(flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
               FLAUNAY_ERROR_STOPPED, "read of values returned -4"));
   CHECK(report == NULL);
+  CHECK(fails(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 1, &lines, NULL, &report),
+              usage, "heights"));
+  CHECK(lines == NULL);
+  CHECK(fails(flaunay_rasterize_streams(&source, &unread, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
+              usage, "values"));
+  CHECK(fails(flaunay_rasterize_streams(&source, NULL, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
+              usage, "values"));
+  CHECK(fails(flaunay_rasterize_streams(NULL, &read, 0, &raster, pixels, NULL, 0, NULL, NULL, &report), usage,
+              "points"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &none, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
+              usage, "values"));
   CHECK(
-      fails(flaunay_rasterize_streams(&source, &unread, 0, &raster, pixels, NULL, &report), usage, "values"));
-  CHECK(fails(flaunay_rasterize_streams(&source, NULL, 0, &raster, pixels, NULL, &report), usage, "values"));
-  CHECK(fails(flaunay_rasterize_streams(NULL, &read, 0, &raster, pixels, NULL, &report), usage, "points"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &none, 0, &raster, pixels, NULL, &report), usage,
-              "values"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &strange, 0, &raster, pixels, NULL, &report), usage,
-              "flaunay_strided_values"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 3, &raster, pixels, NULL, &report), usage,
-              "flaunay_duplicates"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, NULL, pixels, NULL, &report), usage,
-              "raster"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, NULL, NULL, &report), usage,
-              "pixels"));
+      fails(flaunay_rasterize_chunks(&of_records, &strange, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
+            usage, "flaunay_strided_values"));
+  CHECK(
+      fails(flaunay_rasterize_chunks(&of_records, &heights, 3, &raster, pixels, NULL, 0, NULL, NULL, &report),
+            usage, "flaunay_duplicates"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, NULL, pixels, NULL, 0, NULL, NULL, &report),
+              usage, "raster"));
+  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, NULL, NULL, 0, NULL, NULL, &report),
+              usage, "pixels"));
   fclose(file);
   free(scan);
   free(values);

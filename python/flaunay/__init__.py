@@ -9,7 +9,7 @@ for one set of points or many at once, also with segments that are to be edges, 
 number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
 result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
-arrays that are mapped from files, and writes files; ``rasterize_chunks`` makes a raster of them.
+arrays that are mapped from files, and writes files; ``rasterize_chunks`` and ``contour_chunks`` make maps of them.
 ``Delaunay(points, incremental=True)`` and ``DynamicTriangulation`` have points that are added, removed and moved. The module ``triangle`` has the calls of the package of
 that name.
 
@@ -25,7 +25,12 @@ used it, calls run on the host, and calls that name or need a device raise ``Dev
 from flaunay import triangle
 from flaunay._alpha_shape import AlphaShape, alpha_shape
 from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
-from flaunay._chunks import ChunkedTriangulation, rasterize_chunks, triangulate_chunks
+from flaunay._chunks import (
+    ChunkedTriangulation,
+    contour_chunks,
+    rasterize_chunks,
+    triangulate_chunks,
+)
 from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
@@ -95,6 +100,7 @@ __all__ = [
     "VoronoiPieces",
     "__version__",
     "alpha_shape",
+    "contour_chunks",
     "devices",
     "griddata",
     "modes",

@@ -1046,6 +1046,18 @@ class _ChunkCall:
                 self.answers.put(True)
 
 
+class _Contours(Handle):
+    _destroy = library.contours_destroy
+
+
+def _lines_of(made: _Contours) -> tuple[_Doubles, _Offsets, _Indices]:
+    """Points, where lines begin among them, and the number of each line's height."""
+    lines = library.contours_line_count(made.pointer)
+    offsets = _view(made, library.contours_offsets(made.pointer), (lines + 1,), _INT64)
+    points = _view(made, library.contours_coordinates(made.pointer), (int(offsets[-1]), 2), _FLOAT64)
+    return points, offsets, _view(made, library.contours_heights(made.pointer), (lines,), _INT32)
+
+
 Progress = Optional[Callable[[str, int, float], object]]
 
 
@@ -1157,22 +1169,25 @@ def rasterize_chunks(
     max_edge: float,
     fill: float,
     pixels: _Doubles,
+    heights: _Doubles,
     chunks: Chunks,
-) -> None:
-    """`rasterize` for points with values, in chunks. duplicates: a number of DUPLICATES."""
+) -> tuple[_Doubles, _Offsets, _Indices]:
+    """`rasterize` and `contours` for points with values, in chunks. duplicates: a number of DUPLICATES."""
     given = _strided_points(points)
-    heights = _declarations.StridedValues(
+    numbers = _declarations.StridedValues(
         values=_first_of(values), precision=_precision_of(values, "values"), stride=values.strides[0]
     )
     raster = _raster_of(grid, max_edge, fill, pixels)
-    place = _address_of(pixels)
+    # Of pixels the address: what a call refers to is freed late, and a mapped file would be open until then.
+    place, made = _address_of(pixels), _Contours()
+    levels = (heights.ctypes.data, len(heights), made.place)
 
     def call(options: _declarations.ChunkOptions, report: Any) -> int:
-        return int(
-            library.rasterize_chunks(given, heights, duplicates, raster, place, options, report)
-        )
+        function = library.rasterize_chunks
+        return int(function(given, numbers, duplicates, raster, place, *levels, options, report))
 
     chunks.run(call)
+    return _lines_of(made)
 
 
 # ---- Voronoi diagrams and queries
@@ -1288,10 +1303,6 @@ def rasterize(
         _call_with_mesh(library.rasterize, *given)
 
 
-class _Contours(Handle):
-    _destroy = library.contours_destroy
-
-
 def contours(
     triangulator: Triangulator, *surface: Any, heights: _Doubles, max_edge: float
 ) -> tuple[_Doubles, _Offsets, _Indices]:
@@ -1300,10 +1311,7 @@ def contours(
     given = (triangulator.pointer, *_mesh_arguments(*surface), heights, len(heights), max_edge)
     with triangulator.turn:
         _call_with_mesh(library.contours_compute, *given, made.place)
-    lines = library.contours_line_count(made.pointer)
-    offsets = _view(made, library.contours_offsets(made.pointer), (lines + 1,), _INT64)
-    points = _view(made, library.contours_coordinates(made.pointer), (int(offsets[-1]), 2), _FLOAT64)
-    return points, offsets, _view(made, library.contours_heights(made.pointer), (lines,), _INT32)
+    return _lines_of(made)
 
 
 class Interpolation:

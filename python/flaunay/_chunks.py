@@ -156,13 +156,14 @@ def _is_wide(index: Optional[int], n: int, wanted: dict[str, Optional[str]]) -> 
     return index == 64
 
 
-def _chunks(
+def chunks_of(
     memory: Union[None, int, str],
     scratch: Union[None, str, os.PathLike[str]],
     devices: Union[None, str, Sequence[str]],
     chunk_points: Optional[int],
     progress: _calls.Progress,
 ) -> _calls.Chunks:
+    """What `triangulate_chunks` is told of these names."""
     if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
         raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
     return _calls.Chunks(
@@ -276,7 +277,7 @@ def triangulate_chunks(
         source,
         {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
         _is_wide(index, len(source), wanted),
-        _chunks(memory, scratch, devices, chunk_points, progress),
+        chunks_of(memory, scratch, devices, chunk_points, progress),
     )
     arrays: dict[str, Any] = dict.fromkeys(_declarations.MESH_ARRAYS)
     arrays |= in_memory
@@ -309,6 +310,20 @@ def _new_pixels(path: str, shape: tuple[int, int]) -> npt.NDArray[np.float64]:
         with open(path, "r+b") as file:
             os.posix_fallocate(file.fileno(), 0, os.path.getsize(path))
     return pixels
+
+
+def _as_valued(
+    points: npt.ArrayLike, values: npt.ArrayLike, duplicates: str
+) -> tuple[FloatArray, FloatArray, int]:
+    """Points, their values, and the number of what equal points have."""
+    source = _as_source(points)
+    if isinstance(values, np.ndarray) and values.dtype in _COORDINATES and not is_masked(values):
+        numbers: FloatArray = values
+    else:
+        numbers = as_floats(values, "values")
+    if numbers.shape != (len(source),):
+        raise UsageError(f"values must have the shape ({len(source)},), not {numbers.shape}")
+    return source, numbers, number_of(_declarations.DUPLICATES, duplicates, "duplicates")
 
 
 def rasterize_chunks(
@@ -369,23 +384,16 @@ def rasterize_chunks(
     array([[ 4., nan, nan, nan],
            [ 2.,  4.,  6., nan]])
     """
-    source = _as_source(points)
-    if isinstance(values, np.ndarray) and values.dtype in _COORDINATES and not is_masked(values):
-        numbers: FloatArray = values
-    else:
-        numbers = as_floats(values, "values")
-    if numbers.shape != (len(source),):
-        raise UsageError(f"values must have the shape ({len(source)},), not {numbers.shape}")
-    kind = number_of(_declarations.DUPLICATES, duplicates, "duplicates")
+    source, numbers, kind = _as_valued(points, values, duplicates)
     if bounds is None and not len(source):
         raise UsageError("bounds are needed, as there are no points")
     shape, grid = _raster.grid_of(shape, bounds, source)
     longest = _raster.as_length(max_edge, "max_edge")
-    chunks = _chunks(memory, scratch, devices, chunk_points, progress)
+    chunks = chunks_of(memory, scratch, devices, chunk_points, progress)
 
     def rasterize(pixels: npt.NDArray[np.float64]) -> None:
         _calls.rasterize_chunks(
-            source, numbers, kind, grid, longest, float(fill_value), pixels, chunks
+            *(source, numbers, kind, grid, longest, float(fill_value), pixels, np.empty(0)), chunks
         )
 
     if out is None:
@@ -399,3 +407,54 @@ def rasterize_chunks(
     check_out(out, np.float64, shape, "out")
     rasterize(out)
     return out
+
+
+def contour_chunks(
+    points: npt.ArrayLike,
+    values: npt.ArrayLike,
+    heights: Union[npt.ArrayLike, float],
+    *,
+    duplicates: str = "highest",
+    max_edge: Optional[float] = None,
+    memory: Union[None, int, str] = None,
+    scratch: Union[None, str, os.PathLike[str]] = None,
+    devices: Union[None, str, Sequence[str]] = None,
+    chunk_points: Optional[int] = None,
+    progress: Optional[Callable[[str, int, float], object]] = None,
+) -> _raster.Contours:
+    """Contours of more points than fit memory: what `Delaunay.contours` makes of all, triangulated in chunks.
+
+    Parameters
+    ----------
+    points, values, duplicates, max_edge, memory, scratch, devices, chunk_points, progress
+        As of `rasterize_chunks`. Memory does not count the lines.
+    heights : array_like
+        The heights of lines, or one of them, in any order.
+
+    Returns
+    -------
+    Contours
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As `triangulate_chunks` and `Delaunay.contours`.
+
+    Examples
+    --------
+    >>> import flaunay, numpy as np
+    >>> scan = np.array([[0, 0, 0], [4, 0, 4], [0, 4, 4.0]])
+    >>> for height, line in flaunay.contour_chunks(scan[:, :2], scan[:, 2], [1, 2]):
+    ...     print(height, line.tolist())
+    1.0 [[0.0, 1.0], [1.0, 0.0]]
+    2.0 [[0.0, 2.0], [2.0, 0.0]]
+    """
+    source, numbers, kind = _as_valued(points, values, duplicates)
+    levels = np.unique(np.asarray(as_floats(heights, "heights"), np.float64))
+    longest = _raster.as_length(max_edge, "max_edge")
+    chunks = chunks_of(memory, scratch, devices, chunk_points, progress)
+    lines, offsets, of = _calls.rasterize_chunks(
+        *(source, numbers, kind, (0.0, 0.0, 1.0, 1.0), longest, 0.0, np.empty((0, 0)), levels),
+        chunks,
+    )
+    return _raster.Contours(lines, offsets, levels[of])

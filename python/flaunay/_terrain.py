@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import struct
+import tempfile
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -13,9 +14,9 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _raster
+from flaunay import _calls, _declarations, _raster
 from flaunay._arrays import as_floats, summary
-from flaunay._chunks import all_or_none
+from flaunay._chunks import all_or_none, chunks_of
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._interpolate import (
@@ -45,7 +46,8 @@ _METHODS: dict[str, Any] = {
 }
 # Pixels that are interpolated at a time, by other methods than the linear one.
 _PIXELS_AT_ONCE = 1 << 20
-_DUPLICATES = ("highest", "lowest", "mean")
+# Points that are read at a time.
+_POINTS_AT_ONCE = 1 << 20
 # 32 GiB as float64.
 _MOST_PIXELS = 1 << 32
 # Of GeoTIFF, in .las files: the keys that have the numbers of EPSG, of projected and of other systems.
@@ -98,21 +100,22 @@ class _Las:
                     return crs.from_epsg(int(found[0]))
         return None
 
-    def read(self, classes: Optional[frozenset[int]], returns: Optional[str]) -> Doubles:
+    def pieces(
+        self, classes: Optional[frozenset[int]], returns: Optional[str]
+    ) -> Iterator[Doubles]:
         laspy = optional("laspy", _PURPOSE)
-        parts, count = [], 0
+        count = 0
         try:
             with laspy.open(self.path) as file:
-                for points in file.chunk_iterator(1 << 20):
+                for points in file.chunk_iterator(_POINTS_AT_ONCE):
                     count += len(points)
-                    parts.append(self._chosen(points, classes, returns))
+                    yield self._chosen(points, classes, returns)
         except Exception as error:
             raise InputError(f"{self.path}: {error}") from error
         if count != self.header.point_count:
             raise InputError(
                 f"{self.path} is truncated: it has {count} of {self.header.point_count} points"
             )
-        return np.concatenate(parts) if parts else np.empty((0, 3))
 
     def _chosen(
         self, points: Any, classes: Optional[frozenset[int]], returns: Optional[str]
@@ -153,13 +156,13 @@ class _Table:
     def __init__(self, given: Any, name: str) -> None:
         if isinstance(given, Path):
             given = self._of_file(given)
-        self._points = np.asarray(as_floats(given, name), np.float64)
+        self._points = as_floats(given, name)
         if self._points.ndim != 2 or self._points.shape[1] != 3:
             raise UsageError(f"{name} must be x, y and z of points, not {self._points.shape}")
         self.box: Optional[Doubles] = None
         if len(self._points):
             xy = self._points[:, :2]
-            self.box = np.concatenate([xy.min(axis=0), xy.max(axis=0)])
+            self.box = np.concatenate([xy.min(axis=0), xy.max(axis=0)]).astype(np.float64)
 
     @staticmethod
     def _of_file(path: Path) -> Any:
@@ -173,10 +176,13 @@ class _Table:
         except (OSError, ValueError) as error:
             raise InputError(f"{path}: {error}") from error
 
-    def read(self, classes: Optional[frozenset[int]], returns: Optional[str]) -> Doubles:
+    def pieces(
+        self, classes: Optional[frozenset[int]], returns: Optional[str]
+    ) -> Iterator[Doubles]:
         if classes is not None or returns is not None:
             raise UsageError("classes and returns are those of .las and .laz files alone")
-        return self._points
+        for first in range(0, len(self._points), _POINTS_AT_ONCE):
+            yield np.asarray(self._points[first : first + _POINTS_AT_ONCE], np.float64)
 
 
 def _sources(given: Any) -> list[Any]:
@@ -301,15 +307,26 @@ def _hillshade(pixels: Doubles, dx: float, dy: float) -> npt.NDArray[np.uint8]:
     return np.stack([grey, np.where(there, 255, 0).astype(np.uint8)])
 
 
+def _levels_of(heights: Union[float, npt.ArrayLike], low: float, high: float) -> Doubles:
+    """Heights of contours: those given, or all multiples of one number between two heights."""
+    levels = np.asarray(as_floats(heights, "heights"), np.float64)
+    if levels.ndim > 0:
+        return np.unique(levels)
+    step = _raster.as_length(float(levels), "the interval of contours")
+    if (high - low) / step > 1e6:
+        raise UsageError(f"contours every {step} between {low} and {high} are more than a million")
+    return np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+
+
 class Terrain:
     """Measured heights, their triangulation and a raster of them. `terrain` makes it.
 
     Attributes
     ----------
-    mesh : Delaunay or ConstrainedTriangulation
-        The triangulation; with breaklines, these are edges of it.
+    mesh : Delaunay, ConstrainedTriangulation or None
+        The triangulation; with breaklines, these are edges of it. None with ``memory=``.
     heights : ndarray of float64, shape (n,)
-        The height of each of ``mesh.points``.
+        The height of each of ``mesh.points``; of none with ``memory=``.
     raster : ndarray of float64, shape (rows, columns)
         Heights, the north at the top; NaN where there are none.
     bounds : tuple of float
@@ -337,16 +354,11 @@ class Terrain:
 
     def contours(self, heights: Union[float, npt.ArrayLike]) -> Contours:
         """Contour lines at heights, or at all multiples of one number; see `Delaunay.contours`."""
-        levels = np.asarray(as_floats(heights, "heights"), np.float64)
-        if levels.ndim == 0:
-            step = _raster.as_length(float(levels), "the interval of contours")
-            finite = self.heights[np.isfinite(self.heights)]
-            low, high = (finite.min(), finite.max()) if finite.size else (0.0, -1.0)
-            if (high - low) / step > 1e6:
-                raise UsageError(
-                    f"contours every {step} between {low} and {high} are more than a million"
-                )
-            levels = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+        if self.mesh is None:
+            raise UsageError("with memory=, contours are those of contours= and output alone")
+        finite = self.heights[np.isfinite(self.heights)]
+        low, high = (finite.min(), finite.max()) if finite.size else (0.0, -1.0)
+        levels = _levels_of(heights, low, high)
         lines = self.mesh.contours(self.heights, levels, max_edge=self._max_edge)
         return lines if self._boundary is None else self._clipped(lines)
 
@@ -543,6 +555,75 @@ def _interpolate_pixels(result: Terrain, method: str) -> None:
         result.raster[first : first + at_once] = interpolate(*np.meshgrid(across, down))
 
 
+def _stored(pieces: Iterable[Doubles], scratch: Optional[_Paths]) -> Doubles:
+    """Points in a file without a name, which is mapped into memory."""
+    with tempfile.TemporaryFile(dir=scratch) as file:
+        for piece in pieces:
+            file.write(np.ascontiguousarray(piece).data)
+        file.flush()
+        if not file.tell():
+            return np.empty((0, 3))
+        return np.memmap(file, np.float64, "r").reshape(-1, 3)
+
+
+def _map_in_chunks(
+    result: Terrain,
+    measured: Doubles,
+    duplicates: str,
+    max_edge: Optional[float],
+    contours: Union[None, float, npt.ArrayLike],
+    chunks: Any,
+) -> Contours:
+    """Writes the raster. Returns the contours, if there are to be some."""
+    levels = np.empty(0)
+    if contours is not None:
+        levels = _levels_of(contours, measured[:, 2].min(), measured[:, 2].max())
+    points, offsets, numbers = _calls.rasterize_chunks(
+        measured[:, :2],
+        measured[:, 2],
+        _declarations.DUPLICATES[duplicates],
+        result._grid.steps,
+        _raster.as_length(max_edge, "max_edge"),
+        np.nan,
+        result.raster,
+        levels,
+        chunks,
+    )
+    return Contours(points, offsets, levels[numbers])
+
+
+def _finished(
+    result: Terrain,
+    outputs: Sequence[Path],
+    contours: Union[None, float, npt.ArrayLike],
+    lines: Optional[Contours],
+    nodata: float,
+) -> Terrain:
+    """The result within its boundary, with its files. lines: contours, if they are there already."""
+    area = result._boundary
+    if area is not None:
+        rasterio = optional("rasterio", _PURPOSE)
+        west, _, _, north = result.bounds
+        origin = rasterio.transform.from_origin(west, north, result.resolution, result.resolution)
+        outside = optional("rasterio.features", _PURPOSE).geometry_mask(
+            [area], result.raster.shape, origin
+        )
+        result.raster[outside] = np.nan
+        lines = None if lines is None else result._clipped(lines)
+    with all_or_none(outputs) as names:
+        for name in names:
+            suffix = Path(name).suffix.lower()
+            if suffix in _RASTERS:
+                result._write_raster(name, _RASTERS[suffix], nodata)
+            elif suffix in _MESHES:
+                result._write_mesh(name)
+            else:
+                assert contours is not None
+                lines = result.contours(contours) if lines is None else lines
+                result._write_lines(name, _LINES[suffix], lines)
+    return result
+
+
 def terrain(
     points: Any,
     output: Union[None, _Paths, Sequence[_Paths]] = None,
@@ -562,6 +643,8 @@ def terrain(
     pixel_is: str = "area",
     nodata: float = -9999.0,
     device: Optional[str] = None,
+    memory: Union[None, int, str] = None,
+    scratch: Optional[_Paths] = None,
 ) -> Terrain:
     """Makes a map of measured heights: a raster, contours and a shaded picture.
 
@@ -607,6 +690,11 @@ def terrain(
         What stands for no height in the GeoTIFF.
     device : str, optional
         As of `triangulate`.
+    memory : int or str, optional
+        Triangulates in chunks, within so many bytes beside the raster and the contours, such as ``"2G"``: for more
+        points than fit memory. Without breaklines, flat lakes, other methods than the linear one and files of triangles.
+    scratch : path, optional
+        The folder for files without a name that `memory` needs, up to 56 bytes per point; TMPDIR or /tmp by default.
 
     Returns
     -------
@@ -625,7 +713,7 @@ def terrain(
     Notes
     -----
     Coordinates of scans are the doubles next to the decimal numbers that the files have. The raster has the
-    same bytes whatever the order of files and points. All points are in memory at once, about
+    same bytes whatever the order of files and points. Without `memory`, all points are in memory at once, about
     200 bytes each.
 
     Examples
@@ -636,11 +724,21 @@ def terrain(
            [6., 8.]])
     """
     _check_one_of(returns, (None, "first", "last"), "returns")
-    _check_one_of(duplicates, _DUPLICATES, "duplicates")
+    _check_one_of(duplicates, tuple(_declarations.DUPLICATES), "duplicates")
     _check_one_of(pixel_is, ("area", "point"), "pixel_is")
     _check_one_of(method, tuple(_METHODS), "method")
     chosen = None if classes is None else frozenset(classes)
     outputs = _checked_outputs(output, contours)
+    chunks = None
+    if memory is not None:
+        chunks = chunks_of(memory, scratch, device, None, None)
+        if not (breaklines is None and flat is None and method == "linear") or any(
+            path.suffix.lower() in _MESHES for path in outputs
+        ):
+            raise UsageError(
+                "memory= is for rasters and contours of points alone: not for breaklines, flat lakes, "
+                "other methods than the linear one and files of triangles"
+            )
     sources = _sources(points)
     system = _common_crs(sources, crs)
     boxes = np.array([source.box for source in sources if source.box is not None])
@@ -663,7 +761,10 @@ def terrain(
     if flat is not None:
         lakes = _polygons_of(_geometries(flat, system, "flat"))
 
-    measured = np.concatenate([source.read(chosen, returns) for source in sources])
+    pieces = (piece for source in sources for piece in source.pieces(chosen, returns))
+    measured = (
+        np.concatenate([*pieces, np.empty((0, 3))]) if chunks is None else _stored(pieces, scratch)
+    )
     if not len(measured):
         raise InputError(
             "no point is left" + ("" if chosen is None else f" of the classes {sorted(chosen)}")
@@ -672,6 +773,10 @@ def terrain(
         # Those of the points that are left.
         box = np.concatenate([measured[:, :2].min(axis=0), measured[:, :2].max(axis=0)])
     grid = _Grid(box, resolution, is_point)
+    if chunks is not None:
+        result = Terrain(None, np.empty(0), grid, system, area)
+        lines = _map_in_chunks(result, measured, duplicates, max_edge, contours, chunks)
+        return _finished(result, outputs, contours, lines, nodata)
     places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
     mesh: Any
     fixed = 0
@@ -694,25 +799,4 @@ def terrain(
         _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
     else:
         _interpolate_pixels(result, method)
-    if area is not None:
-        rasterio = optional("rasterio", _PURPOSE)
-        origin = rasterio.transform.from_origin(
-            grid.bounds[0], grid.bounds[3], resolution, resolution
-        )
-        outside = optional("rasterio.features", _PURPOSE).geometry_mask(
-            [area], result.raster.shape, origin
-        )
-        result.raster[outside] = np.nan
-    lines = None
-    with all_or_none(outputs) as names:
-        for name in names:
-            suffix = Path(name).suffix.lower()
-            if suffix in _RASTERS:
-                result._write_raster(name, _RASTERS[suffix], nodata)
-            elif suffix in _MESHES:
-                result._write_mesh(name)
-            else:
-                assert contours is not None
-                lines = result.contours(contours) if lines is None else lines
-                result._write_lines(name, _LINES[suffix], lines)
-    return result
+    return _finished(result, outputs, contours, None, nodata)

@@ -503,3 +503,18 @@ def test_a_raster_that_fails_leaves_what_was_there(tmp_path):
     with pytest.raises(flaunay.InputError, match="finite"):
         flaunay.rasterize_chunks([[0, 0], [4, 0], [0, 4]], [0, np.nan, 2], (2, 2), out=path)
     assert os.listdir(tmp_path) == ["dem.npy"] and path.read_bytes() == b"old"
+
+
+def test_contours(scan):
+    tri = flaunay.Delaunay(scan[:, :2])
+    highest = np.full(len(scan), -np.inf)
+    np.maximum.at(highest, tri.representatives, scan[:, 2])
+    for options in ({}, {"max_edge": 1.5}):
+        expected = tri.contours(highest, [60, 20], **options)
+        made = flaunay.contour_chunks(scan[:, :2], scan[:, 2], [60, 20], **options, **SMALL)
+        assert len(made) > 10 and set(made.heights) == {20, 60}
+        for name in ("points", "offsets", "heights"):
+            assert getattr(made, name).tobytes() == getattr(expected, name).tobytes()
+    with pytest.raises(flaunay.UsageError, match="finite"):
+        flaunay.contour_chunks(scan[:, :2], scan[:, 2], np.inf)
+    assert len(flaunay.contour_chunks(np.empty((0, 2)), [], 1)) == 0

@@ -75,9 +75,27 @@ def test_max_edge_leaves_gaps(scan):
         assert (np.abs(line[:, 0] - 500030) > 7).all()
 
 
+def test_in_chunks_as_in_memory(scan, tmp_path):
+    many = np.round(np.concatenate([scan, scan + [0.01, 0.02, 3], scan[:100] + [0, 0, 1]]), 2)
+    np.save(tmp_path / "a.npy", many[:3000])
+    np.savetxt(tmp_path / "b.xyz", many[3000:], fmt="%.2f")
+    options = {"resolution": 0.5, "max_edge": 3, "duplicates": "mean"}
+    expected = flaunay.terrain(many, **options)
+    for points in (many, tmp_path):
+        made = flaunay.terrain(points, memory="128M", scratch=tmp_path, **options)
+        assert made.raster.tobytes() == expected.raster.tobytes()
+        assert made.bounds == expected.bounds and made.mesh is None and len(made.heights) == 0
+    with pytest.raises(flaunay.UsageError, match="memory="):
+        made.contours(5)
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [
+        ({"memory": "128M", "method": "natural"}, "memory="),
+        ({"memory": "128M", "breaklines": [[[0, 0], [1, 1]]]}, "memory="),
+        ({"memory": "much"}, "memory"),
+        ({"memory": "1M"}, "at least"),
         ({"resolution": 1e-5}, "pixels"),
         ({"resolution": 0}, "resolution"),
         ({"duplicates": "any"}, "duplicates"),
@@ -185,6 +203,21 @@ def test_contours_and_hillshade(scan, tmp_path):
         grey, alpha = file.read()
     assert grey.shape == made.raster.shape and np.ptp(grey[alpha > 0]) > 50
     assert ((alpha == 0) == np.isnan(sum(np.gradient(made.raster)))).all()
+
+
+def test_contours_in_chunks(scan, tmp_path):
+    pytest.importorskip("pyogrio")
+    shapely = pytest.importorskip("shapely")
+    area = shapely.box(500010, 4500010, 500050, 4500030)
+    options = {"resolution": 2, "contours": 5, "boundary": area}
+    paths = [tmp_path / name for name in ("whole.geojson", "chunks.geojson")]
+    expected = flaunay.terrain(scan, paths[0], **options)
+    made = flaunay.terrain(scan, paths[1], memory="128M", **options)
+    assert made.raster.tobytes() == expected.raster.tobytes()
+    assert paths[0].read_text() == paths[1].read_text()
+    assert len(json.loads(paths[1].read_text())["features"]) > 10
+    with pytest.raises(flaunay.UsageError, match="memory="):
+        flaunay.terrain(scan, tmp_path / "tin.ply", memory="128M", **options)
 
 
 def test_no_coordinate_system_is_no_reason_to_warn(scan, tmp_path):

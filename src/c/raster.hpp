@@ -1,11 +1,18 @@
-// Rasters as the C interface describes them.
+// Rasters and contours of the C interface.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <vector>
 
+#include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/terrain.hpp"
+
+struct flaunay_contours {
+  flaunay::Contours cpp;
+};
 
 namespace flaunay::c {
 
@@ -20,6 +27,12 @@ inline RasterGrid to_grid(const flaunay_raster& raster) {
 
 inline RasterOptions to_options(const flaunay_raster& raster) {
   return {to_longest(raster.max_edge), raster.fill};
+}
+
+/// The heights of contours.
+inline std::vector<double> to_heights(const double* heights, std::size_t count) {
+  const double* const first = count == 0 ? nullptr : &required(heights, "the heights");
+  return {first, first + count};
 }
 
 }  // namespace flaunay::c

@@ -16,10 +16,6 @@ using c::guarded;
 using c::read;
 using c::required;
 
-struct flaunay_contours {
-  Contours cpp;
-};
-
 flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                  const int32_t* triangles, const int32_t* neighbors, size_t t,
                                  const double* values, const flaunay_raster* raster, double* pixels) {
@@ -37,10 +33,9 @@ flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator, cons
                                         size_t height_count, double max_edge, flaunay_contours** contours) {
   return create(contours, [&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    const double* const first = height_count == 0 ? nullptr : &required(heights, "the heights");
     return std::make_unique<flaunay_contours>(
         flaunay_contours{trace_contours(cpp, {coordinates, n, triangles, neighbors, t}, values,
-                                        {first, first + height_count}, c::to_longest(max_edge))});
+                                        c::to_heights(heights, height_count), c::to_longest(max_edge))});
   });
 }
 

@@ -1291,24 +1291,6 @@ FLAUNAY_API flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator,
                                              size_t t, const double* values, const flaunay_raster* raster,
                                              double* pixels);
 
-/// flaunay_rasterize of points that need not fit memory: triangulates them in chunks, as
-/// flaunay_triangulate_chunks_to_files does, and scans triangles into pixels as they become final. The raster
-/// is that of all triangles, whatever the chunks. duplicates: a flaunay_duplicates. pixels: as of
-/// flaunay_rasterize, such as a file that is mapped into memory; they do not count as memory of the options.
-/// Values take 8 bytes per point in the scratch folder. Errors are those of both functions, and
-/// FLAUNAY_ERROR_INPUT for a value that is not finite. The caller destroys the report.
-FLAUNAY_API flaunay_status flaunay_rasterize_chunks(const flaunay_strided_points* points,
-                                                    const flaunay_strided_values* values, int duplicates,
-                                                    const flaunay_raster* raster, double* pixels,
-                                                    const flaunay_chunk_options* options,
-                                                    flaunay_chunk_report** report);
-/// flaunay_rasterize_chunks for points and values that are nowhere in memory as a whole.
-FLAUNAY_API flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
-                                                     const flaunay_value_source* values, int duplicates,
-                                                     const flaunay_raster* raster, double* pixels,
-                                                     const flaunay_chunk_options* options,
-                                                     flaunay_chunk_report** report);
-
 /// Contour lines.
 typedef struct flaunay_contours flaunay_contours;
 /// Computes contour lines at so many heights, which must increase, of values at n points that are linear in t
@@ -1323,6 +1305,22 @@ FLAUNAY_API flaunay_status flaunay_contours_compute(flaunay_triangulator* triang
                                                     size_t t, const double* values, const double* heights,
                                                     size_t height_count, double max_edge,
                                                     flaunay_contours** contours);
+/// Raster and contours of points that need not fit memory: triangulates them in chunks, as
+/// flaunay_triangulate_chunks_to_files does, scans triangles into pixels and traces lines as they become
+/// final. Both are those of all triangles, whatever the chunks. duplicates: a flaunay_duplicates. raster: may
+/// have no pixels. pixels: as of flaunay_rasterize, such as a file that is mapped into memory; these, and the
+/// lines, do not count as memory of the options. contours: NULL for none; their max_edge is that of the
+/// raster. Values take 8 bytes per point in the scratch folder. Errors are those of the functions named, and
+/// FLAUNAY_ERROR_INPUT for a value that is not finite. The caller destroys the report and the contours.
+FLAUNAY_API flaunay_status flaunay_rasterize_chunks(
+    const flaunay_strided_points* points, const flaunay_strided_values* values, int duplicates,
+    const flaunay_raster* raster, double* pixels, const double* heights, size_t height_count,
+    flaunay_contours** contours, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+/// flaunay_rasterize_chunks for points and values that are nowhere in memory as a whole.
+FLAUNAY_API flaunay_status flaunay_rasterize_streams(
+    const flaunay_point_source* points, const flaunay_value_source* values, int duplicates,
+    const flaunay_raster* raster, double* pixels, const double* heights, size_t height_count,
+    flaunay_contours** contours, const flaunay_chunk_options* options, flaunay_chunk_report** report);
 /// Destroys contours. O(1).
 FLAUNAY_API void flaunay_contours_destroy(flaunay_contours* contours);
 /// Number of lines.
