@@ -3,7 +3,9 @@
 
     terrain_command.py FLAUNAY [gdal]     gdal: the command was built with it
 """
+import contextlib
 import json
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -55,6 +57,13 @@ def fails(code, *parts, arguments):
     assert done.returncode == code, (arguments, done.returncode, done.stderr)
     for part in parts:
         assert part in done.stderr, (part, done.stderr)
+
+
+def obj(path):
+    """Points and triangles of a file."""
+    rows = [line.split() for line in path.read_text().splitlines() if line[0] in "vf"]
+    corners = np.array([row[1:] for row in rows if row[0] == "v"], float)
+    return corners, np.array([row[1:] for row in rows if row[0] == "f"], int) - 1
 
 
 def same(a, b):
@@ -162,6 +171,48 @@ def main(folder):
         np.testing.assert_allclose(at[:, 0] + 2 * at[:, 1], height, atol=0.02)
     assert heights == set(range(20, 220, 20))
 
+    # Contours have the same bytes in chunks and in memory, where files of the triangles are made, too.
+    tin = folder / "tin.obj"
+    assert run(scan, *size, "-o", folder / "whole.geojson", "-o", tin, "--contours", 3.5).returncode == 0
+    assert run(scan, *size, "-o", lines, "--contours", 3.5, "--memory", "130M").returncode == 0
+    assert lines.read_text() == (folder / "whole.geojson").read_text()
+    corners, triangles = obj(tin)
+    assert set(map(tuple, corners)) == set(map(tuple, points)) and len(triangles) > n
+    assert run(scan, *size, "-o", tin, "--max-edge", "1").returncode == 0
+    edges = np.linalg.norm(corners[np.roll(triangles, -1, axis=1), :2] - corners[triangles, :2], axis=2)
+    assert len(obj(tin)[1]) == (edges <= 1).all(axis=1).sum() < len(triangles)
+
+    # Contours end at the boundary, whose polygon has a hole.
+    arguments = (scan, *size, "-o", lines, "--boundary", boundary, "--contours", "40,75.5,200")
+    assert run(*arguments).returncode == 0
+    lengths = {}
+    for feature in json.loads(lines.read_text())["features"]:
+        at = np.array(feature["geometry"]["coordinates"]) - [500000, 5000000]
+        height = feature["properties"]["height"]
+        lengths[height] = lengths.get(height, 0) + np.abs(np.diff(at[:, 0])).sum()
+        assert (at > 10 - 1e-6).all() and (at < 50 + 1e-6).all()
+        assert not ((at > 20 + 1e-6) & (at < 30 - 1e-6)).all(axis=1).any()
+    # x + 2 y = 40 has y from 10 to 15, without a hole; x + 2 y = 75.5 has x from 10 to 50, and in the hole 20 to 30.
+    assert set(lengths) == {40, 75.5}
+    np.testing.assert_allclose([lengths[40], lengths[75.5]], [10, 30], atol=0.1)
+
+    # A lake at the height of its first point, and one without heights at the lowest one of its shore.
+    lakes = folder / "lakes.geojson"
+    shore = np.array([[60, 10], [80, 10], [80, 30], [60, 30], [60, 10]])
+
+    def with_lake(ring):
+        geometry = {"type": "Polygon", "coordinates": [ring.tolist()]}
+        lakes.write_text(json.dumps(geometry))
+        return raster(folder, scan, *size, "--flat", lakes)
+
+    wet = ((x > 60) & (x < 80))[None, :] & ((y > 10) & (y < 30))[:, None]
+    far = ~(((x > 58) & (x < 82))[None, :] & ((y > 8) & (y < 32))[:, None])
+    at_scan = shore + [500000, 5000000]
+    for ring, level in (np.column_stack([at_scan, [7, 8, 9, 9, 7]]), 7), (at_scan, 80):
+        made = with_lake(ring)
+        np.testing.assert_allclose(made[wet], level, atol=0.02)
+        np.testing.assert_array_equal(made[far], expected[far])
+
     # Errors leave what was there.
     out = folder / "out.npy"
     out.write_bytes(b"old")
@@ -187,16 +238,33 @@ def main(folder):
     fails(3, "infinite.npy", "finite", arguments=(folder / "infinite.npy", *size, *to))
     assert out.read_bytes() == b"old"
     fails(2, "lines.geojson", "--contours", arguments=(scan, *size, "-o", lines))
-    fails(2, "in memory at once", arguments=(scan, *size, "-o", lines, "--contours", "5", "--memory", "1G"))
+    for in_memory in ("--flat", lakes), ("--breaklines", ridge), ("-o", tin):
+        fails(2, "in memory at once", arguments=(scan, *size, *to, *in_memory, "--memory", "1G"))
+    fails(2, "--contours", ".gpkg", arguments=(scan, *size, *to, "--contours", "5"))
+    fails(3, "ridge.geojson", "polygons", arguments=(scan, *size, *to, "--flat", ridge))
     ridge.write_text('{"type": "MultiLineString", "coordinates": [[[0, 0], [4, 4]], [[0, 3], [3, 0]]]}')
     fails(3, "ridge.geojson", "segment", arguments=(square, *size, *to, "--breaklines", ridge))
     tif = folder / "dem.tif"
     if HAS_GDAL:
         assert run(other, *size, "-o", tif).returncode == 0
         assert b"LAYOUT=IFDS_BEFORE_DATA" in tif.read_bytes()[:1000]
+        package, picture = folder / "lines.gpkg", folder / "dem.png"
+        done = run(other, *size, "-o", package, "-o", picture, "-o", lines, "--contours", 20, "--memory", "130M")
+        assert done.returncode == 0, done.stderr
+        with contextlib.closing(sqlite3.connect(package)) as database:
+            found = database.execute("select height, count(*) from contours group by height").fetchall()
+            assert database.execute("select srs_id from gpkg_contents").fetchone() == (25832,)
+        heights = [feature["properties"]["height"] for feature in json.loads(lines.read_text())["features"]]
+        assert dict(found) == {height: heights.count(height) for height in heights}
+        # Grey and alpha, 8 bits each.
+        png = picture.read_bytes()
+        assert struct.unpack_from(">IIBB", png, 16) == (200, 120, 8, 4)
+        fails(2, "dem.png", "picture", arguments=(scan, "--resolution", "0.004", "-o", picture))
+        assert picture.read_bytes() == png
         fails(3, "--crs", arguments=(scan, *size, *to, "--crs", "EPSG:0"))
     else:
-        fails(2, "FLAUNAY_GDAL", "flaunay[terrain]", arguments=(scan, *size, "-o", tif))
+        for path in tif, folder / "dem.png", folder / "lines.gpkg":
+            fails(2, "FLAUNAY_GDAL", "flaunay[terrain]", arguments=(scan, *size, "-o", path, "--contours", "5"))
     assert not [path.name for path in folder.iterdir() if "partial" in path.name]
 
 

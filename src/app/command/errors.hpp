@@ -29,6 +29,10 @@ inline ExitCode exit_code(ErrorKind kind) {
   return kFailure;
 }
 
+[[noreturn]] inline void fail_usage(const std::string& message) {
+  throw Error(ErrorKind::usage, io::printable(message));
+}
+
 /// Writes the message on one line, and returns the code. The message of a device keeps its lines, because it
 /// may contain what a compiler says.
 inline int report_error(const char* program, int code, std::string_view message) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <functional>
@@ -15,15 +16,17 @@
 #include <vector>
 
 #include "app/command/commands.hpp"
+#include "app/command/errors.hpp"
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/command/terrain_boundary.hpp"
+#include "app/command/terrain_files.hpp"
 #include "app/command/terrain_mesh.hpp"
 #include "app/files/geotiff.hpp"
 #include "app/files/map.hpp"
 #include "app/files/scan.hpp"
 #include "files/file.hpp"
-#include "files/npy_header.hpp"
 #include "files/scratch.hpp"
 #include "host/memory/system_memory.hpp"
 #include "host/system/pages.hpp"
@@ -33,10 +36,8 @@ namespace {
 
 using Returns = io::ScanChoice::Returns;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-// 32 GiB, or less where sizes have 32 bits.
-constexpr double kMostPixels =
-    std::min(0x1p32, static_cast<double>(std::numeric_limits<std::size_t>::max() / sizeof(double)));
+// Of a picture, for which there are two bytes per pixel in memory.
+constexpr std::size_t kMostPicturePixels = std::size_t{1} << 28;
 
 struct TerrainRequest {
   std::vector<std::string> inputs, outputs;
@@ -45,7 +46,7 @@ struct TerrainRequest {
   std::vector<int> classes;
   Returns returns = Returns::all;
   Duplicates duplicates = Duplicates::highest;
-  std::string breaklines, boundary, crs;
+  std::string breaklines, boundary, flat, crs;
   std::vector<double> contours;
   RasterOptions raster;
   bool is_point = false;
@@ -53,51 +54,6 @@ struct TerrainRequest {
   std::string device, scratch;
   std::uint64_t memory = 0;
   bool quiet = false;
-
-  /// Whether all points are in memory at once.
-  bool in_memory() const { return !breaklines.empty() || !contours.empty(); }
-};
-
-[[noreturn]] void fail_usage(const std::string& message) {
-  throw Error(ErrorKind::usage, io::printable(message));
-}
-
-// Pixels of one size: their corners, or with is_point their centres, are multiples of it. As of
-// flaunay.terrain in Python, in the same operations.
-struct Grid {
-  Grid(const io::Box& box, double size, bool is_point_) : resolution(size), is_point(is_point_) {
-    for (int k = 0; k < 2; ++k) {
-      if (!std::isfinite(box[k]) || !std::isfinite(box[k + 2]) || box[k] > box[k + 2]) {
-        fail_usage(
-            fmt::format("the map would be from ({}, {}) to ({}, {}): bounds must be finite, the lower ones "
-                        "first",
-                        box[0], box[1], box[2], box[3]));
-      }
-    }
-    const double low_x = std::floor(box[0] / size), low_y = std::floor(box[1] / size);
-    const double wide = std::max(std::ceil(box[2] / size) - low_x, 1.0) + (is_point ? 1 : 0);
-    const double high = std::max(std::ceil(box[3] / size) - low_y, 1.0) + (is_point ? 1 : 0);
-    if (!(wide * high <= kMostPixels)) {
-      fail_usage(
-          fmt::format("--resolution {}: makes {:.0f} x {:.0f} pixels of {} x {}; at most {:.0f} are possible",
-                      size, wide, high, box[2] - box[0], box[3] - box[1], kMostPixels));
-    }
-    const double x = low_x - (is_point ? 0.5 : 0.0), y = low_y - (is_point ? 0.5 : 0.0);
-    west = x * size;
-    north = (y + high) * size;
-    pixels = {(x + 0.5) * size,
-              (y + high - 0.5) * size,
-              size,
-              -size,
-              static_cast<std::size_t>(high),
-              static_cast<std::size_t>(wide)};
-  }
-  std::size_t count() const { return pixels.rows * pixels.columns; }
-
-  double resolution;
-  bool is_point;
-  double west = 0, north = 0;
-  RasterGrid pixels;
 };
 
 // The pixels' memory, or if it would take more than a quarter of the memory, a file.
@@ -137,58 +93,6 @@ class Pixels {
   double* on_disk_ = nullptr;
 };
 
-// Takes the values of pixels away whose centres no polygon has. What is inside of each follows the even-odd
-// rule.
-void leave_out(const io::Map& boundary, const RasterGrid& grid, double* pixels) {
-  struct Crossing {
-    std::size_t row, polygon;
-    double x;
-    bool operator<(const Crossing& other) const {
-      return std::tie(row, polygon, x) < std::tie(other.row, other.polygon, other.x);
-    }
-  };
-  std::vector<Crossing> crossings;
-  const auto row_of = [&](double y) {
-    return std::clamp((y - grid.y) / grid.dy, -1.0, static_cast<double>(grid.rows));
-  };
-  for (std::size_t polygon = 0; polygon < boundary.polygon_count(); ++polygon) {
-    const std::size_t first = boundary.ring_offsets[boundary.polygon_offsets[polygon]];
-    const std::size_t last = boundary.ring_offsets[boundary.polygon_offsets[polygon + 1]];
-    for (std::size_t s = first; s < last; ++s) {
-      const double* a = &boundary.points.coordinates[2 * static_cast<std::size_t>(boundary.segments[2 * s])];
-      const double* b =
-          &boundary.points.coordinates[2 * static_cast<std::size_t>(boundary.segments[2 * s + 1])];
-      if (a[1] > b[1]) std::swap(a, b);
-      // Rows go down. One more on each side, since the quotient is rounded.
-      const double top = std::max(std::floor(row_of(b[1])) - 1, 0.0);
-      const double bottom = std::min(std::ceil(row_of(a[1])) + 1, static_cast<double>(grid.rows) - 1);
-      for (double r = top; r <= bottom; ++r) {
-        const double y = grid.y + r * grid.dy;
-        if (!(a[1] <= y && y < b[1])) continue;
-        crossings.push_back(
-            {static_cast<std::size_t>(r), polygon, a[0] + (b[0] - a[0]) * ((y - a[1]) / (b[1] - a[1]))});
-      }
-    }
-  }
-  std::sort(crossings.begin(), crossings.end());
-  std::vector<char> is_inside(grid.columns);
-  auto next = crossings.begin();
-  for (std::size_t row = 0; row < grid.rows; ++row) {
-    std::fill(is_inside.begin(), is_inside.end(), 0);
-    for (; next != crossings.end() && next->row == row; next += 2) {
-      const double columns = static_cast<double>(grid.columns);
-      const double begin = std::clamp(std::ceil((next->x - grid.x) / grid.dx), 0.0, columns);
-      const double end = std::clamp(std::ceil(((next + 1)->x - grid.x) / grid.dx), 0.0, columns);
-      std::fill(is_inside.begin() + static_cast<std::ptrdiff_t>(begin),
-                is_inside.begin() + static_cast<std::ptrdiff_t>(end), 1);
-    }
-    double* const line = pixels + row * grid.columns;
-    for (std::size_t column = 0; column < grid.columns; ++column) {
-      if (is_inside[column] == 0) line[column] = kNaN;
-    }
-  }
-}
-
 io::ScanChoice choice_of(const TerrainRequest& request) {
   io::ScanChoice choice;
   for (const int number : request.classes) choice.classes.set(static_cast<std::size_t>(number));
@@ -211,83 +115,76 @@ std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
   return systems.empty() ? "" : systems.front().crs;
 }
 
-bool is_tiff(const std::string& path) {
-  const std::string ending = io::ending_of(path);
-  return ending == ".tif" || ending == ".tiff";
+std::array<double, 2> range_of(const std::vector<double>& heights) {
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  return heights.empty() ? std::array{0.0, 0.0} : std::array{*low, *high};
 }
 
-bool is_npy(const std::string& path) { return io::ending_of(path) == ".npy"; }
-bool is_lines(const std::string& path) { return io::ending_of(path) == ".geojson"; }
-
-void announce(OutputFiles& outputs, const TerrainRequest& request) {
-  for (const std::string& path : request.outputs) {
-    if (is_tiff(path)) {
-      io::require_gdal(path);
-    } else if (is_lines(path)) {
-      if (request.contours.empty())
-        fail_usage(fmt::format("{}: needs --contours, the interval of heights", path));
-    } else if (!is_npy(path)) {
-      io::fail_ending(path, ".tif, .npy or .geojson");
-    }
-    outputs.announce(path);
+// The heights of contours: those that were given, or if it is one, all multiples of it in the range.
+std::vector<double> contour_heights(const std::vector<double>& given, const std::array<double, 2>& range) {
+  if (given.size() != 1) return given;
+  const double step = given.front();
+  constexpr double kMost = 1e6;
+  if ((range[1] - range[0]) / step > kMost) {
+    fail_usage(
+        fmt::format("--contours {}: between {} and {} are more than a million", step, range[0], range[1]));
   }
+  std::vector<double> heights;
+  for (double k = std::ceil(range[0] / step); k <= std::floor(range[1] / step); ++k)
+    heights.push_back(k * step);
+  return heights;
 }
 
-void write_npy(OutputFiles& outputs, const std::string& path, const Grid& grid, const double* pixels) {
-  io::OutputFile& file = outputs.open(path);
-  const std::string header = io::npy_header("<f8", grid.pixels.rows, grid.pixels.columns);
-  file.write(header.data(), header.size());
-  file.write(pixels, grid.count() * sizeof(double));
-}
-
-void write_tiffs(OutputFiles& outputs, const TerrainRequest& request, const Grid& grid,
-                 const std::string& crs, double* pixels) {
-  if (std::none_of(request.outputs.begin(), request.outputs.end(), is_tiff)) return;
-  // In place: each is written where one was read before.
-  auto* const narrow = reinterpret_cast<float*>(pixels);
-  for (std::size_t i = 0; i < grid.count(); ++i) {
-    double wide;
-    std::memcpy(&wide, pixels + i, sizeof wide);
-    const auto pixel = static_cast<float>(std::isnan(wide) ? request.nodata : wide);
-    std::memcpy(narrow + i, &pixel, sizeof pixel);
-  }
-  for (const std::string& path : request.outputs) {
-    if (!is_tiff(path)) continue;
-    const std::string partial = outputs.open(path).partial_path();
-    if (partial.empty()) fail_usage(fmt::format("{}: is no regular file, which a GeoTIFF must be", path));
-    io::write_geotiff(partial, path,
-                      {narrow, grid.pixels.rows, grid.pixels.columns, grid.west, grid.north, grid.resolution,
-                       grid.is_point, request.nodata, crs});
-  }
-}
-
+// What is wrong with the request is found before the points are read; so are errors of the outputs.
 int make_terrain(const TerrainRequest& request) {
-  const std::vector<std::string> files = io::scan_files(request.inputs);
-  std::vector<std::string> inputs = files;
-  for (const std::string& map : {request.boundary, request.breaklines}) {
+  const std::vector<std::string> scans = io::scan_files(request.inputs);
+  std::vector<std::string> inputs = scans;
+  for (const std::string& map : {request.boundary, request.breaklines, request.flat}) {
     if (!map.empty()) inputs.push_back(map);
   }
+  const TerrainFiles files(request.outputs);
+  const bool in_memory = !request.breaklines.empty() || !request.flat.empty() || !files.meshes.empty();
+  if (in_memory && request.memory != 0) {
+    fail_usage(
+        "--memory: with --breaklines, --flat or a file of triangles all points are in memory at once, "
+        "about 200 bytes each");
+  }
+  if (!files.lines.empty() && request.contours.empty())
+    fail_usage(fmt::format("{}: needs --contours, the interval of heights", files.lines.front()));
+  if (files.lines.empty() && !request.contours.empty())
+    fail_usage("--contours: needs an output .geojson or .gpkg");
   OutputFiles outputs(inputs);
-  announce(outputs, request);
+  for (const std::string& path : request.outputs) outputs.announce(path);
+  HardEdges edges(request.breaklines, request.flat);
+  std::optional<Boundary> boundary;
+  if (!request.boundary.empty()) {
+    const io::Map map = io::read_map(request.boundary);
+    if (map.polygon_count() == 0) io::fail(request.boundary, "has no polygon");
+    boundary.emplace(map);
+  }
 
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Scan scan(files, choice_of(request), request.scratch);
+  io::Scan scan(scans, choice_of(request), request.scratch);
   const std::string crs = common_crs(request, scan);
   std::optional<io::Box> bounds;
   if (!request.bounds.empty()) {
     bounds.emplace();
     std::copy_n(request.bounds.begin(), bounds->size(), bounds->begin());
   }
+  const auto grid_over = [&](const io::Box& box) {
+    const PixelGrid grid(box, request.resolution, request.is_point);
+    if (!files.pictures.empty() && grid.count() > kMostPicturePixels) {
+      fail_usage(fmt::format("{}: a picture of {} x {} pixels; at most {} are possible",
+                             files.pictures.front(), grid.pixels.columns, grid.pixels.rows,
+                             kMostPicturePixels));
+    }
+    return grid;
+  };
   // To find now what would be found after the pass over all points.
   const io::Box announced = bounds ? *bounds : scan.announced_box();
-  if (announced[0] <= announced[2]) Grid(announced, request.resolution, request.is_point);
-  std::optional<io::Map> boundary;
-  if (!request.boundary.empty()) {
-    boundary = io::read_map(request.boundary);
-    if (boundary->polygon_count() == 0) io::fail(request.boundary, "has no polygon");
-  }
+  if (announced[0] <= announced[2]) grid_over(announced);
 
   const io::Box box = scan.survey([&](double done) { progress.update("reading", -1, done); });
   if (scan.size() == 0) {
@@ -296,22 +193,24 @@ int make_terrain(const TerrainRequest& request) {
                     ? "there are no points"
                     : fmt::format("there are no points of the classes {}", fmt::join(request.classes, ", ")));
   }
-  const Grid grid(bounds ? *bounds : box, request.resolution, request.is_point);
+  const PixelGrid grid = grid_over(bounds ? *bounds : box);
   const std::uint64_t memory = request.memory != 0 ? request.memory : host::memory_left().bytes / 2;
   Pixels pixels(grid.count(), memory, request.scratch);
-  if (request.in_memory()) {
+  std::vector<double> heights;
+  Contours contours;
+  if (in_memory) {
     progress.update("triangulating");
     Triangulator triangulator(request.device);
-    const TerrainMesh terrain = triangulate_scan(triangulator, scan, request.breaklines, request.duplicates);
+    const TerrainMesh terrain = triangulate_scan(triangulator, scan, edges, request.duplicates);
     rasterize(triangulator, terrain.view(), terrain.heights.data(), grid.pixels, request.raster,
               pixels.data());
-    const std::vector<double> heights = contour_heights(request.contours, terrain.heights);
-    if (std::any_of(request.outputs.begin(), request.outputs.end(), is_lines)) {
-      const Contours contours = trace_contours(triangulator, terrain.view(), terrain.heights.data(), heights,
-                                               request.raster.max_edge);
-      for (const std::string& path : request.outputs) {
-        if (is_lines(path)) write_contours(outputs, path, contours, heights, crs);
-      }
+    heights = contour_heights(request.contours, range_of(terrain.heights));
+    if (!heights.empty()) {
+      contours = trace_contours(triangulator, terrain.view(), terrain.heights.data(), heights,
+                                request.raster.max_edge);
+    }
+    for (const std::string& path : files.meshes) {
+      write_surface(outputs, path, terrain, request.raster.max_edge);
     }
   } else {
     ChunkOptions chunks;
@@ -319,15 +218,20 @@ int make_terrain(const TerrainRequest& request) {
     chunks.scratch = request.scratch;
     if (!request.device.empty()) chunks.devices = {request.device};
     chunks.progress = [&](const std::string& stage, int, double done) { progress.update(stage, -1, done); };
-    rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), chunks);
+    heights = contour_heights(request.contours, scan.heights());
+    rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), heights, contours,
+                     chunks);
   }
-  if (boundary) leave_out(*boundary, grid.pixels, pixels.data());
+  if (boundary) {
+    boundary->leave_out(grid.pixels, pixels.data());
+    contours = boundary->clipped(contours);
+  }
 
   progress.update("writing");
-  for (const std::string& path : request.outputs) {
-    if (is_npy(path)) write_npy(outputs, path, grid, pixels.data());
-  }
-  write_tiffs(outputs, request, grid, crs, pixels.data());
+  for (const std::string& path : files.lines) write_contours(outputs, path, contours, heights, crs);
+  for (const std::string& path : files.arrays) write_array(outputs, path, grid, pixels.data());
+  for (const std::string& path : files.pictures) write_picture(outputs, path, grid, pixels.data());
+  write_rasters(outputs, files.rasters, grid, request.nodata, crs, pixels.data());
   outputs.commit();
   progress.finish();
   if (!request.quiet) {
@@ -341,13 +245,6 @@ void check(const TerrainRequest& request) {
   if (!(request.resolution > 0 && std::isfinite(request.resolution)))
     fail_usage(fmt::format("--resolution must be positive, not {}", request.resolution));
   if (!std::isfinite(request.nodata)) fail_usage("--nodata must be finite");
-  if (request.in_memory() && request.memory != 0) {
-    fail_usage(
-        "--memory: with --breaklines or --contours all points are in memory at once, about 200 bytes each");
-  }
-  if (!request.contours.empty() && !request.boundary.empty()) {
-    fail_usage("--contours: are not cut at a --boundary; flaunay.terrain in Python does that");
-  }
   const std::vector<double>& heights = request.contours;
   const bool are_finite =
       std::all_of(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
@@ -369,10 +266,11 @@ void add_terrain(CLI::App& app, Action& action) {
           "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), or folders of these")
       ->required();
   command
-      ->add_option("-o,--output", request->outputs,
-                   "The raster: .tif (cloud-optimised GeoTIFF of float32) or .npy (float64); contours: "
-                   ".geojson; several outputs are all "
-                   "written or none")
+      ->add_option(
+          "-o,--output", request->outputs,
+          "The raster: .tif (cloud-optimised GeoTIFF of float32), .npy (float64) or .png (shaded "
+          "hills); contours: .geojson or .gpkg; the triangles: .obj, .ply, .off, .msh or .vtu; several "
+          "outputs are all written or none")
       ->required();
   command->add_option("--resolution", request->resolution, "The size of a pixel")->required();
   command
@@ -398,10 +296,13 @@ void add_terrain(CLI::App& app, Action& action) {
            "around");
   command
       ->add_option("--contours", request->contours,
-                   "The interval of contours' heights, or several heights, for an output .geojson")
+                   "The interval of contours' heights, or several heights, for an output .geojson or .gpkg")
       ->delimiter(',');
   add_path(command, "--boundary", request->boundary,
-           "A map of polygons, outside of which the raster is empty");
+           "A map of polygons, outside of which the raster is empty and there are no contours");
+  add_path(command, "--flat", request->flat,
+           "A map of polygons, such as lakes, that are held flat: at the height of the first point of their "
+           "border, or else at the lowest height along it");
   command->add_option("--max-edge", request->raster.max_edge, "Triangles with a longer edge are left out")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--crs", request->crs,

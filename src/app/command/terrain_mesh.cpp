@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "app/command/errors.hpp"
-#include "app/files/geotiff.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::cli {
@@ -18,15 +17,31 @@ namespace {
 struct Breaklines {
   std::vector<double> coordinates, heights;
   std::vector<std::int32_t> segments;
+
+  void add(const io::Map& map) {
+    const auto first = static_cast<std::int32_t>(coordinates.size() / 2);
+    coordinates.insert(coordinates.end(), map.points.coordinates.begin(), map.points.coordinates.end());
+    heights.insert(heights.end(), map.heights.begin(), map.heights.end());
+    heights.resize(coordinates.size() / 2, std::numeric_limits<double>::quiet_NaN());
+    for (const auto* of_map : {&map.segments, &map.lines}) {
+      for (const std::int32_t end : *of_map) segments.push_back(first + end);
+    }
+  }
 };
 
-Breaklines read_breaklines(const std::string& path) {
-  io::Map map = io::read_map(path);
-  Breaklines lines{std::move(map.points.coordinates), std::move(map.heights), std::move(map.segments)};
-  lines.segments.insert(lines.segments.end(), map.lines.begin(), map.lines.end());
-  if (lines.segments.empty()) io::fail(path, "has neither lines nor polygons");
-  lines.heights.resize(lines.coordinates.size() / 2, std::numeric_limits<double>::quiet_NaN());
-  return lines;
+// The heights of places between points, and beyond them that of the nearest one.
+std::vector<double> heights_at(Triangulator& triangulator, const TerrainMesh& points,
+                               const std::vector<double>& places) {
+  const std::size_t n = points.heights.size(), m = places.size() / 2;
+  if (m == 0) return {};
+  const Triangulation mesh = triangulator.triangulate(points.coordinates.data(), n);
+  Locator locator(triangulator, points.coordinates.data(), n, mesh);
+  std::vector<double> heights = locator.interpolate(points.heights.data(), places.data(), m);
+  const std::vector<std::int32_t> nearest = locator.nearest(places.data(), m);
+  for (std::size_t k = 0; k < m; ++k) {
+    if (std::isnan(heights[k])) heights[k] = points.heights[static_cast<std::size_t>(nearest[k])];
+  }
+  return heights;
 }
 
 // Gives ends of lines without a height that of the points around them.
@@ -38,16 +53,53 @@ void complete_heights(Triangulator& triangulator, const TerrainMesh& points, Bre
     missing.push_back(i);
     places.insert(places.end(), {lines.coordinates[2 * i], lines.coordinates[2 * i + 1]});
   }
-  if (missing.empty()) return;
-  const std::size_t n = points.heights.size();
-  const Triangulation mesh = triangulator.triangulate(points.coordinates.data(), n);
-  Locator locator(triangulator, points.coordinates.data(), n, mesh);
-  const std::vector<double> found = locator.interpolate(points.heights.data(), places.data(), missing.size());
-  const std::vector<std::int32_t> nearest = locator.nearest(places.data(), missing.size());
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    lines.heights[missing[k]] =
-        std::isnan(found[k]) ? points.heights[static_cast<std::size_t>(nearest[k])] : found[k];
+  const std::vector<double> found = heights_at(triangulator, points, places);
+  for (std::size_t k = 0; k < missing.size(); ++k) lines.heights[missing[k]] = found[k];
+}
+
+// Gives the shores of lakes one height for each part of a polygon: that of the first point of its border, or
+// if it has none, since water lies no higher than its shore, the lowest height along its rings.
+void flatten(Triangulator& triangulator, const TerrainMesh& points, io::Map& lakes) {
+  lakes.heights.resize(lakes.points.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> around = heights_at(triangulator, points, lakes.points.coordinates);
+  const auto point_of = [&](std::size_t segment) {
+    return static_cast<std::size_t>(lakes.segments[2 * segment]);
+  };
+  for (std::size_t part = 0; part + 1 < lakes.part_offsets.size(); ++part) {
+    const std::size_t first = lakes.ring_offsets[lakes.part_offsets[part]];
+    const std::size_t last = lakes.ring_offsets[lakes.part_offsets[part + 1]];
+    if (first == last) continue;
+    double level = lakes.heights[point_of(first)];
+    if (std::isnan(level)) {
+      level = std::numeric_limits<double>::infinity();
+      for (std::size_t s = first; s < last; ++s) level = std::min(level, around[point_of(s)]);
+    }
+    for (std::size_t s = first; s < last; ++s) lakes.heights[point_of(s)] = level;
   }
+}
+
+// Leaves the points that lie in no lake and on no shore.
+void leave_dry(Triangulator& triangulator, const io::Map& lakes, TerrainMesh& points) {
+  Constraints constraints;
+  constraints.segments = lakes.segments.data();
+  constraints.segment_count = lakes.segments.size() / 2;
+  constraints.rings = {lakes.ring_offsets, lakes.part_offsets, lakes.polygon_offsets};
+  ConstrainedOptions options;
+  options.neighbors = true;
+  options.outside = Outside::hull;
+  options.fill_rule = FillRule::even_odd;
+  const ConstrainedTriangulation water =
+      triangulator.constrained(lakes.points.coordinates.data(), lakes.points.size(), constraints, options);
+  Locator locator(triangulator, lakes.points.coordinates.data(), lakes.points.size(), water);
+  const std::vector<std::int32_t> found = locator.locate(points.coordinates.data(), points.heights.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] >= 0) continue;
+    std::copy_n(&points.coordinates[2 * i], 2, &points.coordinates[2 * kept]);
+    points.heights[kept++] = points.heights[i];
+  }
+  points.coordinates.resize(2 * kept);
+  points.heights.resize(kept);
 }
 
 // Gives the representatives of equal points the common height, but for those of breaklines, which are the
@@ -71,13 +123,27 @@ void merge_heights(TerrainMesh& terrain, std::size_t fixed, Duplicates duplicate
 
 }  // namespace
 
-TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, const std::string& breaklines,
+HardEdges::HardEdges(const std::string& breaklines, const std::string& flat)
+    : path(breaklines.empty() ? flat
+           : flat.empty()     ? breaklines
+                              : breaklines + " and " + flat) {
+  if (!breaklines.empty()) {
+    lines = io::read_map(breaklines);
+    if (lines.segments.empty() && lines.lines.empty()) io::fail(breaklines, "has neither lines nor polygons");
+  }
+  if (!flat.empty()) {
+    lakes = io::read_map(flat);
+    if (lakes.polygon_count() == 0 || lakes.has_others) io::fail(flat, "must have polygons and nothing else");
+  }
+}
+
+TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, HardEdges& edges,
                              Duplicates duplicates) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max() / 4;
   if (scan.size() > kMost) {
     throw Error(ErrorKind::input,
-                fmt::format("{} points are too many for breaklines or contours, for which they are in "
-                            "memory at once; at most {} are possible",
+                fmt::format("{} points are too many for breaklines, lakes or a file of triangles, for which "
+                            "they are in memory at once; at most {} are possible",
                             scan.size(), kMost));
   }
   const auto n = static_cast<std::size_t>(scan.size());
@@ -90,61 +156,27 @@ TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, const s
     scan.read(first, count, terrain.coordinates.data() + 2 * first);
     scan.read_values(first, count, terrain.heights.data() + first);
   }
-  Breaklines lines;
-  if (!breaklines.empty()) {
-    lines = read_breaklines(breaklines);
-    complete_heights(triangulator, terrain, lines);
-  }
-  const std::size_t fixed = lines.heights.size();
-  terrain.coordinates.insert(terrain.coordinates.begin(), lines.coordinates.begin(), lines.coordinates.end());
-  terrain.heights.insert(terrain.heights.begin(), lines.heights.begin(), lines.heights.end());
-  Constraints constraints;
-  constraints.segments = lines.segments.data();
-  constraints.segment_count = lines.segments.size() / 2;
-  terrain.mesh = naming_files({{"segment", breaklines}}, [&] {
-    return triangulator.constrained(terrain.coordinates.data(), terrain.heights.size(), constraints);
+  std::size_t fixed = 0;
+  naming_files({{"segment", edges.path}}, [&] {
+    Breaklines lines;
+    lines.add(edges.lines);
+    if (edges.lakes.polygon_count() > 0) {
+      flatten(triangulator, terrain, edges.lakes);
+      leave_dry(triangulator, edges.lakes, terrain);
+    }
+    if (!terrain.heights.empty()) complete_heights(triangulator, terrain, lines);
+    lines.add(edges.lakes);
+    fixed = lines.heights.size();
+    terrain.coordinates.insert(terrain.coordinates.begin(), lines.coordinates.begin(),
+                               lines.coordinates.end());
+    terrain.heights.insert(terrain.heights.begin(), lines.heights.begin(), lines.heights.end());
+    Constraints constraints;
+    constraints.segments = lines.segments.data();
+    constraints.segment_count = lines.segments.size() / 2;
+    terrain.mesh = triangulator.constrained(terrain.coordinates.data(), terrain.heights.size(), constraints);
   });
   merge_heights(terrain, fixed, duplicates);
   return terrain;
-}
-
-std::vector<double> contour_heights(const std::vector<double>& given, const std::vector<double>& heights) {
-  if (given.size() != 1 || heights.empty()) return given;
-  const double step = given.front();
-  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-  constexpr double kMost = 1e6;
-  if ((*high - *low) / step > kMost) {
-    throw Error(ErrorKind::usage,
-                fmt::format("--contours {}: between {} and {} are more than a million", step, *low, *high));
-  }
-  std::vector<double> levels;
-  for (double k = std::ceil(*low / step); k <= std::floor(*high / step); ++k) levels.push_back(k * step);
-  return levels;
-}
-
-void write_contours(OutputFiles& outputs, const std::string& path, const Contours& contours,
-                    const std::vector<double>& heights, const std::string& crs) {
-  io::OutputFile& file = outputs.open(path);
-  file.print("{{\"type\":\"FeatureCollection\",");
-  const int code = io::epsg_code(crs);
-  // As GDAL writes it. Without it, RFC 7946 says that coordinates are longitude and latitude.
-  if (code != 0) {
-    file.print("\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"urn:ogc:def:crs:EPSG::{}\"}}}},",
-               code);
-  }
-  file.print("\"features\":[");
-  for (std::size_t i = 0; i < contours.heights.size(); ++i) {
-    file.print(
-        "{}\n{{\"type\":\"Feature\",\"properties\":{{\"height\":{}}},\"geometry\":{{\"type\":\"LineString\","
-        "\"coordinates\":[",
-        i == 0 ? "" : ",", heights[static_cast<std::size_t>(contours.heights[i])]);
-    for (std::size_t p = contours.offsets[i]; p < contours.offsets[i + 1]; ++p) {
-      file.print("{}[{},{}]", p == contours.offsets[i] ? "" : ",", contours.coordinates[2 * p],
-                 contours.coordinates[2 * p + 1]);
-    }
-    file.print("]}}}}");
-  }
-  file.print("\n]}}\n");
 }
 
 }  // namespace flaunay::cli

@@ -45,6 +45,7 @@ struct Format {
   using WriteMesh = void (*)(OutputFile& file, const MeshContents& contents);
   WriteMesh write_mesh = nullptr;
   bool has_labels = false;  ///< whether write_mesh writes regions and depths
+  bool is_spatial = false;  ///< whether it writes heights
   /// A file beside this one that is read or written, too, and one only with constraints.
   struct Beside {
     std::string_view ending = "";
@@ -67,6 +68,7 @@ struct Use {
   static bool read_triangles(const Format& format) { return format.triangles != nullptr; }
   static bool write_points(const Format& format) { return format.write_points != nullptr; }
   static bool write_mesh(const Format& format) { return format.write_mesh != nullptr; }
+  static bool write_surface(const Format& format) { return write_mesh(format) && format.is_spatial; }
 };
 
 /// The format of a path. Throws Error(usage) that lists the endings if there is none for this use. "-" is

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "flaunay/terrain.hpp"
 
 namespace flaunay::io {
 
@@ -30,5 +34,11 @@ struct GeoRaster {
 /// Writes a cloud-optimised GeoTIFF. path: that of the file on its way, name: that of the output, for
 /// messages. Throws Error(input).
 void write_geotiff(const std::string& path, const std::string& name, const GeoRaster& raster);
+
+/// The bytes of a .png file. bands: grey and then alpha, row by row. name: for messages, as of the next one.
+std::string png_of(const std::string& name, const std::uint8_t* bands, std::size_t rows, std::size_t columns);
+/// The bytes of a .gpkg file of lines with their heights, of which `heights` has the values.
+std::string geopackage_of(const std::string& name, const Contours& contours,
+                          const std::vector<double>& heights, const std::string& crs);
 
 }  // namespace flaunay::io

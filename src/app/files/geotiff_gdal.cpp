@@ -3,7 +3,9 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <gdal.h>
+#include <ogr_api.h>
 #include <ogr_srs_api.h>
 
 #include <array>
@@ -32,12 +34,26 @@ namespace {
   X(GDALClose)                    \
   X(GDALCreate)                   \
   X(GDALCreateCopy)               \
+  X(GDALDatasetCommitTransaction) \
+  X(GDALDatasetCreateLayer)       \
+  X(GDALDatasetStartTransaction)  \
   X(GDALGetDriverByName)          \
   X(GDALGetRasterBand)            \
   X(GDALSetGeoTransform)          \
   X(GDALSetMetadataItem)          \
   X(GDALSetRasterNoDataValue)     \
   X(GDALSetSpatialRef)            \
+  X(OGR_F_Create)                 \
+  X(OGR_F_Destroy)                \
+  X(OGR_F_SetFieldDouble)         \
+  X(OGR_F_SetGeometryDirectly)    \
+  X(OGR_Fld_Create)               \
+  X(OGR_Fld_Destroy)              \
+  X(OGR_G_CreateGeometry)         \
+  X(OGR_G_SetPoints)              \
+  X(OGR_L_CreateFeature)          \
+  X(OGR_L_CreateField)            \
+  X(OGR_L_GetLayerDefn)           \
   X(OSRDestroySpatialReference)   \
   X(OSRExportToWkt)               \
   X(OSRGetAuthorityCode)          \
@@ -46,7 +62,9 @@ namespace {
   X(OSRNewSpatialReference)       \
   X(OSRSetAxisMappingStrategy)    \
   X(OSRSetFromUserInput)          \
-  X(VSIFree)
+  X(VSIFree)                      \
+  X(VSIGetMemFileBuffer)          \
+  X(VSIUnlink)
 
 struct Gdal {
 #define MEMBER(name) decltype(&::name) name;
@@ -58,8 +76,8 @@ struct Gdal {
 Gdal open_gdal() {
   void* const library = system::open_library(FLAUNAY_GDAL_LIBRARY);
   if (library == nullptr) {
-    throw Error(ErrorKind::usage,
-                "GDAL's library " FLAUNAY_GDAL_LIBRARY " cannot be opened; install it, or take .npy");
+    throw Error(ErrorKind::usage, "GDAL's library " FLAUNAY_GDAL_LIBRARY
+                                  " cannot be opened; install it, or take .npy or .geojson");
   }
   Gdal gdal{};
 #define FIND(name)                                                                                   \
@@ -128,6 +146,49 @@ class Settings {
   char** list_ = nullptr;
 };
 
+// A data set in memory that refers to bands of pixels, row by row, one after the other.
+Dataset dataset_of(void* pixels, GDALDataType type, std::size_t bytes, int bands, std::size_t rows,
+                   std::size_t columns) {
+  const GDALDriverH in_memory = gdal().GDALGetDriverByName("MEM");
+  Dataset made(
+      gdal().GDALCreate(in_memory, "", static_cast<int>(columns), static_cast<int>(rows), 0, type, nullptr));
+  for (int band = 0; made && band < bands; ++band) {
+    std::array<char, 64> place{};
+    gdal().CPLPrintPointer(
+        place.data(), static_cast<char*>(pixels) + static_cast<std::size_t>(band) * rows * columns * bytes,
+        static_cast<int>(place.size()) - 1);
+    Settings settings;
+    settings.set("DATAPOINTER", place.data());
+    if (gdal().GDALAddBand(made.get(), type, settings.get()) != CE_None) made.reset();
+  }
+  return made;
+}
+
+GDALDriverH driver(const char* format, const std::string& name) {
+  const GDALDriverH found = gdal().GDALGetDriverByName(format);
+  if (found == nullptr) fail(name, "GDAL has no driver {}, which it needs", format);
+  return found;
+}
+
+// A file of GDAL in memory.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* ending) : path_(std::string("/vsimem/flaunay") + ending) {}
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { gdal().VSIUnlink(path_.c_str()); }
+
+  const char* path() const { return path_.c_str(); }
+  std::string bytes() const {
+    vsi_l_offset size = 0;
+    const GByte* const first = gdal().VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
+    return {reinterpret_cast<const char*>(first), static_cast<std::size_t>(size)};
+  }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace
 
 void require_gdal(const std::string&) { gdal(); }
@@ -158,17 +219,10 @@ int epsg_code(const std::string& crs) {
 
 void write_geotiff(const std::string& path, const std::string& name, const GeoRaster& raster) {
   const Quiet quiet;
-  const GDALDriverH in_memory = gdal().GDALGetDriverByName("MEM"), cog = gdal().GDALGetDriverByName("COG");
-  if (in_memory == nullptr || cog == nullptr) fail(name, "GDAL has no driver COG, which it needs");
-  const Dataset source(gdal().GDALCreate(in_memory, "", static_cast<int>(raster.columns),
-                                         static_cast<int>(raster.rows), 0, GDT_Float32, nullptr));
-  std::array<char, 64> place{};
-  gdal().CPLPrintPointer(place.data(), raster.pixels, static_cast<int>(place.size()) - 1);
-  Settings band;
-  band.set("DATAPOINTER", place.data());
-  if (!source || gdal().GDALAddBand(source.get(), GDT_Float32, band.get()) != CE_None) {
-    fail(name, "cannot be written: {}", quiet.reason());
-  }
+  const GDALDriverH cog = driver("COG", name);
+  const Dataset source =
+      dataset_of(raster.pixels, GDT_Float32, sizeof *raster.pixels, 1, raster.rows, raster.columns);
+  if (!source) fail(name, "cannot be written: {}", quiet.reason());
   std::array<double, 6> transform = {raster.west, raster.resolution, 0, raster.north, 0, -raster.resolution};
   gdal().GDALSetGeoTransform(source.get(), transform.data());
   if (!raster.crs.empty()) {
@@ -185,6 +239,56 @@ void write_geotiff(const std::string& path, const std::string& name, const GeoRa
   const Dataset written(
       gdal().GDALCreateCopy(cog, path.c_str(), source.get(), FALSE, options.get(), nullptr, nullptr));
   if (!written) fail(name, "cannot be written: {}", quiet.reason());
+}
+
+std::string png_of(const std::string& name, const std::uint8_t* bands, std::size_t rows,
+                   std::size_t columns) {
+  const Quiet quiet;
+  const GDALDriverH png = driver("PNG", name);
+  // GDAL takes what it only reads as it takes what it writes.
+  const Dataset source = dataset_of(const_cast<std::uint8_t*>(bands), GDT_Byte, 1, 2, rows, columns);
+  const MemoryFile file(".png");
+  Dataset written(
+      source ? gdal().GDALCreateCopy(png, file.path(), source.get(), FALSE, nullptr, nullptr, nullptr)
+             : nullptr);
+  if (!written) fail(name, "cannot be written: {}", quiet.reason());
+  written.reset();
+  return file.bytes();
+}
+
+std::string geopackage_of(const std::string& name, const Contours& contours,
+                          const std::vector<double>& heights, const std::string& crs) {
+  const Quiet quiet;
+  const auto check = [&](bool is_done) {
+    if (!is_done) fail(name, "cannot be written: {}", quiet.reason());
+  };
+  const MemoryFile file(".gpkg");
+  Dataset package(gdal().GDALCreate(driver("GPKG", name), file.path(), 0, 0, 0, GDT_Unknown, nullptr));
+  check(package != nullptr);
+  const System system = crs.empty() ? nullptr : read_crs(crs);
+  const OGRLayerH layer =
+      gdal().GDALDatasetCreateLayer(package.get(), "contours", system.get(), wkbLineString, nullptr);
+  check(layer != nullptr);
+  const OGRFieldDefnH field = gdal().OGR_Fld_Create("height", OFTReal);
+  const bool has_field = gdal().OGR_L_CreateField(layer, field, FALSE) == OGRERR_NONE;
+  gdal().OGR_Fld_Destroy(field);
+  check(has_field && gdal().GDALDatasetStartTransaction(package.get(), FALSE) == OGRERR_NONE);
+  for (std::size_t i = 0; i < contours.heights.size(); ++i) {
+    constexpr int kStep = 2 * sizeof(double);
+    const OGRGeometryH line = gdal().OGR_G_CreateGeometry(wkbLineString);
+    const double* const first = &contours.coordinates[2 * contours.offsets[i]];
+    gdal().OGR_G_SetPoints(line, static_cast<int>(contours.offsets[i + 1] - contours.offsets[i]), first,
+                           kStep, first + 1, kStep, nullptr, 0);
+    const OGRFeatureH feature = gdal().OGR_F_Create(gdal().OGR_L_GetLayerDefn(layer));
+    gdal().OGR_F_SetFieldDouble(feature, 0, heights[static_cast<std::size_t>(contours.heights[i])]);
+    gdal().OGR_F_SetGeometryDirectly(feature, line);
+    const bool is_added = gdal().OGR_L_CreateFeature(layer, feature) == OGRERR_NONE;
+    gdal().OGR_F_Destroy(feature);
+    check(is_added);
+  }
+  check(gdal().GDALDatasetCommitTransaction(package.get()) == OGRERR_NONE);
+  package.reset();
+  return file.bytes();
 }
 
 }  // namespace flaunay::io

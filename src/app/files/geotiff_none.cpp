@@ -4,11 +4,11 @@
 namespace flaunay::io {
 
 void require_gdal(const std::string& path) {
-  throw Error(
-      ErrorKind::usage,
-      printable(fmt::format("{}: this flaunay was built without GDAL (-DFLAUNAY_GDAL=ON); take .npy, or "
-                            "flaunay.terrain in Python (pip install flaunay[terrain])",
-                            path)));
+  throw Error(ErrorKind::usage,
+              printable(fmt::format(
+                  "{}: this flaunay was built without GDAL (-DFLAUNAY_GDAL=ON); take .npy or .geojson, or "
+                  "flaunay.terrain in Python (pip install flaunay[terrain])",
+                  path)));
 }
 
 std::string crs_text(const std::string& crs, const std::string&) { return crs; }
@@ -21,5 +21,16 @@ int epsg_code(const std::string& crs) {
 }
 
 void write_geotiff(const std::string&, const std::string& name, const GeoRaster&) { require_gdal(name); }
+
+std::string png_of(const std::string& name, const std::uint8_t*, std::size_t, std::size_t) {
+  require_gdal(name);
+  return {};
+}
+
+std::string geopackage_of(const std::string& name, const Contours&, const std::vector<double>&,
+                          const std::string&) {
+  require_gdal(name);
+  return {};
+}
 
 }  // namespace flaunay::io

@@ -59,9 +59,10 @@ void write_poly_beside(OutputFile& file, const MeshContents& contents) {
 }
 
 /// In space, on lines that begin with the prefix.
-void print_points(OutputFile& file, std::string_view prefix, const Points& points) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    file.print("{}{} {} 0\n", prefix, points.coordinates[2 * i], points.coordinates[2 * i + 1]);
+void print_points(OutputFile& file, std::string_view prefix, const MeshContents& contents) {
+  const std::vector<double>& coordinates = contents.points.coordinates;
+  for (std::size_t i = 0; i < contents.points.size(); ++i) {
+    file.print("{}{} {} {}\n", prefix, coordinates[2 * i], coordinates[2 * i + 1], contents.height(i));
   }
 }
 
@@ -81,23 +82,24 @@ void print_triangles(OutputFile& file, std::string_view prefix, const MeshConten
 
 void write_off(OutputFile& file, const MeshContents& contents) {
   file.print("OFF\n{} {} 0\n", contents.points.size(), contents.triangle_count());
-  print_points(file, "", contents.points);
+  print_points(file, "", contents);
   print_triangles(file, "3 ", contents, 0);
 }
 
 void write_obj(OutputFile& file, const MeshContents& contents) {
   file.print("# {} vertices, {} triangles\n", contents.points.size(), contents.triangle_count());
-  print_points(file, "v ", contents.points);
+  print_points(file, "v ", contents);
   print_triangles(file, "f ", contents, 1);
   const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
   for (std::size_t e = 0; e < edges.size(); e += 2)
     file.print("l {} {}\n", edges[e] + 1LL, edges[e + 1] + 1LL);
 }
 
-/// The points as x, y, 0.
-void write_spatial_points(OutputFile& file, const Points& points) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double spatial[3] = {points.coordinates[2 * i], points.coordinates[2 * i + 1], 0};
+/// The points as x, y and height.
+void write_spatial_points(OutputFile& file, const MeshContents& contents) {
+  const std::vector<double>& coordinates = contents.points.coordinates;
+  for (std::size_t i = 0; i < contents.points.size(); ++i) {
+    const double spatial[3] = {coordinates[2 * i], coordinates[2 * i + 1], contents.height(i)};
     file.write(spatial, sizeof spatial);
   }
 }
@@ -113,7 +115,7 @@ void write_ply(OutputFile& file, const MeshContents& contents) {
     file.print("element edge {}\nproperty int vertex1\nproperty int vertex2\n", edges.size() / 2);
   }
   file.print("end_header\n");
-  write_spatial_points(file, contents.points);
+  write_spatial_points(file, contents);
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
     file.write_value(std::uint8_t{3});
     file.write(contents.corners(t), 3 * sizeof(std::int32_t));
@@ -152,7 +154,7 @@ void write_vtu(OutputFile& file, const MeshContents& contents) {
   }
   file.print("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
   file.write_value(point_bytes);
-  write_spatial_points(file, contents.points);
+  write_spatial_points(file, contents);
   file.write_value(3 * index_bytes);
   file.write(contents.mesh.triangles.data(), 3 * index_bytes);
   file.write_value(2 * index_bytes);
@@ -194,8 +196,8 @@ void write_msh(OutputFile& file, const MeshContents& contents) {
   const std::size_t edges = mesh.constraint_edges.size() / 2, triangles = contents.triangle_count();
   file.print("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", contents.points.size());
   for (std::size_t i = 0; i < contents.points.size(); ++i) {
-    file.print("{} {} {} 0\n", i + 1, contents.points.coordinates[2 * i],
-               contents.points.coordinates[2 * i + 1]);
+    file.print("{} {} {} {}\n", i + 1, contents.points.coordinates[2 * i],
+               contents.points.coordinates[2 * i + 1], contents.height(i));
   }
   file.print("$EndNodes\n$Elements\n{}\n", edges + triangles);
   const std::vector<std::int32_t>& markers = mesh.edge_markers;
@@ -468,11 +470,11 @@ const Format kEle = {.ending = ".ele",
                      .has_labels = true,
                      .beside = {".node", write_vertices_beside},
                      .constraints_beside = {".poly", write_poly_beside}};
-const Format kOff = {.ending = ".off", .triangles = read_off, .write_mesh = write_off};
-const Format kObj = {.ending = ".obj", .triangles = read_obj, .write_mesh = write_obj};
-const Format kPly = {.ending = ".ply", .triangles = read_ply, .write_mesh = write_ply};
-const Format kMsh = {.ending = ".msh", .write_mesh = write_msh, .has_labels = true};
-const Format kVtu = {.ending = ".vtu", .write_mesh = write_vtu, .has_labels = true};
+const Format kOff = {.ending = ".off", .triangles = read_off, .write_mesh = write_off, .is_spatial = true};
+const Format kObj = {.ending = ".obj", .triangles = read_obj, .write_mesh = write_obj, .is_spatial = true};
+const Format kPly = {.ending = ".ply", .triangles = read_ply, .write_mesh = write_ply, .is_spatial = true};
+const Format kMsh = {.ending = ".msh", .write_mesh = write_msh, .has_labels = true, .is_spatial = true};
+const Format kVtu = {.ending = ".vtu", .write_mesh = write_vtu, .has_labels = true, .is_spatial = true};
 
 const ConstrainedTriangulation& MeshContents::constraints() const {
   static const ConstrainedTriangulation none;

@@ -20,8 +20,10 @@ struct MeshContents {
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
   FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
+  const double* heights = nullptr;                        ///< of the points in space; null: 0
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
+  double height(std::size_t point) const { return heights != nullptr ? heights[point] : 0; }
   const std::int32_t* corners(std::size_t triangle) const { return &mesh.triangles[3 * triangle]; }
   /// The mesh, or one that has nothing if there are no constraints.
   const ConstrainedTriangulation& constraints() const;

@@ -109,6 +109,8 @@ class Scan::Part {
 
   const std::string& path() const { return path_; }
   const Box& box() const { return box_; }
+  double lowest() const { return lowest_; }
+  double highest() const { return highest_; }
   std::string crs() const { return las_ ? las_->crs : ""; }
   std::uint64_t records() const { return size_; }
   void close() { file_.reset(); }
@@ -218,9 +220,11 @@ class Scan::Part {
     Box box = nothing();
     double sum = 0;  // not finite if one of them is not
     for (std::size_t i = 0; i < triples.size(); i += 3) {
-      const double x = triples[i], y = triples[i + 1];
+      const double x = triples[i], y = triples[i + 1], z = triples[i + 2];
       widen(box, {x, y, x, y});
-      sum += 0 * x + 0 * y + 0 * triples[i + 2];
+      lowest_ = std::min(lowest_, z);
+      highest_ = std::max(highest_, z);
+      sum += 0 * x + 0 * y + 0 * z;
     }
     if (sum != 0) {
       fail(path_, "has a point whose coordinates or height are not finite, among the {} from point {} on",
@@ -236,6 +240,7 @@ class Scan::Part {
   std::uint64_t size_ = 0, begin_ = 0;  // of the records
   std::size_t record_bytes_ = 0;
   Box box_ = nothing();
+  double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -lowest_;
   bool is_filtered_ = false;
   std::uint64_t first_ = 0, count_ = 0;
   std::vector<std::uint64_t> chosen_before_;  // by block
@@ -254,6 +259,14 @@ Box Scan::announced_box() const {
   Box box = nothing();
   for (const auto& part : parts_) widen(box, part->box());
   return box;
+}
+
+std::array<double, 2> Scan::heights() const {
+  std::array<double, 2> heights = {nothing()[0], nothing()[2]};
+  for (const auto& part : parts_) {
+    heights = {std::min(heights[0], part->lowest()), std::max(heights[1], part->highest())};
+  }
+  return heights;
 }
 
 std::vector<Scan::System> Scan::systems() const {

@@ -51,6 +51,9 @@ class Scan : public ValuedPoints {
   /// is done.
   Box survey(const std::function<void(double done)>& progress);
 
+  /// The lowest and the highest value, after survey.
+  std::array<double, 2> heights() const;
+
   std::uint64_t size() const override { return size_; }
   void read(std::uint64_t first, std::size_t count, double* coordinates) override;
   void read_values(std::uint64_t first, std::size_t count, double* values) override;
