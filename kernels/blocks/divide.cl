@@ -7,117 +7,29 @@
 // of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
 
 #include "blocks/arguments.h"
+#include "blocks/block.h"
 #include "blocks/halving.h"
 #include "blocks/rings_account.h"
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "mesh/rings.h"
-#include "operations/prefetch.h"
 #include "points/cut_tree.h"
 #include "points/records.h"
 #include "predicates/records.h"
 
-#define MOST_DEPTH 32
-#define FETCHED_VERTICES_AHEAD 256
-
-// A work-item's own arrays, with room for one block.
-typedef struct {
-  global coordinate2* points;  // distinct, by x
-  global int* source;
-  global ranks* by_x;
-  global ranks* by_y;
-  global ranks* spare;
-  global uchar* axes;  // by node
-} block_scratch;
-
-// Writes a block's distinct points into scratch, in the order of x, and returns their number.
-static inline int distinct_by_x(int count, global const coordinate2* points, global const int* source,
-                                const block_scratch* s, global int* representatives) {
-  fetch_bytes(points, count * sizeof(coordinate2));
-  fetch_bytes(source, count * sizeof(int));
-  global keyed* elements = (global keyed*)s->by_x;
-  for (int i = 0; i < count; ++i) elements[i] = keyed_place(0, i);
-  elements = sort_along(elements, (global keyed*)s->by_y, count, points, 0);
-  int distinct = 0;
-  coordinate2 last = VECTOR(coordinate2, 0, 0);
-  for (int i = 0; i < count; ++i) {
-    const int from = place_of_keyed(elements[i]);
-    const coordinate2 p = points[from];
-    if (distinct > 0 && p.x == last.x && p.y == last.y) {
-      representatives[source[from]] = s->source[distinct - 1];
-    } else {
-      s->points[distinct] = last = p;
-      s->source[distinct++] = source[from];
-    }
-  }
-  return distinct;
-}
-
-static inline void rank(int count, block_scratch* s) {
-  global keyed* elements = (global keyed*)s->by_y;
-  // Of equal y, the larger x comes first.
-  for (int i = 0; i < count; ++i) elements[i] = keyed_place(0, count - 1 - i);
-  elements = sort_along(elements, (global keyed*)s->spare, count, s->points, 1);
-  if (elements != (global keyed*)s->by_y) {
-    s->spare = s->by_y;
-    s->by_y = (global ranks*)elements;
-  }
-  for (int r = 0; r < count; ++r) {
-    const int point = place_of_keyed(elements[r]);
-    s->by_y[r] = ranks_of(r, point);
-    s->by_x[point] = ranks_of(point, r);
-  }
-}
-
-// Splits an order stably: what is below the threshold comes first.
-static inline void split_order(int count, ranks threshold, global ranks* restrict order, global ranks* restrict spare) {
-  int64 low = 0;
-  for (int64 i = 0; i < count; ++i) {
-    const ranks both = order[i];
-    order[low] = both;  // low <= i
-    spare[i - low] = both;
-    low += both < threshold;
-  }
-  for (int64 i = 0; i < count - low; ++i) order[low + i] = spare[i];
-}
-
-// Cuts a part at its middle. The order along the axis is split by position, the other one by comparison.
-static inline int cut_part(int begin, int middle, int end, const block_scratch* s) {
-  const int axis = axis_of(begin, end, s->points, s->by_x, s->by_y);
-  global const ranks* const along = axis ? s->by_y : s->by_x;
-  global ranks* const other = axis ? s->by_x : s->by_y;
-  split_order(end - begin, ranks_of(0, own_rank(along[middle])), other + begin, s->spare);
-  return axis;
-}
-
-// Triangulates one block, which is not empty. Writes its vertices in the order of the leaves; returns its hull's ends.
-static inline hull_ends solve_block(rings* g, int first, int count, const block_scratch* s, global coordinate2* points,
-                                    global int* source) {
+// Triangulates one block, which is halved. Returns its hull's ends.
+static inline hull_ends solve_block(rings* g, int first, int count, global const uchar* axes) {
   const int depth = halving_depth(count);
-  for (int d = 0; d < depth; ++d) {
-    for (int j = 0; j < 1 << d; ++j) {
-      s->axes[(1 << d) + j] =
-          cut_part(part_begin(count, d, j), part_begin(count, d + 1, 2 * j + 1), part_begin(count, d, j + 1), s);
-    }
-  }
-  for (int k = 0; k < count; ++k) {
-    const int r = own_rank(s->by_x[k]);
-    points[first + k] = s->points[r];
-    source[first + k] = s->source[r];
-  }
   // Depth first: after leaf i, as many merges as its number has trailing ones.
   hull_ends stack[MOST_DEPTH];
   int height = 0;
   for (int i = 0; i < 1 << depth; ++i) {
     const int begin = part_begin(count, depth, i);
-    // Edges are used for the first time here, about in this order.
-    fetch_bytes(&g->edges[EDGES_PER_VERTEX * (first + begin + FETCHED_VERTICES_AHEAD)],
-                LEAF_VERTICES * EDGES_PER_VERTEX * sizeof(ring_edge));
+    fetch_edges_ahead(g->edges, first + begin);
     hull_ends whole = make_leaf(g, first + begin, part_begin(count, depth, i + 1) - begin);
     for (int node = ((1 << depth) + i); node & 1 && node > 1; node >>= 1) {
-      const int axis = s->axes[node >> 1];
       const hull_ends low = stack[--height];
-      whole = merge_triangulations(g, low, whole, axis);
+      whole = merge_triangulations(g, low, whole, axes[node >> 1]);
     }
     stack[height++] = whole;
   }
@@ -143,12 +55,13 @@ kernel void solve_blocks(int workers, int blocks, int capacity, int larger, glob
       s.by_y = s.by_x + capacity;
       s.spare = s.by_y + capacity;
       s.axes = scratch_axes + base;
-      const int distinct = distinct_by_x(count, points + first, source + first, &s, representatives);
+      const int distinct = distinct_by_x(count, points + first, source + first, 0, &s, representatives);
       rank(distinct, &s);
+      if (distinct > 0) halve_block(first, distinct, &s, points, source);
       rings g = rings_on(edges, points, vertex_edge, bounds);
       g.unused = EDGES_PER_VERTEX * first;
       g.most_ties = most_ties;
-      const hull_ends ends = distinct == 0 ? no_ends() : solve_block(&g, first, distinct, &s, points, source);
+      const hull_ends ends = distinct == 0 ? no_ends() : solve_block(&g, first, distinct, s.axes);
       for (int v = first + distinct; v < first + count; ++v) vertex_edge[v] = NO_EDGE;
       free_unused(&g, EDGES_PER_VERTEX * (first + count));
       const solved_block done = {ends, free_list(&g)};

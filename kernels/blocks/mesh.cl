@@ -20,7 +20,8 @@
 
 kernel void vertex_triangles(int n, global const int* restrict vertex_edge, global uint* restrict counts) {
   const int v = get_global_id(0);
-  if (v < n) counts[v] = vertex_edge[v] == NO_EDGE ? 0 : 2;
+  // NO_EDGE, or HIDDEN_VERTEX of mesh/power_rings.h.
+  if (v < n) counts[v] = vertex_edge[v] < 0 ? 0 : 2;
 }
 
 // An edge with the outside on its left has the complement of the next edge.

@@ -7,6 +7,8 @@
 BEGIN_SHARED
 
 // Directed edges that a vertex brings: a planar graph has less than 3 edges per vertex.
+// Instead of an edge out of a weighted point that is no vertex.
+INTEGER_CONSTANT(HIDDEN_VERTEX, -2);
 INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
 INTEGER_CONSTANT(PAIRS_PER_VERTEX, EDGES_PER_VERTEX / 2);
 // Divide and conquer ends with leaves of at most so many vertices.

@@ -31,6 +31,7 @@ BEGIN_SHARED
 #define ANGLE_BOUND (11 * ROUNDOFF)
 #define NEARNESS_BOUND NEARNESS_BOUND_FOR(ROUNDOFF)
 #define CENTRE_SIDE_BOUND (12 * ROUNDOFF)
+#define POWER_BOUND (14 * ROUNDOFF)
 
 // Triangulated points: coordinates below 2^250 that are multiples of 2^-255. No product of four overflows, and none
 // underflows.

@@ -6,6 +6,7 @@
 #include "blocks/limits.h"
 #include "blocks/pipeline.hpp"
 #include "launchers/blocks/divide.cl.hpp"
+#include "launchers/blocks/weighted.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "tuning/tuning.hpp"
@@ -41,27 +42,50 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
   for (std::size_t first = 0; first < blocks.count; first += per_launch) {
     const std::size_t last = std::min(first + per_launch, blocks.count);
     runtime.fill(next, 1, static_cast<cl_int>(first));
-    runtime.launch(
-        workers, tuning_of(runtime).block_group,
-        kernels::solve_blocks{
-            .workers = workers,
-            .blocks = last,
-            .capacity = capacity,
-            .larger = larger,
-            .offsets = blocks.device_offsets,
-            .bounds = work.bounds,
-            .most_ties = most_ties(work),
-            .next = next,
-            .block_points = {.points = blocks.vertices,
-                             .source = blocks.source,
-                             .representatives = representatives,
-                             .solved = rings.solved,
-                             .distinct_counts = rings.device_distinct},
-            .edges = rings.edges,
-            .vertex_edge = rings.vertex_edge,
-            .account = rings.device_account,
-            .block_scratch = {.scratch_points = points, .scratch_source = source, .scratch_ranks = ranks},
-            .scratch_axes = axes});
+    const kernels::block_points block_points{.points = blocks.vertices,
+                                             .source = blocks.source,
+                                             .representatives = representatives,
+                                             .solved = rings.solved,
+                                             .distinct_counts = rings.device_distinct};
+    const kernels::block_scratch block_scratch{
+        .scratch_points = points, .scratch_source = source, .scratch_ranks = ranks};
+    const std::size_t group = tuning_of(runtime).block_group;
+    if (work.weights == nullptr) {
+      runtime.launch(workers, group,
+                     kernels::solve_blocks{.workers = workers,
+                                           .blocks = last,
+                                           .capacity = capacity,
+                                           .larger = larger,
+                                           .offsets = blocks.device_offsets,
+                                           .bounds = work.bounds,
+                                           .most_ties = most_ties(work),
+                                           .next = next,
+                                           .block_points = block_points,
+                                           .edges = rings.edges,
+                                           .vertex_edge = rings.vertex_edge,
+                                           .account = rings.device_account,
+                                           .block_scratch = block_scratch,
+                                           .scratch_axes = axes});
+    } else {
+      runtime.launch(workers, group,
+                     kernels::solve_weighted_blocks{.workers = workers,
+                                                    .blocks = last,
+                                                    .capacity = capacity,
+                                                    .larger = larger,
+                                                    .offsets = blocks.device_offsets,
+                                                    .bounds = work.bounds,
+                                                    .weights = work.weights->by_point,
+                                                    .weight_range = work.weights->range,
+                                                    .vertex_weights = rings.vertex_weights,
+                                                    .links = rings.links,
+                                                    .next = next,
+                                                    .block_points = block_points,
+                                                    .edges = rings.edges,
+                                                    .vertex_edge = rings.vertex_edge,
+                                                    .account = rings.device_account,
+                                                    .block_scratch = block_scratch,
+                                                    .scratch_axes = axes});
+    }
     if (is_watched) {
       milestones->set("triangulate", kBlocksMade + (kBlocksSolved - kBlocksMade) * static_cast<double>(last) /
                                                        static_cast<double>(blocks.count));
@@ -88,6 +112,24 @@ void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest
   }
 }
 
+void merge_weighted(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
+                    const Rings& rings) {
+  work.runtime.launch(end - first, tuning_of(work.runtime).block_group, end - first,
+                      kernels::merge_weighted_blocks{.first_merge = first,
+                                                     .merges = blocks.device_merges,
+                                                     .nodes = blocks.device_nodes,
+                                                     .offsets = blocks.device_offsets,
+                                                     .bounds = work.bounds,
+                                                     .vertex_weights = rings.vertex_weights,
+                                                     .weight_range = work.weights->range,
+                                                     .links = rings.links,
+                                                     .points = blocks.vertices,
+                                                     .edges = rings.edges,
+                                                     .vertex_edge = rings.vertex_edge,
+                                                     .solved = rings.solved,
+                                                     .account = rings.device_account});
+}
+
 void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
                       const Rings& rings) {
   work.runtime.launch(end - first, tuning_of(work.runtime).block_group, end - first,
@@ -101,6 +143,11 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .vertex_edge = rings.vertex_edge,
                                             .solved = rings.solved,
                                             .account = rings.device_account});
+}
+
+// Of weighted points, a work-item solves a block.
+bool are_in_parallel(const Workspace& work) {
+  return work.weights == nullptr && tuning_of(work.runtime).blocks_in_parallel != 0;
 }
 
 std::size_t largest_of(const Blocks& blocks) {
@@ -124,10 +171,13 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
   rings.device_distinct = work.persistent.allocate<cl_int>(blocks.count);
   rings.device_account = work.persistent.allocate<cl_uint>(kernel::RINGS_NUMBERS);
   runtime.fill(rings.device_account, kernel::RINGS_NUMBERS, cl_uint{0});
+  if (work.weights != nullptr) {
+    rings.vertex_weights = work.persistent.allocate<cl_double>(blocks.points);
+    rings.links = work.persistent.allocate<cl_int>(blocks.points);
+  }
 
   const std::size_t largest = largest_of(blocks);
-  const bool in_parallel = tuning_of(runtime).blocks_in_parallel != 0;
-  if (in_parallel) {
+  if (are_in_parallel(work)) {
     solve_in_parallel(
         work, {blocks.count, blocks.points, largest, blocks.device_offsets, blocks.vertices, blocks.source},
         representatives, rings);
@@ -139,10 +189,12 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 }
 
 void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones) {
-  const bool in_parallel = tuning_of(work.runtime).blocks_in_parallel != 0;
+  const auto merge_level = work.weights != nullptr ? merge_weighted
+                           : are_in_parallel(work) ? merge_trees
+                                                   : merge_one_by_one;
   std::size_t first = 0;
   for (const std::size_t end : blocks.level_ends) {
-    (in_parallel ? merge_trees : merge_one_by_one)(work, blocks, first, end, rings);
+    merge_level(work, blocks, first, end, rings);
     first = end;
     if (milestones != nullptr)
       milestones->set("triangulate", kBlocksSolved + (kBlocksMerged - kBlocksSolved) *

@@ -25,6 +25,24 @@ void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, cons
                                                 .hull = hull});
 }
 
+// Of weighted points it is not known how many are hidden, but how many triangles there are. first_rows: by
+// vertex.
+MeshSizes weighted_mesh_sizes(const Blocks& blocks, const std::vector<cl_int>& walked,
+                              const std::vector<cl_uint>& first_rows) {
+  MeshSizes sizes;
+  sizes.triangle_offsets = sizes.hull_offsets = {0};
+  for (std::size_t s = 0; s < walked.size(); ++s) {
+    const cl_int first = blocks.offsets[blocks.set_blocks[s]],
+                 last = blocks.offsets[blocks.set_blocks[s + 1]];
+    const std::size_t triangles = first_rows[last] - first_rows[first];
+    const std::size_t vertices = first == last ? 0 : (triangles + 2 + walked[s]) / 2;
+    sizes.vertices += vertices;
+    sizes.triangle_offsets.push_back(sizes.triangle_offsets.back() + triangles);
+    sizes.hull_offsets.push_back(sizes.hull_offsets.back() + (triangles == 0 ? vertices : walked[s]));
+  }
+  return sizes;
+}
+
 }  // namespace
 
 // Euler's formula: d points, of which h are on the hull, have 2d - 2 - h triangles. The hull of points on one
@@ -69,8 +87,15 @@ MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) 
   host::exclusive_scan(runtime, rows, blocks.points, rows);
 
   runtime.read_later(hull_sizes, 0, blocks.sets, walked.data());
-  const cl_uint counted = runtime.read_one(rows, blocks.points);
-  MeshSizes sizes = mesh_sizes(blocks.set_blocks, rings.distinct, walked, counted);
+  MeshSizes sizes;
+  if (work.weights != nullptr) {
+    std::vector<cl_uint> first_rows(blocks.points + 1);
+    runtime.read(rows, 0, blocks.points + 1, first_rows.data());
+    sizes = weighted_mesh_sizes(blocks, walked, first_rows);
+  } else {
+    const cl_uint counted = runtime.read_one(rows, blocks.points);
+    sizes = mesh_sizes(blocks.set_blocks, rings.distinct, walked, counted);
+  }
   sizes.first_rows = rows;
   return sizes;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "blocks/rounds.hpp"
+#include "mesh/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -19,11 +20,27 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.hull_vertices = sizes.hull_vertices();
 }
 
+namespace {
+
+std::vector<cl_int> hidden_points(host::Runtime& runtime, const Blocks& blocks, const Rings& rings) {
+  std::vector<cl_int> edges(blocks.points), source(blocks.points), hidden;
+  runtime.read(rings.vertex_edge, 0, blocks.points, edges.data());
+  runtime.read(blocks.source, 0, blocks.points, source.data());
+  for (std::size_t v = 0; v < blocks.points; ++v) {
+    if (edges[v] == kernel::HIDDEN_VERTEX) hidden.push_back(source[v]);
+  }
+  return hidden;
+}
+
+}  // namespace
+
 geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
                               const std::vector<std::size_t>& offsets, const Exchange& exchange,
                               statistics::Phases& phases) {
-  if (tuning_of(runtime).round_points > 0) return run_rounds(runtime, persistent, offsets, exchange, phases);
+  if (exchange.weights == nullptr && tuning_of(runtime).round_points > 0)
+    return run_rounds(runtime, persistent, offsets, exchange, phases);
   Workspace work{runtime, persistent};
+  work.weights = exchange.weights;
   Rings rings;
   const host::Runtime::Settled settled(runtime);
 
@@ -53,6 +70,7 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
   phases.progress("output", kMeshCounted);
   write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes), &milestones);
   milestones.report();
+  if (work.weights != nullptr) outcome.hidden = hidden_points(runtime, blocks, rings);
   return outcome;
 }
 

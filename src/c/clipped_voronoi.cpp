@@ -14,10 +14,6 @@ using c::guarded;
 using c::read;
 using c::required;
 
-struct flaunay_clipped_voronoi {
-  ClippedVoronoi cpp;
-};
-
 struct flaunay_device_clipped_voronoi {
   DeviceClippedVoronoi cpp;
 };

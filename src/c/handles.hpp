@@ -172,3 +172,7 @@ struct flaunay_device_triangulation {
   flaunay::DeviceTriangulation cpp;
   flaunay::c::StatisticsView statistics;
 };
+
+struct flaunay_clipped_voronoi {
+  flaunay::ClippedVoronoi cpp;
+};

@@ -16,6 +16,7 @@ namespace flaunay {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
+using sphere::Plane;
 using sphere::Point;
 
 std::vector<double> places_of(call::Implementation& self, const double* points, std::size_t n,
@@ -27,17 +28,6 @@ std::vector<double> places_of(call::Implementation& self, const double* points, 
     return sphere::to_places(self.native().runtime, points, n, coordinates, what);
   });
 }
-
-// The points that have a place in the plane.
-struct Plane {
-  const std::vector<double>* all = nullptr;  // of the sphere, if none is at the pole
-  std::vector<double> some;
-  std::vector<std::size_t> offsets;
-  Ids points;              // per place; empty if all points have one
-  std::vector<Ids> poles;  // per set, the points at the south pole
-
-  const std::vector<double>& places() const { return all != nullptr ? *all : some; }
-};
 
 Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets) {
   Plane plane;

@@ -62,18 +62,21 @@ class Arrays {
 template <typename Points, typename Result>
 geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
                                          const std::vector<std::size_t>& offsets, const Arrays& arrays,
-                                         statistics::Phases& phases, Result& result) {
+                                         statistics::Phases& phases, Result& result,
+                                         const ScaledWeights* weights = nullptr) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
+  points::Weights by_point;
+  if (weights != nullptr) by_point = {call.in(weights->values), weights->range};
   geometry::Fitted<blocks::Outcome> run = blocks::run(
       engine.runtime, engine.persistent, offsets,
       {[&] { return call.points(points); },
        arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
                                           : engine.persistent.allocate<cl_int>(n),
        arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-       [&] { arrays.reserve(); }},
+       [&] { arrays.reserve(); }, weights != nullptr ? &by_point : nullptr},
       phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
@@ -87,6 +90,7 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
   }
   call.end();
   outcome.write(n, result.statistics);
+  if (weights != nullptr) weights->hidden = std::move(outcome.hidden);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
   return geometry::Done();
@@ -109,7 +113,8 @@ bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
 
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
                                                const std::vector<std::size_t>& offsets,
-                                               const Options& options) {
+                                               const Options& options,
+                                               const ScaledWeights* weights = nullptr) {
   const std::size_t n = points.count, sets = offsets.size() - 1;
   Triangulation result = empty_result(engine, sets);
   if (n == 0) return result;
@@ -121,7 +126,7 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
   engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
   const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
                       result);
-  const auto done = compute(call, points, offsets, arrays, phases, result);
+  const auto done = compute(call, points, offsets, arrays, phases, result, weights);
   if (!done) return done.too_wide();
   phases.end("output");
   engine.write_accounts(result.statistics);
@@ -216,6 +221,12 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   result.statistics.phases.push_back({"triangulate", result.statistics.seconds});
   phases.progress("output", 1);
   return result;
+}
+
+Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, const ScaledWeights& weights,
+                                   const std::vector<std::size_t>& offsets, const Options& options) {
+  engine.check_size(points.count);
+  return *triangulate_on(engine, points, offsets, options, &weights);
 }
 
 Triangulation triangulate(Implementation& self, const HostPoints& points,

@@ -24,6 +24,19 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
 Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
                                 const Options& options);
 
+/// Weights by index, scaled twice as points are, and the largest difference of two of them.
+struct ScaledWeights {
+  std::vector<double> values;
+  double range = 0;
+  std::vector<cl_int>&
+      hidden;  ///< gets the points that are no vertices, besides those in heavier ones' places
+};
+
+/// Computes regular triangulations of sets in host memory. The representative of a point in the place of a
+/// heavier one is the complement of that one.
+Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, const ScaledWeights& weights,
+                                   const std::vector<std::size_t>& offsets, const Options& options);
+
 /// Implements Triangulator::triangulate for device memory. What the device cannot compute in fixed point is
 /// computed with its doubles, or if it has none, on the host.
 void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,

@@ -16,6 +16,12 @@ namespace flaunay::points {
 using host::Arena;
 using host::Buffer;
 
+/// Weights of points, for regular triangulations: squared, and scaled, as distances are.
+struct Weights {
+  Buffer<cl_double> by_point{};  ///< by index of the input
+  double range = 0;              ///< the largest difference of two of them
+};
+
 /// What every stage works with.
 struct Workspace {
   host::Runtime& runtime;
@@ -24,6 +30,7 @@ struct Workspace {
   /// Merges keep all edges in cocircular polygons as they find them, on any device. Otherwise single
   /// work-items make small polygons canonical at once.
   bool ties_are_left = false;
+  const Weights* weights = nullptr;  ///< null if points have none
 
   Arena& scratch() { return runtime.arena(); }
 };

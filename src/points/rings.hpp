@@ -16,10 +16,12 @@ struct Rings {
   host::Buffer<kernel::solved_block> solved{};
   host::Buffer<cl_int> device_distinct{};
   host::Buffer<cl_uint> device_account{};
-  std::vector<cl_int> distinct;  ///< number of vertices of each block
-  std::size_t undecided = 0;     ///< predicates that were evaluated exactly
-  std::size_t ties = 0;          ///< how many of them found cocircular points
-  std::size_t ties_left = 0;     ///< how many of these left edges as they were
+  host::Buffer<cl_double> vertex_weights{};  ///< if points have weights
+  host::Buffer<cl_int> links{};              ///< if points have weights: see mesh/power_rings.h
+  std::vector<cl_int> distinct;              ///< number of vertices of each block
+  std::size_t undecided = 0;                 ///< predicates that were evaluated exactly
+  std::size_t ties = 0;                      ///< how many of them found cocircular points
+  std::size_t ties_left = 0;                 ///< how many of these left edges as they were
 };
 
 }  // namespace flaunay::points

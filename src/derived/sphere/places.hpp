@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "flaunay/sphere.hpp"
@@ -22,6 +23,17 @@ inline Point pole() { return {HUGE_VAL, HUGE_VAL}; }
 inline Point place_at(const std::vector<double>& places, std::size_t i) {
   return {places[2 * i], places[2 * i + 1]};
 }
+
+/// The points that have a place in the plane.
+struct Plane {
+  const std::vector<double>* all = nullptr;  ///< of the sphere, if none is at the pole
+  std::vector<double> some;
+  std::vector<std::size_t> offsets;
+  std::vector<std::int32_t> points;              ///< per place; empty if all points have one
+  std::vector<std::vector<std::int32_t>> poles;  ///< per set, the points at the south pole
+
+  const std::vector<double>& places() const { return all != nullptr ? *all : some; }
+};
 
 /// A vector in space.
 struct Direction {

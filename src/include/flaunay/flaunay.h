@@ -1540,6 +1540,57 @@ FLAUNAY_API const size_t* flaunay_periodic_triangle_offsets(const flaunay_period
 /// room for n values.
 FLAUNAY_API flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas);
 
+// ---- Weighted points
+
+/// The regular triangulations of sets of weighted points: the lower hulls of the points at height x^2 + y^2 -
+/// weight.
+typedef struct flaunay_weighted flaunay_weighted;
+/// Computes the regular triangulation of n points, x0 y0 x1 y1 ..., with n weights, which are squared lengths
+/// of any sign. offsets and sets: as for flaunay_triangulate. The result is exact and canonical, and with
+/// equal weights the Delaunay triangulation. Errors are those of flaunay_triangulate; FLAUNAY_ERROR_INPUT
+/// also for a weight that is not finite, or beyond the squares of what coordinates may be. The caller
+/// destroys the result. O(n log n) work.
+FLAUNAY_API flaunay_status flaunay_weighted_create(flaunay_triangulator* triangulator, const double* points,
+                                                   const double* weights, size_t n, const size_t* offsets,
+                                                   size_t sets, flaunay_weighted** weighted);
+/// Frees the arrays.
+FLAUNAY_API void flaunay_weighted_destroy(flaunay_weighted* weighted);
+/// n, the number of points.
+FLAUNAY_API size_t flaunay_weighted_point_count(const flaunay_weighted* weighted);
+/// t, the number of triangles.
+FLAUNAY_API size_t flaunay_weighted_triangle_count(const flaunay_weighted* weighted);
+/// The number of hull vertices over all sets.
+FLAUNAY_API size_t flaunay_weighted_hull_vertex_count(const flaunay_weighted* weighted);
+/// The number of hidden points.
+FLAUNAY_API size_t flaunay_weighted_hidden_count(const flaunay_weighted* weighted);
+/// 3 t values, counter-clockwise, smallest index first.
+FLAUNAY_API const int32_t* flaunay_weighted_triangles(const flaunay_weighted* weighted);
+/// 3 t values: the triangle opposite to each corner, -1 beyond the hull.
+FLAUNAY_API const int32_t* flaunay_weighted_neighbors(const flaunay_weighted* weighted);
+/// The hull's vertices, as of flaunay_triangulation_hull, without hidden points.
+FLAUNAY_API const int32_t* flaunay_weighted_hull(const flaunay_weighted* weighted);
+/// n values: the smallest index of a point of the set with the same coordinates and weight.
+FLAUNAY_API const int32_t* flaunay_weighted_representatives(const flaunay_weighted* weighted);
+/// The points without a power cell, ascending, but those that another one represents.
+FLAUNAY_API const int32_t* flaunay_weighted_hidden(const flaunay_weighted* weighted);
+/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
+FLAUNAY_API const size_t* flaunay_weighted_triangle_offsets(const flaunay_weighted* weighted);
+/// Sets + 1 values: set s has the hull vertices [offsets[s], offsets[s + 1]).
+FLAUNAY_API const size_t* flaunay_weighted_hull_offsets(const flaunay_weighted* weighted);
+/// Finds for each hidden point the triangle that hides it: the one of the smallest index that has it inside
+/// or on its border; -1 in a set without triangles. points: those that were triangulated. triangles: room for
+/// one value per hidden point.
+FLAUNAY_API flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangulator,
+                                                             const flaunay_weighted* weighted,
+                                                             const double* points, int32_t* triangles);
+/// Computes the power cells of one set, clipped to a convex polygon, as flaunay_voronoi_clip does without
+/// weights: of each point the places whose squared distance less the weight is least for it. Each cell is
+/// rounded by itself. points, weights: those that were triangulated. The caller destroys the result.
+FLAUNAY_API flaunay_status flaunay_weighted_cells(flaunay_triangulator* triangulator,
+                                                  const flaunay_weighted* weighted, const double* points,
+                                                  const double* weights, const double* corners,
+                                                  size_t corner_count, flaunay_clipped_voronoi** cells);
+
 // ---- Interpolation
 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers

@@ -1,0 +1,140 @@
+// The public calls for weighted points.
+#include "flaunay/weighted.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "arithmetic/coordinates.h"
+#include "call/frame.hpp"
+#include "call/triangulate.hpp"
+#include "derived/voronoi/clip_polygon.hpp"
+#include "derived/weighted/cells.hpp"
+#include "geometry/magnitudes.hpp"
+#include "predicates/bounds.h"
+
+namespace flaunay {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+// Lifts are made of squares of coordinates and of weights.
+constexpr int kLargestExponent = 2 * kernel::LARGEST_EXPONENT, kLowestExponent = 2 * kernel::LOWEST_EXPONENT;
+
+// Whether a scaled weight has bits that no square of a coordinate has.
+bool is_too_fine(double scaled) {
+  constexpr int kBits = 53;
+  return std::fabs(scaled) < std::ldexp(1.0, kLowestExponent + kBits) &&
+         geometry::lowest_bit(scaled) < kLowestExponent;
+}
+
+// Scales a weight as the squares of its point's coordinates are, which is exact.
+double scaled_weight(double weight, std::size_t point, const kernel::scaling& scale) {
+  const double scaled = kernel::scaled(kernel::scaled(weight, scale), scale);
+  const bool is_large = !(std::fabs(scaled) < std::ldexp(1.0, kLargestExponent + 1));
+  if (!is_large && (weight == 0 || (scaled != 0 && !is_too_fine(scaled)))) return scaled;
+  if (!std::isfinite(weight)) {
+    throw Error(ErrorKind::input, fmt::format("the weight of point {} is not finite: {}", point, weight));
+  }
+  throw Error(ErrorKind::input,
+              fmt::format("the weight of point {}, {}, is too {} beside the squares of the coordinates for "
+                          "exact arithmetic: scale the weights",
+                          point, weight, is_large ? "large" : "fine"));
+}
+
+// Makes of representatives what WeightedTriangulation says of them, and lists all hidden points.
+void settle(WeightedTriangulation& mesh) {
+  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+    if (mesh.representatives[i] >= 0) continue;
+    mesh.representatives[i] = static_cast<std::int32_t>(i);
+    mesh.hidden.push_back(static_cast<std::int32_t>(i));
+  }
+  std::sort(mesh.hidden.begin(), mesh.hidden.end());
+  mesh.statistics.duplicates = 0;
+  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+    mesh.statistics.duplicates += mesh.representatives[i] != static_cast<std::int32_t>(i);
+  }
+}
+
+}  // namespace
+
+WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
+                                           const double* weights, std::size_t n, const Options& options) {
+  return triangulate_weighted(triangulator, points, weights, std::vector<std::size_t>{0, n}, options);
+}
+
+WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
+                                           const double* weights, const std::vector<std::size_t>& offsets,
+                                           const Options& options) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    const call::HostPoints given = call::checked_points(points, nullptr, offsets);
+    call::expect(given.count == 0 || weights != nullptr, "points, but no weights: the pointer is null");
+    const geometry::SetScalings scalings = geometry::set_scalings(
+        points, offsets,
+        [&](std::size_t first, std::size_t last) { return geometry::inspect(points, first, last); });
+    WeightedTriangulation mesh;
+    call::ScaledWeights scaled{std::vector<double>(given.count), 0, mesh.hidden};
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+      const kernel::scaling scale = kernel::scale_of(scalings.shift(s));
+      for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+        scaled.values[i] = scaled_weight(weights[i], i, scale);
+        least = std::min(least, scaled.values[i]);
+        most = std::max(most, scaled.values[i]);
+      }
+    }
+    if (given.count > 0) scaled.range = most - least;
+    static_cast<Triangulation&>(mesh) =
+        call::triangulate_weighted(self.native(), given, scaled, offsets, options);
+    settle(mesh);
+    return mesh;
+  });
+}
+
+Ids hiding_triangles(Triangulator& triangulator, const double* points,
+                     const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+  geometry::check_offsets(offsets);
+  const std::size_t n = offsets.back();
+  call::expect(mesh.representatives.size() == n && mesh.triangle_offsets.size() == offsets.size() &&
+                   std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
+                   (mesh.hidden.empty() ||
+                    (mesh.hidden.front() >= 0 && static_cast<std::size_t>(mesh.hidden.back()) < n)) &&
+                   (n == 0 || points != nullptr),
+               "the triangulation is not one of these points");
+  if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
+  const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
+  Locator locator(triangulator, visible.coordinates.data(), visible.offsets, visible.mesh);
+  std::vector<double> queries;
+  queries.reserve(2 * mesh.hidden.size());
+  for (const std::int32_t i : mesh.hidden) queries.insert(queries.end(), {points[2 * i], points[2 * i + 1]});
+  std::vector<std::size_t> of_sets;
+  for (const std::size_t offset : offsets) {
+    of_sets.push_back(static_cast<std::size_t>(
+        std::lower_bound(mesh.hidden.begin(), mesh.hidden.end(), static_cast<std::int64_t>(offset)) -
+        mesh.hidden.begin()));
+  }
+  return locator.locate(queries.data(), of_sets);
+}
+
+ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, const double* weights,
+                           std::size_t n, const WeightedTriangulation& mesh, const double* corners,
+                           std::size_t corner_count) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    const auto are_points = [n](const Ids& ids) {
+      return std::all_of(ids.begin(), ids.end(),
+                         [n](std::int32_t i) { return i >= 0 && static_cast<std::size_t>(i) < n; });
+    };
+    call::expect(mesh.representatives.size() == n && mesh.triangle_offsets.size() == 2 &&
+                     are_points(mesh.triangles) && are_points(mesh.hull) &&
+                     (n == 0 || (points != nullptr && weights != nullptr)),
+                 "the triangulation is not one of these points");
+    call::expect(mesh.neighbors.size() == mesh.triangles.size(), "power cells need neighbours");
+    return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
+  });
+}
+
+}  // namespace flaunay

@@ -1,0 +1,27 @@
+// What is derived from regular triangulations: power cells, and the points that are not hidden.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "flaunay/weighted.hpp"
+#include "host/runtime.hpp"
+
+namespace flaunay::weighted {
+
+/// The points that are not hidden, and the triangulation of these.
+struct Visible {
+  std::vector<double> coordinates;
+  std::vector<std::size_t> offsets;  ///< sets + 1 values
+  Triangulation mesh;
+};
+
+/// O(n).
+Visible visible_points(const double* points, const std::vector<std::size_t>& offsets,
+                       const WeightedTriangulation& mesh);
+
+/// See power_cells; the arrays fit each other.
+ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
+                          const WeightedTriangulation& mesh, const std::vector<double>& corners);
+
+}  // namespace flaunay::weighted
