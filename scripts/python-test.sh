@@ -51,6 +51,6 @@ types=build/types
 PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
 
 # The programs in the guide and the tutorials.
-WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md docs/tutorials/*.md
+WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md docs/weighted.md docs/tutorials/*.md
 
 exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"

@@ -1719,6 +1719,36 @@ static void test_sphere(void) {
   flaunay_spherical_destroy(spherical);
 }
 
+static void test_weighted(void) {
+  const double places[] = {0, 0, 4, 0, 4, 4, 0, 4, 1, 2, 1, 2}, weights[] = {0, 0, 0, 0, -8, 3};
+  const double corners[] = {0, 0, 4, 0, 4, 4, 0, 4};
+  flaunay_weighted *weighted = NULL, *none = NULL;
+  REQUIRE(flaunay_weighted_create(triangulator, places, weights, 6, NULL, 0, &weighted) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_weighted_point_count(weighted) == 6 && flaunay_weighted_triangle_count(weighted) == 4);
+  CHECK(flaunay_weighted_hull_vertex_count(weighted) == 4 && flaunay_weighted_hull(weighted)[2] == 2);
+  REQUIRE(flaunay_weighted_hidden_count(weighted) == 1);
+  CHECK(flaunay_weighted_hidden(weighted)[0] == 4 && flaunay_weighted_representatives(weighted)[5] == 5);
+  CHECK(flaunay_weighted_triangles(weighted)[0] == 0 && flaunay_weighted_neighbors(weighted)[1] >= -1);
+  CHECK(flaunay_weighted_triangle_offsets(weighted)[1] == 4 &&
+        flaunay_weighted_hull_offsets(weighted)[1] == 4);
+  int32_t hiding = -1;
+  REQUIRE(flaunay_weighted_hiding_triangles(triangulator, weighted, places, &hiding) == FLAUNAY_SUCCESS);
+  CHECK(hiding == 0);
+  flaunay_clipped_voronoi* cells = NULL;
+  REQUIRE(flaunay_weighted_cells(triangulator, weighted, places, weights, corners, 4, &cells) ==
+          FLAUNAY_SUCCESS);
+  const double* areas = flaunay_clipped_voronoi_areas(cells);
+  CHECK(areas[4] == 0 && areas[5] > 4);
+  CHECK(fabs(areas[0] + areas[1] + areas[2] + areas[3] + areas[5] - 16) < 1e-12);
+  flaunay_clipped_voronoi_destroy(cells);
+  CHECK(fails(flaunay_weighted_create(triangulator, places, NULL, 6, NULL, 0, &none), FLAUNAY_ERROR_USAGE,
+              "no weights"));
+  CHECK(fails(flaunay_weighted_hiding_triangles(triangulator, NULL, places, &hiding), FLAUNAY_ERROR_USAGE,
+              "NULL"));
+  CHECK(none == NULL && flaunay_weighted_hidden(NULL) == NULL);
+  flaunay_weighted_destroy(weighted);
+}
+
 static void test_periodic(void) {
   enum { SIDE = 6, COUNT = SIDE * SIDE };
   double places[2 * COUNT], areas[COUNT];
@@ -2811,6 +2841,7 @@ static void test_all(void) {
   test_raster();
   test_sphere();
   test_periodic();
+  test_weighted();
   test_locator();
   test_point_tree();
   test_queries_with_constraints();

@@ -13,6 +13,7 @@
 #include "arithmetic/numbers.h"
 #include "predicates/bounds.h"
 #include "predicates/planar.h"
+#include "predicates/records.h"
 
 #ifndef FIXED_POINT
 

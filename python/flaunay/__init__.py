@@ -63,6 +63,7 @@ from flaunay._triangulate import refine, triangulate
 from flaunay._triangulation import Triangulation, modes
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
+from flaunay._weighted import WeightedDelaunay, weighted
 
 __all__ = [
     "AlphaShape",
@@ -98,6 +99,7 @@ __all__ = [
     "UsageError",
     "Voronoi",
     "VoronoiPieces",
+    "WeightedDelaunay",
     "__version__",
     "alpha_shape",
     "contour_chunks",
@@ -117,4 +119,5 @@ __all__ = [
     "triangulate_chunks",
     "triangulate_device",
     "voronoi_polygons",
+    "weighted",
 ]

@@ -94,6 +94,7 @@ _DEVICE_CALLS = {
 _ROWS = 1 << 14
 
 _SINGULAR = {
+    "hidden": "hidden",
     "values_per_point": "value per point",
     "pieces": "piece",
     "points": "point",

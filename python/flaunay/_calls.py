@@ -1683,3 +1683,68 @@ class Periodic(Handle):
         areas = np.empty(self._point_count)
         check(library.periodic_cell_areas(self.pointer, _address_of(areas)))
         return areas
+
+
+# ---- Weighted points
+
+
+class Weighted(Handle):
+    """Regular triangulations of weighted points."""
+
+    _destroy = library.weighted_destroy
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: _Doubles,
+        weights: _Doubles,
+        given_offsets: Optional[_Offsets],
+    ) -> None:
+        super().__init__()
+        n, points, weights = len(points), _as_doubles(points), _as_doubles(weights)
+        offsets, sets = _as_offsets(given_offsets, n)
+        triangulator.call(
+            library.weighted_create,
+            *(triangulator.pointer, points, weights, n, offsets, sets, self.place),
+        )
+        self._sets = sets or 1
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        n, triangles, corners, hidden = (
+            getattr(library, f"weighted_{what}_count")(self.pointer)
+            for what in ("point", "triangle", "hull_vertex", "hidden")
+        )
+        return {
+            name: _view(
+                self, getattr(library, f"weighted_{name}")(self.pointer), shape, np.dtype(dtype)
+            )
+            for name, shape, dtype in (
+                ("triangles", (triangles, 3), np.int32),
+                ("neighbors", (triangles, 3), np.int32),
+                ("hull", (corners,), np.int32),
+                ("hidden", (hidden,), np.int32),
+                ("representatives", (n,), np.int32),
+                ("triangle_offsets", (self._sets + 1,), np.int64),
+                ("hull_offsets", (self._sets + 1,), np.int64),
+            )
+        }
+
+    def hiding_triangles(self, triangulator: Triangulator, points: _Doubles) -> _Indices:
+        triangles = np.empty(library.weighted_hidden_count(self.pointer), np.int32)
+        triangulator.call(
+            library.weighted_hiding_triangles,
+            *(triangulator.pointer, self.pointer, _as_doubles(points), _address_of(triangles)),
+        )
+        return triangles
+
+    def cells(
+        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles
+    ) -> dict[str, Any]:
+        result = _ClippedVoronoi()
+        corners = _as_doubles(corners)
+        triangulator.call(
+            library.weighted_cells,
+            *(triangulator.pointer, self.pointer, _as_doubles(points), _as_doubles(weights)),
+            *(corners, len(corners), result.place),
+        )
+        return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", len(points))

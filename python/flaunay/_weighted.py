@@ -1,0 +1,177 @@
+"""Weighted points: regular triangulations and power diagrams."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _calls, _triangulators
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._cells import ClippedVoronoi, corners_of
+from flaunay._errors import UsageError
+
+Doubles = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+
+class WeightedDelaunay:
+    """Regular triangulations of weighted points, the duals of power diagrams. `weighted` makes them.
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (npoints, 2)
+    weights : ndarray of float64, shape (npoints,)
+    simplices : ndarray of int32, shape (nsimplex, 3)
+        The corners of triangles, counter-clockwise.
+    neighbors : ndarray of int32, shape (nsimplex, 3)
+        The triangle opposite to each corner, -1 beyond the hull.
+    hull : ndarray of int32, shape (nhull,)
+        The hull's vertices, counter-clockwise; of a set on one line its vertices in their order.
+    hidden : ndarray of int32, shape (nhidden,)
+        The points without a power cell, ascending, but those that another one represents.
+    representatives : ndarray of int32, shape (npoints,)
+        The smallest index of a point of the set with the same coordinates and weight.
+    simplex_offsets : ndarray of int64, shape (nsets + 1,)
+        Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
+    hull_offsets : ndarray of int64, shape (nsets + 1,)
+    """
+
+    def __init__(
+        self,
+        points: Doubles,
+        weights: Doubles,
+        offsets: Optional[npt.NDArray[np.int64]],
+        device: Optional[str],
+    ) -> None:
+        self._given = points, weights, offsets, device
+        self._handle = _calls.Weighted(_triangulators.of_device(device), points, weights, offsets)
+        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
+        self.points = points
+        self.weights = weights
+        self.simplices: Indices = arrays["triangles"]
+        self.neighbors: Indices = arrays["neighbors"]
+        self.hull: Indices = arrays["hull"]
+        self.hidden: Indices = arrays["hidden"]
+        self.representatives: Indices = arrays["representatives"]
+        self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
+        self.hull_offsets: npt.NDArray[np.int64] = arrays["hull_offsets"]
+
+    def __repr__(self) -> str:
+        return summary(self, points=self.npoints, triangles=self.nsimplex, hidden=len(self.hidden))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The result is a function of what was given.
+        return WeightedDelaunay, self._given
+
+    @property
+    def npoints(self) -> int:
+        return len(self.points)
+
+    @property
+    def nsimplex(self) -> int:
+        return len(self.simplices)
+
+    @cached_property
+    def hidden_by(self) -> Indices:
+        """The triangle that hides each of the hidden points, exactly, shape (nhidden,).
+
+        It has the point inside or on its border; of several it is the first. -1 in a set without triangles.
+        """
+        return frozen(
+            self._handle.hiding_triangles(_triangulators.of_device(self._given[3]), self.points)
+        )
+
+    def cells(self, bounds: Any) -> ClippedVoronoi:
+        """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.
+
+        Each cell is rounded by itself.
+
+        Parameters
+        ----------
+        bounds : array_like or shapely.Polygon
+            As of `Voronoi.clipped`.
+
+        Raises
+        ------
+        UsageError
+            For bounds that are none, and for several sets.
+        InputError
+            For a polygon that is not convex.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.weighted([[0, 0], [4, 0]], [0, 8])
+        >>> tri.cells((-1, -1, 5, 1)).areas.tolist()
+        [4.0, 8.0]
+        """
+        if len(self.simplex_offsets) != 2:
+            raise UsageError("power cells are of one set; triangulate the sets one by one")
+        corners = corners_of(bounds)
+        arrays = self._handle.cells(
+            _triangulators.of_device(self._given[3]), self.points, self.weights, corners
+        )
+        return ClippedVoronoi(**arrays, bounds=corners)
+
+
+def weighted(
+    points: ArrayLike,
+    weights: ArrayLike,
+    offsets: Optional[npt.ArrayLike] = None,
+    *,
+    device: Optional[str] = None,
+) -> WeightedDelaunay:
+    """Computes the regular triangulation of weighted points, the dual of their power diagram.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+    weights : array_like, shape (n,)
+        Squared lengths of any sign; of circles, their squared radii.
+    offsets : array_like of int, optional
+        Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
+        are one set.
+    device : str, optional
+        As of `triangulate`; the host's cores compute in any case.
+
+    Returns
+    -------
+    WeightedDelaunay
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, and offsets that decrease or do not go from 0 to n.
+    InputError
+        As of `triangulate`; also for a weight that is not finite, or too large or too fine beside the squares
+        of coordinates.
+    DeviceError
+        As of `triangulate`.
+
+    Notes
+    -----
+    Exact: the lower hull of the points at height x^2 + y^2 - weight. A point that only lies on what others span
+    is hidden. With equal weights it is the Delaunay triangulation. O(n log n).
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> tri = flaunay.weighted([[0, 0], [4, 0], [0, 4], [1, 1]], [0, 0, 0, -9])
+    >>> tri
+    <flaunay.WeightedDelaunay: 4 points, 1 triangle, 1 hidden>
+    >>> tri.hidden.tolist(), tri.hidden_by.tolist()
+    ([3], [0])
+    """
+    given = np.asarray(as_floats(points, "points"), np.float64)
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
+    of_points = np.asarray(as_floats(weights, "weights"), np.float64)
+    if of_points.shape != given.shape[:1]:
+        raise UsageError(
+            f"weights must have the shape ({len(given)},), one per point, not {of_points.shape}"
+        )
+    sets = None if offsets is None else as_offsets(offsets)
+    return WeightedDelaunay(frozen(given.copy()), frozen(of_points.copy()), sets, device)
