@@ -1770,8 +1770,29 @@ static void test_periodic(void) {
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
   REQUIRE(flaunay_periodic_cell_areas(periodic, areas) == FLAUNAY_SUCCESS);
   for (size_t i = 0; i < COUNT; ++i) CHECK(fabs(areas[i] - 2) < 1e-12);
-  CHECK(fails(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 1, 1, &none), FLAUNAY_ERROR_INPUT,
-              "empty circle"));
+  CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
+  CHECK(flaunay_periodic_verify(triangulator, periodic) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_periodic_verify(triangulator, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
+  flaunay_periodic_locator* locator = NULL;
+  REQUIRE(flaunay_periodic_locator_create(triangulator, periodic, &locator) == FLAUNAY_SUCCESS);
+  const double query[] = {SIDE - 0.25, -0.5};
+  int32_t found[] = {-2, -2};
+  double value = 0;
+  CHECK(flaunay_periodic_locator_locate(locator, query, 1, found) == FLAUNAY_SUCCESS && found[0] >= 0);
+  CHECK(flaunay_periodic_locator_nearest(locator, query, 1, found) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 &&
+        flaunay_periodic_places(periodic)[2 * found[0] + 1] == 0);
+  CHECK(flaunay_periodic_locator_interpolate(locator, areas, 1, query, 1, &value) == FLAUNAY_SUCCESS);
+  CHECK(fabs(value - 2) < 1e-12 && found[1] == -2);
+  CHECK(fails(flaunay_periodic_locator_nearest(NULL, query, 1, found), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(fails(flaunay_periodic_locator_interpolate(locator, areas, 0, query, 1, &value), FLAUNAY_ERROR_USAGE,
+              "columns"));
+  flaunay_periodic_locator_destroy(locator);
+  flaunay_periodic_destroy(periodic);
+  REQUIRE(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, &periodic) ==
+          FLAUNAY_SUCCESS);
+  CHECK(flaunay_periodic_triangle_count(periodic) == 2 * COUNT - 2 * SIDE);
+  CHECK(fails(flaunay_periodic_cell_areas(periodic, areas), FLAUNAY_ERROR_USAGE, "cylinder"));
   CHECK(fails(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), FLAUNAY_ERROR_USAGE,
               "period"));
   CHECK(none == NULL && fails(flaunay_periodic_cell_areas(NULL, areas), FLAUNAY_ERROR_USAGE, "NULL"));

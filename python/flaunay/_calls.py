@@ -1639,11 +1639,11 @@ class SphericalLocator(_InTurns):
         return results
 
 
-# ---- Points on a torus
+# ---- Points on a torus or a cylinder
 
 
 class Periodic(Handle):
-    """Triangulations of points on a torus."""
+    """Triangulations of points on a torus or a cylinder."""
 
     _destroy = library.periodic_destroy
 
@@ -1670,6 +1670,7 @@ class Periodic(Handle):
                 self, getattr(library, f"periodic_{name}")(self.pointer), shape, np.dtype(dtype)
             )
             for name, shape, dtype in (
+                ("period", (2,), np.float64),
                 ("places", (n, 2), np.float64),
                 ("triangles", (triangles, 3), np.int32),
                 ("offsets", (triangles, 3, 2), np.int8),
@@ -1679,10 +1680,47 @@ class Periodic(Handle):
             )
         }
 
+    def verify(self, triangulator: Triangulator) -> None:
+        triangulator.call(library.periodic_verify, triangulator.pointer, self.pointer)
+
     def cell_areas(self) -> _Doubles:
         areas = np.empty(self._point_count)
         check(library.periodic_cell_areas(self.pointer, _address_of(areas)))
         return areas
+
+
+class PeriodicLocator(_InTurns):
+    """Answers queries on a torus or a cylinder."""
+
+    _destroy = library.periodic_locator_destroy
+
+    def __init__(self, triangulator: Triangulator, periodic: Periodic) -> None:
+        super().__init__(triangulator)
+        triangulator.call(
+            library.periodic_locator_create, triangulator.pointer, periodic.pointer, self.place
+        )
+
+    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+        found = np.empty(len(queries), np.int32)
+        queries = _as_doubles(queries)
+        self._triangulator.call(function, self.pointer, queries, len(queries), found)
+        return found
+
+    def locate(self, queries: _Doubles) -> _Indices:
+        return self._find(library.periodic_locator_locate, queries)
+
+    def nearest(self, queries: _Doubles) -> _Indices:
+        return self._find(library.periodic_locator_nearest, queries)
+
+    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
+        """A row of values at each query. values: one for each point."""
+        results = np.empty((len(queries), values.shape[1]))
+        values, queries = _as_doubles(values), _as_doubles(queries)
+        self._triangulator.call(
+            library.periodic_locator_interpolate,
+            *(self.pointer, values, values.shape[1], queries, len(queries), results),
+        )
+        return results
 
 
 # ---- Weighted points

@@ -1,4 +1,4 @@
-"""Points on a torus: a plane that repeats itself in x and y."""
+"""Points on a torus or a cylinder: a plane that repeats itself in x and y, or in one of them."""
 
 from __future__ import annotations
 
@@ -11,29 +11,40 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
 from flaunay._errors import UsageError
+from flaunay._queries import Kept
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 
+def _as_queries(given: ArrayLike) -> Doubles:
+    queries = np.asarray(as_floats(given, "xi"), np.float64)
+    if queries.ndim == 0 or queries.shape[-1] != 2:
+        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
+    return queries
+
+
 class PeriodicDelaunay:
-    """Delaunay triangulations of points on a torus. `periodic` makes them.
+    """Delaunay triangulations of points on a torus or a cylinder. `periodic` makes them.
 
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, 2)
         The points as they were given.
     period : tuple of float
-        Where the plane begins again, in x and in y.
+        Where the plane begins again, in x and in y; infinite if it does not. As given, but for the last bit
+        of a double, which is 0 unless the period is a power of two.
     places : ndarray of float64, shape (npoints, 2)
-        The points in [0, period), rounded once to multiples of the period's last bit: this is what they
-        are.
+        The points in [0, period), rounded once to multiples of the period's last bit but one: this is what
+        they are. What has no period is not rounded.
     simplices : ndarray of int32, shape (nsimplex, 3)
-        The corners of triangles, counter-clockwise; 2 n for each set of n different points.
+        The corners of triangles, counter-clockwise. A set of n different points has 2 n, and on a cylinder
+        2 n - h, if h of them are on its lowest and its highest circle.
     corner_offsets : ndarray of int8, shape (nsimplex, 3, 2)
-        In which period each corner is, if the first one is at its place: -1, 0 or 1.
+        In which period each corner is, if the first one is at its place: -1, 0 or 1. They tell apart corners
+        that are the same point, as few points have them.
     neighbors : ndarray of int32, shape (nsimplex, 3)
-        The triangle opposite to each corner. There is always one.
+        The triangle opposite to each corner; -1 beyond the ends of a cylinder.
     representatives : ndarray of int32, shape (npoints,)
         The smallest index of a point of the set with the same place.
     simplex_offsets : ndarray of int64, shape (nsets + 1,)
@@ -51,13 +62,15 @@ class PeriodicDelaunay:
         self._handle = _calls.Periodic(_triangulators.of_device(device), points, period, offsets)
         arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
         self.points = points
-        self.period = period
+        across, up = arrays["period"].tolist()
+        self.period: tuple[float, float] = across, up
         self.places: Doubles = arrays["places"]
         self.simplices: Indices = arrays["triangles"]
         self.corner_offsets: npt.NDArray[np.int8] = arrays["offsets"]
         self.neighbors: Indices = arrays["neighbors"]
         self.representatives: Indices = arrays["representatives"]
         self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
+        self._kept_locator: Kept[_calls.PeriodicLocator] = Kept()
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex)
@@ -78,7 +91,8 @@ class PeriodicDelaunay:
     def cell_areas(self) -> Doubles:
         """The areas of the points' Voronoi cells, rounded, shape (npoints,).
 
-        Those of a set sum to that of the period. Points that another one represents have 0.
+        Those of a set sum to that of the period. Points that another one represents have 0. On a cylinder
+        this is a UsageError: cells there have no end.
         """
         return frozen(self._handle.cell_areas())
 
@@ -95,12 +109,124 @@ class PeriodicDelaunay:
         >>> ((a * d - b * c) / 2).sum().round(12).item()
         1.0
         """
-        return frozen(self.places[self.simplices] + self.corner_offsets * np.array(self.period))
+        steps = np.where(np.isfinite(self.period), self.period, 0)
+        return frozen(self.places[self.simplices] + self.corner_offsets * steps)
+
+    def verify(self) -> None:
+        """Checks exactly that this is the canonical triangulation of its places.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        self._handle.verify(_triangulators.of_device(self._given[3]))
+
+    @property
+    def _locator(self) -> _calls.PeriodicLocator:
+        return self._kept_locator.get(self._make_locator)
+
+    def _make_locator(self) -> _calls.PeriodicLocator:
+        return _calls.PeriodicLocator(_triangulators.of_device(self._given[3]), self._handle)
+
+    def find_simplex(self, xi: ArrayLike) -> Indices:
+        """Triangles that contain points, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Any places of the plane.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            On an edge or at a corner always the same triangle; -1 beyond the ends of a cylinder.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `periodic`; UsageError for several sets, too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
+        array([5, 5], dtype=int32)
+        """
+        queries = _as_queries(xi)
+        return self._locator.locate(queries.reshape(-1, 2)).reshape(queries.shape[:-1])
+
+    def nearest(self, xi: ArrayLike) -> Indices:
+        """The points that are nearest to others, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2)
+            Any places of the plane.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            Of several the first one in the order of x, then y, as they lie around the query's place; -1 if
+            there are no points.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.nearest([[3.75, 3.75], [9, 10]])
+        array([0, 1], dtype=int32)
+        """
+        queries = _as_queries(xi)
+        return self._locator.nearest(queries.reshape(-1, 2)).reshape(queries.shape[:-1])
+
+    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
+        """Values between points, by linear interpolation in triangles.
+
+        Parameters
+        ----------
+        values : array_like, shape (npoints, ...)
+            Real numbers. Of equal points, those of the representative count.
+        xi : array_like, shape (..., 2)
+            Any places of the plane.
+
+        Returns
+        -------
+        ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
+            Continuous across the border, and at a point that point's value. NaN where `find_simplex` says -1.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`; UsageError for another number of values than of points, too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
+        array([1. , 1.5])
+        """
+        queries = _as_queries(xi)
+        numbers = np.asarray(as_floats(values, "values"), np.float64)
+        if numbers.ndim == 0 or len(numbers) != self.npoints:
+            raise UsageError(
+                f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
+            )
+        rows = numbers.reshape(self.npoints, -1) if self.npoints else numbers.reshape(0, 1)
+        found = self._locator.interpolate(rows, queries.reshape(-1, 2))
+        return found.reshape(queries.shape[:-1] + numbers.shape[1:])
 
 
 def periodic(
     points: ArrayLike,
-    period: tuple[float, float],
+    period: tuple[Optional[float], Optional[float]],
     offsets: Optional[npt.ArrayLike] = None,
     *,
     device: Optional[str] = None,
@@ -111,8 +237,8 @@ def periodic(
     ----------
     points : array_like, shape (n, 2)
         Any points, which are taken into the period.
-    period : (float, float)
-        Where the plane begins again, in x and in y.
+    period : (float or None, float or None)
+        Where the plane begins again, in x and in y. None, or infinity, for one of them: it does not.
     offsets : array_like of int, optional
         Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
         are one set.
@@ -128,15 +254,15 @@ def periodic(
     UsageError
         For a wrong shape, a period that is not positive, and offsets that decrease or do not go from 0 to n.
     InputError
-        For a point that is not finite, and if an empty circle is half as wide as the smaller period, or wider:
-        there are too few points, or too large a gap. Repeat them, in a period that is a multiple.
+        For a point that is not finite.
     DeviceError
         As of `triangulate`.
 
     Notes
     -----
-    Points are triangulated in the plane, with those images that are as near to the border as an empty circle is
-    wide. Images are not rounded, so the result is exact. O(n log n).
+    Points are triangulated in the plane, with images of those near the border. Images are not rounded, so the
+    result is exact. Any points do, however few: it is the Delaunay triangulation of all images of all points,
+    of which it has each triangle once. O(n log n).
 
     Examples
     --------
@@ -147,11 +273,14 @@ def periodic(
     <flaunay.PeriodicDelaunay: 1000 points, 2000 triangles>
     >>> tri.cell_areas.sum().round(12).item()
     1.0
+    >>> flaunay.periodic(points, (1, None)).nsimplex
+    1998
     """
     given = np.asarray(as_floats(points, "points"), np.float64)
     if given.ndim != 2 or given.shape[1] != 2:
         raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
-    lengths = np.asarray(as_floats(period, "period"), np.float64)
+    lengths = [np.inf if length is None else length for length in period]
+    lengths = np.asarray(as_floats(lengths, "period"), np.float64)
     if lengths.shape != (2,):
         raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
     sets = None if offsets is None else as_offsets(offsets)

@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+import scipy.interpolate
 import scipy.spatial
 
 import flaunay
@@ -33,7 +34,41 @@ def test_triangles_are_scipys_of_nine_copies(random):
         for corners, offsets in zip(tri.simplices, tri.corner_offsets)
     }
     assert found == expected and tri.nsimplex == 800
+    tri.verify()
     assert repr(tri) == "<flaunay.PeriodicDelaunay: 400 points, 800 triangles>"
+
+
+def test_one_point_has_two_triangles():
+    tri = flaunay.periodic([[7.5, -1]], PERIOD)
+    assert tri.simplices.tolist() == [[0, 0, 0], [0, 0, 0]]
+    assert tri.cell_areas.tolist() == [6]
+    assert tri.corners.tolist() == [
+        [[1.5, 2], [3.5, 2], [3.5, 5]],
+        [[1.5, 2], [3.5, 5], [1.5, 5]],
+    ]
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_cylinders_are_scipys_of_many_copies(random, axis):
+    points = random.uniform(0, 1, (60, 2))
+    period = (None, 1) if axis else (1, None)
+    tri = flaunay.periodic(points, period)
+    steps = np.zeros((41, 2))
+    steps[:, axis] = np.arange(-20, 21)
+    copies = (tri.places + steps[:, None]).reshape(-1, 2)
+    all_of = scipy.spatial.Delaunay(copies).simplices
+    first = np.argmin(all_of % 60 * 41 + all_of // 60, axis=1)
+    kept = np.take_along_axis(all_of, first[:, None], axis=1)[:, 0] // 60 == 20
+    expected = {
+        frozenset((int(v) % 60, int(v) // 60 - 20) for v in corners) for corners in all_of[kept]
+    }
+    found = {
+        frozenset(zip(corners, offsets[:, axis].tolist()))
+        for corners, offsets in zip(tri.simplices.tolist(), tri.corner_offsets)
+    }
+    assert found == expected and tri.nsimplex == 118
+    assert (tri.neighbors < 0).sum() == 2
+    assert tri.period[1 - axis] == np.inf and tri.period[axis] == 1
 
 
 def test_cells_are_those_of_the_voronoi_diagram(random):
@@ -57,6 +92,35 @@ def test_points_are_taken_into_the_period(random):
     np.testing.assert_array_equal(one.corner_offsets, pickle.loads(pickle.dumps(other)).corner_offsets)
 
 
+def test_queries_are_those_of_nine_copies(random):
+    points = random.uniform(0, PERIOD, (300, 2))
+    values = random.uniform(0, 1, (300, 2))
+    tri = flaunay.periodic(points, PERIOD)
+    queries = random.uniform(-3, 9, (5, 100, 2))
+    steps = np.indices((3, 3)).reshape(2, 9).T - 1
+    copies = (tri.places + (steps * PERIOD)[:, None]).reshape(-1, 2)
+    inside = queries % PERIOD
+    np.testing.assert_array_equal(
+        tri.nearest(queries), scipy.spatial.cKDTree(copies).query(inside)[1] % 300
+    )
+    expected = scipy.interpolate.LinearNDInterpolator(copies, np.tile(values, (9, 1)))(inside)
+    np.testing.assert_allclose(tri.interpolate(values, queries), expected, rtol=1e-9)
+    np.testing.assert_array_equal(tri.interpolate(values[:, 0], points), values[:, 0])
+    centres = tri.corners.mean(axis=1) + [8, -9]
+    np.testing.assert_array_equal(tri.find_simplex(centres), np.arange(600))
+    again = pickle.loads(pickle.dumps(tri))
+    np.testing.assert_array_equal(again.find_simplex(queries), tri.find_simplex(queries))
+
+
+def test_queries_on_a_cylinder(random):
+    points = random.uniform(0, 1, (50, 2))
+    tri = flaunay.periodic(points, (1, None))
+    assert tri.find_simplex([[0.5, 1.5], [0.5, -0.5]]).tolist() == [-1, -1]
+    assert np.isnan(tri.interpolate(np.ones(50), [0.5, 1.5]))
+    assert tri.interpolate(np.ones(50), [7.5, 0.5]) == 1
+    assert tri.nearest([3.5, 9]) == tri.nearest([-8.5, 9])
+
+
 def test_sets(random):
     parts = [random.uniform(0, 1, (n, 2)) for n in (200, 150)]
     tri = flaunay.periodic(np.concatenate(parts), (1, 1), [0, 200, 350])
@@ -66,8 +130,17 @@ def test_sets(random):
 
 
 def test_errors_say_what_is_wrong():
-    with pytest.raises(flaunay.InputError, match="empty circle"):
-        flaunay.periodic([[0.5, 0.5]], (1, 1))
+    tri = flaunay.periodic([[0.5, 0.5]], (1, 1))
+    with pytest.raises(flaunay.UsageError, match=r"xi must have the shape \(\.\.\., 2\)"):
+        tri.nearest([1, 2, 3])
+    with pytest.raises(flaunay.UsageError, match="one row per point, 1"):
+        tri.interpolate([1, 2], [0, 0])
+    with pytest.raises(flaunay.InputError, match="query 1 is not finite"):
+        tri.find_simplex([[0, 0], [0, np.nan]])
+    with pytest.raises(flaunay.UsageError, match="one set"):
+        flaunay.periodic([[0.5, 0.5]], (1, 1), [0, 0, 1]).nearest([0, 0])
+    with pytest.raises(flaunay.UsageError, match="cells on a cylinder"):
+        flaunay.periodic([[0.5, 0.5]], (1, None)).cell_areas
     with pytest.raises(flaunay.InputError, match="point 0 is not finite"):
         flaunay.periodic([[np.inf, 0.5]], (1, 1))
     with pytest.raises(flaunay.UsageError, match="the period 0 x 1"):

@@ -1,8 +1,9 @@
-// The C interface to points on a torus.
+// The C interface to points on a torus or a cylinder.
 #include "flaunay/periodic.hpp"
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "c/errors.hpp"
@@ -18,17 +19,38 @@ using c::required;
 
 struct flaunay_periodic {
   PeriodicTriangulation cpp;
-  Period period;
 };
+
+struct flaunay_periodic_locator {
+  PeriodicLocator cpp;
+};
+
+namespace {
+
+// Answers queries by answer(locator) into the caller's array.
+template <typename Value, typename Answer>
+flaunay_status answer(flaunay_periodic_locator* locator, const double* queries, size_t m, Value* to,
+                      const Answer& answer) {
+  return guarded([&] {
+    PeriodicLocator& cpp = required(locator, "the locator").cpp;
+    if (m > 0) {
+      required(queries, "the queries");
+      required(to, "the room for results");
+    }
+    const std::vector<Value> found = answer(cpp);
+    std::copy(found.begin(), found.end(), to);
+  });
+}
+
+}  // namespace
 
 flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points, size_t n,
                                        const size_t* offsets, size_t sets, double period_x, double period_y,
                                        flaunay_periodic** periodic) {
   return create(periodic, [&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    const Period period{period_x, period_y};
-    return std::make_unique<flaunay_periodic>(
-        flaunay_periodic{triangulate_periodic(cpp, points, c::to_offsets(offsets, sets, n), period), period});
+    return std::make_unique<flaunay_periodic>(flaunay_periodic{
+        triangulate_periodic(cpp, points, c::to_offsets(offsets, sets, n), {period_x, period_y})});
   });
 }
 
@@ -46,6 +68,11 @@ size_t flaunay_periodic_image_count(const flaunay_periodic* periodic) {
   return read(periodic, [](const auto& handle) { return handle.cpp.images; });
 }
 
+const double* flaunay_periodic_period(const flaunay_periodic* periodic) {
+  static_assert(sizeof(Period) == 2 * sizeof(double));
+  return read(periodic, [](const auto& handle) { return &handle.cpp.period.x; });
+}
+
 #define ACCESSOR(type, name)                                                                \
   const type* flaunay_periodic_##name(const flaunay_periodic* periodic) {                   \
     return read(periodic, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
@@ -60,8 +87,44 @@ ACCESSOR(size_t, triangle_offsets)
 
 flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas) {
   return guarded([&] {
-    const flaunay_periodic& mesh = required(periodic, "the triangulation");
-    const std::vector<double> all = periodic_cell_areas(mesh.cpp, mesh.period);
+    const std::vector<double> all = periodic_cell_areas(required(periodic, "the triangulation").cpp);
     if (!all.empty()) std::copy(all.begin(), all.end(), &required(areas, "the room for areas"));
   });
+}
+
+flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator, const flaunay_periodic* periodic) {
+  return guarded([&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const std::string problem = verify_periodic(cpp, required(periodic, "the triangulation").cpp);
+    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+  });
+}
+
+flaunay_status flaunay_periodic_locator_create(flaunay_triangulator* triangulator,
+                                               const flaunay_periodic* periodic,
+                                               flaunay_periodic_locator** locator) {
+  return create(locator, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_periodic_locator>(
+        flaunay_periodic_locator{PeriodicLocator(cpp, required(periodic, "the triangulation").cpp)});
+  });
+}
+
+void flaunay_periodic_locator_destroy(flaunay_periodic_locator* locator) { delete locator; }
+
+flaunay_status flaunay_periodic_locator_locate(flaunay_periodic_locator* locator, const double* queries,
+                                               size_t m, int32_t* triangles) {
+  return answer(locator, queries, m, triangles, [&](PeriodicLocator& cpp) { return cpp.locate(queries, m); });
+}
+
+flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_locator* locator, const double* queries,
+                                                size_t m, int32_t* points) {
+  return answer(locator, queries, m, points, [&](PeriodicLocator& cpp) { return cpp.nearest(queries, m); });
+}
+
+flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator, const double* values,
+                                                    size_t columns, const double* queries, size_t m,
+                                                    double* results) {
+  return answer(locator, queries, m, results,
+                [&](PeriodicLocator& cpp) { return cpp.interpolate(values, columns, queries, m); });
 }

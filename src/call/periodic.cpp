@@ -1,68 +1,105 @@
-// The public calls for points on a torus.
-#include "flaunay/periodic.hpp"
+// The public calls for points on a torus or a cylinder.
+#include "call/periodic.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "call/frame.hpp"
 #include "derived/periodic/torus.hpp"
+#include "derived/periodic/verify.hpp"
 
 namespace flaunay {
-namespace {
 
-using Ids = std::vector<std::int32_t>;
-using periodic::Selected;
-using periodic::Unrolled;
-
-void check(const Period& period) {
-  const auto is_length = [](double x) { return x >= 0x1p-900 && x <= 0x1p900; };
-  if (!is_length(period.x) || !is_length(period.y)) {
+void call::check(const Period& period) {
+  const auto is_length = [](double x) { return (x >= 0x1p-900 && x <= 0x1p900) || x == HUGE_VAL; };
+  if (!is_length(period.x) || !is_length(period.y) || std::min(period.x, period.y) == HUGE_VAL) {
     throw Error(ErrorKind::usage,
-                fmt::format("the period {} x {} is none: both must be positive, and neither tiny nor huge",
+                fmt::format("the period {} x {} is none: both must be positive, neither tiny nor huge, and "
+                            "not both infinite",
                             period.x, period.y));
   }
   constexpr double kMostUnequal = 1 << 30;
-  call::expect(std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y),
-               "one period is more than 2^30 times as long as the other one");
+  expect(std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) ||
+             std::isinf(period.x) || std::isinf(period.y),
+         "one period is more than 2^30 times as long as the other one");
 }
 
-// Of a set in the plane, whose points come before their images; returns the number of different points.
-std::size_t read_representatives(const Triangulation& planar, std::size_t plane_first, std::size_t first,
-                                 std::size_t last, Ids& representatives) {
-  std::size_t different = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    const auto place =
-        static_cast<std::size_t>(planar.representatives[plane_first + (i - first)]) - plane_first;
-    representatives[i] = static_cast<std::int32_t>(first + place);
-    different += first + place == i;
-  }
-  return different;
+void call::check(const PeriodicTriangulation& mesh) {
+  check(mesh.period);
+  const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
+  const auto all = [](const std::vector<std::int32_t>& ids, std::int32_t least, std::size_t end) {
+    return std::all_of(ids.begin(), ids.end(), [&](std::int32_t i) {
+      return i >= least && (i < 0 || static_cast<std::size_t>(i) < end);
+    });
+  };
+  expect(mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
+             mesh.offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
+             !mesh.point_offsets.empty() && mesh.point_offsets.back() == n &&
+             mesh.triangle_offsets.size() == mesh.point_offsets.size() &&
+             mesh.triangle_offsets.back() == triangles &&
+             std::is_sorted(mesh.point_offsets.begin(), mesh.point_offsets.end()) &&
+             std::is_sorted(mesh.triangle_offsets.begin(), mesh.triangle_offsets.end()) &&
+             all(mesh.triangles, 0, n) && all(mesh.neighbors, -1, triangles),
+         "the arrays are not those of a triangulation on a torus or a cylinder");
 }
 
-// The sets that are not done yet, triangulated together.
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+using periodic::Pair;
+using periodic::Unrolled;
+
+// Sets that are triangulated together.
 struct Round {
   std::vector<std::size_t> sets;
   std::vector<Unrolled> planes;
   std::vector<double> coordinates;  // of all, if there are several
   std::vector<std::size_t> offsets{0};
+
+  void add(std::size_t set, Unrolled plane) {
+    sets.push_back(set);
+    planes.push_back(std::move(plane));
+    offsets.push_back(offsets.back() + planes.back().coordinates().size() / 2);
+  }
+  const double* all_coordinates() {
+    if (planes.size() == 1) return planes[0].coordinates().data();
+    for (const Unrolled& plane : planes)
+      coordinates.insert(coordinates.end(), plane.coordinates().begin(), plane.coordinates().end());
+    return coordinates.data();
+  }
 };
 
-void append(Selected& found, PeriodicTriangulation& mesh) {
-  if (mesh.triangles.empty()) {
-    mesh.triangles = std::move(found.triangles);
-    mesh.offsets = std::move(found.offsets);
-    mesh.neighbors = std::move(found.neighbors);
-    mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
+// The triangles of the k-th set of a round, and the representatives of its points, numbered from 0.
+periodic::Triangles triangles_of(Triangulation& planar, const Round& round, std::size_t k) {
+  if (round.sets.size() == 1) return {std::move(planar.triangles), std::move(planar.neighbors), {}};
+  const auto part = [&](const Ids& all, std::size_t first) {
+    Ids some(all.begin() + static_cast<std::ptrdiff_t>(3 * planar.triangle_offsets[k]),
+             all.begin() + static_cast<std::ptrdiff_t>(3 * planar.triangle_offsets[k + 1]));
+    for (std::int32_t& i : some) {
+      if (i >= 0) i -= static_cast<std::int32_t>(first);
+    }
+    return some;
+  };
+  return {part(planar.triangles, round.offsets[k]), part(planar.neighbors, planar.triangle_offsets[k]), {}};
+}
+Ids representatives_of(const Triangulation& planar, const Round& round, std::size_t k) {
+  const auto first = planar.representatives.begin() + static_cast<std::ptrdiff_t>(round.offsets[k]);
+  Ids some(first, first + static_cast<std::ptrdiff_t>(round.planes[k].points()));
+  for (std::int32_t& i : some) i -= static_cast<std::int32_t>(round.offsets[k]);
+  return some;
+}
+
+void append(Ids& to, Ids&& more, std::size_t first) {
+  if (to.empty() && first == 0) {
+    to = std::move(more);
     return;
   }
-  const auto shift = static_cast<std::int32_t>(mesh.triangles.size() / 3);
-  mesh.triangles.insert(mesh.triangles.end(), found.triangles.begin(), found.triangles.end());
-  mesh.offsets.insert(mesh.offsets.end(), found.offsets.begin(), found.offsets.end());
-  for (const std::int32_t t : found.neighbors) mesh.neighbors.push_back(t + shift);
-  mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
+  const auto shift = static_cast<std::int32_t>(first);
+  for (const std::int32_t i : more) to.push_back(i < 0 ? i : i + shift);
 }
 
 }  // namespace
@@ -74,73 +111,90 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 
 PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                            const std::vector<std::size_t>& offsets, const Period& period) {
-  check(period);
   geometry::check_offsets(offsets);
+  call::check(period);
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-  call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
+  geometry::check_coordinates(points, n);
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  const auto on_threads = [&](const auto& work) {
+    return call::take_turn(self, [&] { return work(self.native().runtime); });
+  };
+  const Pair<double> lengths = periodic::rounded(period);
   PeriodicTriangulation mesh;
-  mesh.places.resize(2 * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!std::isfinite(points[2 * i]) || !std::isfinite(points[2 * i + 1])) {
-      throw Error(ErrorKind::input, fmt::format("point {} is not finite", i));
-    }
-    mesh.places[2 * i] = periodic::wrapped(points[2 * i], period.x);
-    mesh.places[2 * i + 1] = periodic::wrapped(points[2 * i + 1], period.y);
-  }
+  mesh.period = {lengths[0], lengths[1]};
+  mesh.places =
+      on_threads([&](auto& runtime) { return periodic::to_places(runtime, points, n, lengths, "point"); });
   mesh.point_offsets = offsets;
-  mesh.representatives.resize(n);
-  const double widest = std::min(period.x, period.y) / 2;
   std::vector<double> margins(sets);
-  std::vector<Selected> done(sets);
-  Round round;
+  std::vector<periodic::Box> boxes(sets);
+  std::vector<periodic::Triangles> done(sets);
+  std::vector<Ids> representatives(sets);
+  std::vector<std::size_t> waiting;
   for (std::size_t s = 0; s < sets; ++s) {
-    margins[s] = periodic::first_margin(offsets[s + 1] - offsets[s], period);
-    if (offsets[s] < offsets[s + 1]) round.sets.push_back(s);
+    if (offsets[s] == offsets[s + 1]) continue;
+    boxes[s] = periodic::box_of(mesh.places, offsets[s], offsets[s + 1], lengths);
+    margins[s] = periodic::first_margin(boxes[s], offsets[s + 1] - offsets[s]);
+    waiting.push_back(s);
   }
-  while (!round.sets.empty()) {
-    Round next;
-    for (const std::size_t s : round.sets) {
-      round.planes.push_back(periodic::unroll(mesh.places, offsets[s], offsets[s + 1], period, margins[s]));
-      const std::vector<double>& more = round.planes.back().coordinates;
-      if (round.sets.size() > 1) round.coordinates.insert(round.coordinates.end(), more.begin(), more.end());
-      round.offsets.push_back(round.offsets.back() + more.size() / 2);
-      mesh.images += round.planes.back().points.size() - round.planes.back().originals;
+  // Those of a set alone are not copied.
+  const auto places_of = [&](std::size_t s) {
+    if (sets == 1) return std::move(mesh.places);
+    return std::vector<double>(mesh.places.begin() + static_cast<std::ptrdiff_t>(2 * offsets[s]),
+                               mesh.places.begin() + static_cast<std::ptrdiff_t>(2 * offsets[s + 1]));
+  };
+  while (!waiting.empty()) {
+    Round round;
+    on_threads([&](auto& runtime) {
+      for (const std::size_t s : waiting) round.add(s, Unrolled(runtime, places_of(s), boxes[s], margins[s]));
+    });
+    // Corners of triangles are numbered.
+    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
+    if (round.offsets.back() > kMost) {
+      throw Error(ErrorKind::input,
+                  fmt::format("{} points and their images are too many: at most {} are possible",
+                              round.offsets.back(), kMost));
     }
-    Triangulation planar = triangulator.triangulate(
-        round.sets.size() > 1 ? round.coordinates.data() : round.planes[0].coordinates.data(), round.offsets);
-    for (std::size_t k = 0; k < round.sets.size(); ++k) {
-      const std::size_t s = round.sets[k];
-      const std::size_t different =
-          read_representatives(planar, round.offsets[k], offsets[s], offsets[s + 1], mesh.representatives);
-      done[s] = periodic::select(round.planes[k], planar, k, round.offsets[k], margins[s], different);
-      if (done[s].is_complete) continue;
-      if (margins[s] >= widest) {
-        throw Error(
-            ErrorKind::input,
-            fmt::format(
-                "the {} different points of set {} leave an empty circle of half the period {} or more: "
-                "repeat them, in a period that is a multiple of this one",
-                different, s, 2 * widest));
+    Triangulation planar = triangulator.triangulate(round.all_coordinates(), round.offsets);
+    waiting.clear();
+    on_threads([&](auto& runtime) {
+      for (std::size_t k = 0; k < round.sets.size(); ++k) {
+        const std::size_t s = round.sets[k];
+        representatives[s] = representatives_of(planar, round, k);
+        done[s] = triangles_of(planar, round, k);
+        mesh.images += round.planes[k].images();
+        const bool is_done = periodic::fold(runtime, round.planes[k], representatives[s], done[s]);
+        if (sets == 1) mesh.places = round.planes[k].take_places();
+        if (is_done) continue;
+        if (round.planes[k].is_whole())
+          throw Error(ErrorKind::internal,
+                      fmt::format("the triangles of set {} are not those of a torus", s));
+        constexpr double kWider = 4;
+        margins[s] *= kWider;
+        waiting.push_back(s);
       }
-      constexpr double kWider = 4;
-      margins[s] = std::min(kWider * margins[s], widest);
-      next.sets.push_back(s);
-    }
+    });
     mesh.statistics = std::move(planar.statistics);
-    round = std::move(next);
   }
   mesh.triangle_offsets = {0};
-  for (Selected& found : done) append(found, mesh);
+  for (std::size_t s = 0; s < sets; ++s) {
+    append(mesh.representatives, std::move(representatives[s]), offsets[s]);
+    append(mesh.triangles, std::move(done[s].corners), offsets[s]);
+    append(mesh.neighbors, std::move(done[s].neighbors), mesh.triangle_offsets.back());
+    if (mesh.offsets.empty()) {
+      mesh.offsets = std::move(done[s].offsets);
+    } else {
+      mesh.offsets.insert(mesh.offsets.end(), done[s].offsets.begin(), done[s].offsets.end());
+    }
+    mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
+  }
   return mesh;
 }
 
-std::vector<double> periodic_cell_areas(const PeriodicTriangulation& mesh, const Period& period) {
-  check(period);
+std::vector<double> periodic_cell_areas(const PeriodicTriangulation& mesh) {
+  call::check(mesh);
+  const Period& period = mesh.period;
+  call::expect(std::isfinite(period.x) && std::isfinite(period.y), "cells on a cylinder have no areas");
   const std::size_t n = mesh.places.size() / 2;
-  call::expect(mesh.offsets.size() == 2 * mesh.triangles.size() && mesh.places.size() == 2 * n &&
-                   std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                               [&](std::int32_t v) { return v >= 0 && static_cast<std::size_t>(v) < n; }),
-               "the arrays are not those of a triangulation on a torus");
   std::vector<double> areas(n, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     // Of each corner the quarters that the heights from the triangle's centre cut off: signed, and summed
@@ -162,6 +216,14 @@ std::vector<double> periodic_cell_areas(const PeriodicTriangulation& mesh, const
     }
   }
   return areas;
+}
+
+std::string verify_periodic(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    call::check(mesh);
+    return periodic::find_problem(self.native().runtime, mesh);
+  });
 }
 
 }  // namespace flaunay

@@ -51,48 +51,80 @@ int in_circle(const Near* p, const Near& d, double scale) {
   }
   const double det = squares[2] * (x[0] * y[1] - x[1] * y[0]) + squares[0] * (x[1] * y[2] - x[2] * y[1]) +
                      squares[1] * (x[2] * y[0] - x[0] * y[2]);
-  // Differences are below 4 in units of the period.
-  if (std::fabs(det) > 1e-12) return det > 0 ? 1 : -1;
+  // Differences are below 8 in units of the scale.
+  if (std::fabs(det) > 1e-10) return det > 0 ? 1 : -1;
   return in_circle(p[0].exact, p[1].exact, p[2].exact, d.exact);
 }
 
 bool precedes(const Place& a, const Place& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
 
+/// Points on the ends of a cylinder; of those on both, twice.
+std::size_t points_at_ends(const std::set<std::pair<double, double>>& points, const Period& period) {
+  std::size_t count = 0;
+  for (const bool is_x : {true, false}) {
+    if (std::isfinite(is_x ? period.x : period.y)) continue;
+    std::multiset<double> all;
+    for (const auto& p : points) all.insert(is_x ? p.first : p.second);
+    if (!all.empty()) count += all.count(*all.begin()) + all.count(*all.rbegin());
+  }
+  return count;
+}
+
 /// That triangles are counter-clockwise and empty among all images, that neighbours are right, and that
 /// cocircular polygons are fans.
-void expect_torus(const PeriodicTriangulation& mesh, const Period& period, std::size_t n) {
+void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::size_t n) {
+  ASSERT_EQ("", verify_periodic(testing::triangulator(), mesh));
+  const Period& period = mesh.period;
+  const bool is_across = std::isfinite(given.x), is_up = std::isfinite(given.y);
+  if (is_across) {
+    ASSERT_NEAR(1, period.x / given.x, 0x1p-52);
+  }
+  if (is_up) {
+    ASSERT_NEAR(1, period.y / given.y, 0x1p-52);
+  }
   std::set<std::pair<double, double>> different;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = mesh.places[2 * i], y = mesh.places[2 * i + 1];
-    ASSERT_TRUE(x >= 0 && x < period.x && y >= 0 && y < period.y);
+    ASSERT_TRUE((x >= 0 || !is_across) && x < period.x && (y >= 0 || !is_up) && y < period.y);
     ASSERT_EQ(different.insert({x, y}).second, mesh.representatives[i] == static_cast<std::int32_t>(i));
   }
-  ASSERT_EQ(6 * different.size(), mesh.triangles.size());
+  ASSERT_EQ(3 * (2 * different.size() - points_at_ends(different, given)), mesh.triangles.size());
   ASSERT_EQ(mesh.triangles.size(), mesh.neighbors.size());
   ASSERT_EQ(2 * mesh.triangles.size(), mesh.offsets.size());
   const auto image = [&](std::size_t v, int across, int up) {
-    return Place{mpq_class(mesh.places[2 * v]) + across * mpq_class(period.x),
-                 mpq_class(mesh.places[2 * v + 1]) + up * mpq_class(period.y)};
+    Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
+    if (is_across) place.x += across * mpq_class(period.x);
+    if (is_up) place.y += up * mpq_class(period.y);
+    return place;
   };
   const auto corner = [&](std::size_t c) {
     return image(static_cast<std::size_t>(mesh.triangles[c]), mesh.offsets[2 * c], mesh.offsets[2 * c + 1]);
   };
   const auto rounded = [](const Place& p) { return Near{p, p.x.get_d(), p.y.get_d()}; };
   std::vector<Near> images;
+  double scale = std::max(is_across ? period.x : 0, is_up ? period.y : 0);
+  for (const double x : mesh.places) scale = std::max(scale, std::fabs(x));
   for (std::size_t v = 0; v < n; ++v) {
-    for (int across = -1; across <= 1; ++across) {
-      for (int up = -1; up <= 1; ++up) images.push_back(rounded(image(v, across, up)));
+    // Few points have circles that are wider than the period.
+    const int most = n < 20 ? 3 : 1;
+    for (int across = is_across ? -most : 0; across <= (is_across ? most : 0); ++across) {
+      for (int up = is_up ? -most : 0; up <= (is_up ? most : 0); ++up)
+        images.push_back(rounded(image(v, across, up)));
     }
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     const Place p[] = {corner(t), corner(t + 1), corner(t + 2)};
     ASSERT_TRUE(mesh.offsets[2 * t] == 0 && mesh.offsets[2 * t + 1] == 0);
-    ASSERT_TRUE(mesh.triangles[t] < mesh.triangles[t + 1] && mesh.triangles[t] < mesh.triangles[t + 2]);
+    ASSERT_TRUE(mesh.triangles[t] <= mesh.triangles[t + 1] && mesh.triangles[t] <= mesh.triangles[t + 2]);
     ASSERT_GT((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x), 0);
     const Near near[] = {rounded(p[0]), rounded(p[1]), rounded(p[2])};
-    for (const Near& point : images)
-      ASSERT_LE(in_circle(near, point, std::max(period.x, period.y)), 0) << t / 3;
+    for (const Near& point : images) ASSERT_LE(in_circle(near, point, scale), 0) << t / 3;
     for (std::size_t k = 0; k < 3; ++k) {
+      if (mesh.neighbors[t + k] < 0) {
+        const Place &from = p[(k + 1) % 3], &to = p[(k + 2) % 3];
+        ASSERT_TRUE((!is_across && from.x == to.x) || (!is_up && from.y == to.y)) << t / 3;
+        continue;
+      }
       const auto other = 3 * static_cast<std::size_t>(mesh.neighbors[t + k]);
       ASSERT_LT(other, mesh.triangles.size());
       const std::size_t a = t + (k + 1) % 3, b = t + (k + 2) % 3;
@@ -123,8 +155,9 @@ void expect_torus(const PeriodicTriangulation& mesh, const Period& period, std::
       ASSERT_TRUE(is_joined) << t / 3 << " " << k;
     }
   }
+  if (!is_across || !is_up) return;
   double sum = 0;
-  for (const double area : periodic_cell_areas(mesh, period)) sum += area;
+  for (const double area : periodic_cell_areas(mesh)) sum += area;
   EXPECT_NEAR(1, sum / (period.x * period.y), 1e-12);
 }
 
@@ -146,7 +179,7 @@ TEST(Periodic, TrianglesAreThoseOfAllImages) {
     SCOPED_TRACE(period.x);
     for (const std::size_t n : {150, 200}) {
       const Numbers points = uniform(n, period, n);
-      expect_torus(triangulated(points, period), period, n);
+      expect_exact(triangulated(points, period), period, n);
     }
   }
   // Triangles over a gap, which need more images than points have.
@@ -156,7 +189,7 @@ TEST(Periodic, TrianglesAreThoseOfAllImages) {
     const double x = many[i] - 0.5, y = many[i + 1] - 0.5;
     if (x * x + y * y > 0.04 && gap.size() < 400) gap.insert(gap.end(), {many[i], many[i + 1]});
   }
-  expect_torus(triangulated(gap, unit), unit, gap.size() / 2);
+  expect_exact(triangulated(gap, unit), unit, gap.size() / 2);
 }
 
 /// Corners and their offsets.
@@ -178,7 +211,7 @@ TEST(Periodic, LatticesAreFans) {
       for (int y = 0; y < size; ++y) points.insert(points.end(), {x * 0.5, y * 1.0});
     }
     const Period period{size * 0.5, size * 1.0};
-    expect_torus(triangulated(points, period), period, points.size() / 2);
+    expect_exact(triangulated(points, period), period, points.size() / 2);
     // Points given twice, and elsewhere.
     Numbers again = points;
     for (std::size_t i = 0; i < points.size(); i += 2) {
@@ -188,6 +221,48 @@ TEST(Periodic, LatticesAreFans) {
     EXPECT_EQ(sorted_triangles(triangulated(points, period)), sorted_triangles(mesh));
     EXPECT_EQ(0, mesh.representatives[points.size() / 2]);
   }
+}
+
+TEST(Periodic, FewPointsHaveAllTriangles) {
+  const PeriodicTriangulation one = triangulated({0.25, 7.5}, {1, 2});
+  EXPECT_EQ((std::vector<std::int32_t>(6, 0)), one.triangles);
+  EXPECT_EQ((std::vector<std::int32_t>{1, 1, 1, 0, 0, 0}), one.neighbors);
+  testing::FixtureRandom random(4);
+  for (std::size_t n = 1; n < 15; ++n) {
+    for (const Period& period : {Period{}, {3, 0.7}, {1, 16}, {1.9999999999999998, 1.0000000000000002}}) {
+      SCOPED_TRACE(n);
+      expect_exact(triangulated(uniform(n, period, n), period), period, n);
+      // With ties.
+      Numbers coarse;
+      for (std::size_t i = 0; i < 2 * n; ++i)
+        coarse.push_back(std::floor(4 * random.unit()) / 4 * (i % 2 == 0 ? period.x : period.y));
+      expect_exact(triangulated(coarse, period), period, n);
+    }
+  }
+}
+
+TEST(Periodic, CylindersHaveTwoEnds) {
+  testing::FixtureRandom random(8);
+  for (const std::size_t n : {1, 2, 3, 5, 9, 14, 200}) {
+    for (const double length : {1.0, 0.7, 30.0, 1e-3}) {
+      SCOPED_TRACE(n);
+      Numbers points = uniform(n, {}, n), turned = points, coarse;
+      for (const double x : points) coarse.push_back(std::floor(6 * x));
+      for (std::size_t i = 0; i < n; ++i) std::swap(turned[2 * i], turned[2 * i + 1]);
+      const Period across{length, HUGE_VAL}, up{HUGE_VAL, length};
+      const PeriodicTriangulation mesh = triangulated(points, across), other = triangulated(turned, up);
+      expect_exact(mesh, across, n);
+      expect_exact(other, up, n);
+      EXPECT_EQ(mesh.triangles.size(), other.triangles.size());
+      for (const Period& period : {across, up, Period{6, HUGE_VAL}, Period{HUGE_VAL, 3}})
+        expect_exact(triangulated(coarse, period), period, n);
+    }
+  }
+  EXPECT_TRUE(triangulated({0.5, 3, 0.25, 3, 0.75, 3}, {1, HUGE_VAL}).triangles.empty());
+  const PeriodicTriangulation many = triangulated(uniform(50000, {}, 3), {1, HUGE_VAL});
+  EXPECT_EQ(100000u - 2, many.triangles.size() / 3);
+  EXPECT_LT(many.images, 20000u);
+  EXPECT_EQ(2, std::count(many.neighbors.begin(), many.neighbors.end(), -1));
 }
 
 TEST(Periodic, ShiftsByPeriodsChangeNothing) {
@@ -203,6 +278,142 @@ TEST(Periodic, ShiftsByPeriodsChangeNothing) {
   EXPECT_EQ(first.triangles, second.triangles);
   EXPECT_EQ(first.offsets, second.offsets);
   EXPECT_EQ(first.places, second.places);
+}
+
+Place image_of(const PeriodicTriangulation& mesh, std::size_t v, int across, int up) {
+  Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
+  if (std::isfinite(mesh.period.x)) place.x += across * mpq_class(mesh.period.x);
+  if (std::isfinite(mesh.period.y)) place.y += up * mpq_class(mesh.period.y);
+  return place;
+}
+
+/// The values at the corners of a triangle, interpolated at q; NaN if no image of the triangle contains it.
+double value_in(const PeriodicTriangulation& mesh, std::size_t t, const Place& q, const Numbers& values) {
+  for (int across = -2; across <= 2; ++across) {
+    for (int up = -2; up <= 2; ++up) {
+      std::array<Place, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t c = 3 * t + k;
+        p[k] = image_of(mesh, static_cast<std::size_t>(mesh.triangles[c]), across + mesh.offsets[2 * c],
+                        up + mesh.offsets[2 * c + 1]);
+      }
+      const auto area = [](const Place& a, const Place& b, const Place& c) {
+        return mpq_class((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+      };
+      const mpq_class parts[] = {area(p[1], p[2], q), area(p[2], p[0], q), area(p[0], p[1], q)};
+      if (parts[0] < 0 || parts[1] < 0 || parts[2] < 0) continue;
+      mpq_class sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += parts[k] * mpq_class(values[static_cast<std::size_t>(mesh.triangles[3 * t + k])]);
+      return mpq_class(sum / area(p[0], p[1], p[2])).get_d();
+    }
+  }
+  return std::nan("");
+}
+
+mpq_class distance_to(const PeriodicTriangulation& mesh, std::size_t v, const Place& q) {
+  mpq_class least = -1;
+  for (int across = -1; across <= 1; ++across) {
+    for (int up = -1; up <= 1; ++up) {
+      const Place p = image_of(mesh, v, across, up);
+      const mpq_class square = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+      if (least < 0 || square < least) least = square;
+    }
+  }
+  return least;
+}
+
+/// queries: places.
+void expect_answers(const PeriodicTriangulation& mesh, const Numbers& queries) {
+  PeriodicLocator locator(testing::triangulator(), mesh);
+  const std::size_t n = mesh.representatives.size(), m = queries.size() / 2;
+  Numbers values, elsewhere = queries;
+  for (std::size_t i = 0; i < n; ++i) values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
+  for (std::size_t i = 0; i < m; ++i) {
+    if (std::isfinite(mesh.period.x)) elsewhere[2 * i] -= 3 * mesh.period.x;
+    if (std::isfinite(mesh.period.y)) elsewhere[2 * i + 1] += 2 * mesh.period.y;
+  }
+  const auto triangles = locator.locate(queries.data(), m), points = locator.nearest(queries.data(), m);
+  const Numbers found = locator.interpolate(values.data(), 1, queries.data(), m);
+  EXPECT_EQ(triangles, locator.locate(elsewhere.data(), m));
+  EXPECT_EQ(points, locator.nearest(elsewhere.data(), m));
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double at = mesh.places[2 * i + (std::isfinite(mesh.period.y) ? 0 : 1)];
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
+  for (std::size_t i = 0; i < m; ++i) {
+    const Place q{mpq_class(queries[2 * i]), mpq_class(queries[2 * i + 1])};
+    if (triangles[i] < 0) {
+      const double at = queries[2 * i + (std::isfinite(mesh.period.y) ? 0 : 1)];
+      EXPECT_TRUE(mesh.triangles.empty() ||
+                  (std::isinf(mesh.period.x + mesh.period.y) && (at < low || at > high)));
+      EXPECT_TRUE(std::isnan(found[i]));
+    } else {
+      EXPECT_NEAR(value_in(mesh, static_cast<std::size_t>(triangles[i]), q, values), found[i], 1e-9) << i;
+    }
+    ASSERT_EQ(points[i], mesh.representatives[static_cast<std::size_t>(points[i])]);
+    const mpq_class distance = distance_to(mesh, static_cast<std::size_t>(points[i]), q);
+    for (std::size_t v = 0; v < n; ++v) ASSERT_LE(distance, distance_to(mesh, v, q)) << i;
+  }
+  // At points.
+  if (!mesh.triangles.empty()) {
+    EXPECT_EQ(values, locator.interpolate(values.data(), 1, mesh.places.data(), n));
+  }
+  EXPECT_EQ(mesh.representatives, locator.nearest(mesh.places.data(), n));
+}
+
+TEST(Periodic, QueriesAreWrapped) {
+  testing::FixtureRandom random(21);
+  for (const std::size_t n : {1, 2, 3, 7, 30, 150}) {
+    for (const Period& period : {Period{}, {0.75, 3}, {2, HUGE_VAL}, {HUGE_VAL, 4}}) {
+      for (const bool is_coarse : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << n << " points, " << period.x << " x " << period.y);
+        const auto some = [&](std::size_t count, double least, double most) {
+          Numbers places;
+          for (std::size_t i = 0; i < 2 * count; ++i) {
+            const double length = i % 2 == 0 ? period.x : period.y;
+            const double share =
+                std::floor(random.unit() * (is_coarse ? 8 : 1 << 20)) / (is_coarse ? 8 : 1 << 20);
+            places.push_back(std::isfinite(length) ? share * length : least + (most - least) * share);
+          }
+          return places;
+        };
+        expect_answers(triangulated(some(n, 0, 1), period), some(30, -0.5, 1.5));
+      }
+    }
+  }
+  PeriodicLocator none(testing::triangulator(), triangulated({}, {}));
+  const Numbers query = {0.5, 0.5};
+  EXPECT_EQ(-1, none.locate(query.data(), 1)[0]);
+  EXPECT_EQ(-1, none.nearest(query.data(), 1)[0]);
+}
+
+TEST(Periodic, QueriesOfManyPoints) {
+  const PeriodicTriangulation mesh = triangulated(uniform(20000, {}, 6), {});
+  PeriodicLocator locator(testing::triangulator(), mesh);
+  Numbers centres, values(40000);
+  for (std::size_t i = 0; i < 20000; ++i) values[2 * i] = values[2 * i + 1] = 0.1 * static_cast<double>(i);
+  std::vector<std::int32_t> expected;
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+    double x = 0, y = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(mesh.triangles[3 * t + k]);
+      x += (mesh.places[2 * v] + mesh.offsets[6 * t + 2 * k]) / 3;
+      y += (mesh.places[2 * v + 1] + mesh.offsets[6 * t + 2 * k + 1]) / 3;
+    }
+    centres.insert(centres.end(), {x, y});
+    expected.push_back(static_cast<std::int32_t>(t));
+  }
+  EXPECT_EQ(expected, locator.locate(centres.data(), expected.size()));
+  const Numbers found = locator.interpolate(values.data(), 2, centres.data(), expected.size());
+  for (std::size_t t = 0; t < expected.size(); ++t) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += 0.1 * mesh.triangles[3 * t + k] / 3;
+    ASSERT_NEAR(sum, found[2 * t], 1e-6);
+    ASSERT_EQ(found[2 * t], found[2 * t + 1]);
+  }
 }
 
 TEST(Periodic, ManySetsAreEachAsAlone) {
@@ -230,6 +441,56 @@ TEST(Periodic, ManySetsAreEachAsAlone) {
   }
 }
 
+TEST(Periodic, VerifyFindsWhatIsWrong) {
+  for (const Period& period : {Period{}, Period{1, HUGE_VAL}}) {
+    Numbers points = uniform(80, {}, 2);
+    points.insert(points.end(), points.begin(), points.begin() + 2);
+    const PeriodicTriangulation right = triangulated(points, period);
+    const auto problem_of = [&](const auto& change) {
+      PeriodicTriangulation wrong = right;
+      change(wrong);
+      return verify_periodic(testing::triangulator(), wrong);
+    };
+    EXPECT_EQ("", problem_of([](PeriodicTriangulation&) {}));
+    const auto expect_problem = [&](const char* part, const auto& change) {
+      const std::string problem = problem_of(change);
+      EXPECT_NE(std::string::npos, problem.find(part)) << problem << " has no " << part;
+    };
+    using Mesh = PeriodicTriangulation;
+    expect_problem("place 3 is not in the period", [](Mesh& mesh) { mesh.places[6] += 1; });
+    expect_problem("place 3 is not", [](Mesh& mesh) { mesh.places[6] = 0x1p-60; });
+    expect_problem("wrong representative", [](Mesh& mesh) { mesh.representatives[80] = 80; });
+    expect_problem("another point represents",
+                   [](Mesh& mesh) { std::replace(mesh.triangles.begin(), mesh.triangles.end(), 0, 80); });
+    expect_problem("first corner", [](Mesh& mesh) { mesh.offsets[0] = 1; });
+    expect_problem("first corner", [](Mesh& mesh) { std::swap(mesh.triangles[0], mesh.triangles[1]); });
+    expect_problem("counter-clockwise", [](Mesh& mesh) {
+      std::swap(mesh.triangles[1], mesh.triangles[2]);
+      std::swap_ranges(&mesh.offsets[2], &mesh.offsets[4], &mesh.offsets[4]);
+    });
+    expect_problem("no edge in common", [](Mesh& mesh) { std::swap(mesh.neighbors[0], mesh.neighbors[1]); });
+    expect_problem("has no neighbor", [](Mesh& mesh) {
+      *std::find_if(mesh.neighbors.begin(), mesh.neighbors.end(), [](std::int32_t t) { return t >= 0; }) = -1;
+    });
+    expect_problem("triangles, not", [](Mesh& mesh) {
+      mesh.triangles.resize(mesh.triangles.size() - 3);
+      mesh.neighbors.resize(mesh.triangles.size());
+      for (std::int32_t& t : mesh.neighbors)
+        t = std::min(t, static_cast<std::int32_t>(mesh.triangles.size() / 3) - 1);
+      mesh.offsets.resize(2 * mesh.triangles.size());
+      mesh.triangle_offsets[1] = mesh.triangles.size() / 3;
+    });
+    // A point moves into the circle of a triangle beside it.
+    EXPECT_NE("", problem_of([](Mesh& mesh) { mesh.places[6] = mesh.places[6] < 0.5 ? 0.75 : 0.25; }));
+  }
+  // The other diagonal of a square.
+  PeriodicTriangulation square = triangulated({0, 0}, {});
+  EXPECT_EQ("", verify_periodic(testing::triangulator(), square));
+  square.offsets = {0, 0, 0, 1, -1, 1, 0, 0, 1, 0, 0, 1};
+  square.triangles.assign(6, 0);
+  EXPECT_NE("", verify_periodic(testing::triangulator(), square));
+}
+
 template <typename Work>
 void expect_refusal(ErrorKind kind, const char* part, const Work& work) {
   try {
@@ -243,12 +504,28 @@ void expect_refusal(ErrorKind kind, const char* part, const Work& work) {
 
 TEST(Periodic, ErrorsSayWhatIsWrong) {
   const Numbers few = {0.5, 0.5, 0.2, 0.1};
-  expect_refusal(ErrorKind::input, "the 2 different points of set 0 leave an empty circle",
-                 [&] { triangulated(few, {}); });
   expect_refusal(ErrorKind::input, "point 1 is not finite", [] { triangulated({1, 1, HUGE_VAL, 0}, {}); });
-  for (const Period& period : {Period{0, 1}, Period{1, -1}, Period{HUGE_VAL, 1}, Period{std::nan(""), 1}}) {
+  for (const Period& period :
+       {Period{0, 1}, Period{1, -1}, Period{HUGE_VAL, HUGE_VAL}, Period{std::nan(""), 1}}) {
     expect_refusal(ErrorKind::usage, "the period", [&] { triangulated(few, period); });
   }
+  expect_refusal(ErrorKind::usage, "cells on a cylinder", [&] {
+    periodic_cell_areas(triangulated(few, {1, HUGE_VAL}));
+  });
+  PeriodicTriangulation mesh = triangulated(few, {});
+  PeriodicLocator locator(testing::triangulator(), mesh);
+  const Numbers lost = {0, HUGE_VAL};
+  expect_refusal(ErrorKind::input, "query 0 is not finite", [&] { locator.nearest(lost.data(), 1); });
+  expect_refusal(ErrorKind::usage, "one set", [&] {
+    PeriodicLocator(testing::triangulator(),
+                    triangulate_periodic(testing::triangulator(), few.data(), {0, 1, 2}, {}));
+  });
+  std::swap(mesh.triangles[1], mesh.triangles[2]);
+  expect_refusal(ErrorKind::usage, "not those of a triangulation",
+                 [&] { PeriodicLocator(testing::triangulator(), mesh); });
+  mesh.triangles[0] = 7;
+  expect_refusal(ErrorKind::usage, "not those of a triangulation",
+                 [&] { PeriodicLocator(testing::triangulator(), mesh); });
   expect_refusal(ErrorKind::usage, "2^30", [&] { triangulated(few, {1, 0x1p31}); });
   EXPECT_TRUE(triangulated({}, {}).triangles.empty());
 }
@@ -258,7 +535,7 @@ TEST(Periodic, ManyPointsHaveTwiceAsManyTriangles) {
   EXPECT_EQ(200000u, mesh.triangles.size() / 3);
   EXPECT_LT(mesh.images, 15000u);
   double sum = 0;
-  for (const double area : periodic_cell_areas(mesh, {})) sum += area;
+  for (const double area : periodic_cell_areas(mesh)) sum += area;
   EXPECT_NEAR(1, sum, 1e-10);
 }
 

@@ -1,160 +1,457 @@
 #include "derived/periodic/torus.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <tuple>
+#include <fmt/format.h>
 
-#include "geometry/predicates.hpp"
+#include <algorithm>
+#include <atomic>
+#include <bitset>
+#include <cmath>
+#include <numeric>
+
+#include "geometry/for_each.hpp"
 
 namespace flaunay::periodic {
 namespace {
 
+using geometry::for_each;
+using geometry::for_each_run;
 using geometry::Point;
+using geometry::runs_of;
 
-// The difference of the numbers of periods of two corners, and these corners: on a torus, an edge of a
-// triangle.
-struct Edge {
-  std::int32_t low, high;
-  int across, up;
-  std::int32_t at;  // 3 t + the corner opposite
+using Ids = std::vector<std::int32_t>;
+
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// 2^52 units: the smallest power of two that is not less than the period. Numbers from there to twice as much
+// are multiples of the unit, and all multiples up to two periods are doubles.
+double whole_of(double period) {
+  const double power = std::ldexp(1.0, std::ilogb(period));
+  return power < period ? 2 * power : power;
+}
+
+struct Axis {
+  explicit Axis(double length) : period(length) {
+    if (std::isfinite(period)) whole = whole_of(period);
+  }
+
+  // Of x in [-period / 2, period / 2], or not finite.
+  double place_of(double x) const {
+    const double place = std::copysign((std::fabs(x) + whole) - whole, x);
+    return place + period * static_cast<double>(place < 0);  // without a branch
+  }
+  double wrapped(double x) const {
+    if (!std::isfinite(period)) return x + 0.0;
+    if (x >= 0 && x < period) return place_of(x - period * static_cast<double>(x >= period / 2));
+    // Without a rounding. Of both ends, the lower one.
+    const double rest = std::remainder(x, period);
+    return place_of(rest < period / 2 ? rest : rest - period);
+  }
+
+  double period, whole = 0;
 };
 
-auto key(const Edge& e) { return std::tuple(e.low, e.high, e.across, e.up); }
-
-// An upper bound of the width of the circle through three points whose differences are exact or have one
-// rounding; infinite if that cannot tell a slender triangle from a line.
-double most_width(Point a, Point b, Point c) {
-  const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y, dx = c.x - b.x, dy = c.y - b.y;
-  const double left = bx * cy, right = by * cx;
-  const double area = (left - right) - ORIENT_BOUND * (std::fabs(left) + std::fabs(right));
-  if (!(area > 0)) return HUGE_VAL;
-  constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
-  return kSpare * std::sqrt((bx * bx + by * by) * (cx * cx + cy * cy)) * std::sqrt(dx * dx + dy * dy) / area;
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& more) {
+  to.insert(to.end(), more.begin(), more.end());
 }
 
 }  // namespace
 
-double wrapped(double x, double period) {
-  const double unit = std::ldexp(1.0, std::ilogb(period) - 52);
-  // Without a rounding, as std::remainder is.
-  const double rest = x < 0 || x >= period ? std::remainder(x, period) : x < period / 2 ? x : x - period;
-  double place = std::nearbyint(rest / unit) * unit;
-  if (place < 0) place += period;
-  return place < period ? place + 0.0 : 0.0;
+Pair<double> rounded(const Period& period) {
+  const auto one = [](double length) {
+    if (!std::isfinite(length)) return length;
+    return (length + whole_of(length)) - whole_of(length);
+  };
+  return {one(period.x), one(period.y)};
 }
 
-double first_margin(std::size_t n, const Period& period) {
+std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
+                              const Pair<double>& period, const char* what) {
+  std::vector<double> places;
+  runtime.resize(places, 2 * n);
+  const Axis across(period[0]), up(period[1]);
+  for_each(runtime, n, [&](std::size_t i) {
+    const double x = across.wrapped(points[2 * i]), y = up.wrapped(points[2 * i + 1]);
+    if (!std::isfinite(x) || !std::isfinite(y)) {
+      throw Error(ErrorKind::input,
+                  fmt::format("{} {} is not finite: ({}, {})", what, i, points[2 * i], points[2 * i + 1]));
+    }
+    places[2 * i] = x;
+    places[2 * i + 1] = y;
+  });
+  return places;
+}
+
+Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
+           const Pair<double>& period) {
+  Box box{{}, period, period};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (std::isfinite(period[axis]) || first == last) continue;
+    box.low[axis] = box.high[axis] = places[2 * first + axis];
+    for (std::size_t i = first; i < last; ++i) {
+      box.low[axis] = std::min(box.low[axis], places[2 * i + axis]);
+      box.high[axis] = std::max(box.high[axis], places[2 * i + axis]);
+    }
+  }
+  return box;
+}
+
+double first_margin(const Box& box, std::size_t n) {
   constexpr double kSpare = 3, kPi = 3.14159265358979;
   const double count = static_cast<double>(n) + 2;
-  const double radius = std::sqrt(period.x * period.y * std::log(count) / (kPi * count));
-  return std::min(kSpare * radius, std::min(period.x, period.y) / 2);
+  const double share = std::sqrt(std::log(count) / (kPi * count));
+  double margin = kSpare * share * std::sqrt(box.high[0] - box.low[0]) * std::sqrt(box.high[1] - box.low[1]);
+  // In a narrow box, points are as on a line.
+  for (const double period : box.period) {
+    if (std::isfinite(period)) margin = std::max(margin, period * std::log(count) / count);
+  }
+  return margin;
 }
 
-Unrolled unroll(const std::vector<double>& places, std::size_t first, std::size_t last, const Period& period,
-                double margin) {
-  Unrolled plane;
-  plane.originals = last - first;
-  plane.coordinates.reserve(2 * plane.originals);
-  plane.points.reserve(plane.originals);
-  plane.image_of.reserve(2 * plane.originals);
-  const auto is_low = [](double x, double length) { return x < length / 2; };
-  const auto add = [&](double x, double y, std::size_t i, int across, int up) {
-    plane.coordinates.push_back(x);
-    plane.coordinates.push_back(y);
-    plane.points.push_back(static_cast<std::int32_t>(i));
-    plane.image_of.push_back(static_cast<std::int8_t>(across));
-    plane.image_of.push_back(static_cast<std::int8_t>(up));
+Unrolled::Unrolled(host::Runtime& runtime, std::vector<double> places, const Box& box, double margin)
+    : box_(box), margin_(margin), points_(places.size() / 2), coordinates_(std::move(places)) {
+  struct Found {
+    std::vector<double> coordinates;
+    std::vector<Image> images;
   };
-  const double low_x = -period.x / 2 - margin, high_x = period.x / 2 + margin;
-  const double low_y = -period.y / 2 - margin, high_y = period.y / 2 + margin;
-  for (const bool originals : {true, false}) {
-    for (std::size_t i = first; i < last; ++i) {
-      // The image around 0.
-      const int left = is_low(places[2 * i], period.x) ? 0 : -1,
-                below = is_low(places[2 * i + 1], period.y) ? 0 : -1;
-      const double x = places[2 * i] + left * period.x, y = places[2 * i + 1] + below * period.y;
-      if (originals) {
-        add(x, y, i, left, below);
-        continue;
-      }
-      const bool is_inside =
-          x < low_x + period.x && x > high_x - period.x && y < low_y + period.y && y > high_y - period.y;
-      for (int across = -1; across <= 1 && !is_inside; ++across) {
-        for (int up = -1; up <= 1; ++up) {
-          const double image_x = x + across * period.x, image_y = y + up * period.y;
-          const bool is_near = image_x >= low_x && image_x <= high_x && image_y >= low_y && image_y <= high_y;
-          if ((across != 0 || up != 0) && is_near) add(image_x, image_y, i, left + across, below + up);
+  std::vector<Found> found(runs_of(points_));
+  for_each_run(runtime, points_, [&](std::size_t run, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point p{coordinates_[2 * i], coordinates_[2 * i + 1]};
+      // Near an end of the direction without a period, the nearest points may be a whole period away.
+      const bool is_at_end = is_near_end(p.x, 0) || is_near_end(p.y, 1);
+      const Pair<int> across = images_along(p.x, 0, is_at_end), up = images_along(p.y, 1, is_at_end);
+      for (int a = across[0]; a <= across[1]; ++a) {
+        for (int b = up[0]; b <= up[1]; ++b) {
+          if (a == 0 && b == 0) continue;
+          found[run].coordinates.push_back(a == 0 ? p.x : p.x + a * box.period[0]);
+          found[run].coordinates.push_back(b == 0 ? p.y : p.y + b * box.period[1]);
+          found[run].images.push_back({static_cast<std::int32_t>(i), {a, b}});
         }
       }
     }
+  });
+  for (const Found& some : found) {
+    append(coordinates_, some.coordinates);
+    append(images_, some.images);
   }
-  return plane;
 }
 
-Selected select(const Unrolled& plane, const Triangulation& planar, std::size_t set, std::size_t plane_first,
-                double margin, std::size_t vertices) {
-  const std::size_t begin = planar.triangle_offsets[set], end = planar.triangle_offsets[set + 1];
-  const auto in_plane = [&](std::size_t t, std::size_t k) {
-    return static_cast<std::size_t>(planar.triangles[3 * t + k]) - plane_first;
-  };
-  const auto place = [&](std::size_t v) {
-    return Point{plane.coordinates[2 * v], plane.coordinates[2 * v + 1]};
-  };
-  Selected result;
-  // Of all images of a triangle the one whose corner of the smallest index is the point itself.
-  std::vector<std::int32_t> number(end - begin, -1);
-  std::vector<std::size_t> chosen;
-  chosen.reserve(2 * vertices);
-  for (std::size_t t = begin; t < end; ++t) {
-    std::size_t first = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-      if (plane.points[in_plane(t, k)] < plane.points[in_plane(t, first)]) first = k;
+std::vector<double> Unrolled::take_places() {
+  coordinates_.resize(2 * points_);
+  return std::move(coordinates_);
+}
+
+bool Unrolled::is_near_end(double x, std::size_t axis) const {
+  return !box_.repeats(axis) && (x <= box_.low[axis] + margin_ || x >= box_.high[axis] - margin_);
+}
+
+// Which images there are, from -1 or 0 to 0 or 1.
+Pair<int> Unrolled::images_along(double x, std::size_t axis, bool all) const {
+  if (!box_.repeats(axis)) return {};
+  return {all || x >= box_.period[axis] - margin_ ? -1 : 0, all || x <= margin_ ? 1 : 0};
+}
+
+bool Unrolled::is_whole() const {
+  return (!box_.repeats(0) || margin_ >= box_.period[0]) && (!box_.repeats(1) || margin_ >= box_.period[1]);
+}
+
+namespace {
+
+// The image when `to` is in its place.
+Image beside(const Image& a, const Image& to) { return {a.point, {a.at[0] - to.at[0], a.at[1] - to.at[1]}}; }
+
+// Numbers of triangles when some, in ascending order, are taken out.
+class Ranks {
+ public:
+  Ranks(const Ids& dropped, std::size_t count) : words_(count / 64 + 1) {
+    for (const std::int32_t t : dropped) words_[index(t) / 64].mask |= std::uint64_t{1} << (index(t) % 64);
+    std::int32_t before = 0;
+    for (Word& word : words_) {
+      word.before = before;
+      before += static_cast<std::int32_t>(std::bitset<64>(word.mask).count());
     }
-    if (in_plane(t, first) >= plane.originals) continue;
-    if (!(most_width(place(in_plane(t, 0)), place(in_plane(t, 1)), place(in_plane(t, 2))) < margin))
-      return result;
-    number[t - begin] = static_cast<std::int32_t>(chosen.size());
-    chosen.push_back(3 * t + first);
   }
-  if (chosen.size() != 2 * vertices) return result;
-  result.triangles.reserve(3 * chosen.size());
-  result.neighbors.reserve(3 * chosen.size());
-  result.offsets.reserve(6 * chosen.size());
-  std::vector<Edge> open;
-  for (const std::size_t from : chosen) {
-    const std::size_t t = from / 3, first = in_plane(t, from % 3);
+
+  bool is_dropped(std::int32_t t) const { return (words_[index(t) / 64].mask >> (index(t) % 64) & 1) != 0; }
+  std::int32_t rank(std::int32_t t) const {
+    const Word& word = words_[index(t) / 64];
+    if (word.mask == 0) return t - word.before;
+    const std::uint64_t below = word.mask & ((std::uint64_t{1} << (index(t) % 64)) - 1);
+    return t - word.before - static_cast<std::int32_t>(std::bitset<64>(below).count());
+  }
+
+ private:
+  struct Word {
+    std::uint64_t mask = 0;
+    std::int32_t before = 0;
+  };
+  std::vector<Word> words_;
+};
+
+// Triangles that need care, in ascending order.
+struct Border {
+  Ids dropped;  // of which another image is kept
+  Ids mixed;    // kept, with images among its corners
+  Ids open;     // corners of kept ones with no triangle opposite to them
+};
+
+Border find_border(host::Runtime& runtime, const Unrolled& plane, const Triangles& all) {
+  const std::size_t count = all.corners.size() / 3;
+  std::vector<Border> borders(runs_of(count));
+  const auto points = static_cast<std::int32_t>(plane.points());
+  for_each_run(runtime, count, [&](std::size_t run, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::int32_t* const v = &all.corners[3 * t];
+      const std::int32_t* const beyond = &all.neighbors[3 * t];
+      const bool is_inside = v[0] < points && v[1] < points && v[2] < points;
+      if (is_inside && (beyond[0] | beyond[1] | beyond[2]) >= 0) continue;
+      if (!is_inside) {
+        // Kept is the image whose first corner is the point itself.
+        int first = 0;
+        for (int k = 1; k < 3; ++k) {
+          if (plane.image(v[k]) < plane.image(v[first])) first = k;
+        }
+        const bool is_kept = v[first] < points;
+        (is_kept ? borders[run].mixed : borders[run].dropped).push_back(static_cast<std::int32_t>(t));
+        if (!is_kept) continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (beyond[k] < 0) borders[run].open.push_back(static_cast<std::int32_t>(3 * t + k));
+      }
+    }
+  });
+  Border border;
+  for (const Border& one : borders) {
+    append(border.dropped, one.dropped);
+    append(border.mixed, one.mixed);
+    append(border.open, one.open);
+  }
+  return border;
+}
+
+// An edge between a triangle that is kept and one that is not. Its first end is in its place.
+struct Seam {
+  Image from, to;
+  Image own, beyond;  // opposite corners of both triangles
+  std::int32_t at;    // 3 t + the corner opposite, of the triangle that is kept
+};
+
+bool is_same_edge(const Seam& a, const Seam& b) { return a.from == b.from && a.to == b.to; }
+
+// beyond: the corner in the plane, or -1.
+Seam seam_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
+  const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
+  const auto corner = [&](std::size_t j) { return plane.image(all.corners[t + j % 3]); };
+  Seam seam{corner(k + 1), corner(k + 2), corner(k), beyond < 0 ? Image{-1, {}} : plane.image(beyond), at};
+  const Image step = beside(seam.to, seam.from);
+  if (seam.to.point < seam.from.point || (seam.to.point == seam.from.point && step.at < Pair<int>{}))
+    std::swap(seam.from, seam.to);
+  for (Image* const image : {&seam.to, &seam.own, &seam.beyond}) *image = beside(*image, seam.from);
+  seam.from.at = {};
+  return seam;
+}
+
+// Joins triangles that are kept at their edges. Returns whether they have the same edges, and, where that is
+// not known, whether what is beyond an edge in the plane is an image of what is joined to it.
+bool join(std::vector<Seam> seams, bool is_known, Ids& neighbors) {
+  std::sort(seams.begin(), seams.end(), [](const Seam& a, const Seam& b) {
+    return a.from < b.from || (a.from == b.from && a.to < b.to);
+  });
+  if (seams.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < seams.size(); i += 2) {
+    const Seam &a = seams[i], &b = seams[i + 1];
+    if (!is_same_edge(a, b)) return false;
+    if (!is_known && !(a.own == b.beyond && b.own == a.beyond)) return false;
+    neighbors[index(a.at)] = b.at / 3;
+    neighbors[index(b.at)] = a.at / 3;
+  }
+  return true;
+}
+
+// The place in units of the box.
+Point in_box(const Unrolled& plane, std::int32_t v) {
+  const Point p = plane.place(v);
+  const Box& box = plane.box();
+  const auto share = [&](double x, std::size_t axis) {
+    return (x / 2 - box.low[axis] / 2) / (box.high[axis] / 2 - box.low[axis] / 2);
+  };
+  return {share(p.x, 0), share(p.y, 1)};
+}
+
+// Whether an edge without a triangle beyond is on the box's border, in a direction that has no period.
+bool is_on_border(const Box& box, Point a, Point b) {
+  const auto is_end = [&](double x, double y, std::size_t axis) {
+    return !box.repeats(axis) && x == y && (x == box.low[axis] || x == box.high[axis]);
+  };
+  return is_end(a.x, b.x, 0) || is_end(a.y, b.y, 1);
+}
+
+std::size_t expected_triangles(const Unrolled& plane, const Ids& representatives) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < representatives.size(); ++i) {
+    if (index(representatives[i]) != i) continue;
+    count += 2;
+    const Point p = plane.place(static_cast<std::int32_t>(i));
+    const Box& box = plane.box();
+    if (!box.repeats(0)) count -= static_cast<std::size_t>(p.x == box.low[0]) + (p.x == box.high[0]);
+    if (!box.repeats(1)) count -= static_cast<std::size_t>(p.y == box.low[1]) + (p.y == box.high[1]);
+  }
+  return count;
+}
+
+// Rewrites a triangle of images: its first corner comes first, and offsets are relative to that.
+void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles& all) {
+  std::array<std::int32_t, 3> neighbors{};
+  std::array<Image, 3> images;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t c = 3 * index(t) + k;
+    images[k] = plane.image(all.corners[c]);
+    neighbors[k] = all.neighbors[c];
+    if (images[k] < images[first]) first = k;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Image image = beside(images[(first + k) % 3], images[first]);
+    all.corners[3 * index(t) + k] = image.point;
+    all.neighbors[3 * index(t) + k] = neighbors[(first + k) % 3];
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      all.offsets[6 * index(rank) + 2 * k + axis] = static_cast<std::int8_t>(image.at[axis]);
+  }
+}
+
+}  // namespace
+
+bool fold(host::Runtime& runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
+  const std::size_t count = all.corners.size() / 3, expected = expected_triangles(plane, representatives);
+  const Border border = find_border(runtime, plane, all);
+  if (count - border.dropped.size() != expected) return false;
+  const Ranks ranks(border.dropped, count);
+  std::vector<Seam> seams;
+  for (const std::int32_t t : border.dropped) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t c = 3 * t + (from + k) % 3;  // 3 t is a multiple of 3
-      const std::size_t v = in_plane(t, c % 3);
-      result.triangles.push_back(plane.points[v]);
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        result.offsets.push_back(
-            static_cast<std::int8_t>(plane.image_of[2 * v + axis] - plane.image_of[2 * first + axis]));
-      }
-      const std::int32_t beyond = planar.neighbors[c];
-      const std::int32_t other = beyond < 0 ? -1 : number[static_cast<std::size_t>(beyond) - begin];
-      result.neighbors.push_back(other);
-      if (other >= 0) continue;
-      const std::size_t a = in_plane(t, (c + 1) % 3), b = in_plane(t, (c + 2) % 3);
-      Edge edge{plane.points[a], plane.points[b], plane.image_of[2 * b] - plane.image_of[2 * a],
-                plane.image_of[2 * b + 1] - plane.image_of[2 * a + 1],
-                static_cast<std::int32_t>(result.neighbors.size() - 1)};
-      if (edge.low > edge.high) {
-        std::swap(edge.low, edge.high);
-        edge.across = -edge.across;
-        edge.up = -edge.up;
-      }
-      open.push_back(edge);
+      const std::int32_t kept = all.neighbors[3 * index(t) + k];
+      if (kept < 0 || ranks.is_dropped(kept)) continue;
+      std::int32_t at = 3 * kept;
+      while (all.neighbors[index(at)] != t) ++at;
+      seams.push_back(seam_of(plane, all, at, all.corners[3 * index(t) + k]));
     }
   }
-  std::sort(open.begin(), open.end(), [](const Edge& a, const Edge& b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < open.size(); i += 2) {
-    if (i + 1 == open.size() || key(open[i]) != key(open[i + 1])) return result;
-    result.neighbors[static_cast<std::size_t>(open[i].at)] = open[i + 1].at / 3;
-    result.neighbors[static_cast<std::size_t>(open[i + 1].at)] = open[i].at / 3;
+  // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
+  // says: once. (The area is rounded, and computed from the border.)
+  double area = 0;
+  const auto add_edge = [&](std::int32_t at) {
+    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
+    const Point a = in_box(plane, all.corners[t + (k + 1) % 3]),
+                b = in_box(plane, all.corners[t + (k + 2) % 3]);
+    area += (a.x + b.x) / 2 * (b.y - a.y);
+  };
+  for (const std::int32_t at : border.open) {
+    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
+    if (is_on_border(plane.box(), plane.place(all.corners[t + (k + 1) % 3]),
+                     plane.place(all.corners[t + (k + 2) % 3]))) {
+      add_edge(at);
+    } else if (plane.is_whole()) {
+      seams.push_back(seam_of(plane, all, at, -1));
+    } else {
+      return false;
+    }
   }
-  result.is_complete = true;
-  return result;
+  for (const Seam& seam : seams) add_edge(seam.at);
+  if (expected > 0 && !(std::fabs(area - 1) < 0.5)) return false;
+  if (!join(std::move(seams), plane.is_whole(), all.neighbors)) return false;
+
+  runtime.resize(all.offsets, 6 * expected);
+  for (const std::int32_t t : border.mixed) rewrite(plane, t, ranks.rank(t), all);
+  for_each(runtime, all.neighbors.size(), [&](std::size_t c) {
+    if (all.neighbors[c] >= 0) all.neighbors[c] = ranks.rank(all.neighbors[c]);
+  });
+  for (Ids* const ids : {&all.corners, &all.neighbors}) {
+    auto to = ids->begin();
+    std::ptrdiff_t from = 0;
+    const auto keep_until = [&](std::ptrdiff_t end) {
+      const auto begin = ids->begin() + 3 * from;
+      to = to == begin ? ids->begin() + 3 * end : std::copy(begin, ids->begin() + 3 * end, to);
+      from = end + 1;
+    };
+    for (const std::int32_t t : border.dropped) keep_until(t);
+    keep_until(static_cast<std::ptrdiff_t>(count));
+    ids->resize(3 * expected);
+  }
+  return true;
+}
+
+bool is_box_inside(const Unrolled& plane, const Ids& hull) {
+  constexpr double kDistance = 0x1p-30;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Point a = in_box(plane, hull[i]), b = in_box(plane, hull[(i + 1) % hull.size()]);
+    for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
+      if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
+    }
+  }
+  return !hull.empty();
+}
+
+Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
+              const PeriodicTriangulation& mesh) {
+  // Triangles by their first corner.
+  std::vector<std::size_t> begins(mesh.representatives.size() + 1, 0);
+  for (std::size_t c = 0; c < mesh.triangles.size(); c += 3) ++begins[index(mesh.triangles[c])];
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  Ids by_first(mesh.triangles.size() / 3);
+  for (std::size_t t = by_first.size(); t-- > 0;)
+    by_first[--begins[index(mesh.triangles[3 * t])]] = static_cast<std::int32_t>(t);
+
+  const auto find = [&](const std::array<Image, 3>& images) {
+    const auto is_same = [&](std::int32_t t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t c = 3 * index(t) + k;
+        if (!(Image{mesh.triangles[c], {mesh.offsets[2 * c], mesh.offsets[2 * c + 1]}} ==
+              beside(images[k], images[0])))
+          return false;
+      }
+      return true;
+    };
+    const auto first = by_first.begin() + static_cast<std::ptrdiff_t>(begins[index(images[0].point)]),
+               last = by_first.begin() + static_cast<std::ptrdiff_t>(begins[index(images[0].point) + 1]);
+    const auto found = std::find_if(first, last, is_same);
+    return found == last ? -1 : *found;
+  };
+  const Box& box = plane.box();
+  const auto touches_box = [&](const std::array<Point, 3>& p) {
+    const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [below, above] = std::minmax({p[0].y, p[1].y, p[2].y});
+    return right >= box.low[0] && left <= box.high[0] && above >= box.low[1] && below <= box.high[1];
+  };
+  const auto is_small = [&](const std::array<Point, 3>& p) {
+    constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
+    const auto is_short = [&](Point a, Point b) {
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.margin();
+    };
+    return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
+  };
+  Ids result(corners.size() / 3, -1);
+  std::atomic<bool> is_right = true;
+  for_each(runtime, result.size(), [&](std::size_t t) {
+    std::array<Point, 3> places;
+    std::array<Image, 3> images;
+    for (std::size_t k = 0; k < 3; ++k) {
+      places[k] = plane.place(corners[3 * t + k]);
+      images[k] = plane.image(corners[3 * t + k]);
+    }
+    if (!touches_box(places)) return;
+    std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
+    result[t] = find(images);
+    if (!plane.is_whole() && (result[t] < 0 || !is_small(places))) is_right = false;
+  });
+  if (plane.is_whole()) {
+    std::vector<bool> is_found(by_first.size(), false);
+    for (const std::int32_t t : result) {
+      if (t >= 0) is_found[index(t)] = true;
+    }
+    is_right = std::find(is_found.begin(), is_found.end(), false) == is_found.end();
+  }
+  return is_right ? result : Ids();
 }
 
 }  // namespace flaunay::periodic

@@ -1,18 +1,18 @@
 // Points of the unit sphere as places in a plane: the stereographic projection from the south pole.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "flaunay/sphere.hpp"
+#include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
-#include "host/runtime.hpp"
 
 namespace flaunay::sphere {
 
+using geometry::for_each;
 using geometry::Point;
 
 /// Places are multiples of 2^-65, and below 2^62: what would be farther is the south pole.
@@ -49,15 +49,6 @@ inline Direction cross(const Direction& a, const Direction& b) {
 
 /// The unit vector of a place, rounded.
 Direction direction_of(Point place);
-
-/// Calls work(i) for each i below n, on the runtime's threads.
-template <typename Work>
-void for_each(host::Runtime& runtime, std::size_t n, const Work& work) {
-  constexpr std::size_t kRun = 1 << 12;  // so many at a time
-  runtime.share((n + kRun - 1) / kRun, [&](std::size_t run) {
-    for (std::size_t i = run * kRun; i < std::min(n, (run + 1) * kRun); ++i) work(i);
-  });
-}
 
 /// The number of coordinates of a point.
 constexpr std::size_t width_of(SphereCoordinates coordinates) {

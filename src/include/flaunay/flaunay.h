@@ -1501,14 +1501,14 @@ FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spheric
                                                                  const double* queries, size_t m,
                                                                  int coordinates, double* results);
 
-// ---- Points on a torus
+// ---- Points on a torus or a cylinder
 
-/// The Delaunay triangulations of sets of points in a plane that repeats itself in x and y.
+/// The Delaunay triangulations of sets of points in a plane that repeats itself in x and y, or in one of
+/// them.
 typedef struct flaunay_periodic flaunay_periodic;
-/// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period.
-/// offsets and sets: as for flaunay_triangulate. If an empty circle is half as wide as the smaller period, or
-/// wider, it is FLAUNAY_ERROR_INPUT: a set has too few points, or too large a gap, and has to be repeated.
-/// Otherwise errors are those of flaunay_triangulate; a period that is none is FLAUNAY_ERROR_USAGE. The
+/// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period; if
+/// one period is INFINITY, on a cylinder. offsets and sets: as for flaunay_triangulate. Any points do,
+/// however few. Errors are those of flaunay_triangulate; a period that is none is FLAUNAY_ERROR_USAGE. The
 /// caller destroys the result. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points,
                                                    size_t n, const size_t* offsets, size_t sets,
@@ -1518,27 +1518,62 @@ FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangu
 FLAUNAY_API void flaunay_periodic_destroy(flaunay_periodic* periodic);
 /// n, the number of points.
 FLAUNAY_API size_t flaunay_periodic_point_count(const flaunay_periodic* periodic);
-/// t, the number of triangles: 2 n for each set of n different points.
+/// t, the number of triangles: 2 n for each set of n different points; on a cylinder 2 n - h, if h of them
+/// are on its lowest and its highest circle.
 FLAUNAY_API size_t flaunay_periodic_triangle_count(const flaunay_periodic* periodic);
 /// Images that were triangulated besides the points.
 FLAUNAY_API size_t flaunay_periodic_image_count(const flaunay_periodic* periodic);
-/// 2 n values: places in [0, period), rounded once to multiples of the period's last bit. This is what the
-/// points are.
+/// 2 values, x and y: as given, but for the last bit, which is 0 unless the period is a power of two.
+FLAUNAY_API const double* flaunay_periodic_period(const flaunay_periodic* periodic);
+/// 2 n values: places in [0, period), rounded once to multiples of the period's last bit but one. This is
+/// what the points are. What has no period is not rounded.
 FLAUNAY_API const double* flaunay_periodic_places(const flaunay_periodic* periodic);
 /// 3 t values, counter-clockwise, smallest index first.
 FLAUNAY_API const int32_t* flaunay_periodic_triangles(const flaunay_periodic* periodic);
 /// 6 t values, x and y per corner, -1 to 1: with the first corner in its place, the corner is at its place +
 /// offset * period.
 FLAUNAY_API const int8_t* flaunay_periodic_offsets(const flaunay_periodic* periodic);
-/// 3 t values: the triangle opposite to each corner. There is always one.
+/// 3 t values: the triangle opposite to each corner; on a cylinder -1 beyond its ends.
 FLAUNAY_API const int32_t* flaunay_periodic_neighbors(const flaunay_periodic* periodic);
 /// n values: the smallest index of a point of the set with the same place.
 FLAUNAY_API const int32_t* flaunay_periodic_representatives(const flaunay_periodic* periodic);
 /// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
 FLAUNAY_API const size_t* flaunay_periodic_triangle_offsets(const flaunay_periodic* periodic);
 /// Writes the areas of the points' Voronoi cells, rounded; those of a set sum to that of the period. areas:
-/// room for n values.
+/// room for n values. A cylinder is FLAUNAY_ERROR_USAGE: cells there have no end.
 FLAUNAY_API flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas);
+
+/// Checks exactly that this is the canonical triangulation of its places; if not, it is
+/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
+FLAUNAY_API flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator,
+                                                   const flaunay_periodic* periodic);
+
+/// Answers queries on a torus or a cylinder with one set of points. Queries are any places of the plane.
+typedef struct flaunay_periodic_locator flaunay_periodic_locator;
+/// Makes a locator, which copies what it needs: as a flaunay_locator does, for points and images around the
+/// box; on a cylinder for three times as many. It may outlive the triangulator. O(n log n).
+FLAUNAY_API flaunay_status flaunay_periodic_locator_create(flaunay_triangulator* triangulator,
+                                                           const flaunay_periodic* periodic,
+                                                           flaunay_periodic_locator** locator);
+/// Releases its memory.
+FLAUNAY_API void flaunay_periodic_locator_destroy(flaunay_periodic_locator* locator);
+/// Finds for each of m queries a triangle that contains it, exactly; on an edge or at a corner always the
+/// same one. It is -1 beyond the ends of a cylinder, and if there are no triangles. triangles: room for m
+/// values.
+FLAUNAY_API flaunay_status flaunay_periodic_locator_locate(flaunay_periodic_locator* locator,
+                                                           const double* queries, size_t m,
+                                                           int32_t* triangles);
+/// Finds for each of m queries the nearest point, exactly; of several the first one in the order of x, then
+/// y, as they lie around the query's place. It is -1 if there are no points. points: room for m values.
+FLAUNAY_API flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_locator* locator,
+                                                            const double* queries, size_t m, int32_t* points);
+/// Computes for each of m queries the linear interpolation of the values at the corners of its triangle.
+/// values: `columns` numbers per point; results: so many per query. At a point it is that point's value;
+/// where there is no triangle, NaN.
+FLAUNAY_API flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator,
+                                                                const double* values, size_t columns,
+                                                                const double* queries, size_t m,
+                                                                double* results);
 
 // ---- Weighted points
 

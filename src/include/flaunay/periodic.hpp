@@ -1,8 +1,10 @@
-// Points on a torus: a plane that repeats itself in x and y.
+// Points on a torus or a cylinder: a plane that repeats itself in x and y, or in one of them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -11,21 +13,29 @@ namespace flaunay {
 
 /// Where the plane begins again, in x and in y.
 struct Period {
-  double x = 1;  ///< positive, and at most 2^30 times the other
+  /// Positive, and at most 2^30 times the other. If one is infinite, the plane does not repeat itself in that
+  /// direction: it is a cylinder.
+  double x = 1;
   double y = 1;  ///< see x
 };
 
-/// The Delaunay triangulations of one or more sets of points on a torus.
+/// The Delaunay triangulations of one or more sets of points on a torus or a cylinder.
 struct PeriodicTriangulation {
-  /// x and y per point: its place in [0, period), a multiple of the period's last bit. They are rounded once,
-  /// to half of that, and are then what the point is: so every image of a point is exact.
+  /// As given, but for the last bit of a double, which is 0 unless the period is a power of two.
+  Period period;
+  /// x and y per point: its place in [0, period), a multiple of the period's last bit but one, or of the last
+  /// bit if it is a power of two. They are rounded once, to half of that, and are then what the point is: so
+  /// every image of a point is exact. What has no period is not rounded.
   std::vector<double> places;
-  /// 3 per triangle, counter-clockwise, smallest index first: 2 n for n different points of a set.
+  /// 3 per triangle, counter-clockwise, smallest index first. n different points on a torus have 2 n, and on
+  /// a cylinder 2 n - h, if h of them are on its lowest and its highest circle: none if all are on one.
   std::vector<std::int32_t> triangles;
   /// 6 per triangle: x and y per corner, in periods. With the first corner's in its place, the corner is at
-  /// its place + offset * period. The first corner has 0, 0; the others -1, 0 or 1.
+  /// its place + offset * period. The first corner has 0, 0; the others -1, 0 or 1. They tell apart corners
+  /// that are the same point, as few points have them.
   std::vector<std::int8_t> offsets;
-  /// 3 per triangle: the triangle opposite to each corner. There is always one.
+  /// 3 per triangle: the triangle opposite to each corner. There is always one on a torus; -1 is beyond the
+  /// ends of a cylinder.
   std::vector<std::int32_t> neighbors;
   /// One per point: the smallest index of a point of its set with the same place.
   std::vector<std::int32_t> representatives;
@@ -38,13 +48,12 @@ struct PeriodicTriangulation {
   Statistics statistics;  ///< of the last triangulation in the plane
 };
 
-/// Triangulates n points on a torus, x0 y0 x1 y1 ...; any finite numbers, which are taken into the period.
-/// The result is exact, and a function of the set of places: where more than three points are cocircular,
-/// their polygon is a fan from its lexicographically smallest vertex. Triangles are in the order that they
-/// have in the plane, which the number of points given has a part in. Images of points near the border are
-/// triangulated with the points. If each empty circle is less than half the smaller period wide, all
-/// triangles are found, of which there are 2 n; otherwise it is an Error(input) that says so: a set has too
-/// few points, or too large a gap, and has to be repeated. Throws what Triangulator::triangulate throws;
+/// Triangulates n points on a torus or a cylinder, x0 y0 x1 y1 ...; any finite numbers, which are taken into
+/// the period. The result is exact, and a function of the set of places: the Delaunay triangulation of all
+/// images of all points, of which it has each triangle once, however few points there are. Where more than
+/// three points are cocircular, their polygon is a fan from its lexicographically smallest vertex. Triangles
+/// are in the order that they have in the plane, which the number of points given has a part in. Images of
+/// points near the border are triangulated with the points. Throws what Triangulator::triangulate throws;
 /// Error(usage) also for a period that is none. O(n log n) work.
 FLAUNAY_API PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                                        std::size_t n, const Period& period);
@@ -54,9 +63,45 @@ FLAUNAY_API PeriodicTriangulation triangulate_periodic(Triangulator& triangulato
                                                        const Period& period);
 
 /// Returns the areas of the Voronoi cells on the torus, one per point, rounded; those of a set sum to that of
-/// the period. Points that another one represents have 0. Throws Error(usage) for arrays that are none's.
-/// O(n).
-FLAUNAY_API std::vector<double> periodic_cell_areas(const PeriodicTriangulation& triangulation,
-                                                    const Period& period);
+/// the period. Points that another one represents have 0. Throws Error(usage) for arrays that are none's, and
+/// for a cylinder, where cells have no end. O(n).
+FLAUNAY_API std::vector<double> periodic_cell_areas(const PeriodicTriangulation& triangulation);
+
+/// Checks a triangulation exactly: that it is the canonical one of its places. Returns what is wrong; nothing
+/// if it is right. Shares predicates with what makes triangulations, and nothing else. Throws Error(usage)
+/// for arrays that are none's. O(n log n).
+FLAUNAY_API std::string verify_periodic(Triangulator& triangulator,
+                                        const PeriodicTriangulation& triangulation);
+
+/// Answers queries on a torus or a cylinder with one set of points. Queries are any places of the plane, and
+/// are rounded to places as points are. They are answered in the plane, with images of points around the box.
+class FLAUNAY_API PeriodicLocator {
+ public:
+  /// Makes a locator, which copies what it needs: as a Locator does, for points and their images; on a
+  /// cylinder for three times as many. Throws Error(usage) for several sets and for arrays that are no
+  /// triangulation's. O(n log n).
+  PeriodicLocator(Triangulator& triangulator, const PeriodicTriangulation& triangulation);
+  ~PeriodicLocator();
+  /// A locator that was moved from can only be destroyed or assigned to.
+  PeriodicLocator(PeriodicLocator&&) noexcept;
+  /// Releases the memory of the locator that is assigned to.
+  PeriodicLocator& operator=(PeriodicLocator&&) noexcept;
+
+  /// Finds for each of m queries a triangle that contains it, exactly; on an edge or at a corner always the
+  /// same one. It is -1 beyond the ends of a cylinder, and if there are no triangles.
+  std::vector<std::int32_t> locate(const double* queries, std::size_t m);
+  /// Finds for each of m queries the nearest point, exactly; of several the first one in the order of x, then
+  /// y, as they lie around the query's place. It is -1 if there are no points.
+  std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
+  /// Computes for each of m queries the linear interpolation of the values at the corners of its triangle,
+  /// rounded: `columns` numbers per point and per query. At a point it is exactly that point's value; where
+  /// there is no triangle, NaN. For duplicates, the value of their representative is used.
+  std::vector<double> interpolate(const double* values, std::size_t columns, const double* queries,
+                                  std::size_t m);
+
+ private:
+  struct FLAUNAY_LOCAL Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace flaunay

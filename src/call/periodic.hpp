@@ -1,0 +1,13 @@
+// What calls for points on a torus or a cylinder share.
+#pragma once
+
+#include "flaunay/periodic.hpp"
+
+namespace flaunay::call {
+
+/// Throws Error(usage) for a period that is none.
+void check(const Period& period);
+/// Throws Error(usage) for arrays that are not those of a triangulation on a torus or a cylinder.
+void check(const PeriodicTriangulation& mesh);
+
+}  // namespace flaunay::call

@@ -1,0 +1,107 @@
+// The public class PeriodicLocator.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "call/frame.hpp"
+#include "call/periodic.hpp"
+#include "derived/periodic/torus.hpp"
+
+namespace flaunay {
+
+struct PeriodicLocator::Implementation {
+  Implementation(Triangulator& used, const PeriodicTriangulation& mesh)
+      : owner(TriangulatorAccess::shared(used)), period{mesh.period.x, mesh.period.y} {
+    call::check(mesh);
+    call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
+    const std::size_t n = mesh.places.size() / 2;
+    if (n == 0) return;
+    const periodic::Box box = periodic::box_of(mesh.places, 0, n, period);
+    constexpr double kWhole = std::numeric_limits<double>::infinity();
+    // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
+    // direction that has one.
+    double margin = box.repeats(0) && box.repeats(1) ? periodic::first_margin(box, n) : kWhole;
+    for (; !make(used, mesh, box, margin); margin *= 4) {
+      if (plane->is_whole())
+        throw Error(ErrorKind::usage,
+                    "the triangles are not those of a triangulation on a torus or a cylinder");
+    }
+  }
+
+  /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
+  /// the mesh, and the nearest point of what is in the box is near enough.
+  bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box, double margin) {
+    call::take_turn(*owner, [&] { plane.emplace(owner->native().runtime, mesh.places, box, margin); });
+    const std::vector<double>& places = plane->coordinates();
+    const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
+    if (!plane->is_whole() && !periodic::is_box_inside(*plane, planar.hull)) return false;
+    call::take_turn(*owner, [&] {
+      numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
+    });
+    if (numbers.empty() && !planar.triangles.empty()) return false;
+    locator.emplace(used, places.data(), places.size() / 2, planar);
+    return true;
+  }
+
+  std::vector<double> to_places(const double* queries, std::size_t m) {
+    return call::take_turn(*owner, [&] {
+      call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
+      return periodic::to_places(owner->native().runtime, queries, m, period, "query");
+    });
+  }
+
+  std::shared_ptr<call::Implementation> owner;
+  periodic::Pair<double> period;
+  std::optional<periodic::Unrolled> plane;
+  std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh
+  std::optional<Locator> locator;     // in the plane; none without points
+};
+
+PeriodicLocator::PeriodicLocator(Triangulator& triangulator, const PeriodicTriangulation& triangulation)
+    : implementation_(std::make_unique<Implementation>(triangulator, triangulation)) {}
+PeriodicLocator::~PeriodicLocator() = default;
+PeriodicLocator::PeriodicLocator(PeriodicLocator&&) noexcept = default;
+PeriodicLocator& PeriodicLocator::operator=(PeriodicLocator&&) noexcept = default;
+
+std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::size_t m) {
+  const std::vector<double> places = implementation_->to_places(queries, m);
+  if (!implementation_->locator) return std::vector<std::int32_t>(m, -1);
+  std::vector<std::int32_t> found = implementation_->locator->locate(places.data(), m);
+  for (std::int32_t& t : found) {
+    if (t >= 0) t = implementation_->numbers[static_cast<std::size_t>(t)];
+  }
+  return found;
+}
+
+std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::size_t m) {
+  const std::vector<double> places = implementation_->to_places(queries, m);
+  if (!implementation_->locator) return std::vector<std::int32_t>(m, -1);
+  std::vector<std::int32_t> found = implementation_->locator->nearest(places.data(), m);
+  for (std::int32_t& v : found) v = implementation_->plane->image(v).point;
+  return found;
+}
+
+std::vector<double> PeriodicLocator::interpolate(const double* values, std::size_t columns,
+                                                 const double* queries, std::size_t m) {
+  call::expect(columns > 0, "columns: at least one number per point is needed");
+  const std::vector<double> places = implementation_->to_places(queries, m);
+  if (!implementation_->locator)
+    return std::vector<double>(columns * m, std::numeric_limits<double>::quiet_NaN());
+  call::expect(values != nullptr, "no values: the pointer is null");
+  const periodic::Unrolled& plane = *implementation_->plane;
+  std::vector<double> of_images(values, values + columns * plane.points());
+  of_images.reserve(columns * (plane.points() + plane.images()));
+  for (std::size_t v = plane.points(); v < plane.points() + plane.images(); ++v) {
+    const double* const row =
+        values + columns * static_cast<std::size_t>(plane.image(static_cast<std::int32_t>(v)).point);
+    of_images.insert(of_images.end(), row, row + columns);
+  }
+  InterpolationOptions options;
+  options.columns = columns;
+  return implementation_->locator->interpolate(of_images.data(), places.data(), m, options);
+}
+
+}  // namespace flaunay
