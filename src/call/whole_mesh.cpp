@@ -8,6 +8,7 @@
 #include "call/frame.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
+#include "geometry/sort.hpp"
 
 namespace flaunay::call {
 namespace {
@@ -76,49 +77,34 @@ Ids walls(const ConstrainedTriangulation& mesh) {
   return segments;
 }
 
-// Finds triangles by their first edge. Triangles have their smallest corner first.
-class ByEdge {
- public:
-  explicit ByEdge(const Ids& triangles) : triangles_(triangles) {
-    std::size_t size = 16;
-    while (size < triangles.size()) size *= 2;
-    slots_.assign(size, -1);
-    for (std::size_t t = 0; 3 * t < triangles.size(); ++t) {
-      std::size_t slot = begin(triangles[3 * t], triangles[3 * t + 1]);
-      while (slots_[slot] >= 0) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = static_cast<std::int32_t>(t);
-    }
+// Triangles in the order of their first edges, of which each is that of one triangle alone. Triangles have
+// their smallest corner first.
+std::vector<geometry::Keyed> by_edge(const Ids& triangles) {
+  std::vector<geometry::Keyed> sorted(triangles.size() / 3);
+  for (std::size_t t = 0; t < sorted.size(); ++t) {
+    sorted[t] = {
+        static_cast<std::uint64_t>(triangles[3 * t]) << 32 | static_cast<std::uint32_t>(triangles[3 * t + 1]),
+        static_cast<std::int32_t>(t)};
   }
-
-  /// The triangle of these three corners, -1 if there is none.
-  std::int32_t find(const std::int32_t* corners) const {
-    std::size_t slot = begin(corners[0], corners[1]);
-    for (; slots_[slot] >= 0; slot = (slot + 1) & (slots_.size() - 1)) {
-      if (std::equal(corners, corners + 3, &triangles_[3 * static_cast<std::size_t>(slots_[slot])])) break;
-    }
-    return slots_[slot];
-  }
-
- private:
-  std::size_t begin(std::int32_t a, std::int32_t b) const {
-    const std::uint64_t key = (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b);
-    return (key * 0x9e3779b97f4a7c15U >> 20) & (slots_.size() - 1);
-  }
-
-  const Ids& triangles_;
-  Ids slots_;
-};
+  geometry::sort_by_key(sorted);
+  return sorted;
+}
 
 // Brings the triangles of `mesh` to the front of those of `whole`, in their order.
 void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
   const std::size_t kept = mesh.triangles.size() / 3, all = whole.triangles.size() / 3;
-  const ByEdge by_edge(whole.triangles);
+  const std::vector<geometry::Keyed> of_whole = by_edge(whole.triangles);
   Ids order(all), place(all, -1);
-  for (std::size_t t = 0; t < kept; ++t) {
-    const std::int32_t from = by_edge.find(&mesh.triangles[3 * t]);
-    if (from < 0 || place[static_cast<std::size_t>(from)] >= 0) refuse(t);
-    order[t] = from;
-    place[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(t);
+  auto from = of_whole.begin();
+  for (const auto& [edge, t] : by_edge(mesh.triangles)) {
+    while (from != of_whole.end() && from->key < edge) ++from;
+    const auto corners = mesh.triangles.begin() + 3 * std::ptrdiff_t{t};
+    if (from == of_whole.end() || place[static_cast<std::size_t>(from->index)] >= 0 ||
+        !std::equal(corners, corners + 3, whole.triangles.begin() + 3 * std::ptrdiff_t{from->index})) {
+      refuse(static_cast<std::size_t>(t));
+    }
+    order[static_cast<std::size_t>(t)] = from->index;
+    place[static_cast<std::size_t>(from->index)] = t;
   }
   std::size_t next = kept;
   for (std::size_t t = 0; t < all; ++t) {
@@ -129,9 +115,9 @@ void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
   Ids triangles(3 * all), neighbors(3 * all);
   for (std::size_t t = 0; t < all; ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t from = 3 * static_cast<std::size_t>(order[t]) + k;
-      const std::int32_t beyond = whole.neighbors[from];
-      triangles[3 * t + k] = whole.triangles[from];
+      const std::size_t c = 3 * static_cast<std::size_t>(order[t]) + k;
+      const std::int32_t beyond = whole.neighbors[c];
+      triangles[3 * t + k] = whole.triangles[c];
       neighbors[3 * t + k] = beyond < 0 ? -1 : place[static_cast<std::size_t>(beyond)];
     }
   }
