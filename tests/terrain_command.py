@@ -156,6 +156,14 @@ def main(folder):
     assert with_ridge([0, 4, 4], [4, 0, 6]) == 5
     assert with_ridge([0, 4], [4, 0, 6]) == 3
 
+    # Breaklines with heights, in chunks and, with a file of the triangles, in memory.
+    walls = folder / "walls.geojson"
+    line = [[500000.5 + 9 * k, 5000001 + 57 * (k % 2), 300 + k] for k in range(11)]
+    walls.write_text(json.dumps({"type": "MultiLineString", "coordinates": [line, [line[3], line[4]]]}))
+    both = raster(folder, scan, *size, "--breaklines", walls, "-o", folder / "walls.obj")
+    assert not same(both, expected) and np.nanmax(both) > 305
+    assert same(raster(folder, scan, *size, "--breaklines", walls, "--memory", "130M"), both)
+
     # Contours of the plane.
     lines = folder / "lines.geojson"
     done = run(scan, *size, "-o", lines, "-o", folder / "with.npy", "--contours", 20, "--crs", "EPSG:25832")
@@ -238,6 +246,7 @@ def main(folder):
     fails(3, "infinite.npy", "finite", arguments=(folder / "infinite.npy", *size, *to))
     assert out.read_bytes() == b"old"
     fails(2, "lines.geojson", "--contours", arguments=(scan, *size, "-o", lines))
+    ridge.write_text('{"type": "LineString", "coordinates": [[0, 0], [4, 4]]}')
     for in_memory in ("--flat", lakes), ("--breaklines", ridge), ("-o", tin):
         fails(2, "in memory at once", arguments=(scan, *size, *to, *in_memory, "--memory", "1G"))
     fails(2, "--contours", ".gpkg", arguments=(scan, *size, *to, "--contours", "5"))

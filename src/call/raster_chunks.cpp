@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 #include <vector>
 
+#include "call/breaklines.hpp"
 #include "call/chunks.hpp"
 #include "call/frame.hpp"
 #include "derived/contours/contours.hpp"
@@ -24,25 +26,30 @@ class NoArrays : public MeshSink {
 class Scanner {
  public:
   Scanner(const RasterGrid& grid, const RasterOptions& options, double* pixels,
-          const std::vector<double>& heights)
-      : grid_(grid), options_(options), pixels_(pixels), lines_(heights, options.max_edge) {
+          const std::vector<double>& heights, const Breaklines& breaklines)
+      : grid_(grid),
+        options_(options),
+        pixels_(pixels),
+        lines_(heights, options.max_edge),
+        crossed_(breaklines) {
     std::fill_n(pixels_, count(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void take(const chunks::ChunkSurface& surface) {
+  void take(chunks::ChunkSurface&& surface) {
     const std::lock_guard lock(mutex_);
     call::Frame call(TriangulatorAccess::implementation(host_).native());
-    lines_.add(call.runtime,
-               {surface.coordinates.data(), surface.values.size(), surface.triangles.data(),
-                surface.neighbors.data(), surface.triangles.size() / 3},
-               surface.values.data());
-    if (count() > 0) scan(call, surface);
+    crossed_.take_from(call.runtime, surface);
+    scan(call, surface);
     call.end();
   }
 
-  // To be called at the end: a pixel on an open side that no other triangle has written has its own one's
-  // value.
+  // To be called at the end.
   void finish() {
+    const chunks::ChunkSurface surface = crossed_.triangulated(host_);
+    call::Frame call(TriangulatorAccess::implementation(host_).native());
+    scan(call, surface);
+    call.end();
+    // A pixel on an open side that no other triangle has written has its own one's value.
     for (const raster::SidePixel& each : on_sides_) {
       if (std::isnan(pixels_[each.pixel])) pixels_[each.pixel] = each.value;
     }
@@ -57,6 +64,11 @@ class Scanner {
   std::size_t count() const { return grid_.rows * grid_.columns; }
 
   void scan(call::Frame& call, const chunks::ChunkSurface& surface) {
+    lines_.add(call.runtime,
+               {surface.coordinates.data(), surface.values.size(), surface.triangles.data(),
+                surface.neighbors.data(), surface.triangles.size() / 3},
+               surface.values.data());
+    if (count() == 0) return;
     const raster::Surface scanned{call.in(surface.coordinates), call.in(surface.triangles),
                                   call.in(surface.neighbors),   call.in(surface.values),
                                   surface.values.size(),        surface.triangles.size() / 3};
@@ -69,6 +81,7 @@ class Scanner {
   const RasterOptions& options_;
   double* pixels_;
   contours::Lines lines_;
+  call::CrossedTriangles crossed_;
   Triangulator host_{"host"};
   std::vector<raster::SidePixel> on_sides_;
   std::mutex mutex_;
@@ -81,16 +94,17 @@ ValuedPoints::~ValuedPoints() = default;
 ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
                                  const RasterOptions& options, double* pixels,
                                  const std::vector<double>& heights, Contours& contours,
-                                 const ChunkOptions& chunks) {
+                                 const Breaklines& breaklines, const ChunkOptions& chunks) {
   return with_errors([&] {
     const std::size_t count = raster::checked_pixels(grid, options);
     call::expect(count == 0 || pixels != nullptr, "pixels, but no room for them: the pointer is null");
     contours::check(heights, options.max_edge);
-    Scanner scanner(grid, options, pixels, heights);
-    const chunks::Values values{points, duplicates,
-                                [&](const chunks::ChunkSurface& surface) { scanner.take(surface); }};
+    Scanner scanner(grid, options, pixels, heights, breaklines);
+    call::PointsWithLines all(breaklines, points);
+    const chunks::Values values{all, duplicates, breaklines.points,
+                                [&](chunks::ChunkSurface&& surface) { scanner.take(std::move(surface)); }};
     NoArrays no_arrays;
-    const ChunkStatistics statistics = call::triangulate_chunks(points, &values, no_arrays, chunks);
+    const ChunkStatistics statistics = call::triangulate_chunks(all, &values, no_arrays, chunks);
     scanner.finish();
     contours = scanner.contours();
     return statistics;
@@ -100,7 +114,7 @@ ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, co
 ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, const RasterGrid& grid,
                                  const RasterOptions& options, double* pixels, const ChunkOptions& chunks) {
   Contours none;
-  return rasterize_chunks(points, duplicates, grid, options, pixels, {}, none, chunks);
+  return rasterize_chunks(points, duplicates, grid, options, pixels, {}, none, {}, chunks);
 }
 
 }  // namespace flaunay

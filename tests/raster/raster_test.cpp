@@ -557,9 +557,9 @@ TEST(ContoursInChunks, HaveTheBytesOfAllTrianglesAtOnce) {
           options.devices = {"host", "host"};
           std::vector<double> pixels(grid.rows * grid.columns);
           Contours alone, together;
-          rasterize_chunks(points, Duplicates::mean, {}, {max_edge}, nullptr, heights, alone, options);
+          rasterize_chunks(points, Duplicates::mean, {}, {max_edge}, nullptr, heights, alone, {}, options);
           rasterize_chunks(points, Duplicates::mean, grid, {max_edge, kFill}, pixels.data(), heights,
-                           together, options);
+                           together, {}, options);
           expect_same(alone, expected);
           expect_same(together, expected);
           EXPECT_TRUE(same_bytes(pixels, rasterized(on_host(), terrain, grid, max_edge)));
@@ -567,6 +567,94 @@ TEST(ContoursInChunks, HaveTheBytesOfAllTrianglesAtOnce) {
       }
     }
   }
+}
+
+// Lines from below to above that do not meet, some of their points on others of the terrain.
+struct Lines {
+  Coordinates points;
+  std::vector<double> values;
+  std::vector<std::int32_t> segments;
+
+  Breaklines view() const {
+    return {points.data(), values.data(), values.size(), segments.data(), segments.size() / 2};
+  }
+};
+
+Lines make_lines(double low, double extent, double unit, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Lines lines;
+  for (int line = 1; line < 8; ++line) {
+    for (int k = 0; k <= 12; ++k) {
+      const auto index = static_cast<std::int32_t>(lines.values.size());
+      const double x = low + extent * (line / 8.0 + static_cast<double>(random.integer(0, 100)) / 2000);
+      lines.points.push_back(unit * std::round(x / unit));
+      lines.points.push_back(unit * std::round((low + extent * k / 12.0) / unit));
+      lines.values.push_back(static_cast<double>(random.integer(0, 4)) / 8);
+      if (k > 0) lines.segments.insert(lines.segments.end(), {index - 1, index});
+    }
+  }
+  return lines;
+}
+
+TEST(RasterInChunks, BreaklinesAreEdges) {
+  const std::vector<double> heights = {-0.125, 0.125, 3.0625};
+  for (const bool is_lattice : {false, true}) {
+    FixtureRandom random(12);
+    const std::int64_t most = is_lattice ? 60 : 1 << 20;
+    Coordinates points;
+    for (int i = 0; i < 12000; ++i) points.push_back(static_cast<double>(random.integer(0, most)));
+    const double extent = static_cast<double>(most);
+    const Lines lines = make_lines(0, extent, 1, 5);
+    const std::vector<double> values = random_values(6000, 9, is_lattice ? 4 : 1000);
+
+    Terrain whole{lines.points, lines.values, {}};
+    whole.points.insert(whole.points.end(), points.begin(), points.end());
+    whole.values.insert(whole.values.end(), values.begin(), values.end());
+    Constraints constraints;
+    constraints.segments = lines.segments.data();
+    constraints.segment_count = lines.segments.size() / 2;
+    whole.mesh = on_host().constrained(whole.points.data(), whole.values.size(), constraints);
+    for (std::size_t i = 0; i < whole.values.size(); ++i) {
+      const auto place = static_cast<std::size_t>(whole.mesh.representatives[i]);
+      if (place >= lines.values.size()) whole.values[place] = std::max(whole.values[place], whole.values[i]);
+    }
+
+    Terrain others{points, values, {}};
+    ValuedArray source(others);
+    const RasterGrid grid{-1, extent + 1, extent / 119, -extent / 119, 121, 121};
+    for (const double max_edge : {std::numeric_limits<double>::infinity(), extent / 25}) {
+      for (const std::size_t chunk_points : {0, 100}) {
+        ChunkOptions options;
+        options.chunk_points = chunk_points;
+        options.devices = {"host", "host"};
+        std::vector<double> pixels(grid.rows * grid.columns);
+        Contours contours;
+        rasterize_chunks(source, Duplicates::highest, grid, {max_edge, kFill}, pixels.data(), heights,
+                         contours, lines.view(), options);
+        EXPECT_TRUE(same_bytes(pixels, rasterized(on_host(), whole, grid, max_edge)));
+        expect_same(contours, traced(whole, heights, max_edge));
+      }
+    }
+    // Without the lines, it is another raster.
+    const Terrain plain = make_terrain(whole.points, whole.values);
+    EXPECT_FALSE(same_bytes(rasterized(on_host(), plain, grid), rasterized(on_host(), whole, grid)));
+  }
+}
+
+TEST(RasterInChunks, BreaklinesThatCrossAreNamed) {
+  const Terrain terrain = terrain_of("uniform", 500);
+  ValuedArray source(terrain);
+  const Coordinates corners = {0.1, 0.1, 0.9, 0.9, 0.1, 0.9, 0.9, 0.1};
+  const std::vector<double> zeros(4, 0);
+  const auto with = [&](const std::vector<std::int32_t>& segments) {
+    return [&, segments] {
+      Contours contours;
+      rasterize_chunks(source, Duplicates::highest, {}, {}, nullptr, {}, contours,
+                       {corners.data(), zeros.data(), 4, segments.data(), segments.size() / 2});
+    };
+  };
+  expect_error(ErrorKind::input, "segments 0", with({0, 1, 2, 3}));
+  expect_error(ErrorKind::usage, "segment", with({0, 4}));
 }
 
 TEST(Contours, LeaveOutValuesThatAreNotFinite) {

@@ -115,13 +115,15 @@ std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
   return systems.empty() ? "" : systems.front().crs;
 }
 
-std::array<double, 2> range_of(const std::vector<double>& heights) {
-  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-  return heights.empty() ? std::array{0.0, 0.0} : std::array{*low, *high};
+using Range = std::array<double, 2>;
+
+Range with_heights(Range range, const std::vector<double>& heights) {
+  for (const double height : heights) range = {std::min(range[0], height), std::max(range[1], height)};
+  return range;
 }
 
 // The heights of contours: those that were given, or if it is one, all multiples of it in the range.
-std::vector<double> contour_heights(const std::vector<double>& given, const std::array<double, 2>& range) {
+std::vector<double> contour_heights(const std::vector<double>& given, const Range& range) {
   if (given.size() != 1) return given;
   const double step = given.front();
   constexpr double kMost = 1e6;
@@ -143,12 +145,6 @@ int make_terrain(const TerrainRequest& request) {
     if (!map.empty()) inputs.push_back(map);
   }
   const TerrainFiles files(request.outputs);
-  const bool in_memory = !request.breaklines.empty() || !request.flat.empty() || !files.meshes.empty();
-  if (in_memory && request.memory != 0) {
-    fail_usage(
-        "--memory: with --breaklines, --flat or a file of triangles all points are in memory at once, "
-        "about 200 bytes each");
-  }
   if (!files.lines.empty() && request.contours.empty())
     fail_usage(fmt::format("{}: needs --contours, the interval of heights", files.lines.front()));
   if (files.lines.empty() && !request.contours.empty())
@@ -156,6 +152,12 @@ int make_terrain(const TerrainRequest& request) {
   OutputFiles outputs(inputs);
   for (const std::string& path : request.outputs) outputs.announce(path);
   HardEdges edges(request.breaklines, request.flat);
+  const bool in_memory = !edges.has_heights() || !request.flat.empty() || !files.meshes.empty();
+  if (in_memory && request.memory != 0) {
+    fail_usage(
+        "--memory: with --flat, a file of triangles or breaklines without heights, all points are in memory "
+        "at once, about 200 bytes each");
+  }
   std::optional<Boundary> boundary;
   if (!request.boundary.empty()) {
     const io::Map map = io::read_map(request.boundary);
@@ -204,7 +206,7 @@ int make_terrain(const TerrainRequest& request) {
     const TerrainMesh terrain = triangulate_scan(triangulator, scan, edges, request.duplicates);
     rasterize(triangulator, terrain.view(), terrain.heights.data(), grid.pixels, request.raster,
               pixels.data());
-    heights = contour_heights(request.contours, range_of(terrain.heights));
+    heights = contour_heights(request.contours, with_heights({HUGE_VAL, -HUGE_VAL}, terrain.heights));
     if (!heights.empty()) {
       contours = trace_contours(triangulator, terrain.view(), terrain.heights.data(), heights,
                                 request.raster.max_edge);
@@ -218,9 +220,11 @@ int make_terrain(const TerrainRequest& request) {
     chunks.scratch = request.scratch;
     if (!request.device.empty()) chunks.devices = {request.device};
     chunks.progress = [&](const std::string& stage, int, double done) { progress.update(stage, -1, done); };
-    heights = contour_heights(request.contours, scan.heights());
-    rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), heights, contours,
-                     chunks);
+    heights = contour_heights(request.contours, with_heights(scan.heights(), edges.lines.heights));
+    naming_files({{"segment", edges.path}}, [&] {
+      rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), heights,
+                       contours, edges.view(), chunks);
+    });
   }
   if (boundary) {
     boundary->leave_out(grid.pixels, pixels.data());

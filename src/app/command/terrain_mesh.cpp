@@ -14,7 +14,7 @@ namespace flaunay::cli {
 namespace {
 
 // Lines between points with heights, NaN where there are none.
-struct Breaklines {
+struct HardLines {
   std::vector<double> coordinates, heights;
   std::vector<std::int32_t> segments;
 
@@ -45,7 +45,7 @@ std::vector<double> heights_at(Triangulator& triangulator, const TerrainMesh& po
 }
 
 // Gives ends of lines without a height that of the points around them.
-void complete_heights(Triangulator& triangulator, const TerrainMesh& points, Breaklines& lines) {
+void complete_heights(Triangulator& triangulator, const TerrainMesh& points, HardLines& lines) {
   std::vector<std::size_t> missing;
   std::vector<double> places;
   for (std::size_t i = 0; i < lines.heights.size(); ++i) {
@@ -129,12 +129,24 @@ HardEdges::HardEdges(const std::string& breaklines, const std::string& flat)
                               : breaklines + " and " + flat) {
   if (!breaklines.empty()) {
     lines = io::read_map(breaklines);
-    if (lines.segments.empty() && lines.lines.empty()) io::fail(breaklines, "has neither lines nor polygons");
+    segments = lines.segments;
+    segments.insert(segments.end(), lines.lines.begin(), lines.lines.end());
+    if (segments.empty()) io::fail(breaklines, "has neither lines nor polygons");
   }
   if (!flat.empty()) {
     lakes = io::read_map(flat);
     if (lakes.polygon_count() == 0 || lakes.has_others) io::fail(flat, "must have polygons and nothing else");
   }
+}
+
+bool HardEdges::has_heights() const {
+  return lines.heights.size() == lines.points.size() &&
+         std::none_of(lines.heights.begin(), lines.heights.end(), [](double z) { return std::isnan(z); });
+}
+
+Breaklines HardEdges::view() const {
+  return {lines.points.coordinates.data(), lines.heights.data(), lines.points.size(), segments.data(),
+          segments.size() / 2};
 }
 
 TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, HardEdges& edges,
@@ -158,7 +170,7 @@ TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, HardEdg
   }
   std::size_t fixed = 0;
   naming_files({{"segment", edges.path}}, [&] {
-    Breaklines lines;
+    HardLines lines;
     lines.add(edges.lines);
     if (edges.lakes.polygon_count() > 0) {
       flatten(triangulator, terrain, edges.lakes);

@@ -1,5 +1,5 @@
-// The triangulation of measured points in memory, for what triangulations in chunks do not have: breaklines,
-// flat lakes, and files of the triangles.
+// The triangulation of measured points in memory, for what triangulations in chunks do not have: breaklines
+// without heights, flat lakes, and files of the triangles.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,13 @@ struct HardEdges {
   /// Reads the files; empty: none. Throws Error(input) if one has no lines, or flat not only polygons.
   HardEdges(const std::string& breaklines, const std::string& flat);
 
+  /// Whether all points of breaklines have heights.
+  bool has_heights() const;
+  Breaklines view() const;
+
   io::Map lines, lakes;
-  std::string path;  ///< for messages
+  std::vector<std::int32_t> segments;  ///< of the lines
+  std::string path;                    ///< for messages
 };
 
 struct TerrainMesh {

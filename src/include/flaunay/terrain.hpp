@@ -94,11 +94,23 @@ FLAUNAY_API ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates du
                                              const RasterGrid& grid, const RasterOptions& options,
                                              double* pixels, const ChunkOptions& chunks = {});
 
-/// In the same pass the contours of trace_contours, with the max_edge of the options; the grid may have no
-/// pixels. Lines are in memory, at last twice. Throws as trace_contours, too.
+/// Lines that become edges of the triangles. The arrays belong to the caller.
+struct Breaklines {
+  const double* coordinates = nullptr;  ///< x0 y0 x1 y1 ... of the lines' points
+  const double* values = nullptr;  ///< one per point: that of its place, whatever other points have there
+  std::size_t points = 0;          ///< number of points; in messages, they are numbered before the others
+  const std::int32_t* segments = nullptr;  ///< 2 indices of these points per segment
+  std::size_t segment_count = 0;           ///< number of segments
+};
+
+/// In the same pass the contours of trace_contours, with the max_edge of the options, of the triangulation in
+/// which breaklines are edges; the grid may have no pixels. Contours, and the triangles that breaklines
+/// cross, are in memory, which memory_bytes do not count. Throws as trace_contours and
+/// Triangulator::constrained, too.
 FLAUNAY_API ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates,
                                              const RasterGrid& grid, const RasterOptions& options,
                                              double* pixels, const std::vector<double>& heights,
-                                             Contours& contours, const ChunkOptions& chunks = {});
+                                             Contours& contours, const Breaklines& breaklines,
+                                             const ChunkOptions& chunks = {});
 
 }  // namespace flaunay

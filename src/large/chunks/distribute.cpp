@@ -215,7 +215,12 @@ class Splitter {
         }
       }
     });
-    writers.add(0, place, *first, chunk.has_values ? common_value(values, values_->duplicates) : 0);
+    double value = 0;
+    if (chunk.has_values) {
+      const bool is_fixed = static_cast<std::uint64_t>(*first) < values_->fixed;
+      value = is_fixed ? values.front() : common_value(values, values_->duplicates);
+    }
+    writers.add(0, place, *first, value);
     representatives.flush();
     return std::move(writers.take().front());
   }

@@ -192,11 +192,14 @@ ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
   return next;
 }
 
-void FinishedChunk::merge_values(Duplicates duplicates) {
+void FinishedChunk::merge_values(Duplicates duplicates, std::uint64_t fixed) {
   std::vector<std::pair<std::int32_t, double>> equal;  // representatives, and values of others
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::int32_t representative = mesh_.representatives[i];
-    if (representative != static_cast<std::int32_t>(i)) equal.emplace_back(representative, points_.values[i]);
+    if (representative == static_cast<std::int32_t>(i) ||
+        static_cast<std::uint64_t>(points_.ids[static_cast<std::size_t>(representative)]) < fixed)
+      continue;
+    equal.emplace_back(representative, points_.values[i]);
   }
   std::sort(equal.begin(), equal.end());
   std::vector<double> values;

@@ -38,9 +38,9 @@ class FinishedChunk {
   const ChunkPoints& points() const { return points_; }
   const Triangulation& mesh() const { return mesh_; }
 
-  /// Gives representatives the common values of the points that they are equal to. In the first round, before
-  /// anything is handed on.
-  void merge_values(Duplicates duplicates);
+  /// Gives representatives the common values of the points that they are equal to, but for those of the first
+  /// `fixed` points of the input. In the first round, before anything is handed on.
+  void merge_values(Duplicates duplicates, std::uint64_t fixed);
   /// The points around which something is missing.
   ChunkPoints handed_on(std::uint64_t first_row) const;
   /// Writes the triangles that are final, their areas, and their neighbours, also those of rounds before.

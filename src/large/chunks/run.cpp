@@ -284,7 +284,8 @@ class Round {
     auto finished = std::make_shared<FinishedChunk>(
         worker.threads, std::move(points), std::move(mesh),
         Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling);
-    if (is_first_ && call_.values != nullptr) finished->merge_values(call_.values->duplicates);
+    if (is_first_ && call_.values != nullptr)
+      finished->merge_values(call_.values->duplicates, call_.values->fixed);
     note_pace(worker.number, host::now() - begin);
     while (const std::optional<std::size_t> before = await_turn(k)) {
       if (!process(worker, *before, load(*before).get())) {

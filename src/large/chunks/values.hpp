@@ -23,8 +23,9 @@ struct ChunkSurface {
 struct Values {
   ValuedPoints& points;
   Duplicates duplicates;
+  std::uint64_t fixed = 0;  ///< so many points come first, whose values count before those of others
   /// Several threads may call it.
-  std::function<void(const ChunkSurface&)> take;
+  std::function<void(ChunkSurface&&)> take;
 };
 
 /// The common value of equal points, whatever their order. Sorts the values, of which there is one or more.

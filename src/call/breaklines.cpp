@@ -1,0 +1,250 @@
+#include "call/breaklines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/expect.hpp"
+#include "geometry/predicates.hpp"
+
+namespace flaunay::call {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+// Triangles are shared among threads in runs of so many.
+constexpr std::size_t kRun = 1 << 16;
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// Whether the line from p to q has a point inside of a triangle: nothing separates them, neither the line
+// nor a side.
+bool crosses(const geometry::Predicates& predicates, geometry::Point p, geometry::Point q,
+             const std::array<geometry::Point, 3>& corners) {
+  int left = 0, right = 0;
+  for (const geometry::Point& corner : corners) {
+    const int turn = predicates.orient(p, q, corner);
+    left += turn > 0;
+    right += turn < 0;
+  }
+  if (left == 0 || right == 0) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const geometry::Point &a = corners[k], &b = corners[(k + 1) % 3];
+    if (predicates.orient(a, b, p) <= 0 && predicates.orient(a, b, q) <= 0) return false;
+  }
+  return true;
+}
+
+// Sides of triangles, each with its triangle on the left.
+using Sides = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+// Those of which no triangle has the other direction.
+Sides border_of(const Ids& triangles) {
+  Sides sides;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) sides.emplace_back(triangles[t + k], triangles[t + (k + 1) % 3]);
+  }
+  std::sort(sides.begin(), sides.end());
+  Sides border;
+  std::copy_if(sides.begin(), sides.end(), std::back_inserter(border), [&](const auto& side) {
+    return !std::binary_search(sides.begin(), sides.end(), std::pair(side.second, side.first));
+  });
+  return border;
+}
+
+// Which triangles of a mesh lie inside of a border, and which of their sides are on it.
+struct Inside {
+  std::vector<char> triangles, sides;
+
+  Inside(const ConstrainedTriangulation& mesh, const Sides& border)
+      : triangles(mesh.triangles.size() / 3, 0), sides(mesh.triangles.size(), 0) {
+    Ids found;
+    for (std::size_t c = 0; c < sides.size(); ++c) {
+      if (mesh.constrained[c] == 0) continue;
+      const std::size_t t = c / 3;
+      const std::int32_t a = mesh.triangles[3 * t + (c + 1) % 3], b = mesh.triangles[3 * t + (c + 2) % 3];
+      const bool is_left = std::binary_search(border.begin(), border.end(), std::pair(a, b));
+      sides[c] = is_left || std::binary_search(border.begin(), border.end(), std::pair(b, a));
+      if (is_left && std::exchange(triangles[t], 1) == 0) found.push_back(static_cast<std::int32_t>(t));
+    }
+    while (!found.empty()) {
+      const std::size_t t = at(found.back());
+      found.pop_back();
+      for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+        if (sides[c] == 0 && mesh.neighbors[c] >= 0 &&
+            std::exchange(triangles[at(mesh.neighbors[c])], 1) == 0)
+          found.push_back(mesh.neighbors[c]);
+      }
+    }
+  }
+};
+
+// Leaves some triangles. Sides between these and others become open.
+void leave(const std::vector<char>& is_left, const std::vector<char>& is_open,
+           chunks::ChunkSurface& surface) {
+  Ids rows(is_left.size(), -1);
+  std::int32_t count = 0;
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    if (is_left[t] != 0) rows[t] = count++;
+  }
+  surface.open.clear();
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    if (rows[t] < 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t beyond = surface.neighbors[3 * t + k];
+      const bool is_inner = (is_open.empty() || is_open[3 * t + k] == 0) && beyond >= 0 &&
+                            rows[at(beyond)] >= 0 && at(beyond) != t;
+      const std::size_t to = 3 * at(rows[t]) + k;
+      surface.triangles[to] = surface.triangles[3 * t + k];
+      surface.neighbors[to] = is_inner ? rows[at(beyond)] : rows[t];
+      if (!is_inner) surface.open.push_back(static_cast<std::int32_t>(to));
+    }
+  }
+  surface.triangles.resize(3 * at(count));
+  surface.neighbors.resize(3 * at(count));
+}
+
+}  // namespace
+
+void PointsWithLines::read(std::uint64_t first, std::size_t count, double* coordinates) {
+  const std::size_t of_lines =
+      first < lines_.points ? std::min<std::size_t>(count, lines_.points - first) : 0;
+  if (of_lines > 0) std::copy_n(lines_.coordinates + 2 * first, 2 * of_lines, coordinates);
+  if (count == of_lines) return;
+  others_.read(first + of_lines - lines_.points, count - of_lines, coordinates + 2 * of_lines);
+}
+
+void PointsWithLines::read_values(std::uint64_t first, std::size_t count, double* values) {
+  const std::size_t of_lines =
+      first < lines_.points ? std::min<std::size_t>(count, lines_.points - first) : 0;
+  if (of_lines > 0) std::copy_n(lines_.values + first, of_lines, values);
+  if (count == of_lines) return;
+  others_.read_values(first + of_lines - lines_.points, count - of_lines, values + of_lines);
+}
+
+CrossedTriangles::CrossedTriangles(const Breaklines& lines) : lines_(lines) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  expect(lines.points <= kMost && lines.segment_count <= kMost / 2,
+         "breaklines have more points or segments than 32-bit indices can count");
+  expect(lines.points == 0 || (lines.coordinates != nullptr && lines.values != nullptr),
+         "breaklines have points, but no coordinates or no values: the pointer is null");
+  expect(lines.segment_count == 0 || lines.segments != nullptr, "segments, but the pointer is null");
+  double high = -std::numeric_limits<double>::infinity(), heights = 0;
+  low_ = -high;
+  for (std::size_t s = 0; s < lines.segment_count; ++s) {
+    const std::int32_t v = lines.segments[2 * s], w = lines.segments[2 * s + 1];
+    expect(v >= 0 && w >= 0 && at(v) < lines.points && at(w) < lines.points,
+           "a segment of breaklines ends at none of their points");
+    const double *const p = lines.coordinates + 2 * at(v), *const q = lines.coordinates + 2 * at(w);
+    boxes_.push_back(
+        {std::min(p[0], q[0]), std::min(p[1], q[1]), std::max(p[0], q[0]), std::max(p[1], q[1])});
+    low_ = std::min(low_, boxes_.back().low_y);
+    high = std::max(high, boxes_.back().high_y);
+    heights += boxes_.back().high_y - boxes_.back().low_y;
+  }
+  // So many bands that a segment is in about four of them.
+  constexpr double kBands = 4;
+  const auto count = static_cast<double>(boxes_.size());
+  bands_.resize(
+      heights > 0 ? static_cast<std::size_t>(std::clamp(kBands * count * (high - low_) / heights, 1.0, count))
+                  : 1);
+  bands_by_ = high > low_ ? static_cast<double>(bands_.size()) / (high - low_) : 0;
+  for (std::size_t s = 0; s < boxes_.size(); ++s) {
+    for (std::size_t k = band_of(boxes_[s].low_y); k <= band_of(boxes_[s].high_y); ++k) {
+      bands_[k].push_back(static_cast<std::uint32_t>(s));
+    }
+  }
+  magnitudes_ = geometry::inspect(lines.coordinates, 0, lines.points);
+}
+
+std::size_t CrossedTriangles::band_of(double y) const {
+  return static_cast<std::size_t>(
+      std::clamp((y - low_) * bands_by_, 0.0, static_cast<double>(bands_.size() - 1)));
+}
+
+// Visits segments whose boxes meet a box, until it has visited one for which visit() is true.
+template <typename Visit>
+void CrossedTriangles::for_each_near(const Box& box, const Visit& visit) const {
+  const std::size_t last = band_of(box.high_y);
+  for (std::size_t k = band_of(box.low_y); k <= last; ++k) {
+    for (const std::uint32_t s : bands_[k]) {
+      const Box& other = boxes_[s];
+      if (other.low_x > box.high_x || other.high_x < box.low_x || other.low_y > box.high_y ||
+          other.high_y < box.low_y)
+        continue;
+      if (visit(s)) return;
+    }
+  }
+}
+
+void CrossedTriangles::take_from(host::Runtime& runtime, chunks::ChunkSurface& surface) {
+  if (lines_.segment_count == 0) return;
+  const std::size_t n = surface.coordinates.size() / 2, count = surface.triangles.size() / 3;
+  const geometry::Scaling scaling = geometry::scaling_for(
+      geometry::joined(magnitudes_, geometry::inspect(surface.coordinates.data(), 0, n)));
+  const geometry::Predicates predicates{scaling.bounds};
+  const auto scaled = [&](std::int32_t i, const double* coordinates) {
+    return kernel::scaled_point(i, coordinates, scaling.powers());
+  };
+  std::vector<char> is_left(count, 1);
+  runtime.share((count + kRun - 1) / kRun, [&](std::size_t run) {
+    for (std::size_t t = run * kRun; t < std::min(count, (run + 1) * kRun); ++t) {
+      const std::int32_t* const v = &surface.triangles[3 * t];
+      std::array<const double*, 3> p{};
+      for (std::size_t k = 0; k < 3; ++k) p[k] = &surface.coordinates[2 * at(v[k])];
+      const auto [low_x, high_x] = std::minmax({p[0][0], p[1][0], p[2][0]});
+      const auto [low_y, high_y] = std::minmax({p[0][1], p[1][1], p[2][1]});
+      for_each_near({low_x, low_y, high_x, high_y}, [&](std::uint32_t s) {
+        const std::array<geometry::Point, 3> corners = {scaled(v[0], surface.coordinates.data()),
+                                                        scaled(v[1], surface.coordinates.data()),
+                                                        scaled(v[2], surface.coordinates.data())};
+        if (crosses(predicates, scaled(lines_.segments[2 * s], lines_.coordinates),
+                    scaled(lines_.segments[2 * s + 1], lines_.coordinates), corners))
+          is_left[t] = 0;
+        return is_left[t] == 0;
+      });
+    }
+  });
+  bool is_changed = false;
+  for (std::size_t t = 0; t < count; ++t) {
+    if (is_left[t] != 0) continue;
+    is_changed = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = at(surface.triangles[3 * t + k]);
+      coordinates_.insert(coordinates_.end(), {surface.coordinates[2 * v], surface.coordinates[2 * v + 1]});
+      values_.push_back(surface.values[v]);
+    }
+  }
+  if (is_changed) leave(is_left, {}, surface);
+}
+
+chunks::ChunkSurface CrossedTriangles::triangulated(Triangulator& triangulator) const {
+  chunks::ChunkSurface surface;
+  if (values_.empty()) return surface;
+  surface.coordinates.assign(lines_.coordinates, lines_.coordinates + 2 * lines_.points);
+  surface.coordinates.insert(surface.coordinates.end(), coordinates_.begin(), coordinates_.end());
+  surface.values.assign(lines_.values, lines_.values + lines_.points);
+  surface.values.insert(surface.values.end(), values_.begin(), values_.end());
+  const std::size_t n = surface.values.size();
+  expect(n <= std::numeric_limits<std::int32_t>::max() / 2, "breaklines cross too many triangles");
+  // The border is between representatives of corners, of which each triangle has some of its own.
+  const Ids representatives = triangulator.triangulate(surface.coordinates.data(), n).representatives;
+  const Ids corners(representatives.begin() + static_cast<std::ptrdiff_t>(lines_.points),
+                    representatives.end());
+  const Sides border = border_of(corners);
+  Ids segments(lines_.segments, lines_.segments + 2 * lines_.segment_count);
+  for (const auto& [a, b] : border) segments.insert(segments.end(), {a, b});
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  ConstrainedTriangulation mesh = triangulator.constrained(surface.coordinates.data(), n, constraints);
+  const Inside inside(mesh, border);
+  surface.triangles = std::move(mesh.triangles);
+  surface.neighbors = std::move(mesh.neighbors);
+  leave(inside.triangles, inside.sides, surface);
+  return surface;
+}
+
+}  // namespace flaunay::call
