@@ -173,6 +173,27 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
   refused("--partition-levels", "0", {"--mode", "partition", "--partition-levels", "0"});
 }
 
+TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
+  const auto refused = [this](const std::string& option, const std::string& reason, Arguments arguments) {
+    arguments.insert(arguments.begin(), {"triangulate", path("missing.xy")});
+    expect_error(kUsage, {option, reason}, arguments);
+  };
+  for (const char* const option : {"--output", "--hull", "--halfedges", "--areas", "--constraints", "--mode"})
+    refused(option, "--period",
+            {"--period", "1,inf", option, std::string(option) == "--mode" ? "dwyer" : "x.npy"});
+  refused("--profile", "--sphere", {"--sphere", "--profile"});
+  refused("--memory", "--sphere", {"--sphere", "--memory", "1G"});
+  refused("--points", "--sphere", {"--sphere", "--points", "p.npy"});
+  refused("--sphere", "--period", {"--sphere", "--period", "1,1"});
+  refused("--offsets", "--period", {"--offsets", "o.npy"});
+  refused("--device", "one device", {"--sphere", "--device", "all"});
+  refused("--period", "1", {"--period", "1"});
+  const std::string points = write("points.xy", "0 0\n1 0\n0 100\n");
+  expect_error(kUsage, {"the period 0 x 1"}, {"triangulate", points, "--period", "0,1"});
+  expect_error(kUsage, {"not both infinite"}, {"triangulate", points, "--period", "inf,inf"});
+  expect_error(kBadInput, {"points.xy", "point 2", "latitude 100"}, {"triangulate", points, "--sphere"});
+}
+
 TEST_F(CommandUsageTest, UnknownEndings) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
   expect_error(kUsage, {"points.dwg", ".npy"}, {"triangulate", write("points.dwg", "0 0\n")});
@@ -1079,6 +1100,30 @@ TEST_F(CommandTriangulateTest, CountPrintsATableByComponent) {
   // No points, no division by their number.
   const std::string none = write("none.xy", "# none\n");
   run_well({"triangulate", none, "--mode", "dwyer", "--count"}, kNoPlatform);
+}
+
+// ------------------------------------------------------------------------------------------------- surfaces
+
+TEST_F(CommandTriangulateTest, OtherSurfaces) {
+  const std::string points = write("points.xy", "0.5 0\n-7 9\n0.5 4\n30 40\n");
+  // One of the points is given twice.
+  const Outcome outcome = run_well({"triangulate", points, "--period", "2,4", "--triangles", path("t.npy"),
+                                    "--neighbors", path("n.npy"), "--offsets", path("o.npy"), "--duplicates",
+                                    path("d.npy"), "--points", path("p.xy"), "--stats", path("s.json")});
+  EXPECT_NE(outcome.out.find("4 points, 1 duplicate, 6 triangles"), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_array(path("t.npy")).shape, "(6, 3)");
+  EXPECT_EQ(read_array(path("o.npy")).shape, "(6, 6)");
+  EXPECT_EQ(read_array(path("d.npy")).values, (std::vector<std::int32_t>{0, 1, 0, 3}));
+  for (const std::int32_t t : read_array(path("n.npy")).values) EXPECT_GE(t, 0);
+  for (const std::int32_t step : read_array(path("o.npy")).values) EXPECT_LE(std::abs(step), 1);
+  EXPECT_EQ(contents(path("p.xy")), "# x y\n0.5 0\n1 1\n0.5 0\n0 0\n");
+  EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["triangles"], 6);
+  run_well({"triangulate", points, "--period", "inf,4", "--triangles", path("t.npy"), "--quiet"});
+  EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
+  // A tetrahedron's corners.
+  const std::string globe = write("globe.xy", "0 -20\n120 -20\n240 -20\n0 90\n");
+  run_well({"triangulate", globe, "--sphere", "--triangles", path("t.npy"), "--quiet"});
+  EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
 }
 
 // --------------------------------------------------------------------------------------------------- chunks

@@ -279,8 +279,8 @@ def periodic(
     given = np.asarray(as_floats(points, "points"), np.float64)
     if given.ndim != 2 or given.shape[1] != 2:
         raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
-    lengths = [np.inf if length is None else length for length in period]
-    lengths = np.asarray(as_floats(lengths, "period"), np.float64)
+    given_lengths = [np.inf if length is None else length for length in period]
+    lengths = np.asarray(as_floats(given_lengths, "period"), np.float64)
     if lengths.shape != (2,):
         raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
     sets = None if offsets is None else as_offsets(offsets)

@@ -15,6 +15,7 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/command/results.hpp"
+#include "app/command/surfaces.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
@@ -36,6 +37,8 @@ struct TriangulateRequest : Task {
   ChunkRequest chunks;
   bool has_constraints = false;
   ConstraintRequest constraints;
+  bool is_on_surface = false;
+  SurfaceRequest surface;
 };
 
 const research::ModeInfo& info_of(Mode mode) {
@@ -125,6 +128,7 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 int triangulate(const TriangulateRequest& request) {
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
+  if (request.is_on_surface) return triangulate_surface(request, request.surface, request.constraints.points);
   if (request.in_chunks) return triangulate_in_chunks(request, request.chunks, "");
   if (request.has_constraints) return triangulate_with_constraints(request, request.constraints);
   OutputFiles outputs({request.input});
@@ -214,6 +218,7 @@ void add_triangulate(CLI::App& app, Action& action) {
           "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
           "between them, or all: triangulates in chunks, on each of them");
   add_constraint_options(command, request->constraints);
+  add_surface_options(command, request->surface);
   add_chunk_options(command, request->chunks);
   add_index(command, request->index);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
@@ -222,12 +227,14 @@ void add_triangulate(CLI::App& app, Action& action) {
   command->footer(mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
+    request->is_on_surface = asks_for_surface(*command, request->surface);
+    action = [request] { return triangulate(*request); };
+    if (request->is_on_surface) return;
     request->has_constraints = has_constraints(*command, request->input, request->constraints);
     request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->in_chunks && request->has_constraints)
       refuse(*command, "--device", "constraints need one device");
     if (request->in_chunks) check_chunk_options(*command, to_string(request->mode));
-    action = [request] { return triangulate(*request); };
   });
 }
 

@@ -1,0 +1,135 @@
+#include "app/command/surfaces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "app/command/chunks.hpp"
+#include "app/command/compiling.hpp"
+#include "app/command/errors.hpp"
+#include "app/command/progress.hpp"
+#include "app/files/formats.hpp"
+#include "flaunay/periodic.hpp"
+#include "flaunay/sphere.hpp"
+
+namespace flaunay::cli {
+namespace {
+
+// On the sphere, and with a period also the others.
+const std::vector<std::string> kCommon = {"--triangles", "--neighbors", "--duplicates", "--stats",
+                                          "--device",    "--index",     "--quiet"};
+const std::vector<std::string> kPeriodic = {"--period", "--offsets", "--points"};
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// What both surfaces have.
+template <typename Mesh>
+research::Triangulation arrays_of(Mesh& mesh, std::size_t n) {
+  research::Triangulation result;
+  result.statistics = std::move(mesh.statistics);
+  result.statistics.points = n;
+  result.statistics.duplicates = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    result.statistics.duplicates += static_cast<std::size_t>(mesh.representatives[i]) != i;
+  result.statistics.triangles = mesh.triangles.size() / 3;
+  result.statistics.hull_vertices = 0;
+  result.triangles = std::move(mesh.triangles);
+  result.neighbors = std::move(mesh.neighbors);
+  result.representatives = std::move(mesh.representatives);
+  return result;
+}
+
+}  // namespace
+
+void add_surface_options(CLI::App* command, SurfaceRequest& request) {
+  command
+      ->add_option("--period", request.period,
+                   "The plane repeats itself after LX in x and LY in y; inf: not in that direction")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("LX,LY");
+  add_path(
+      command, "--offsets", request.offsets,
+      "With --period: in which period corners are, x and y for each, if the first one is at its place: .npy");
+  command->add_flag("--sphere", request.is_sphere,
+                    "The points are longitudes and latitudes in degrees, and are triangulated on the sphere");
+}
+
+bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
+  const bool is_periodic = !request.period.empty();
+  if (!is_periodic) refuse(command, "--offsets", "needs --period");
+  if (!is_periodic && !request.is_sphere) return false;
+  for (const CLI::Option* const option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || option->get_positional() || contains(kCommon, name) ||
+        contains(is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, name))
+      continue;
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: does not go with {}, which has {}{}", name, is_periodic ? "--period" : "--sphere",
+                    is_periodic ? "--offsets, --points, " : "", fmt::join(kCommon, ", ")));
+  }
+  if (asks_for_chunks(command, command.get_option("--device")->as<std::string>()))
+    refuse(command, "--device", "other surfaces than the plane need one device");
+  return true;
+}
+
+int triangulate_surface(const Task& task, const SurfaceRequest& request, const std::string& places) {
+  OutputFiles outputs({task.input});
+  announce(outputs, task.results);
+  outputs.add(request.offsets, ".npy");
+  if (!places.empty()) outputs.add_points(places);
+
+  RunFacts facts;
+  facts.input = task.input;
+  facts.mode = "blocks";
+  Progress progress(!task.quiet);
+  Stopwatch stopwatch;
+  progress.update("reading");
+  io::Points points = io::read_points(task.input);
+  const std::size_t n = points.size();
+  facts.reading_seconds = stopwatch.restart();
+  const io::IndexType index = index_type(task.index, n, task.results);
+
+  progress.update_slow("preparing the device", kCompiling);
+  Triangulator triangulator(task.device);
+  facts.opening_seconds = stopwatch.restart();
+  const double* const coordinates = points.coordinates.data();
+  facts.compiling_seconds = compile_kernels(n, Mode::blocks, [&](std::size_t some) {
+    note_compiling(triangulator.triangulate(coordinates, some), facts);
+  });
+  progress.update("triangulating");
+  research::Triangulation mesh;
+  std::vector<std::int32_t> offsets;
+  const auto named = [&](const auto& work) { return naming_files({{"point", task.input}}, work); };
+  if (request.is_sphere) {
+    SphericalTriangulation found =
+        named([&] { return triangulate_sphere(triangulator, coordinates, n, SphereCoordinates::degrees); });
+    mesh = arrays_of(found, n);
+  } else {
+    PeriodicTriangulation found = named([&] {
+      return triangulate_periodic(triangulator, coordinates, n, {request.period[0], request.period[1]});
+    });
+    offsets.assign(found.offsets.begin(), found.offsets.end());
+    points.coordinates = std::move(found.places);
+    mesh = arrays_of(found, n);
+  }
+
+  const auto write = [&] {
+    write_arrays(kTriangulationArrays, task.results.arrays, mesh, outputs, index);
+    constexpr std::size_t kColumns = 6;
+    if (!request.offsets.empty()) io::write_npy(outputs, request.offsets, offsets, kColumns);
+    if (!places.empty()) io::write_points(outputs, places, points);
+  };
+  write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
+  if (!task.quiet)
+    print(host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
+          summary(mesh.statistics, facts));
+  return kSuccess;
+}
+
+}  // namespace flaunay::cli
