@@ -1731,6 +1731,10 @@ static void test_weighted(void) {
   CHECK(flaunay_weighted_triangles(weighted)[0] == 0 && flaunay_weighted_neighbors(weighted)[1] >= -1);
   CHECK(flaunay_weighted_triangle_offsets(weighted)[1] == 4 &&
         flaunay_weighted_hull_offsets(weighted)[1] == 4);
+  CHECK(flaunay_weighted_verify(triangulator, weighted, places, weights) == FLAUNAY_SUCCESS);
+  const double others[] = {0, 0, 0, 0, 8, 3};
+  CHECK(fails(flaunay_weighted_verify(triangulator, weighted, places, others), FLAUNAY_ERROR_INTERNAL,
+              "point 4"));
   int32_t hiding = -1;
   REQUIRE(flaunay_weighted_hiding_triangles(triangulator, weighted, places, &hiding) == FLAUNAY_SUCCESS);
   CHECK(hiding == 0);

@@ -1775,6 +1775,12 @@ class Weighted(Handle):
         )
         return triangles
 
+    def verify(self, triangulator: Triangulator, points: _Doubles, weights: _Doubles) -> None:
+        triangulator.call(
+            library.weighted_verify,
+            *(triangulator.pointer, self.pointer, _as_doubles(points), _as_doubles(weights)),
+        )
+
     def cells(
         self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles
     ) -> dict[str, Any]:

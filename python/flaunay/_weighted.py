@@ -84,6 +84,16 @@ class WeightedDelaunay:
             self._handle.hiding_triangles(_triangulators.of_device(self._given[3]), self.points)
         )
 
+    def verify(self) -> None:
+        """Checks exactly that this is the canonical regular triangulation of its points.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        self._handle.verify(_triangulators.of_device(self._given[3]), self.points, self.weights)
+
     def cells(self, bounds: Any) -> ClippedVoronoi:
         """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.
 

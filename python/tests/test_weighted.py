@@ -23,6 +23,7 @@ def test_triangles_are_those_of_the_lower_hull(random):
     assert repr(tri) == (
         f"<flaunay.WeightedDelaunay: 500 points, {tri.nsimplex} triangles, {len(tri.hidden)} hidden>"
     )
+    tri.verify()
     again = pickle.loads(pickle.dumps(tri))
     np.testing.assert_array_equal(again.simplices, tri.simplices)
     corners = points[tri.simplices[tri.hidden_by]]

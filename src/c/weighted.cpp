@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "c/errors.hpp"
@@ -68,6 +69,16 @@ flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangula
     const std::vector<std::int32_t> hiding = hiding_triangles(cpp, points, mesh.offsets, mesh.cpp);
     if (!hiding.empty())
       std::copy(hiding.begin(), hiding.end(), &required(triangles, "the room for triangles"));
+  });
+}
+
+flaunay_status flaunay_weighted_verify(flaunay_triangulator* triangulator, const flaunay_weighted* weighted,
+                                       const double* points, const double* weights) {
+  return guarded([&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const flaunay_weighted& mesh = required(weighted, "the triangulation");
+    const std::string problem = verify_weighted(cpp, points, weights, mesh.offsets, mesh.cpp);
+    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
   });
 }
 

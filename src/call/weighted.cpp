@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "arithmetic/coordinates.h"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
+#include "derived/weighted/verify.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
 
@@ -44,17 +46,53 @@ double scaled_weight(double weight, std::size_t point, const kernel::scaling& sc
 }
 
 // Makes of representatives what WeightedTriangulation says of them, and lists all hidden points.
-void settle(WeightedTriangulation& mesh) {
-  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
-    if (mesh.representatives[i] >= 0) continue;
-    mesh.representatives[i] = static_cast<std::int32_t>(i);
-    mesh.hidden.push_back(static_cast<std::int32_t>(i));
+void settle(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
+            WeightedTriangulation& mesh) {
+  const auto key = [&](std::int32_t i) { return std::tuple(points[2 * i], points[2 * i + 1], weights[i]); };
+  Ids lighter;  // those in the places of heavier ones, side by side if they are equal
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    lighter.clear();
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+      if (mesh.representatives[i] < 0) lighter.push_back(static_cast<std::int32_t>(i));
+    }
+    std::sort(lighter.begin(), lighter.end(),
+              [&](std::int32_t a, std::int32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
+    for (std::size_t k = 0; k < lighter.size(); ++k) {
+      const bool is_new = k == 0 || key(lighter[k - 1]) != key(lighter[k]);
+      if (is_new) mesh.hidden.push_back(lighter[k]);
+      mesh.representatives[static_cast<std::size_t>(lighter[k])] = mesh.hidden.back();
+    }
   }
   std::sort(mesh.hidden.begin(), mesh.hidden.end());
   mesh.statistics.duplicates = 0;
   for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
     mesh.statistics.duplicates += mesh.representatives[i] != static_cast<std::int32_t>(i);
   }
+}
+
+void check(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
+           const WeightedTriangulation& mesh) {
+  geometry::check_offsets(offsets);
+  const std::size_t n = offsets.back();
+  const auto are_below = [](const Ids& ids, std::size_t end, std::int32_t least) {
+    return std::all_of(ids.begin(), ids.end(), [&](std::int32_t i) {
+      return i >= least && (i < 0 || static_cast<std::size_t>(i) < end);
+    });
+  };
+  const auto are_offsets = [&](const std::vector<std::size_t>& ends, std::size_t last) {
+    return ends.size() == offsets.size() && ends.front() == 0 && ends.back() == last &&
+           std::is_sorted(ends.begin(), ends.end());
+  };
+  call::expect((n == 0 || (points != nullptr && weights != nullptr)) && mesh.representatives.size() == n &&
+                   are_below(mesh.triangles, n, 0) && are_below(mesh.hull, n, 0) &&
+                   are_below(mesh.hidden, n, 0) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
+                   are_below(mesh.representatives, n, 0) && mesh.triangles.size() % 3 == 0 &&
+                   are_offsets(mesh.triangle_offsets, mesh.triangles.size() / 3) &&
+                   are_offsets(mesh.hull_offsets, mesh.hull.size()),
+               "the triangulation is not one of these points");
+  call::expect(mesh.neighbors.size() == mesh.triangles.size() &&
+                   are_below(mesh.neighbors, mesh.triangles.size() / 3, -1),
+               "the triangulation must have its neighbours");
 }
 
 }  // namespace
@@ -88,21 +126,14 @@ WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const dou
     if (given.count > 0) scaled.range = most - least;
     static_cast<Triangulation&>(mesh) =
         call::triangulate_weighted(self.native(), given, scaled, offsets, options);
-    settle(mesh);
+    settle(points, weights, offsets, mesh);
     return mesh;
   });
 }
 
 Ids hiding_triangles(Triangulator& triangulator, const double* points,
                      const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  geometry::check_offsets(offsets);
-  const std::size_t n = offsets.back();
-  call::expect(mesh.representatives.size() == n && mesh.triangle_offsets.size() == offsets.size() &&
-                   std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
-                   (mesh.hidden.empty() ||
-                    (mesh.hidden.front() >= 0 && static_cast<std::size_t>(mesh.hidden.back()) < n)) &&
-                   (n == 0 || points != nullptr),
-               "the triangulation is not one of these points");
+  check(points, points, offsets, mesh);
   if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
   const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
   Locator locator(triangulator, visible.coordinates.data(), visible.offsets, visible.mesh);
@@ -124,17 +155,18 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    const auto are_points = [n](const Ids& ids) {
-      return std::all_of(ids.begin(), ids.end(),
-                         [n](std::int32_t i) { return i >= 0 && static_cast<std::size_t>(i) < n; });
-    };
-    call::expect(mesh.representatives.size() == n && mesh.triangle_offsets.size() == 2 &&
-                     are_points(mesh.triangles) && are_points(mesh.hull) &&
-                     (n == 0 || (points != nullptr && weights != nullptr)),
-                 "the triangulation is not one of these points");
-    call::expect(mesh.neighbors.size() == mesh.triangles.size(), "power cells need neighbours");
+    check(points, weights, {0, n}, mesh);
     return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
   });
+}
+
+std::string verify_weighted(Triangulator& triangulator, const double* points, const double* weights,
+                            const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+  check(points, weights, offsets, mesh);
+  const weighted::Claim claim{points, weights, offsets, mesh};
+  std::string problem = weighted::find_problem(claim);
+  if (!problem.empty()) return problem;
+  return weighted::find_problem_of_hidden(claim, hiding_triangles(triangulator, points, offsets, mesh));
 }
 
 }  // namespace flaunay

@@ -103,6 +103,7 @@ void expect_regular(const WeightedPoints& points, const WeightedTriangulation& m
     const std::array<double, 3> key = {points.coordinates[2 * i], points.coordinates[2 * i + 1],
                                        points.weights[i]};
     const auto [at, is_new] = first.insert({key, static_cast<std::int32_t>(i)});
+    ASSERT_EQ(mesh.representatives[i], at->second);
     if (is_new) {
       different.push_back(all[i]);
       numbers.push_back(at->second);
@@ -117,6 +118,9 @@ void expect_regular(const WeightedPoints& points, const WeightedTriangulation& m
     if (!by_brute_force) continue;
     ASSERT_EQ(hidden.count(numbers[k]), is_hidden(different, k)) << numbers[k];
   }
+  ASSERT_EQ(verify_weighted(testing::triangulator(), points.coordinates.data(), points.weights.data(), {0, n},
+                            mesh),
+            "");
   ASSERT_EQ(mesh.statistics.triangles, mesh.triangles.size() / 3);
   ASSERT_EQ(mesh.neighbors.size(), mesh.triangles.size());
   if (!mesh.triangles.empty()) {
@@ -396,6 +400,59 @@ TEST_F(WeightedTest, TheTriangleThatHidesAPointHasItBelow) {
   }
 }
 
+TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
+  std::mt19937 random(9);
+  const auto problem = [&](const WeightedPoints& points, const WeightedTriangulation& mesh) {
+    return verify_weighted(triangulator_, points.coordinates.data(), points.weights.data(),
+                           {0, points.size()}, mesh);
+  };
+  for (int round = 0; round < 60; ++round) {
+    const WeightedPoints points =
+        round % 2 == 0 ? random_points(random, 60, 2) : lattice_points(random, 50, 6, 9);
+    const WeightedTriangulation good = triangulated(triangulator_, points);
+    ASSERT_EQ(problem(points, good), "");
+    // Another weight of a vertex hides it or, if it is greater, hides others or moves edges.
+    WeightedPoints other = points;
+    other.weights[good.triangles[0]] += round % 4 < 2 ? 50 : -50;
+    const auto v = static_cast<std::size_t>(good.triangles[0]);
+    if (std::find(good.hull.begin(), good.hull.end(), good.triangles[0]) == good.hull.end())
+      ASSERT_NE(problem(other, good), "") << v;
+    WeightedTriangulation bad = good;
+    std::swap(bad.triangles[1], bad.triangles[2]);
+    ASSERT_NE(problem(points, bad), "");
+    bad = good;
+    bad.neighbors[static_cast<std::size_t>(random() % bad.neighbors.size())] = 0;
+    if (bad.neighbors != good.neighbors) ASSERT_NE(problem(points, bad), "");
+    bad = good;
+    if (!bad.hidden.empty()) {
+      bad.hidden.pop_back();
+      ASSERT_NE(problem(points, bad), "");
+      bad.hidden = good.hidden;
+      bad.representatives[static_cast<std::size_t>(bad.hidden[0])] = bad.triangles[0];
+      ASSERT_NE(problem(points, bad), "");
+    }
+    bad = good;
+    bad.hidden.insert(std::lower_bound(bad.hidden.begin(), bad.hidden.end(), bad.hull[0]), bad.hull[0]);
+    ASSERT_NE(problem(points, bad), "");
+    bad = good;
+    std::rotate(bad.hull.begin(), bad.hull.begin() + 1, bad.hull.end());
+    bad.hull.pop_back();
+    --bad.hull_offsets[1];
+    ASSERT_NE(problem(points, bad), "");
+  }
+  // One of two diagonals, which weights alone tell apart.
+  const WeightedPoints square{"square", {0, 0, 2, 0, 2, 2, 0, 2}, {0, 1, 0, 1}};
+  WeightedTriangulation mesh = triangulated(triangulator_, square);
+  ASSERT_EQ(mesh.triangles, (Ids{0, 1, 3, 1, 2, 3}));
+  ASSERT_EQ(problem(square, mesh), "");
+  WeightedPoints turned = square;
+  turned.weights = {1, 0, 1, 0};
+  EXPECT_NE(problem(turned, mesh).find("is not regular"), std::string::npos);
+  // Equal weights: the fan from the first point is the other one.
+  turned.weights = {0, 0, 0, 0};
+  EXPECT_NE(problem(turned, mesh).find("is not regular"), std::string::npos);
+}
+
 TEST_F(WeightedTest, CellsAreWhereThePowerIsLeast) {
   std::mt19937 random(8);
   const Numbers corners = {-0.5, -0.25, 1.5, -0.25, 1.25, 1.5, 0, 1.25};
@@ -452,12 +509,12 @@ TEST_F(WeightedTest, CellsOfPointsOnALine) {
 }
 
 TEST_F(WeightedTest, DuplicatesAreOfPlaceAndWeight) {
-  const Numbers points = {0, 0, 4, 0, 0, 4, 0, 0, 0, 0, 4, 0}, weights = {1, 1, 1, 2, 2, 1};
-  const WeightedTriangulation mesh = triangulate_weighted(triangulator_, points.data(), weights.data(), 6);
-  EXPECT_EQ(mesh.representatives, (Ids{0, 1, 2, 3, 3, 1}));
+  const Numbers points = {0, 0, 4, 0, 0, 4, 0, 0, 0, 0, 4, 0, 0, 0}, weights = {1, 1, 1, 2, 2, 1, 1};
+  const WeightedTriangulation mesh = triangulate_weighted(triangulator_, points.data(), weights.data(), 7);
+  EXPECT_EQ(mesh.representatives, (Ids{0, 1, 2, 3, 3, 1, 0}));
   EXPECT_EQ(mesh.hidden, (Ids{0}));
   EXPECT_EQ(mesh.triangles, (Ids{1, 2, 3}));
-  EXPECT_EQ(mesh.statistics.duplicates, 2u);
+  EXPECT_EQ(mesh.statistics.duplicates, 3u);
 }
 
 TEST_F(WeightedTest, WrongWeightsAreNamed) {

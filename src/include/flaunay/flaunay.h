@@ -1618,6 +1618,11 @@ FLAUNAY_API const size_t* flaunay_weighted_hull_offsets(const flaunay_weighted* 
 FLAUNAY_API flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangulator,
                                                              const flaunay_weighted* weighted,
                                                              const double* points, int32_t* triangles);
+/// Checks exactly that this is the canonical regular triangulation of these points; if not, it is
+/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
+FLAUNAY_API flaunay_status flaunay_weighted_verify(flaunay_triangulator* triangulator,
+                                                   const flaunay_weighted* weighted, const double* points,
+                                                   const double* weights);
 /// Computes the power cells of one set, clipped to a convex polygon, as flaunay_voronoi_clip does without
 /// weights: of each point the places whose squared distance less the weight is least for it. Each cell is
 /// rounded by itself. points, weights: those that were triangulated. The caller destroys the result.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -41,6 +42,12 @@ FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulato
 FLAUNAY_API std::vector<std::int32_t> hiding_triangles(Triangulator& triangulator, const double* points,
                                                        const std::vector<std::size_t>& offsets,
                                                        const WeightedTriangulation& triangulation);
+
+/// Checks a triangulation exactly: that it is the regular one, with the canonical choice at ties, and that
+/// its other arrays fit. Returns what is wrong, or nothing. Errors as of hiding_triangles. O(n log n).
+FLAUNAY_API std::string verify_weighted(Triangulator& triangulator, const double* points,
+                                        const double* weights, const std::vector<std::size_t>& offsets,
+                                        const WeightedTriangulation& triangulation);
 
 /// Computes the power cells of n points, clipped to a convex polygon: of each point the places whose power,
 /// the squared distance less the weight, is least for it. Vertices, areas and centroids are rounded, each
