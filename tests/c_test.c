@@ -2495,7 +2495,7 @@ static void test_raster_in_chunks(void) {
   const flaunay_strided_values heights = {
       .values = &scan->z, .precision = FLAUNAY_FLOAT32, .stride = sizeof *scan};
   flaunay_chunk_report* report = NULL;
-  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, levels, 2, &lines,
+  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, levels, 2, &lines, NULL,
                                    &kSmallChunks, &report) == FLAUNAY_SUCCESS);
   const size_t line_count = flaunay_contours_line_count(lines);
   REQUIRE(line_count > 0 && line_count == flaunay_contours_line_count(expected_lines));
@@ -2516,38 +2516,59 @@ static void test_raster_in_chunks(void) {
   const flaunay_point_source source = {.count = kPoints, .read = read_file, .data = file};
   const flaunay_value_source read = {.read = read_values, .data = values};
   memset(pixels, 0, kRows * kColumns * sizeof *pixels);
-  REQUIRE(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 0, NULL, &kSmallChunks,
+  REQUIRE(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 0, NULL, NULL, &kSmallChunks,
                                     &report) == FLAUNAY_SUCCESS);
   CHECK(memcmp(pixels, expected, kRows * kColumns * sizeof *pixels) == 0);
+  flaunay_chunk_report_destroy(report);
+
+  // A wall through the centres of pixels.
+  const double wall[] = {3 * step, 3 * step, 3 * step, 40 * step}, tops[] = {500, 500};
+  const int32_t between[] = {0, 1};
+  flaunay_breaklines walls = {
+      .coordinates = wall, .values = tops, .count = 2, .segments = between, .segment_count = 1};
+  REQUIRE(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, pixels, NULL, 0, NULL, &walls,
+                                   &kSmallChunks, &report) == FLAUNAY_SUCCESS);
+  for (size_t row = 2; row < 40; ++row) CHECK(pixels[row * kColumns + 2] == 500);
   flaunay_chunk_report_destroy(report);
 
   const flaunay_status usage = FLAUNAY_ERROR_USAGE;
   const flaunay_value_source broken = {.read = read_no_values}, unread = {NULL};
   const flaunay_strided_values none = {.stride = 8}, strange = {.values = scan, .reserved = {1}};
-  CHECK(fails(flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
-              FLAUNAY_ERROR_STOPPED, "read of values returned -4"));
+  CHECK(fails(
+      flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      FLAUNAY_ERROR_STOPPED, "read of values returned -4"));
   CHECK(report == NULL);
-  CHECK(fails(flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 1, &lines, NULL, &report),
-              usage, "heights"));
+  CHECK(fails(
+      flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 1, &lines, NULL, NULL, &report),
+      usage, "heights"));
   CHECK(lines == NULL);
-  CHECK(fails(flaunay_rasterize_streams(&source, &unread, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
-              usage, "values"));
-  CHECK(fails(flaunay_rasterize_streams(&source, NULL, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
-              usage, "values"));
-  CHECK(fails(flaunay_rasterize_streams(NULL, &read, 0, &raster, pixels, NULL, 0, NULL, NULL, &report), usage,
-              "points"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &none, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
-              usage, "values"));
+  walls.reserved[0] = 1;
+  CHECK(fails(
+      flaunay_rasterize_streams(&source, &read, 0, &raster, pixels, NULL, 0, NULL, &walls, NULL, &report),
+      usage, "flaunay_breaklines"));
+  CHECK(fails(
+      flaunay_rasterize_streams(&source, &unread, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "values"));
   CHECK(
-      fails(flaunay_rasterize_chunks(&of_records, &strange, 0, &raster, pixels, NULL, 0, NULL, NULL, &report),
-            usage, "flaunay_strided_values"));
-  CHECK(
-      fails(flaunay_rasterize_chunks(&of_records, &heights, 3, &raster, pixels, NULL, 0, NULL, NULL, &report),
-            usage, "flaunay_duplicates"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, NULL, pixels, NULL, 0, NULL, NULL, &report),
-              usage, "raster"));
-  CHECK(fails(flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, NULL, NULL, 0, NULL, NULL, &report),
-              usage, "pixels"));
+      fails(flaunay_rasterize_streams(&source, NULL, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+            usage, "values"));
+  CHECK(fails(flaunay_rasterize_streams(NULL, &read, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+              usage, "points"));
+  CHECK(fails(
+      flaunay_rasterize_chunks(&of_records, &none, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "values"));
+  CHECK(fails(
+      flaunay_rasterize_chunks(&of_records, &strange, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "flaunay_strided_values"));
+  CHECK(fails(
+      flaunay_rasterize_chunks(&of_records, &heights, 3, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "flaunay_duplicates"));
+  CHECK(fails(
+      flaunay_rasterize_chunks(&of_records, &heights, 0, NULL, pixels, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "raster"));
+  CHECK(fails(
+      flaunay_rasterize_chunks(&of_records, &heights, 0, &raster, NULL, NULL, 0, NULL, NULL, NULL, &report),
+      usage, "pixels"));
   fclose(file);
   free(scan);
   free(values);

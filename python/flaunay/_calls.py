@@ -1171,8 +1171,12 @@ def rasterize_chunks(
     pixels: _Doubles,
     heights: _Doubles,
     chunks: Chunks,
+    breaklines: Optional[tuple[_Doubles, _Doubles, _Indices]] = None,
 ) -> tuple[_Doubles, _Offsets, _Indices]:
-    """`rasterize` and `contours` for points with values, in chunks. duplicates: a number of DUPLICATES."""
+    """`rasterize` and `contours` for points with values, in chunks.
+
+    duplicates: a number of DUPLICATES. breaklines: points, values and segments, contiguous.
+    """
     given = _strided_points(points)
     numbers = _declarations.StridedValues(
         values=_first_of(values), precision=_precision_of(values, "values"), stride=values.strides[0]
@@ -1180,7 +1184,12 @@ def rasterize_chunks(
     raster = _raster_of(grid, max_edge, fill, pixels)
     # Of pixels the address: what a call refers to is freed late, and a mapped file would be open until then.
     place, made = _address_of(pixels), _Contours()
-    levels = (heights.ctypes.data, len(heights), made.place)
+    edges = _declarations.Breaklines()
+    if breaklines is not None:
+        places, tops, segments = breaklines
+        edges.coordinates, edges.values, edges.count = _address_of(places), _address_of(tops), len(tops)
+        edges.segments, edges.segment_count = _address_of(segments), len(segments)
+    levels = (heights.ctypes.data, len(heights), made.place, edges)
 
     def call(options: _declarations.ChunkOptions, report: Any) -> int:
         function = library.rasterize_chunks

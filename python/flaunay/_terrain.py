@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import struct
@@ -494,23 +495,37 @@ def _checked_outputs(given: Any, contours: Any) -> list[Path]:
     return paths
 
 
+def _joined(lines: list[Doubles]) -> tuple[Doubles, npt.NDArray[np.int32]]:
+    """The points of all lines, and the segments between them."""
+    firsts = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
+    along = np.concatenate([np.empty((0, 3)), *lines])
+    numbers = np.arange(len(along) + 1, dtype=np.int32)
+    segments = np.stack([numbers[:-1], numbers[1:]], axis=1)
+    return along, np.delete(segments, firsts[1:] - 1, axis=0)
+
+
+@contextlib.contextmanager
+def _naming_breaklines() -> Iterator[None]:
+    try:
+        yield
+    except InputError as error:
+        if "segment" not in str(error):
+            raise
+        raise InputError(f"breaklines: {error}") from error
+
+
 def _with_lines(
     points: Doubles, heights: Doubles, lines: list[Doubles], device: Optional[str]
 ) -> tuple[Any, Doubles, int]:
     """The mesh with breaklines, whose points come first; heights of all points, and the number of those."""
-    firsts = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
-    along = np.concatenate([np.empty((0, 3)), *lines])
-    segments = np.stack([np.arange(len(along)), np.arange(1, len(along) + 1)], axis=1)
-    segments = np.delete(segments, firsts[1:] - 1, axis=0)
+    along, segments = _joined(lines)
     missing = np.isnan(along[:, 2])
     if missing.any():
         along[missing, 2] = _heights_at(along[missing, :2], points, heights, device)
-    try:
+    with _naming_breaklines():
         mesh = triangulate(
             np.concatenate([along[:, :2], points]), segments=segments, device=device, neighbors=True
         )
-    except InputError as error:
-        raise InputError(f"breaklines: {error}") from error
     return mesh, np.concatenate([along[:, 2], heights]), len(along)
 
 
@@ -572,12 +587,15 @@ def _map_in_chunks(
     duplicates: str,
     max_edge: Optional[float],
     contours: Union[None, float, npt.ArrayLike],
+    lines: list[Doubles],
     chunks: Any,
 ) -> Contours:
     """Writes the raster. Returns the contours, if there are to be some."""
+    along, segments = _joined(lines)
     levels = np.empty(0)
     if contours is not None:
-        levels = _levels_of(contours, measured[:, 2].min(), measured[:, 2].max())
+        ends = [measured[:, 2].min(), measured[:, 2].max(), *along[:, 2]]
+        levels = _levels_of(contours, min(ends), max(ends))
     points, offsets, numbers = _calls.rasterize_chunks(
         measured[:, :2],
         measured[:, 2],
@@ -588,6 +606,7 @@ def _map_in_chunks(
         result.raster,
         levels,
         chunks,
+        (np.ascontiguousarray(along[:, :2]), np.ascontiguousarray(along[:, 2]), segments),
     )
     return Contours(points, offsets, levels[numbers])
 
@@ -692,7 +711,8 @@ def terrain(
         As of `triangulate`.
     memory : int or str, optional
         Triangulates in chunks, within so many bytes beside the raster and the contours, such as ``"2G"``: for more
-        points than fit memory. Without breaklines, flat lakes, other methods than the linear one and files of triangles.
+        points than fit memory. Without flat lakes, other methods than the linear one and files of triangles;
+        breaklines need heights.
     scratch : path, optional
         The folder for files without a name that `memory` needs, up to 56 bytes per point; TMPDIR or /tmp by default.
 
@@ -732,12 +752,12 @@ def terrain(
     chunks = None
     if memory is not None:
         chunks = chunks_of(memory, scratch, device, None, None)
-        if not (breaklines is None and flat is None and method == "linear") or any(
+        if not (flat is None and method == "linear") or any(
             path.suffix.lower() in _MESHES for path in outputs
         ):
             raise UsageError(
-                "memory= is for rasters and contours of points alone: not for breaklines, flat lakes, "
-                "other methods than the linear one and files of triangles"
+                "memory= is for rasters and contours alone: not for flat lakes, other methods than the "
+                "linear one and files of triangles"
             )
     sources = _sources(points)
     system = _common_crs(sources, crs)
@@ -760,6 +780,12 @@ def terrain(
     lakes: list[Any] = []
     if flat is not None:
         lakes = _polygons_of(_geometries(flat, system, "flat"))
+    lines_kept: list[Doubles] = []
+    if breaklines is not None:
+        given = _geometries(breaklines, system, "breaklines")
+        lines_kept = [line for line in _lines_of(given) if len(line)]
+    if chunks is not None and any(np.isnan(line[:, 2]).any() for line in lines_kept):
+        raise UsageError("memory=: breaklines must have heights at all their points")
 
     pieces = (piece for source in sources for piece in source.pieces(chosen, returns))
     measured = (
@@ -775,15 +801,14 @@ def terrain(
     grid = _Grid(box, resolution, is_point)
     if chunks is not None:
         result = Terrain(None, np.empty(0), grid, system, area)
-        lines = _map_in_chunks(result, measured, duplicates, max_edge, contours, chunks)
+        with _naming_breaklines():
+            lines = _map_in_chunks(
+                result, measured, duplicates, max_edge, contours, lines_kept, chunks
+            )
         return _finished(result, outputs, contours, lines, nodata)
     places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
     mesh: Any
     fixed = 0
-    lines_kept: list[Doubles] = []
-    if breaklines is not None:
-        given = _geometries(breaklines, system, "breaklines")
-        lines_kept = [line for line in _lines_of(given) if len(line)]
     if lakes:
         shores, is_dry = _shores(lakes, places, heights, device)
         lines_kept += shores

@@ -93,7 +93,6 @@ def test_in_chunks_as_in_memory(scan, tmp_path):
     "arguments, message",
     [
         ({"memory": "128M", "method": "natural"}, "memory="),
-        ({"memory": "128M", "breaklines": [[[0, 0], [1, 1]]]}, "memory="),
         ({"memory": "much"}, "memory"),
         ({"memory": "1M"}, "at least"),
         ({"resolution": 1e-5}, "pixels"),
@@ -246,6 +245,25 @@ def test_breaklines_are_hard_edges(tmp_path):
     with pytest.raises(flaunay.InputError, match="none.gpkg"):
         pytest.importorskip("pyogrio")
         flaunay.terrain(points, resolution=1, breaklines=tmp_path / "none.gpkg")
+
+
+def test_breaklines_in_chunks(scan, tmp_path):
+    pytest.importorskip("shapely")
+    walls = [
+        np.array([[500005 + 20 * k + 3 * (j % 2), 4500001 + 6 * j, 200 + j] for j in range(7)])
+        for k in range(3)
+    ]
+    scan = np.concatenate([scan, walls[1] - [0, 0, 50]])  # of these places, the walls' heights count
+    options = {"resolution": 0.5, "breaklines": walls}
+    expected = flaunay.terrain(scan, **options)
+    made = flaunay.terrain(scan, memory="128M", **options)
+    assert made.raster.tobytes() == expected.raster.tobytes()
+    assert np.nanmax(made.raster) > 160 > scan[:3000, 2].max()
+    with pytest.raises(flaunay.UsageError, match="heights at all"):
+        flaunay.terrain(scan, memory="128M", resolution=1, breaklines=[walls[0][:, :2]])
+    with pytest.raises(flaunay.InputError, match="breaklines: segments"):
+        crossing = [walls[0], walls[0] * [-1, 1, 1] + [1000013, 0, 0]]
+        flaunay.terrain(scan, memory="128M", resolution=1, breaklines=crossing)
 
 
 def test_boundary_cuts_raster_and_contours(scan, tmp_path):

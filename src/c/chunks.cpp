@@ -161,11 +161,18 @@ std::unique_ptr<flaunay_chunk_report> rasterize(ValuedPoints& points, int duplic
                                                 const flaunay_raster& raster, double* pixels,
                                                 const std::vector<double>& heights,
                                                 flaunay_contours** contours,
+                                                const flaunay_breaklines* breaklines,
                                                 const flaunay_chunk_options* options) {
+  Breaklines edges;
+  if (breaklines != nullptr) {
+    c::check_reserved(*breaklines, "flaunay_breaklines");
+    edges = {breaklines->coordinates, breaklines->values, breaklines->count, breaklines->segments,
+             breaklines->segment_count};
+  }
   auto lines = std::make_unique<flaunay_contours>();
   auto report = std::make_unique<flaunay_chunk_report>(rasterize_chunks(
       points, c::to_enum<Duplicates>(duplicates, FLAUNAY_DUPLICATES_MEAN, "flaunay_duplicates"),
-      c::to_grid(raster), c::to_options(raster), pixels, heights, lines->cpp, {}, to_options(options)));
+      c::to_grid(raster), c::to_options(raster), pixels, heights, lines->cpp, edges, to_options(options)));
   if (contours != nullptr) *contours = lines.release();
   return report;
 }
@@ -243,12 +250,13 @@ flaunay_status flaunay_rasterize_chunks(const flaunay_strided_points* points,
                                         const flaunay_strided_values* values, int duplicates,
                                         const flaunay_raster* raster, double* pixels, const double* heights,
                                         size_t height_count, flaunay_contours** contours,
+                                        const flaunay_breaklines* breaklines,
                                         const flaunay_chunk_options* options, flaunay_chunk_report** report) {
   return create(report, [&] {
     if (contours != nullptr) *contours = nullptr;
     StridedValuedPoints source(required(points, "the points"), required(values, "the values"));
     return rasterize(source, duplicates, required(raster, "the raster"), pixels,
-                     c::to_heights(heights, height_count), contours, options);
+                     c::to_heights(heights, height_count), contours, breaklines, options);
   });
 }
 
@@ -256,13 +264,14 @@ flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
                                          const flaunay_value_source* values, int duplicates,
                                          const flaunay_raster* raster, double* pixels, const double* heights,
                                          size_t height_count, flaunay_contours** contours,
+                                         const flaunay_breaklines* breaklines,
                                          const flaunay_chunk_options* options,
                                          flaunay_chunk_report** report) {
   return create(report, [&] {
     if (contours != nullptr) *contours = nullptr;
     CallersValuedPoints source(required(points, "the points"), required(values, "the values"));
     return rasterize(source, duplicates, required(raster, "the raster"), pixels,
-                     c::to_heights(heights, height_count), contours, options);
+                     c::to_heights(heights, height_count), contours, breaklines, options);
   });
 }
 

@@ -386,6 +386,16 @@ typedef struct flaunay_value_source {
   uintptr_t reserved[4];  ///< 0
 } flaunay_value_source;
 
+/// Lines with values at their points. {0}: none.
+typedef struct flaunay_breaklines {
+  const double* coordinates;  ///< x0 y0 x1 y1 ...
+  const double* values;       ///< one per point: that of its place, whatever other points have there
+  size_t count;               ///< number of points; in messages, they are numbered before the others
+  const int32_t* segments;    ///< 2 indices of these points per segment
+  size_t segment_count;       ///< number of segments
+  uintptr_t reserved[4];      ///< 0
+} flaunay_breaklines;
+
 /// Where a function of the caller's writes a triangulation in pieces.
 typedef struct flaunay_mesh_sink {
   /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES. Other arrays are not computed. 0: the triangles
@@ -1308,19 +1318,23 @@ FLAUNAY_API flaunay_status flaunay_contours_compute(flaunay_triangulator* triang
 /// Raster and contours of points that need not fit memory: triangulates them in chunks, as
 /// flaunay_triangulate_chunks_to_files does, scans triangles into pixels and traces lines as they become
 /// final. Both are those of all triangles, whatever the chunks. duplicates: a flaunay_duplicates. raster: may
-/// have no pixels. pixels: as of flaunay_rasterize, such as a file that is mapped into memory; these, and the
-/// lines, do not count as memory of the options. contours: NULL for none; their max_edge is that of the
-/// raster. Values take 8 bytes per point in the scratch folder. Errors are those of the functions named, and
-/// FLAUNAY_ERROR_INPUT for a value that is not finite. The caller destroys the report and the contours.
+/// have no pixels. pixels: as of flaunay_rasterize, such as a file that is mapped into memory. contours: NULL
+/// for none; their max_edge is that of the raster. breaklines: become edges of the triangles; NULL for none.
+/// Memory of the options does not count pixels, contours and the triangles that breaklines cross. Values take
+/// 8 bytes per point in the scratch folder. Errors are those of the functions named and of
+/// flaunay_triangulate_constrained, and FLAUNAY_ERROR_INPUT for a value that is not finite. The caller
+/// destroys the report and the contours.
 FLAUNAY_API flaunay_status flaunay_rasterize_chunks(
     const flaunay_strided_points* points, const flaunay_strided_values* values, int duplicates,
     const flaunay_raster* raster, double* pixels, const double* heights, size_t height_count,
-    flaunay_contours** contours, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+    flaunay_contours** contours, const flaunay_breaklines* breaklines, const flaunay_chunk_options* options,
+    flaunay_chunk_report** report);
 /// flaunay_rasterize_chunks for points and values that are nowhere in memory as a whole.
 FLAUNAY_API flaunay_status flaunay_rasterize_streams(
     const flaunay_point_source* points, const flaunay_value_source* values, int duplicates,
     const flaunay_raster* raster, double* pixels, const double* heights, size_t height_count,
-    flaunay_contours** contours, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+    flaunay_contours** contours, const flaunay_breaklines* breaklines, const flaunay_chunk_options* options,
+    flaunay_chunk_report** report);
 /// Destroys contours. O(1).
 FLAUNAY_API void flaunay_contours_destroy(flaunay_contours* contours);
 /// Number of lines.
