@@ -427,6 +427,12 @@ TEST_F(BenchTest, PointsOnASphereAreBesideCgal) {
   for (const auto& row : record["results"]) expect_times(row);
 }
 
+TEST_F(BenchTest, WeightedPointsAreBesideCgal) {
+  const auto record = run_well("weighted --sizes 3000");
+  EXPECT_GE(record["results"].size(), 2u * 4);
+  for (const auto& row : record["results"]) expect_times(row);
+}
+
 TEST_F(BenchTest, ConstrainedIsBesideCgal) {
   const auto record = run_well("constrained --quick --polygon-points 10");
   ASSERT_EQ(record["results"].size(), 6u * 3);

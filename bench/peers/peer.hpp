@@ -80,6 +80,13 @@ inline Outcome (*run_cgal_constrained)(const ConstrainedInput& input) = nullptr;
 /// traits do, and sorted: the seconds, and the number of triangles. Null if this build is without CGAL.
 inline Outcome (*run_cgal_on_sphere)(const std::vector<double>& directions) = nullptr;
 
+// ---- Weighted points
+
+/// CGAL's Regular_triangulation_2 of points with weights, which it sorts: the seconds, and the number of
+/// triangles. Null if this build is without CGAL.
+inline Outcome (*run_cgal_weighted)(const std::vector<double>& points,
+                                    const std::vector<double>& weights) = nullptr;
+
 // ---- Refined meshes
 
 /// What a mesh is refined to: a smallest angle in degrees, and a largest area; 0 for any.

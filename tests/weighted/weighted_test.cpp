@@ -415,14 +415,17 @@ TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
     WeightedPoints other = points;
     other.weights[good.triangles[0]] += round % 4 < 2 ? 50 : -50;
     const auto v = static_cast<std::size_t>(good.triangles[0]);
-    if (std::find(good.hull.begin(), good.hull.end(), good.triangles[0]) == good.hull.end())
+    if (std::find(good.hull.begin(), good.hull.end(), good.triangles[0]) == good.hull.end()) {
       ASSERT_NE(problem(other, good), "") << v;
+    }
     WeightedTriangulation bad = good;
     std::swap(bad.triangles[1], bad.triangles[2]);
     ASSERT_NE(problem(points, bad), "");
     bad = good;
     bad.neighbors[static_cast<std::size_t>(random() % bad.neighbors.size())] = 0;
-    if (bad.neighbors != good.neighbors) ASSERT_NE(problem(points, bad), "");
+    if (bad.neighbors != good.neighbors) {
+      ASSERT_NE(problem(points, bad), "");
+    }
     bad = good;
     if (!bad.hidden.empty()) {
       bad.hidden.pop_back();
