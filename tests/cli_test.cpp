@@ -194,6 +194,22 @@ TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
   expect_error(kBadInput, {"points.xy", "point 2", "latitude 100"}, {"triangulate", points, "--sphere"});
 }
 
+TEST_F(CommandUsageTest, WeightedPointsRefuseWhatTheyDoNotHave) {
+  const auto refused = [this](const std::string& option, const std::string& reason, Arguments arguments) {
+    arguments.insert(arguments.begin(), {"triangulate", path("missing.xyz")});
+    expect_error(kUsage, {option, reason}, arguments);
+  };
+  refused("--constraints", "--weighted", {"--weighted", "--constraints", "s.npy"});
+  refused("--mode", "--weighted", {"--weighted", "--mode", "dwyer"});
+  refused("--hidden", "--weighted", {"--hidden", "h.npy"});
+  refused("--weighted", "--sphere", {"--weighted", "--sphere"});
+  refused("--device", "one device", {"--weighted", "--device", "all"});
+  expect_error(kBadInput, {"two.txt", "three numbers"},
+               {"triangulate", write("two.txt", "1 2\n"), "--weighted"});
+  expect_error(kBadInput, {"huge.txt: point 1", "too large"},
+               {"triangulate", write("huge.txt", "0 0 0\n1 0 1e300\n0 1 0\n"), "--weighted"});
+}
+
 TEST_F(CommandUsageTest, UnknownEndings) {
   const std::string points = write("points.xy", "0 0\n1 0\n0 1\n");
   expect_error(kUsage, {"points.dwg", ".npy"}, {"triangulate", write("points.dwg", "0 0\n")});
@@ -1124,6 +1140,18 @@ TEST_F(CommandTriangulateTest, OtherSurfaces) {
   const std::string globe = write("globe.xy", "0 -20\n120 -20\n240 -20\n0 90\n");
   run_well({"triangulate", globe, "--sphere", "--triangles", path("t.npy"), "--quiet"});
   EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
+}
+
+TEST_F(CommandTriangulateTest, WeightedPoints) {
+  const std::string points = write("points.xyz", "0 0 0\n4 0 0\n4 4 0\n0 4 0\n1 2 -8\n1 2 3\n");
+  const Outcome outcome =
+      run_well({"triangulate", points, "--weighted", "--triangles", path("t.npy"), "--hidden", path("h.npy"),
+                "--hull", path("hull.npy"), "--output", path("mesh.obj"), "--stats", path("s.json")});
+  EXPECT_NE(outcome.out.find("1 points are hidden"), std::string::npos) << outcome.out;
+  EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
+  EXPECT_EQ(read_array(path("h.npy")).values, (std::vector<std::int32_t>{4}));
+  EXPECT_EQ(read_array(path("hull.npy")).values, (std::vector<std::int32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["triangles"], 4);
 }
 
 // --------------------------------------------------------------------------------------------------- chunks

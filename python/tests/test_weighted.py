@@ -73,7 +73,7 @@ def test_errors():
         flaunay.weighted(np.zeros((3, 2)), [1, 2])
     with pytest.raises(flaunay.UsageError, match="shape"):
         flaunay.weighted([1, 2], [1, 2])
-    with pytest.raises(flaunay.InputError, match="weight of point 1 is not finite"):
+    with pytest.raises(flaunay.InputError, match="point 1 has a weight that is not finite"):
         flaunay.weighted([[0, 0], [1, 1]], [1, np.inf])
     empty = flaunay.weighted(np.zeros((0, 2)), [])
     assert empty.nsimplex == 0

@@ -37,12 +37,13 @@ double scaled_weight(double weight, std::size_t point, const kernel::scaling& sc
   const bool is_large = !(std::fabs(scaled) < std::ldexp(1.0, kLargestExponent + 1));
   if (!is_large && (weight == 0 || (scaled != 0 && !is_too_fine(scaled)))) return scaled;
   if (!std::isfinite(weight)) {
-    throw Error(ErrorKind::input, fmt::format("the weight of point {} is not finite: {}", point, weight));
+    throw Error(ErrorKind::input, fmt::format("point {} has a weight that is not finite: {}", point, weight));
   }
-  throw Error(ErrorKind::input,
-              fmt::format("the weight of point {}, {}, is too {} beside the squares of the coordinates for "
-                          "exact arithmetic: scale the weights",
-                          point, weight, is_large ? "large" : "fine"));
+  throw Error(
+      ErrorKind::input,
+      fmt::format("point {} has a weight, {}, that is too {} beside the squares of the coordinates for "
+                  "exact arithmetic: scale the weights",
+                  point, weight, is_large ? "large" : "fine"));
 }
 
 // Makes of representatives what WeightedTriangulation says of them, and lists all hidden points.

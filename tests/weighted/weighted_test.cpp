@@ -526,9 +526,9 @@ TEST_F(WeightedTest, WrongWeightsAreNamed) {
     const Numbers weights = {0, weight, 0};
     triangulate_weighted(triangulator_, points.data(), weights.data(), 3);
   };
-  expect_failed(ErrorKind::input, {"the weight of point 1 is not finite"}, [&] { with(NAN); });
-  expect_failed(ErrorKind::input, {"the weight of point 1", "too large"}, [&] { with(1e300); });
-  expect_failed(ErrorKind::input, {"the weight of point 1", "too fine"}, [&] { with(1e-300); });
+  expect_failed(ErrorKind::input, {"point 1 has a weight that is not finite"}, [&] { with(NAN); });
+  expect_failed(ErrorKind::input, {"point 1 has a weight", "too large"}, [&] { with(1e300); });
+  expect_failed(ErrorKind::input, {"point 1 has a weight", "too fine"}, [&] { with(1e-300); });
   expect_failed(ErrorKind::usage, {"no weights"},
                 [&] { triangulate_weighted(triangulator_, points.data(), nullptr, 3); });
   with(0x1p490);

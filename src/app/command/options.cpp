@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "app/files/formats.hpp"
@@ -70,6 +71,23 @@ void refuse(const CLI::App& command, const std::string& option, const std::strin
 
 void refuse_all(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason) {
   for (const std::string& option : options) refuse(command, option, reason);
+}
+
+void refuse_all_but(const CLI::App& command, const std::vector<std::string>& own,
+                    const std::vector<std::string>& others) {
+  const auto contains = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const CLI::Option* const option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || option->get_positional() || contains(own, name) || contains(others, name)) {
+      continue;
+    }
+    std::vector<std::string> all(own.begin() + 1, own.end());
+    all.insert(all.end(), others.begin(), others.end());
+    throw Error(ErrorKind::usage, fmt::format("{}: does not go with {}, which has {}", name, own.front(),
+                                              fmt::join(all, ", ")));
+  }
 }
 
 }  // namespace flaunay::cli

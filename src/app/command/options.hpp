@@ -41,6 +41,9 @@ void add_quiet(CLI::App* command, bool& quiet);
 /// Throws Error(usage) with the reason if the option was given on the command line.
 void refuse(const CLI::App& command, const std::string& option, const std::string& reason);
 void refuse_all(const CLI::App& command, const std::vector<std::string>& options, const std::string& reason);
+/// Throws Error(usage) for options beside `own`, and those that go with the first of these, in `others`.
+void refuse_all_but(const CLI::App& command, const std::vector<std::string>& own,
+                    const std::vector<std::string>& others);
 
 /// Names of values.
 template <typename Choice>

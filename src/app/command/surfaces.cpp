@@ -22,10 +22,6 @@ const std::vector<std::string> kCommon = {"--triangles", "--neighbors", "--dupli
                                           "--device",    "--index",     "--quiet"};
 const std::vector<std::string> kPeriodic = {"--period", "--offsets", "--points"};
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // What both surfaces have.
 template <typename Mesh>
 research::Triangulation arrays_of(Mesh& mesh, std::size_t n) {
@@ -63,16 +59,7 @@ bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
   const bool is_periodic = !request.period.empty();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
   if (!is_periodic && !request.is_sphere) return false;
-  for (const CLI::Option* const option : command.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || option->get_positional() || contains(kCommon, name) ||
-        contains(is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, name))
-      continue;
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("{}: does not go with {}, which has {}{}", name, is_periodic ? "--period" : "--sphere",
-                    is_periodic ? "--offsets, --points, " : "", fmt::join(kCommon, ", ")));
-  }
+  refuse_all_but(command, is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, kCommon);
   if (asks_for_chunks(command, command.get_option("--device")->as<std::string>()))
     refuse(command, "--device", "other surfaces than the plane need one device");
   return true;

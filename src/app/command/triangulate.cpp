@@ -16,6 +16,7 @@
 #include "app/command/report.hpp"
 #include "app/command/results.hpp"
 #include "app/command/surfaces.hpp"
+#include "app/command/weighted.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
@@ -39,6 +40,7 @@ struct TriangulateRequest : Task {
   ConstraintRequest constraints;
   bool is_on_surface = false;
   SurfaceRequest surface;
+  WeightedRequest weighted;
 };
 
 const research::ModeInfo& info_of(Mode mode) {
@@ -126,6 +128,7 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 }
 
 int triangulate(const TriangulateRequest& request) {
+  if (request.weighted.is_weighted) return triangulate_weighted(request, request.weighted);
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
   if (request.is_on_surface) return triangulate_surface(request, request.surface, request.constraints.points);
@@ -219,6 +222,7 @@ void add_triangulate(CLI::App& app, Action& action) {
           "between them, or all: triangulates in chunks, on each of them");
   add_constraint_options(command, request->constraints);
   add_surface_options(command, request->surface);
+  add_weighted_options(command, request->weighted);
   add_chunk_options(command, request->chunks);
   add_index(command, request->index);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
@@ -229,7 +233,7 @@ void add_triangulate(CLI::App& app, Action& action) {
     check_combination(*command, *request);
     request->is_on_surface = asks_for_surface(*command, request->surface);
     action = [request] { return triangulate(*request); };
-    if (request->is_on_surface) return;
+    if (request->is_on_surface || asks_for_weighted(*command, request->weighted)) return;
     request->has_constraints = has_constraints(*command, request->input, request->constraints);
     request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->in_chunks && request->has_constraints)

@@ -1,0 +1,81 @@
+#include "app/command/weighted.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/command/chunks.hpp"
+#include "app/command/errors.hpp"
+#include "app/command/progress.hpp"
+#include "app/files/scan.hpp"
+#include "flaunay/weighted.hpp"
+
+namespace flaunay::cli {
+
+void add_weighted_options(CLI::App* command, WeightedRequest& request) {
+  command->add_flag(
+      "--weighted", request.is_weighted,
+      "Each point has a weight behind x and y: the regular triangulation, of .npy, .txt, .csv and .xyz");
+  add_path(command, "--hidden", request.hidden, "With --weighted: points without a power cell: .npy");
+}
+
+bool asks_for_weighted(const CLI::App& command, const WeightedRequest& request) {
+  if (!request.is_weighted) {
+    refuse(command, "--hidden", "needs --weighted");
+    return false;
+  }
+  refuse_all_but(command, {"--weighted", "--hidden"},
+                 {"--output", "--triangles", "--neighbors", "--halfedges", "--hull", "--duplicates",
+                  "--areas", "--stats", "--device", "--index", "--quiet"});
+  if (asks_for_chunks(command, command.get_option("--device")->as<std::string>()))
+    refuse(command, "--device", "weighted points need one device");
+  return true;
+}
+
+int triangulate_weighted(const Task& task, const WeightedRequest& request) {
+  OutputFiles outputs({task.input});
+  announce(outputs, task.results);
+  outputs.add(request.hidden, ".npy");
+
+  RunFacts facts;
+  facts.input = task.input;
+  facts.mode = "blocks";
+  Progress progress(!task.quiet);
+  Stopwatch stopwatch;
+  progress.update("reading");
+  io::Scan file({task.input}, {}, "");
+  file.survey([](double) {});
+  const auto n = static_cast<std::size_t>(file.size());
+  io::Points points;
+  points.coordinates.resize(2 * n);
+  std::vector<double> weights(n);
+  file.read(0, n, points.coordinates.data());
+  file.read_values(0, n, weights.data());
+  facts.reading_seconds = stopwatch.restart();
+  const io::IndexType index = index_type(task.index, n, task.results);
+
+  progress.update("triangulating");
+  Triangulator triangulator(task.device);
+  facts.opening_seconds = stopwatch.restart();
+  Options options;
+  ask_for(task.results, options);
+  WeightedTriangulation found = naming_files({{"point ", task.input}}, [&] {
+    return flaunay::triangulate_weighted(triangulator, points.coordinates.data(), weights.data(), n, options);
+  });
+  research::Triangulation mesh;
+  static_cast<Triangulation&>(mesh) = std::move(found);
+
+  const auto write = [&] {
+    if (!task.results.mesh.empty()) io::write_mesh(outputs, task.results.mesh, {points, mesh});
+    write_arrays(kTriangulationArrays, task.results.arrays, mesh, outputs, index);
+    if (!request.hidden.empty()) io::write_npy(outputs, request.hidden, found.hidden, 1, index);
+  };
+  write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
+  if (!task.quiet) {
+    print(fmt::format("{} points are hidden\n", found.hidden.size()) + degenerate_note(mesh.statistics) +
+          summary(mesh.statistics, facts));
+  }
+  return kSuccess;
+}
+
+}  // namespace flaunay::cli
