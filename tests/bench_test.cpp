@@ -421,10 +421,12 @@ TEST_F(BenchTest, DerivedIsBesideATriangulation) {
   if (cgal) EXPECT_LT(record["answers"][0].value("largest_difference", 1.0), 1e-9);
 }
 
-TEST_F(BenchTest, PointsOnASphereAreBesideCgal) {
-  const auto record = run_well("sphere --sizes 3000");
-  EXPECT_GE(record["results"].size(), 7u);
-  for (const auto& row : record["results"]) expect_times(row);
+TEST_F(BenchTest, PointsOnASphereAndATorusAreBesideCgal) {
+  for (const char* const surface : {"sphere", "periodic"}) {
+    const auto record = run_well(std::string(surface) + " --sizes 3000");
+    EXPECT_GE(record["results"].size(), 7u);
+    for (const auto& row : record["results"]) expect_times(row);
+  }
 }
 
 TEST_F(BenchTest, WeightedPointsAreBesideCgal) {

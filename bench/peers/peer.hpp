@@ -80,6 +80,12 @@ inline Outcome (*run_cgal_constrained)(const ConstrainedInput& input) = nullptr;
 /// traits do, and sorted: the seconds, and the number of triangles. Null if this build is without CGAL.
 inline Outcome (*run_cgal_on_sphere)(const std::vector<double>& directions) = nullptr;
 
+// ---- Points on a torus
+
+/// CGAL's Periodic_2_Delaunay_triangulation_2 of points in the unit square, sorted: the seconds, and the
+/// number of triangles. Null if this build is without CGAL.
+inline Outcome (*run_cgal_periodic)(const std::vector<double>& coordinates) = nullptr;
+
 // ---- Weighted points
 
 /// CGAL's Regular_triangulation_2 of points with weights, which it sorts: the seconds, and the number of
