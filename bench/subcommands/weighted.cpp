@@ -29,7 +29,7 @@ struct Data {
   std::size_t n;
   std::vector<double> points, weights;
   std::vector<std::size_t> offsets;
-  Options options;
+  flaunay::Options options;
   WeightedTriangulation mesh;
 };
 
