@@ -244,8 +244,9 @@ void check(const std::vector<double>& heights, double max_edge) {
 }
 
 void Lines::add(host::Runtime& runtime, const MeshView& mesh, const double* values) {
-  const Surface surface(mesh, values, max_edge_);
   const std::size_t levels = heights_.size();
+  if (levels == 0) return;
+  const Surface surface(mesh, values, max_edge_);
   std::vector<Ids> crossed = find_crossed(runtime, surface, heights_);
   runtime.share(levels, [&](std::size_t level) {
     Ids all;
