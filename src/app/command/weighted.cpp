@@ -72,7 +72,7 @@ int triangulate_weighted(const Task& task, const WeightedRequest& request) {
   };
   write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
   if (!task.quiet) {
-    print(fmt::format("{} points are hidden\n", found.hidden.size()) + degenerate_note(mesh.statistics) +
+    print(fmt::format("hidden points: {}\n", found.hidden.size()) + degenerate_note(mesh.statistics) +
           summary(mesh.statistics, facts));
   }
   return kSuccess;
