@@ -22,12 +22,17 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
 
 namespace {
 
+// In ascending order.
 std::vector<cl_int> hidden_points(host::Runtime& runtime, const Blocks& blocks, const Rings& rings) {
   std::vector<cl_int> edges(blocks.points), source(blocks.points), hidden;
   runtime.read(rings.vertex_edge, 0, blocks.points, edges.data());
   runtime.read(blocks.source, 0, blocks.points, source.data());
+  std::vector<cl_uchar> is_hidden(blocks.points);
   for (std::size_t v = 0; v < blocks.points; ++v) {
-    if (edges[v] == kernel::HIDDEN_VERTEX) hidden.push_back(source[v]);
+    is_hidden[static_cast<std::size_t>(source[v])] |= edges[v] == kernel::HIDDEN_VERTEX;
+  }
+  for (std::size_t i = 0; i < blocks.points; ++i) {
+    if (is_hidden[i] != 0) hidden.push_back(static_cast<cl_int>(i));
   }
   return hidden;
 }

@@ -50,6 +50,7 @@ double scaled_weight(double weight, std::size_t point, const kernel::scaling& sc
 void settle(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
             WeightedTriangulation& mesh) {
   const auto key = [&](std::int32_t i) { return std::tuple(points[2 * i], points[2 * i + 1], weights[i]); };
+  const std::ptrdiff_t others = std::ssize(mesh.hidden);
   Ids lighter;  // those in the places of heavier ones, side by side if they are equal
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
     lighter.clear();
@@ -64,7 +65,8 @@ void settle(const double* points, const double* weights, const std::vector<std::
       mesh.representatives[static_cast<std::size_t>(lighter[k])] = mesh.hidden.back();
     }
   }
-  std::sort(mesh.hidden.begin(), mesh.hidden.end());
+  std::sort(mesh.hidden.begin() + others, mesh.hidden.end());
+  std::inplace_merge(mesh.hidden.begin(), mesh.hidden.begin() + others, mesh.hidden.end());
   mesh.statistics.duplicates = 0;
   for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
     mesh.statistics.duplicates += mesh.representatives[i] != static_cast<std::int32_t>(i);
