@@ -1,8 +1,10 @@
 // Why the checks together are complete: triangles are joined at all edges but those on the ends of a
-// cylinder, and are counter-clockwise. So they lie on the torus or the cylinder without folds at edges, and
-// cover it as many times as their area says: once. All edges are locally Delaunay, and at ties canonical, so
-// the triangulation is that of its corners; and their number says that no point is missing, since missing
-// points have two triangles less each, or one less on an end.
+// cylinder, and are counter-clockwise. So they are a surface that lies on the torus or the cylinder without
+// folds at edges, and covers it as many times as their area says: once. All edges are locally Delaunay, and
+// at ties canonical, so the triangulation is that of its corners; and their number says that no point is
+// missing, since each missing point has two triangles less, or one less on an end. (What `fold` takes out of
+// the plane has such edges, since those of the plane are such, and images of what lies beyond an edge there
+// lie beyond it.)
 #include "derived/periodic/verify.hpp"
 
 #include <fmt/format.h>
