@@ -145,7 +145,7 @@ case "$1" in
   symbols)
     # Exported is what a header marks, and all of it.
     headers="$prefix/include/flaunay"
-    find "$prefix" -name 'libflaunay*.so' -exec nm -D --defined-only -C {} + | sed '/^$/d; /:$/d' | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //' |
+    find "$prefix" -name 'libflaunay*.so' -exec nm -D --defined-only -C {} + | sed '/^$/d; /:$/d' | cut -d ' ' -f 3- | sed -E 's/^(typeinfo name|typeinfo|vtable) for //; s/\[abi:cxx11\]//' |
       sort -u >"$WORK/exported"
     # A function's name may be on the line below its type.
     marked="$(sed -E '/FLAUNAY_API [^(;{]*$/{N; s/\n */ /}' "$headers"/*.h* | sed -nE '/^#/d; s/^ *(class|struct) FLAUNAY_API ([A-Za-z_]+).*/\2/p; t
