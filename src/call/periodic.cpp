@@ -60,13 +60,12 @@ struct Round {
   std::vector<double> coordinates;  // of all, if there are several
   std::vector<std::size_t> offsets{0};
 
-  void add(std::size_t set, Unrolled plane) {
-    sets.push_back(set);
-    planes.push_back(std::move(plane));
-    offsets.push_back(offsets.back() + planes.back().coordinates().size() / 2);
+  void count_points() {
+    for (const Unrolled& plane : planes) offsets.push_back(offsets.back() + plane.points() + plane.images());
   }
   const double* all_coordinates() {
     if (planes.size() == 1) return planes[0].coordinates().data();
+    coordinates.reserve(2 * offsets.back());
     for (const Unrolled& plane : planes)
       coordinates.insert(coordinates.end(), plane.coordinates().begin(), plane.coordinates().end());
     return coordinates.data();
@@ -99,7 +98,10 @@ void append(Ids& to, Ids&& more, std::size_t first) {
     return;
   }
   const auto shift = static_cast<std::int32_t>(first);
-  for (const std::int32_t i : more) to.push_back(i < 0 ? i : i + shift);
+  for (std::int32_t& i : more) {
+    if (i >= 0) i += shift;
+  }
+  to.insert(to.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -116,14 +118,22 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   geometry::check_coordinates(points, n);
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  const auto on_threads = [&](const auto& work) {
-    return call::take_turn(self, [&] { return work(self.native().runtime); });
+  // Calls work(k, runtime): several sets side by side, or one on all threads.
+  const auto for_each_set = [&](std::size_t count, const auto& work) {
+    call::take_turn(self, [&] {
+      host::Runtime& runtime = self.native().runtime;
+      if (count == 1) {
+        work(0, &runtime);
+      } else {
+        runtime.share(count, [&](std::size_t k) { work(k, nullptr); });
+      }
+    });
   };
   const Pair<double> lengths = periodic::rounded(period);
   PeriodicTriangulation mesh;
   mesh.period = {lengths[0], lengths[1]};
-  mesh.places =
-      on_threads([&](auto& runtime) { return periodic::to_places(runtime, points, n, lengths, "point"); });
+  mesh.places = call::take_turn(
+      self, [&] { return periodic::to_places(self.native().runtime, points, n, lengths, "point"); });
   mesh.point_offsets = offsets;
   std::vector<double> margins(sets);
   std::vector<periodic::Box> boxes(sets);
@@ -144,9 +154,14 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
   };
   while (!waiting.empty()) {
     Round round;
-    on_threads([&](auto& runtime) {
-      for (const std::size_t s : waiting) round.add(s, Unrolled(runtime, places_of(s), boxes[s], margins[s]));
+    round.sets = std::move(waiting);
+    waiting.clear();
+    round.planes.resize(round.sets.size());
+    for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
+      const std::size_t s = round.sets[k];
+      round.planes[k] = Unrolled(runtime, places_of(s), boxes[s], margins[s]);
     });
+    round.count_points();
     // Corners of triangles are numbered.
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
     if (round.offsets.back() > kMost) {
@@ -155,24 +170,24 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
                               round.offsets.back(), kMost));
     }
     Triangulation planar = triangulator.triangulate(round.all_coordinates(), round.offsets);
-    waiting.clear();
-    on_threads([&](auto& runtime) {
-      for (std::size_t k = 0; k < round.sets.size(); ++k) {
-        const std::size_t s = round.sets[k];
-        representatives[s] = representatives_of(planar, round, k);
-        done[s] = triangles_of(planar, round, k);
-        mesh.images += round.planes[k].images();
-        const bool is_done = periodic::fold(runtime, round.planes[k], representatives[s], done[s]);
-        if (sets == 1) mesh.places = round.planes[k].take_places();
-        if (is_done) continue;
-        if (round.planes[k].is_whole())
-          throw Error(ErrorKind::internal,
-                      fmt::format("the triangles of set {} are not those of a torus", s));
-        constexpr double kWider = 4;
-        margins[s] *= kWider;
-        waiting.push_back(s);
-      }
+    std::vector<char> is_done(round.sets.size());
+    for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
+      const std::size_t s = round.sets[k];
+      representatives[s] = representatives_of(planar, round, k);
+      done[s] = triangles_of(planar, round, k);
+      is_done[k] = periodic::fold(runtime, round.planes[k], representatives[s], done[s]);
     });
+    if (sets == 1) mesh.places = round.planes[0].take_places();
+    for (std::size_t k = 0; k < round.sets.size(); ++k) {
+      const std::size_t s = round.sets[k];
+      mesh.images += round.planes[k].images();
+      if (is_done[k] != 0) continue;
+      if (round.planes[k].is_whole())
+        throw Error(ErrorKind::internal, fmt::format("the triangles of set {} are not those of a torus", s));
+      constexpr double kWider = 4;
+      margins[s] *= kWider;
+      waiting.push_back(s);
+    }
     mesh.statistics = std::move(planar.statistics);
   }
   mesh.triangle_offsets = {0};

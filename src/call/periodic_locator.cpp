@@ -34,7 +34,7 @@ struct PeriodicLocator::Implementation {
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest point of what is in the box is near enough.
   bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box, double margin) {
-    call::take_turn(*owner, [&] { plane.emplace(owner->native().runtime, mesh.places, box, margin); });
+    call::take_turn(*owner, [&] { plane.emplace(&owner->native().runtime, mesh.places, box, margin); });
     const std::vector<double>& places = plane->coordinates();
     const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
     if (!plane->is_whole() && !periodic::is_box_inside(*plane, planar.hull)) return false;

@@ -108,7 +108,7 @@ double first_margin(const Box& box, std::size_t n) {
   return margin;
 }
 
-Unrolled::Unrolled(host::Runtime& runtime, std::vector<double> places, const Box& box, double margin)
+Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box, double margin)
     : box_(box), margin_(margin), points_(places.size() / 2), coordinates_(std::move(places)) {
   struct Found {
     std::vector<double> coordinates;
@@ -196,7 +196,7 @@ struct Border {
   Ids open;     // corners of kept ones with no triangle opposite to them
 };
 
-Border find_border(host::Runtime& runtime, const Unrolled& plane, const Triangles& all) {
+Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangles& all) {
   const std::size_t count = all.corners.size() / 3;
   std::vector<Border> borders(runs_of(count));
   const auto points = static_cast<std::int32_t>(plane.points());
@@ -322,7 +322,7 @@ void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles
 
 }  // namespace
 
-bool fold(host::Runtime& runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
+bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
   const std::size_t count = all.corners.size() / 3, expected = expected_triangles(plane, representatives);
   const Border border = find_border(runtime, plane, all);
   if (count - border.dropped.size() != expected) return false;
@@ -361,7 +361,11 @@ bool fold(host::Runtime& runtime, const Unrolled& plane, const Ids& representati
   if (expected > 0 && !(std::fabs(area - 1) < 0.5)) return false;
   if (!join(std::move(seams), plane.is_whole(), all.neighbors)) return false;
 
-  runtime.resize(all.offsets, 6 * expected);
+  if (runtime != nullptr) {
+    runtime->resize(all.offsets, 6 * expected);
+  } else {
+    all.offsets.resize(6 * expected);
+  }
   for (const std::int32_t t : border.mixed) rewrite(plane, t, ranks.rank(t), all);
   for_each(runtime, all.neighbors.size(), [&](std::size_t c) {
     if (all.neighbors[c] >= 0) all.neighbors[c] = ranks.rank(all.neighbors[c]);

@@ -53,8 +53,10 @@ inline bool operator<(const Image& a, const Image& b) {
 /// farther away than two periods, so no image is rounded.
 class Unrolled {
  public:
-  /// places: of the set's points. O(n).
-  Unrolled(host::Runtime& runtime, std::vector<double> places, const Box& box, double margin);
+  /// No points.
+  Unrolled() = default;
+  /// runtime: its threads are used; null for this one alone. places: of the set's points. O(n).
+  Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box, double margin);
   /// The places again. Images are no longer there.
   std::vector<double> take_places();
 
@@ -81,8 +83,8 @@ class Unrolled {
   Pair<int> images_along(double x, std::size_t axis, bool all) const;
 
   Box box_;
-  double margin_;
-  std::size_t points_;
+  double margin_ = 0;
+  std::size_t points_ = 0;
   std::vector<double> coordinates_;
   std::vector<Image> images_;
 };
@@ -96,8 +98,8 @@ struct Triangles {
 /// Turns the triangles of a plane, which have no offsets yet, into those of the torus or the cylinder: of all
 /// images of a triangle one is kept. representatives: of the set's points, numbered from 0. Returns whether
 /// they are the canonical Delaunay triangulation; otherwise the margin was too small, and they are
-/// unspecified. O(t).
-bool fold(host::Runtime& runtime, const Unrolled& plane, const std::vector<std::int32_t>& representatives,
+/// unspecified. runtime: as of Unrolled. O(t).
+bool fold(host::Runtime* runtime, const Unrolled& plane, const std::vector<std::int32_t>& representatives,
           Triangles& triangles);
 
 /// Whether all that lies in the box lies in the hull, by some distance. O(h).
