@@ -131,6 +131,7 @@ typedef struct {
   int edge, is_first;
   weighted_point left, right;
   lifted_point seen;  // the right vertex from the left one
+  int below_vertex;
   double2 below;
 } power_base;
 
@@ -158,15 +159,21 @@ static inline int power_side(power_rings* g, const power_base* base, const power
                                      : side_filtered(&g->all, base->left.at, base->right.at, c->apex.at);
 }
 
+// Whether the last of four points is below the plane through the others, which turn left.
+OUT_OF_LINE static inline int is_below_plane(power_rings* g, weighted_point a, weighted_point b, weighted_point c,
+                                             weighted_point d) {
+  const int sign = power_filtered(a, b, c, d);
+  if (sign != UNDECIDED) return sign > 0;
+  ++g->all.undecided;
+  return power_undecided(a, b, c, d, g->all.bounds) > 0;
+}
+
 // Whether a point rules out an apex above the base.
 static inline int power_rules_out(power_rings* g, const power_base* base, const power_candidate* apex,
                                   const power_candidate* point) {
   TALLY(g->all, circles, 1);
   const double det = power_determinant(base->seen, apex->seen, point->seen);
-  if (fabs(det) > g->error) return det > 0;
-  if (fabs(det) > POWER_BOUND * power_magnitude(base->seen, apex->seen, point->seen)) return det > 0;
-  ++g->all.undecided;
-  return power_undecided(base->left, base->right, apex->apex, point->apex, g->all.bounds) > 0;
+  return det > g->error ? 1 : det < -g->error ? 0 : is_below_plane(g, base->left, base->right, apex->apex, point->apex);
 }
 
 // Whether a candidate that does not rise above the base is hidden below it: inside of the triangle there, or on the
@@ -174,7 +181,7 @@ static inline int power_rules_out(power_rings* g, const power_base* base, const 
 static inline int is_below_base(power_rings* g, const power_base* base, int is_right, int side,
                                 const power_candidate* c) {
   if (side == 0) return is_between(base->left.at, base->right.at, c->apex.at);
-  if (base->is_first) return 0;
+  if (base->is_first || c->to == base->below_vertex) return 0;
   const double2 own = is_right ? base->right.at : base->left.at;
   const int turn = is_left_of(g, own, base->below, c->apex.at);
   return is_right ? turn < 0 : turn > 0;
@@ -214,6 +221,7 @@ static inline void merge_power_above(power_rings* g, int edge) {
   base.left = weighted_at(g, left);
   base.right = weighted_at(g, right);
   base.below = base.left.at;
+  base.below_vertex = NO_VERTEX;
   base.edge = edge;
   for (;;) {
     TALLY(g->all, steps, 1);
@@ -230,6 +238,7 @@ static inline void merge_power_above(power_rings* g, int edge) {
       join(&g->all, above_right, crossing, from_apex);
       join(&g->all, base.edge ^ 1, crossing ^ 1, above_left);
       base.below = base.right.at;
+      base.below_vertex = right;
       right = from_right.to;
       base.right = from_right.apex;
       base.edge = crossing;
@@ -240,6 +249,7 @@ static inline void merge_power_above(power_rings* g, int edge) {
       join(&g->all, above_right, crossing, base.edge);
       join(&g->all, from_apex, crossing ^ 1, above_left);
       base.below = base.left.at;
+      base.below_vertex = left;
       left = from_left.to;
       base.left = from_left.apex;
       base.edge = crossing;
@@ -263,22 +273,42 @@ static inline hull_ends merge_power_triangulations(power_rings* g, hull_ends low
   return both;
 }
 
+// Makes a leaf of three or four vertices if that needs no merge: if none is hidden, and none on a line with others.
+static inline int make_without_merge(power_rings* g, int v, int size) {
+  if (size == 3) {
+    const int turns = side_of(&g->all, g->all.points[v], g->all.points[v + 1], g->all.points[v + 2]) != 0;
+    if (turns) make_three(&g->all, v);
+    return turns;
+  }
+  int4 q = VECTOR(int4, v, v, v, v);
+  const int lie = lie_of_four(&g->all, v, &q);
+  if (lie == FOUR_ARE_STRAIGHT) return 0;
+  TALLY(g->all, circles, 1);
+  const int is_below =
+      is_below_plane(g, weighted_at(g, q.x), weighted_at(g, q.y), weighted_at(g, q.z), weighted_at(g, q.w));
+  if (lie == FOUR_ARE_STAR) {
+    if (is_below) make_star(&g->all, q);
+    return is_below;
+  }
+  make_quadrilateral(&g->all, is_below ? VECTOR(int4, q.y, q.z, q.w, q.x) : q);
+  return 1;
+}
+
 // One or two vertices from v on, in the order of axis 0.
 static inline hull_ends make_power_pair(power_rings* g, int v, int size) {
-  g->links[v] = g->links[v + size - 1] = NOT_IN_DOUBT;
-  g->all.vertex_edge[v] = NO_EDGE;
-  if (size == 1) return ends_of(v, v, v, v);
-  make_pair(&g->all, v);
-  const int rises = precedes(g->all.points[v], g->all.points[v + 1], 1);
-  return ends_of(v, v + 1, rises ? v : v + 1, rises ? v + 1 : v);
+  if (size == 1) g->all.vertex_edge[v] = NO_EDGE;
+  if (size == 2) make_pair(&g->all, v);
+  return ends_of_leaf(&g->all, v, size);
 }
 
 // One to four vertices from v on, in the order of axis 0.
 static inline hull_ends make_power_leaf(power_rings* g, int v, int size) {
+  for (int w = v; w < v + size; ++w) g->links[w] = NOT_IN_DOUBT;
   if (size <= 2) return make_power_pair(g, v, size);
+  if (make_without_merge(g, v, size)) return ends_of_leaf(&g->all, v, size);
   const int middle = v + size / 2;
-  return merge_power_triangulations(g, make_power_pair(g, v, middle - v), make_power_pair(g, middle, v + size - middle),
-                                    0, middle);
+  const hull_ends low = make_power_pair(g, v, middle - v), high = make_power_pair(g, middle, v + size - middle);
+  return merge_power_triangulations(g, low, high, 0, middle);
 }
 
 END_SHARED

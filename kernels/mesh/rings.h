@@ -518,33 +518,42 @@ static inline void merge_in_order(rings* g, int left) {
   if (!HAS_STOPPED(g)) merge_above(g, base);
 }
 
-// Four vertices from v on, in the order of axis 0.
-static inline void make_four(rings* g, int v) {
+// How four vertices lie: three of them on a line, one inside of the triangle of the others, or none of that.
+INTEGER_CONSTANT(FOUR_ARE_STRAIGHT, 0);
+INTEGER_CONSTANT(FOUR_ARE_STAR, 1);
+INTEGER_CONSTANT(FOUR_ARE_CONVEX, 2);
+
+// Of four vertices from v on, in the order of axis 0. q: for make_star or make_quadrilateral.
+static inline int lie_of_four(rings* g, int v, int4* q) {
   const coordinate2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2], d = g->points[v + 3];
   // Sides of the line from a to d, on which b and c are: 1 is below.
   const int b_below = side_of(g, a, b, d), c_below = side_of(g, a, c, d);
-  int straight = !b_below || !c_below;
-  int4 q = VECTOR(int4, v, v + 1, v + 3, v + 2);
-  int star = 0;
-  if (!straight && b_below != c_below) {
-    if (b_below < 0) q = VECTOR(int4, v, v + 2, v + 3, v + 1);
-  } else if (!straight) {
-    const int at_b = side_of(g, a, b, c), at_c = side_of(g, b, c, d);
-    straight = !at_b || !at_c;
-    if (at_b == b_below && at_c == b_below) {
-      q = b_below > 0 ? VECTOR(int4, v, v + 1, v + 2, v + 3) : VECTOR(int4, v, v + 3, v + 2, v + 1);
-    } else {
-      star = 1;
-      const int inside = at_b != b_below ? v + 1 : v + 2;
-      const int corner = at_b != b_below ? v + 2 : v + 1;
-      q = b_below > 0 ? VECTOR(int4, v, corner, v + 3, inside) : VECTOR(int4, v, v + 3, corner, inside);
-    }
+  if (!b_below || !c_below) return FOUR_ARE_STRAIGHT;
+  if (b_below != c_below) {
+    *q = b_below < 0 ? VECTOR(int4, v, v + 2, v + 3, v + 1) : VECTOR(int4, v, v + 1, v + 3, v + 2);
+    return FOUR_ARE_CONVEX;
   }
-  if (straight) {
+  const int at_b = side_of(g, a, b, c), at_c = side_of(g, b, c, d);
+  if (!at_b || !at_c) return FOUR_ARE_STRAIGHT;
+  if (at_b == b_below && at_c == b_below) {
+    *q = b_below > 0 ? VECTOR(int4, v, v + 1, v + 2, v + 3) : VECTOR(int4, v, v + 3, v + 2, v + 1);
+    return FOUR_ARE_CONVEX;
+  }
+  const int inside = at_b != b_below ? v + 1 : v + 2;
+  const int corner = at_b != b_below ? v + 2 : v + 1;
+  *q = b_below > 0 ? VECTOR(int4, v, corner, v + 3, inside) : VECTOR(int4, v, v + 3, corner, inside);
+  return FOUR_ARE_STAR;
+}
+
+// Four vertices from v on, in the order of axis 0.
+static inline void make_four(rings* g, int v) {
+  int4 q = VECTOR(int4, v, v + 1, v + 3, v + 2);
+  const int lie = lie_of_four(g, v, &q);
+  if (lie == FOUR_ARE_STRAIGHT) {
     make_pair(g, v);
     make_pair(g, v + 2);
     merge_in_order(g, v + 1);
-  } else if (star) {
+  } else if (lie == FOUR_ARE_STAR) {
     make_star(g, q);
   } else {
     if (in_circle(g, g->points[q.x], g->points[q.y], g->points[q.z], g->points[q.w]))
@@ -553,18 +562,23 @@ static inline void make_four(rings* g, int v) {
   }
 }
 
-// One to four vertices from v on, in the order of axis 0.
-static inline hull_ends make_leaf(rings* g, int v, int size) {
-  if (size == 1) g->vertex_edge[v] = NO_EDGE;
-  if (size == 2) make_pair(g, v);
-  if (size == 3) make_three(g, v);
-  if (size == 4) make_four(g, v);
+// The ends of a leaf's hull.
+static inline hull_ends ends_of_leaf(const rings* g, int v, int size) {
   int first = v, last = v;
   for (int w = v + 1; w < v + size; ++w) {
     if (precedes(g->points[w], g->points[first], 1)) first = w;
     if (precedes(g->points[last], g->points[w], 1)) last = w;
   }
   return ends_of(v, v + size - 1, first, last);
+}
+
+// One to four vertices from v on, in the order of axis 0.
+static inline hull_ends make_leaf(rings* g, int v, int size) {
+  if (size == 1) g->vertex_edge[v] = NO_EDGE;
+  if (size == 2) make_pair(g, v);
+  if (size == 3) make_three(g, v);
+  if (size == 4) make_four(g, v);
+  return ends_of_leaf(g, v, size);
 }
 
 END_SHARED

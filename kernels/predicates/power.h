@@ -24,26 +24,37 @@ typedef struct {
   double weight;
 } weighted_point;
 
-// A point as another one sees it: where, the height of its lift above that of the other one, and the sum of the
-// magnitudes that this is made of.
+// A point as another one sees it: where, and the height of its lift above that of the other one.
 typedef struct {
-  double x, y, lift, magnitude;
+  double x, y, lift;
 } lifted_point;
 
 static inline lifted_point lifted_from(weighted_point p, weighted_point origin) {
-  const double x = p.at.x - origin.at.x, y = p.at.y - origin.at.y, heavier = p.weight - origin.weight;
-  const double squared = x * x + y * y;
-  const lifted_point lifted = {x, y, squared - heavier, squared + fabs(heavier)};
+  const double x = p.at.x - origin.at.x, y = p.at.y - origin.at.y;
+  const lifted_point lifted = {x, y, x * x + y * y - (p.weight - origin.weight)};
   return lifted;
+}
+// The magnitudes of what its height is made of.
+static inline double lift_magnitude(weighted_point p, weighted_point origin) {
+  const double x = p.at.x - origin.at.x, y = p.at.y - origin.at.y;
+  return x * x + y * y + fabs(p.weight - origin.weight);
 }
 
 // With the origin, three points: positive if the last is below the plane through the others. They turn left.
 static inline double power_determinant(lifted_point a, lifted_point b, lifted_point c) {
   return b.lift * (a.x * c.y - a.y * c.x) - a.lift * (b.x * c.y - b.y * c.x) - c.lift * (a.x * b.y - a.y * b.x);
 }
-static inline double power_magnitude(lifted_point a, lifted_point b, lifted_point c) {
-  return b.magnitude * (fabs(a.x * c.y) + fabs(a.y * c.x)) + a.magnitude * (fabs(b.x * c.y) + fabs(b.y * c.x)) +
-         c.magnitude * (fabs(a.x * b.y) + fabs(a.y * b.x));
+
+static inline double cross_magnitude(lifted_point p, lifted_point q) { return fabs(p.x * q.y) + fabs(p.y * q.x); }
+
+// Its sign, or UNDECIDED: whether d is below the plane through a, b and c.
+static inline int power_filtered(weighted_point a, weighted_point b, weighted_point c, weighted_point d) {
+  const lifted_point pb = lifted_from(b, a), pc = lifted_from(c, a), pd = lifted_from(d, a);
+  const double magnitude = lift_magnitude(b, a) * cross_magnitude(pc, pd) +
+                           lift_magnitude(c, a) * cross_magnitude(pb, pd) +
+                           lift_magnitude(d, a) * cross_magnitude(pb, pc);
+  const double det = power_determinant(pb, pc, pd);
+  return fabs(det) > POWER_BOUND * magnitude ? sign_of(det) : UNDECIDED;
 }
 
 // The exact differences of weighted points from another one, as two_sum gives them.
@@ -129,7 +140,7 @@ OUT_OF_LINE static inline int is_hidden_between(weighted_point a, weighted_point
   const lifted_point la = lifted_from(a, b), lc = lifted_from(c, b);
   const double first = la.lift * tc, second = lc.lift * ta;
   const double difference = tc > 0 ? first - second : second - first;
-  const double magnitude = la.magnitude * fabs(tc) + lc.magnitude * fabs(ta);
+  const double magnitude = lift_magnitude(a, b) * fabs(tc) + lift_magnitude(c, b) * fabs(ta);
   if (fabs(difference) > POWER_BOUND * magnitude) return difference < 0;
   const weighted_difference da = weighted_difference_of(a, b), dc = weighted_difference_of(c, b);
   expansion sum;

@@ -294,11 +294,9 @@ TEST_F(WeightedTest, PredicatesAgreeWithRationalArithmetic) {
     const auto a = weighted(corners[0]), b = weighted(corners[1]), c = weighted(corners[2]), d = weighted(3);
     const int expected = below(all[corners[0]], all[corners[1]], all[corners[2]], all[3]);
     ASSERT_EQ(kernel::power_exact(a, b, c, d), expected);
-    const kernel::lifted_point pb = kernel::lifted_from(b, a), pc = kernel::lifted_from(c, a),
-                               pd = kernel::lifted_from(d, a);
-    const double det = kernel::power_determinant(pb, pc, pd);
-    if (std::fabs(det) > POWER_BOUND * kernel::power_magnitude(pb, pc, pd)) {
-      ASSERT_EQ(det > 0 ? 1 : -1, expected);
+    const int filtered = kernel::power_filtered(a, b, c, d);
+    if (filtered != UNDECIDED) {
+      ASSERT_EQ(filtered, expected);
     }
     // Three on a line, of which the lifts may be, too.
     const double step = coordinate(), rise = random() % 2 == 0 ? coordinate() : 0;
