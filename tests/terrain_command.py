@@ -204,6 +204,20 @@ def main(folder):
     assert set(lengths) == {40, 75.5}
     np.testing.assert_allclose([lengths[40], lengths[75.5]], [10, 30], atol=0.1)
 
+    # A closed line, which begins at its left end, is cut once; of the other half, too.
+    cone = points.copy()
+    cone[:, 2] = np.hypot(points[:, 0] - 500050, points[:, 1] - 5000030)
+    for left, right in (0, 50), (50, 100):
+        box = [[left, 0], [right, 0], [right, 60], [left, 60], [left, 0]]
+        half = folder / "half.geojson"
+        half.write_text(json.dumps({"type": "Polygon", "coordinates": [[[500000 + x, 5000000 + y] for x, y in box]]}))
+        arguments = (npy("cone.npy", cone), *size, "-o", lines, "--boundary", half, "--contours", "20,200")
+        assert run(*arguments).returncode == 0
+        (feature,) = json.loads(lines.read_text())["features"]
+        at = np.array(feature["geometry"]["coordinates"])
+        np.testing.assert_allclose(at[[0, -1], 0], 500050, atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(np.diff(at, axis=0), axis=1).sum(), 20 * np.pi, rtol=0.01)
+
     # A lake at the height of its first point, and one without heights at the lowest one of its shore.
     lakes = folder / "lakes.geojson"
     shore = np.array([[60, 10], [80, 10], [80, 30], [60, 30], [60, 10]])
