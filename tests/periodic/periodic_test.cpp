@@ -259,6 +259,11 @@ TEST(Periodic, CylindersHaveTwoEnds) {
     }
   }
   EXPECT_TRUE(triangulated({0.5, 3, 0.25, 3, 0.75, 3}, {1, HUGE_VAL}).triangles.empty());
+  // As high as the smallest double, and as the largest.
+  const PeriodicTriangulation low = triangulated({0, 0, 0, 0x1p-1074}, {0x1p-800, HUGE_VAL});
+  EXPECT_EQ(2u, low.triangles.size() / 3);
+  const PeriodicTriangulation high = triangulated({0, -0x1p1023, 0, 0x1p1023}, {0x1p700, HUGE_VAL});
+  EXPECT_EQ(2u, high.triangles.size() / 3);
   const PeriodicTriangulation many = triangulated(uniform(50000, {}, 3), {1, HUGE_VAL});
   EXPECT_EQ(100000u - 2, many.triangles.size() / 3);
   EXPECT_LT(many.images, 20000u);

@@ -274,7 +274,8 @@ Point in_box(const Unrolled& plane, std::int32_t v) {
   const Point p = plane.place(v);
   const Box& box = plane.box();
   const auto share = [&](double x, std::size_t axis) {
-    return (x / 2 - box.low[axis] / 2) / (box.high[axis] / 2 - box.low[axis] / 2);
+    const double low = box.low[axis], size = box.high[axis] - low;
+    return std::isfinite(size) ? (x - low) / size : (x / 2 - low / 2) / (box.high[axis] / 2 - low / 2);
   };
   return {share(p.x, 0), share(p.y, 1)};
 }
