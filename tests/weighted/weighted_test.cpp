@@ -197,7 +197,7 @@ class WeightedTest : public ::testing::Test {
   Triangulator& triangulator_ = testing::triangulator();
 };
 
-TEST_F(WeightedTest, SmallSetsAreAsByBruteForce) {
+TEST_F(WeightedTest, FewPointsAreAsByBruteForce) {
   std::mt19937 random(1);
   for (int round = 0; round < 1500; ++round) {
     const std::size_t n = 1 + random() % 12;
