@@ -66,11 +66,26 @@ def obj(path):
     return corners, np.array([row[1:] for row in rows if row[0] == "f"], int) - 1
 
 
+def check_garden(folder):
+    """A real scan: a garden with two houses and a tree."""
+    garden = Path(__file__).parent / "data" / "garden.las"
+    size = ("--resolution", "0.5", "--max-edge", "2")
+    whole, ground = raster(folder, garden, *size), raster(folder, garden, *size, "--classes", "2")
+    assert whole.shape == ground.shape == (80, 120)
+    assert 1353 < np.nanmin(ground) < np.nanmax(ground) < 1356 < np.nanmax(whole) < 1405
+    # The houses are voids of the ground, and the ground is what it was all around.
+    voids = np.isnan(ground)
+    assert 0.1 < voids.mean() < 0.3 and np.isnan(whole).mean() < 0.02
+    assert np.nanmean(whole[voids]) > 1358 and np.nanmedian(np.abs(whole - ground)) < 0.2
+    assert same(raster(folder, garden, *size, "--classes", "2", "--memory", "130M"), ground)
+
+
 def same(a, b):
     return a.tobytes() == b.tobytes()
 
 
 def main(folder):
+    check_garden(folder)
     random = np.random.default_rng(4)
     n = 30000
     points = np.round(random.uniform([500000, 5000000, 0], [500100, 5000060, 50], (n, 3)), 2)
