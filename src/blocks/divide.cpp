@@ -5,8 +5,8 @@
 #include "blocks/codes.h"
 #include "blocks/limits.h"
 #include "blocks/pipeline.hpp"
+#include "blocks/weighted.hpp"
 #include "launchers/blocks/divide.cl.hpp"
-#include "launchers/blocks/weighted.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "tuning/tuning.hpp"
@@ -17,6 +17,24 @@ using namespace points;
 namespace {
 
 cl_uint most_ties(const Workspace& work) { return work.ties_are_left ? 0 : kernel::MOST_TIES; }
+
+void solve_unweighted(Workspace& work, const Blocks& blocks, const Rings& rings, const BlocksLaunch& launch) {
+  work.runtime.launch(launch.workers, tuning_of(work.runtime).block_group,
+                      kernels::solve_blocks{.workers = launch.workers,
+                                            .blocks = launch.blocks,
+                                            .capacity = launch.capacity,
+                                            .larger = launch.larger,
+                                            .offsets = blocks.device_offsets,
+                                            .bounds = work.bounds,
+                                            .most_ties = most_ties(work),
+                                            .next = launch.next,
+                                            .block_points = launch.points,
+                                            .edges = rings.edges,
+                                            .vertex_edge = rings.vertex_edge,
+                                            .account = rings.device_account,
+                                            .block_scratch = launch.scratch,
+                                            .scratch_axes = launch.scratch_axes});
+}
 
 // If the caller wants progress, blocks are solved in several launches. Each has many blocks per work-item,
 // because work-items end at different times, and then wait for the last one.
@@ -42,50 +60,20 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
   for (std::size_t first = 0; first < blocks.count; first += per_launch) {
     const std::size_t last = std::min(first + per_launch, blocks.count);
     runtime.fill(next, 1, static_cast<cl_int>(first));
-    const kernels::block_points block_points{.points = blocks.vertices,
-                                             .source = blocks.source,
-                                             .representatives = representatives,
-                                             .solved = rings.solved,
-                                             .distinct_counts = rings.device_distinct};
-    const kernels::block_scratch block_scratch{
-        .scratch_points = points, .scratch_source = source, .scratch_ranks = ranks};
-    const std::size_t group = tuning_of(runtime).block_group;
-    if (work.weights == nullptr) {
-      runtime.launch(workers, group,
-                     kernels::solve_blocks{.workers = workers,
-                                           .blocks = last,
-                                           .capacity = capacity,
-                                           .larger = larger,
-                                           .offsets = blocks.device_offsets,
-                                           .bounds = work.bounds,
-                                           .most_ties = most_ties(work),
-                                           .next = next,
-                                           .block_points = block_points,
-                                           .edges = rings.edges,
-                                           .vertex_edge = rings.vertex_edge,
-                                           .account = rings.device_account,
-                                           .block_scratch = block_scratch,
-                                           .scratch_axes = axes});
-    } else {
-      runtime.launch(workers, group,
-                     kernels::solve_weighted_blocks{.workers = workers,
-                                                    .blocks = last,
-                                                    .capacity = capacity,
-                                                    .larger = larger,
-                                                    .offsets = blocks.device_offsets,
-                                                    .bounds = work.bounds,
-                                                    .weights = work.weights->by_point,
-                                                    .weight_range = work.weights->range,
-                                                    .vertex_weights = rings.vertex_weights,
-                                                    .links = rings.links,
-                                                    .next = next,
-                                                    .block_points = block_points,
-                                                    .edges = rings.edges,
-                                                    .vertex_edge = rings.vertex_edge,
-                                                    .account = rings.device_account,
-                                                    .block_scratch = block_scratch,
-                                                    .scratch_axes = axes});
-    }
+    const BlocksLaunch launch{
+        .workers = workers,
+        .blocks = last,
+        .capacity = capacity,
+        .larger = larger,
+        .next = next,
+        .points = {.points = blocks.vertices,
+                   .source = blocks.source,
+                   .representatives = representatives,
+                   .solved = rings.solved,
+                   .distinct_counts = rings.device_distinct},
+        .scratch = {.scratch_points = points, .scratch_source = source, .scratch_ranks = ranks},
+        .scratch_axes = axes};
+    (work.weights != nullptr ? work.weights->solver->solve : solve_unweighted)(work, blocks, rings, launch);
     if (is_watched) {
       milestones->set("triangulate", kBlocksMade + (kBlocksSolved - kBlocksMade) * static_cast<double>(last) /
                                                        static_cast<double>(blocks.count));
@@ -110,24 +98,6 @@ void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest
     solve_sizes(work, blocks, 1, largest, largest, static_cast<std::ptrdiff_t>(capacity), rings,
                 representatives, nullptr);
   }
-}
-
-void merge_weighted(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
-                    const Rings& rings) {
-  work.runtime.launch(end - first, tuning_of(work.runtime).block_group, end - first,
-                      kernels::merge_weighted_blocks{.first_merge = first,
-                                                     .merges = blocks.device_merges,
-                                                     .nodes = blocks.device_nodes,
-                                                     .offsets = blocks.device_offsets,
-                                                     .bounds = work.bounds,
-                                                     .vertex_weights = rings.vertex_weights,
-                                                     .weight_range = work.weights->range,
-                                                     .links = rings.links,
-                                                     .points = blocks.vertices,
-                                                     .edges = rings.edges,
-                                                     .vertex_edge = rings.vertex_edge,
-                                                     .solved = rings.solved,
-                                                     .account = rings.device_account});
 }
 
 void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
@@ -189,7 +159,7 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 }
 
 void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones) {
-  const auto merge_level = work.weights != nullptr ? merge_weighted
+  const auto merge_level = work.weights != nullptr ? work.weights->solver->merge
                            : are_in_parallel(work) ? merge_trees
                                                    : merge_one_by_one;
   std::size_t first = 0;

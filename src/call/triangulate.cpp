@@ -69,7 +69,7 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
   points::Weights by_point;
-  if (weights != nullptr) by_point = {call.in(weights->values), weights->range};
+  if (weights != nullptr) by_point = {call.in(weights->values), weights->range, weights->solver};
   geometry::Fitted<blocks::Outcome> run = blocks::run(
       engine.runtime, engine.persistent, offsets,
       {[&] { return call.points(points); },

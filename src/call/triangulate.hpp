@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "call/frame.hpp"
+#include "points/distribute.hpp"
 
 namespace flaunay::call {
 
@@ -28,6 +29,7 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
 struct ScaledWeights {
   std::vector<double> values;
   double range = 0;
+  const points::WeightedSolver* solver = nullptr;
   std::vector<cl_int>&
       hidden;  ///< gets the points that are no vertices, besides those in heavier ones' places
 };

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "arithmetic/coordinates.h"
+#include "blocks/weighted.hpp"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
@@ -116,7 +117,7 @@ WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const dou
         points, offsets,
         [&](std::size_t first, std::size_t last) { return geometry::inspect(points, first, last); });
     WeightedTriangulation mesh;
-    call::ScaledWeights scaled{std::vector<double>(given.count), 0, mesh.hidden};
+    call::ScaledWeights scaled{std::vector<double>(given.count), 0, &blocks::kWeightedSolver, mesh.hidden};
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
       const kernel::scaling scale = kernel::scale_of(scalings.shift(s));

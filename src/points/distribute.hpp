@@ -16,10 +16,13 @@ namespace flaunay::points {
 using host::Arena;
 using host::Buffer;
 
+struct WeightedSolver;
+
 /// Weights of points, for regular triangulations: squared, and scaled, as distances are.
 struct Weights {
-  Buffer<cl_double> by_point{};  ///< by index of the input
-  double range = 0;              ///< the largest difference of two of them
+  Buffer<cl_double> by_point{};            ///< by index of the input
+  double range = 0;                        ///< the largest difference of two of them
+  const WeightedSolver* solver = nullptr;  ///< see blocks/weighted.hpp
 };
 
 /// What every stage works with.
