@@ -199,7 +199,7 @@ class WeightedTest : public ::testing::Test {
 
 TEST_F(WeightedTest, FewPointsAreAsByBruteForce) {
   std::mt19937 random(1);
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < 700; ++round) {
     const std::size_t n = 1 + random() % 12;
     const int size = 1 + static_cast<int>(random() % 6);
     const WeightedPoints points =
