@@ -48,7 +48,9 @@ class StridedPoints : public PointSource {
   explicit StridedPoints(const flaunay_strided_points& given)
       : n_(given.count),
         x_(given.coordinates, given.precision, given.point_stride),
-        y_(static_cast<const char*>(given.coordinates) + (n_ > 0 ? given.coordinate_stride : 0),
+        y_(given.coordinates == nullptr
+               ? nullptr
+               : static_cast<const char*>(given.coordinates) + (n_ > 0 ? given.coordinate_stride : 0),
            given.precision, given.point_stride) {
     check_reserved(given, "flaunay_strided_points");
     if (n_ > 0) required(static_cast<const char*>(given.coordinates), "the coordinates of points");
