@@ -119,6 +119,29 @@ static inline void halve_block(int first, int count, const block_scratch* s, GLO
   }
 }
 
+// A worker's part of the scratch arrays, which has room for `capacity` points from place `base` on.
+static inline block_scratch scratch_from(int64 base, int capacity, GLOBAL coordinate2* points, GLOBAL int* source,
+                                         GLOBAL uint64* all_ranks, GLOBAL uchar* axes) {
+  block_scratch s;
+  s.points = points + base;
+  s.source = source + base;
+  s.by_x = all_ranks + 3 * base;
+  s.by_y = s.by_x + capacity;
+  s.spare = s.by_y + capacity;
+  s.axes = axes + base;
+  return s;
+}
+
+// Brings the distinct points of one block into the order of the leaves, and returns their number. weights: as of
+// distinct_by_x.
+static inline int order_block(int first, int count, GLOBAL const real* weights, block_scratch* s,
+                              GLOBAL coordinate2* points, GLOBAL int* source, GLOBAL int* representatives) {
+  const int distinct = distinct_by_x(count, points + first, source + first, weights, s, representatives);
+  rank(distinct, s);
+  if (distinct > 0) halve_block(first, distinct, s, points, source);
+  return distinct;
+}
+
 // Of the node `node` of the cuts' heap, whose leaves have this depth: its first vertex, counted from the block's first.
 static inline int begin_of_node(int count, int node) {
   const int depth = 31 - (int)clz(node);

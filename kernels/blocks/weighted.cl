@@ -58,16 +58,8 @@ kernel void solve_weighted_blocks(int workers, int blocks, int capacity, int lar
     for (int b = atomic_inc(next); b < blocks; b = atomic_inc(next)) {
       const int first = offsets[b], count = offsets[b + 1] - first;
       if (count > capacity || count <= larger) continue;
-      block_scratch s;
-      s.points = scratch_points + base;
-      s.source = scratch_source + base;
-      s.by_x = scratch_ranks + 3 * base;
-      s.by_y = s.by_x + capacity;
-      s.spare = s.by_y + capacity;
-      s.axes = scratch_axes + base;
-      const int distinct = distinct_by_x(count, points + first, source + first, weights, &s, representatives);
-      rank(distinct, &s);
-      if (distinct > 0) halve_block(first, distinct, &s, points, source);
+      block_scratch s = scratch_from(base, capacity, scratch_points, scratch_source, scratch_ranks, scratch_axes);
+      const int distinct = order_block(first, count, weights, &s, points, source, representatives);
       for (int v = first; v < first + distinct; ++v) vertex_weights[v] = weights[source[v]];
       power_rings g = power_rings_on(edges, points, vertex_edge, bounds, vertex_weights, links, weight_range);
       g.all.unused = EDGES_PER_VERTEX * first;

@@ -11,6 +11,7 @@
 #include "call/frame.hpp"
 #include "derived/periodic/torus.hpp"
 #include "derived/periodic/verify.hpp"
+#include "geometry/indices.hpp"
 
 namespace flaunay {
 
@@ -31,19 +32,12 @@ void call::check(const Period& period) {
 void call::check(const PeriodicTriangulation& mesh) {
   check(mesh.period);
   const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
-  const auto all = [](const std::vector<std::int32_t>& ids, std::int32_t least, std::size_t end) {
-    return std::all_of(ids.begin(), ids.end(), [&](std::int32_t i) {
-      return i >= least && (i < 0 || static_cast<std::size_t>(i) < end);
-    });
-  };
   expect(mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
              mesh.offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
-             !mesh.point_offsets.empty() && mesh.point_offsets.back() == n &&
-             mesh.triangle_offsets.size() == mesh.point_offsets.size() &&
-             mesh.triangle_offsets.back() == triangles &&
-             std::is_sorted(mesh.point_offsets.begin(), mesh.point_offsets.end()) &&
-             std::is_sorted(mesh.triangle_offsets.begin(), mesh.triangle_offsets.end()) &&
-             all(mesh.triangles, 0, n) && all(mesh.neighbors, -1, triangles),
+             !mesh.point_offsets.empty() &&
+             geometry::are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
+             geometry::are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
+             geometry::are_indices(mesh.triangles, n) && geometry::are_indices(mesh.neighbors, triangles, -1),
          "the arrays are not those of a triangulation on a torus or a cylinder");
 }
 

@@ -11,6 +11,7 @@
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/walk.hpp"
+#include "geometry/indices.hpp"
 
 namespace flaunay {
 namespace {
@@ -107,20 +108,12 @@ SphericalTriangulation close_all(const Plane& plane, Triangulation planar, Spher
 
 void check(const SphericalTriangulation& mesh) {
   const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
-  const auto is_index = [](std::int32_t i, std::size_t end) {
-    return i >= 0 && static_cast<std::size_t>(i) < end;
-  };
-  const bool is_whole = mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 &&
-                        mesh.representatives.size() == n && mesh.neighbors.size() == mesh.triangles.size() &&
-                        !mesh.point_offsets.empty() && mesh.point_offsets.back() == n &&
-                        mesh.triangle_offsets.size() == mesh.point_offsets.size() &&
-                        mesh.triangle_offsets.back() == triangles &&
-                        std::is_sorted(mesh.point_offsets.begin(), mesh.point_offsets.end()) &&
-                        std::is_sorted(mesh.triangle_offsets.begin(), mesh.triangle_offsets.end()) &&
-                        std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                                    [&](std::int32_t v) { return is_index(v, n); }) &&
-                        std::all_of(mesh.neighbors.begin(), mesh.neighbors.end(),
-                                    [&](std::int32_t t) { return is_index(t, triangles); });
+  const bool is_whole =
+      mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 && mesh.representatives.size() == n &&
+      mesh.neighbors.size() == mesh.triangles.size() && !mesh.point_offsets.empty() &&
+      geometry::are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
+      geometry::are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
+      geometry::are_indices(mesh.triangles, n) && geometry::are_indices(mesh.neighbors, triangles);
   call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {

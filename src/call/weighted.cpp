@@ -14,6 +14,7 @@
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
 #include "derived/weighted/verify.hpp"
+#include "geometry/indices.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
 
@@ -74,29 +75,25 @@ void settle(const double* points, const double* weights, const std::vector<std::
   }
 }
 
-void check(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
-           const WeightedTriangulation& mesh) {
+void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+  using geometry::are_indices;
+  using geometry::are_offsets;
   geometry::check_offsets(offsets);
-  const std::size_t n = offsets.back();
-  const auto are_below = [](const Ids& ids, std::size_t end, std::int32_t least) {
-    return std::all_of(ids.begin(), ids.end(), [&](std::int32_t i) {
-      return i >= least && (i < 0 || static_cast<std::size_t>(i) < end);
-    });
-  };
-  const auto are_offsets = [&](const std::vector<std::size_t>& ends, std::size_t last) {
-    return ends.size() == offsets.size() && ends.front() == 0 && ends.back() == last &&
-           std::is_sorted(ends.begin(), ends.end());
-  };
-  call::expect((n == 0 || (points != nullptr && weights != nullptr)) && mesh.representatives.size() == n &&
-                   are_below(mesh.triangles, n, 0) && are_below(mesh.hull, n, 0) &&
-                   are_below(mesh.hidden, n, 0) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
-                   are_below(mesh.representatives, n, 0) && mesh.triangles.size() % 3 == 0 &&
-                   are_offsets(mesh.triangle_offsets, mesh.triangles.size() / 3) &&
-                   are_offsets(mesh.hull_offsets, mesh.hull.size()),
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1, triangles = mesh.triangles.size() / 3;
+  geometry::check_coordinates(points, n);
+  call::expect(mesh.representatives.size() == n && are_indices(mesh.representatives, n) &&
+                   mesh.triangles.size() == 3 * triangles && are_indices(mesh.triangles, n) &&
+                   are_indices(mesh.hull, n) && are_indices(mesh.hidden, n) &&
+                   std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
+                   are_offsets(mesh.triangle_offsets, sets, triangles) &&
+                   are_offsets(mesh.hull_offsets, sets, mesh.hull.size()),
                "the triangulation is not one of these points");
-  call::expect(mesh.neighbors.size() == mesh.triangles.size() &&
-                   are_below(mesh.neighbors, mesh.triangles.size() / 3, -1),
+  call::expect(mesh.neighbors.size() == mesh.triangles.size() && are_indices(mesh.neighbors, triangles, -1),
                "the triangulation must have its neighbours");
+}
+
+void check_weights(const double* weights, std::size_t n) {
+  call::expect(n == 0 || weights != nullptr, "points, but no weights: the pointer is null");
 }
 
 }  // namespace
@@ -112,7 +109,7 @@ WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const dou
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     const call::HostPoints given = call::checked_points(points, nullptr, offsets);
-    call::expect(given.count == 0 || weights != nullptr, "points, but no weights: the pointer is null");
+    check_weights(weights, given.count);
     const geometry::SetScalings scalings = geometry::set_scalings(
         points, offsets,
         [&](std::size_t first, std::size_t last) { return geometry::inspect(points, first, last); });
@@ -137,7 +134,7 @@ WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const dou
 
 Ids hiding_triangles(Triangulator& triangulator, const double* points,
                      const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  check(points, points, offsets, mesh);
+  check(points, offsets, mesh);
   if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
   const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
   Locator locator(triangulator, visible.coordinates.data(), visible.offsets, visible.mesh);
@@ -159,14 +156,16 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    check(points, weights, {0, n}, mesh);
+    check(points, {0, n}, mesh);
+    check_weights(weights, n);
     return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
   });
 }
 
 std::string verify_weighted(Triangulator& triangulator, const double* points, const double* weights,
                             const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  check(points, weights, offsets, mesh);
+  check(points, offsets, mesh);
+  check_weights(weights, offsets.back());
   const weighted::Claim claim{points, weights, offsets, mesh};
   std::string problem = weighted::find_problem(claim);
   if (!problem.empty()) return problem;

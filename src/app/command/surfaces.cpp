@@ -92,7 +92,7 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
   progress.update("triangulating");
   research::Triangulation mesh;
   std::vector<std::int32_t> offsets;
-  const auto named = [&](const auto& work) { return naming_files({{"point", task.input}}, work); };
+  const auto named = [&](const auto& work) { return naming_files({{"point ", task.input}}, work); };
   if (request.is_sphere) {
     SphericalTriangulation found =
         named([&] { return triangulate_sphere(triangulator, coordinates, n, SphereCoordinates::degrees); });

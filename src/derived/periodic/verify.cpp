@@ -18,20 +18,14 @@
 #include "geometry/for_each.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
+#include "geometry/problem.hpp"
 
 namespace flaunay::periodic {
 namespace {
 
 using geometry::Point;
-
-struct Problem {
-  std::string text;
-};
-
-template <typename... Values>
-void require(bool holds, const char* text, const Values&... values) {
-  if (!holds) throw Problem{fmt::format(fmt::runtime(text), values...)};
-}
+using geometry::Problem;
+using geometry::require;
 
 class Checker {
  public:
@@ -196,12 +190,7 @@ class Checker {
 }  // namespace
 
 std::string find_problem(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
-  try {
-    Checker(runtime, mesh).run();
-  } catch (const Problem& problem) {
-    return problem.text;
-  }
-  return {};
+  return geometry::problem_in([&] { Checker(runtime, mesh).run(); });
 }
 
 }  // namespace flaunay::periodic

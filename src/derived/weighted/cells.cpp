@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
 
 namespace flaunay::weighted {
@@ -126,11 +127,10 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
   ClippedVoronoi cells;
   cells.areas.resize(n);
   cells.centroids.resize(2 * n);
-  constexpr std::size_t kRun = 1 << 12;  // points at a time
-  std::vector<Run> runs((n + kRun - 1) / kRun);
-  runtime.share(runs.size(), [&](std::size_t r) {
+  std::vector<Run> runs(geometry::runs_of(n));
+  geometry::for_each_run(&runtime, n, [&](std::size_t r, std::size_t begin, std::size_t end) {
     std::vector<Point> polygon, spare;
-    for (std::size_t i = r * kRun; i < std::min(n, (r + 1) * kRun); ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       const Point p = {points[2 * i], points[2 * i + 1]};
       // As seen from the point, so that what is far away from the origin has as many digits.
       polygon.clear();

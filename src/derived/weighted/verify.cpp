@@ -4,8 +4,6 @@
 // other points are within triangles, and above them.
 #include "derived/weighted/verify.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -14,23 +12,16 @@
 
 #include "arithmetic/coordinates.h"
 #include "geometry/predicates.hpp"
+#include "geometry/problem.hpp"
 #include "predicates/power.h"
 
 namespace flaunay::weighted {
 namespace {
 
 using geometry::Point;
+using geometry::require;
 using geometry::operator==;
 using Ids = std::vector<std::int32_t>;
-
-struct Problem {
-  std::string text;
-};
-
-template <typename... Values>
-void require(bool holds, const char* text, const Values&... values) {
-  if (!holds) throw Problem{fmt::format(fmt::runtime(text), values...)};
-}
 
 class Checker {
  public:
@@ -223,13 +214,10 @@ class Checker {
 
 template <typename Check>
 std::string problem_in_sets(const Claim& claim, const Check& check) {
-  try {
+  return geometry::problem_in([&] {
     Checker checker(claim);
     for (std::size_t s = 0; s + 1 < claim.offsets.size(); ++s) check(checker, s);
-  } catch (const Problem& problem) {
-    return problem.text;
-  }
-  return {};
+  });
 }
 
 }  // namespace
