@@ -16,7 +16,7 @@ import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any, Optional, Union, cast
+from typing import Any, ClassVar, Optional, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -1558,6 +1558,16 @@ def _sphere_coordinates(points: _Doubles) -> int:
     return int(_declarations.SPHERE_COORDINATES["degrees" if points.shape[1] == 2 else "directions"])
 
 
+def _named_arrays(
+    handle: Handle, prefix: str, *arrays: tuple[str, tuple[int, ...], np.dtype[Any]]
+) -> dict[str, npt.NDArray[Any]]:
+    """Arrays by their names. prefix: of the functions that have them."""
+    return {
+        name: _view(handle, getattr(library, f"{prefix}_{name}")(handle.pointer), shape, dtype)
+        for name, shape, dtype in arrays
+    }
+
+
 class _SphericalVoronoi(Handle):
     _destroy = library.spherical_voronoi_destroy
 
@@ -1579,20 +1589,20 @@ class Spherical(Handle):
         )
         self.point_count, self._sets = n, sets or 1
 
-    def _array(self, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-        return _view(self, getattr(library, f"spherical_{name}")(self.pointer), shape, dtype)
-
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         n, triangles = self.point_count, library.spherical_triangle_count(self.pointer)
         directions = np.empty((n, 3))
         check(library.spherical_directions(self.pointer, _address_of(directions)))
         return {
             "directions": directions,
-            "places": self._array("places", (n, 2), _FLOAT64),
-            "triangles": self._array("triangles", (triangles, 3), _INT32),
-            "neighbors": self._array("neighbors", (triangles, 3), _INT32),
-            "representatives": self._array("representatives", (n,), _INT32),
-            "triangle_offsets": self._array("triangle_offsets", (self._sets + 1,), _INT64),
+            **_named_arrays(
+                *(self, "spherical"),
+                ("places", (n, 2), _FLOAT64),
+                ("triangles", (triangles, 3), _INT32),
+                ("neighbors", (triangles, 3), _INT32),
+                ("representatives", (n,), _INT32),
+                ("triangle_offsets", (self._sets + 1,), _INT64),
+            ),
         }
 
     def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
@@ -1612,40 +1622,56 @@ class Spherical(Handle):
         }
 
 
-class SphericalLocator(_InTurns):
-    """Answers queries on a sphere."""
+class SurfaceLocator(_InTurns):
+    """Answers queries on a sphere, a torus or a cylinder."""
 
-    _destroy = library.spherical_locator_destroy
+    _name: ClassVar[str]
 
-    def __init__(self, triangulator: Triangulator, spherical: Spherical) -> None:
+    def __init__(self, triangulator: Triangulator, mesh: Handle) -> None:
         super().__init__(triangulator)
-        triangulator.call(
-            library.spherical_locator_create, triangulator.pointer, spherical.pointer, self.place
-        )
+        triangulator.call(self._function("create"), triangulator.pointer, mesh.pointer, self.place)
 
-    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+    def _function(self, name: str) -> Any:
+        return getattr(library, f"{self._name}_locator_{name}")
+
+    def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
+        """What the functions take behind the number of queries."""
+        return ()
+
+    def _find(self, function: str, queries: _Doubles) -> _Indices:
         found = np.empty(len(queries), np.int32)
         queries = _as_doubles(queries)
-        kind = _sphere_coordinates(queries)
-        self._triangulator.call(function, self.pointer, queries, len(queries), kind, found)
+        self._triangulator.call(
+            self._function(function),
+            *(self.pointer, queries, len(queries), *self._kind_of(queries), found),
+        )
         return found
 
     def locate(self, queries: _Doubles) -> _Indices:
-        return self._find(library.spherical_locator_locate, queries)
+        return self._find("locate", queries)
 
     def nearest(self, queries: _Doubles) -> _Indices:
-        return self._find(library.spherical_locator_nearest, queries)
+        return self._find("nearest", queries)
 
     def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
         """A row of values at each query. values: one for each point."""
         results = np.empty((len(queries), values.shape[1]))
         values, queries = _as_doubles(values), _as_doubles(queries)
         self._triangulator.call(
-            library.spherical_locator_interpolate,
+            self._function("interpolate"),
             *(self.pointer, values, values.shape[1], queries, len(queries)),
-            *(_sphere_coordinates(queries), results),
+            *(*self._kind_of(queries), results),
         )
         return results
+
+
+class SphericalLocator(SurfaceLocator):
+    """Answers queries on a sphere."""
+
+    _name, _destroy = "spherical", library.spherical_locator_destroy
+
+    def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
+        return (_sphere_coordinates(queries),)
 
 
 # ---- Points on a torus or a cylinder
@@ -1674,20 +1700,16 @@ class Periodic(Handle):
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         n, triangles = self._point_count, library.periodic_triangle_count(self.pointer)
-        return {
-            name: _view(
-                self, getattr(library, f"periodic_{name}")(self.pointer), shape, np.dtype(dtype)
-            )
-            for name, shape, dtype in (
-                ("period", (2,), np.float64),
-                ("places", (n, 2), np.float64),
-                ("triangles", (triangles, 3), np.int32),
-                ("offsets", (triangles, 3, 2), np.int8),
-                ("neighbors", (triangles, 3), np.int32),
-                ("representatives", (n,), np.int32),
-                ("triangle_offsets", (self._sets + 1,), np.int64),
-            )
-        }
+        return _named_arrays(
+            *(self, "periodic"),
+            ("period", (2,), _FLOAT64),
+            ("places", (n, 2), _FLOAT64),
+            ("triangles", (triangles, 3), _INT32),
+            ("offsets", (triangles, 3, 2), np.dtype(np.int8)),
+            ("neighbors", (triangles, 3), _INT32),
+            ("representatives", (n,), _INT32),
+            ("triangle_offsets", (self._sets + 1,), _INT64),
+        )
 
     def verify(self, triangulator: Triangulator) -> None:
         triangulator.call(library.periodic_verify, triangulator.pointer, self.pointer)
@@ -1698,38 +1720,10 @@ class Periodic(Handle):
         return areas
 
 
-class PeriodicLocator(_InTurns):
+class PeriodicLocator(SurfaceLocator):
     """Answers queries on a torus or a cylinder."""
 
-    _destroy = library.periodic_locator_destroy
-
-    def __init__(self, triangulator: Triangulator, periodic: Periodic) -> None:
-        super().__init__(triangulator)
-        triangulator.call(
-            library.periodic_locator_create, triangulator.pointer, periodic.pointer, self.place
-        )
-
-    def _find(self, function: Any, queries: _Doubles) -> _Indices:
-        found = np.empty(len(queries), np.int32)
-        queries = _as_doubles(queries)
-        self._triangulator.call(function, self.pointer, queries, len(queries), found)
-        return found
-
-    def locate(self, queries: _Doubles) -> _Indices:
-        return self._find(library.periodic_locator_locate, queries)
-
-    def nearest(self, queries: _Doubles) -> _Indices:
-        return self._find(library.periodic_locator_nearest, queries)
-
-    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
-        """A row of values at each query. values: one for each point."""
-        results = np.empty((len(queries), values.shape[1]))
-        values, queries = _as_doubles(values), _as_doubles(queries)
-        self._triangulator.call(
-            library.periodic_locator_interpolate,
-            *(self.pointer, values, values.shape[1], queries, len(queries), results),
-        )
-        return results
+    _name, _destroy = "periodic", library.periodic_locator_destroy
 
 
 # ---- Weighted points
@@ -1761,20 +1755,16 @@ class Weighted(Handle):
             getattr(library, f"weighted_{what}_count")(self.pointer)
             for what in ("point", "triangle", "hull_vertex", "hidden")
         )
-        return {
-            name: _view(
-                self, getattr(library, f"weighted_{name}")(self.pointer), shape, np.dtype(dtype)
-            )
-            for name, shape, dtype in (
-                ("triangles", (triangles, 3), np.int32),
-                ("neighbors", (triangles, 3), np.int32),
-                ("hull", (corners,), np.int32),
-                ("hidden", (hidden,), np.int32),
-                ("representatives", (n,), np.int32),
-                ("triangle_offsets", (self._sets + 1,), np.int64),
-                ("hull_offsets", (self._sets + 1,), np.int64),
-            )
-        }
+        return _named_arrays(
+            *(self, "weighted"),
+            ("triangles", (triangles, 3), _INT32),
+            ("neighbors", (triangles, 3), _INT32),
+            ("hull", (corners,), _INT32),
+            ("hidden", (hidden,), _INT32),
+            ("representatives", (n,), _INT32),
+            ("triangle_offsets", (self._sets + 1,), _INT64),
+            ("hull_offsets", (self._sets + 1,), _INT64),
+        )
 
     def hiding_triangles(self, triangulator: Triangulator, points: _Doubles) -> _Indices:
         triangles = np.empty(library.weighted_hidden_count(self.pointer), np.int32)

@@ -9,12 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
+from flaunay._surfaces import Doubles, Indices, WithLocator
 
-Doubles = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int32]
 
 
 def _as_queries(given: ArrayLike) -> Doubles:
@@ -24,7 +23,7 @@ def _as_queries(given: ArrayLike) -> Doubles:
     return queries
 
 
-class PeriodicDelaunay:
+class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
     """Delaunay triangulations of points on a torus or a cylinder. `periodic` makes them.
 
     Attributes
@@ -51,6 +50,8 @@ class PeriodicDelaunay:
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
     """
 
+    _Locator = _calls.PeriodicLocator
+
     def __init__(
         self,
         points: Doubles,
@@ -71,21 +72,6 @@ class PeriodicDelaunay:
         self.representatives: Indices = arrays["representatives"]
         self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
         self._kept_locator: Kept[_calls.PeriodicLocator] = Kept()
-
-    def __repr__(self) -> str:
-        return summary(self, points=self.npoints, triangles=self.nsimplex)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # The result is a function of what was given.
-        return PeriodicDelaunay, self._given
-
-    @property
-    def npoints(self) -> int:
-        return len(self.points)
-
-    @property
-    def nsimplex(self) -> int:
-        return len(self.simplices)
 
     @cached_property
     def cell_areas(self) -> Doubles:
@@ -120,14 +106,7 @@ class PeriodicDelaunay:
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(_triangulators.of_device(self._given[3]))
-
-    @property
-    def _locator(self) -> _calls.PeriodicLocator:
-        return self._kept_locator.get(self._make_locator)
-
-    def _make_locator(self) -> _calls.PeriodicLocator:
-        return _calls.PeriodicLocator(_triangulators.of_device(self._given[3]), self._handle)
+        self._handle.verify(self._triangulator)
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """Triangles that contain points, exactly.
@@ -154,8 +133,7 @@ class PeriodicDelaunay:
         >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
         array([5, 5], dtype=int32)
         """
-        queries = _as_queries(xi)
-        return self._locator.locate(queries.reshape(-1, 2)).reshape(queries.shape[:-1])
+        return self._find(_as_queries(xi), _calls.SurfaceLocator.locate)
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """The points that are nearest to others, exactly.
@@ -183,8 +161,7 @@ class PeriodicDelaunay:
         >>> tri.nearest([[3.75, 3.75], [9, 10]])
         array([0, 1], dtype=int32)
         """
-        queries = _as_queries(xi)
-        return self._locator.nearest(queries.reshape(-1, 2)).reshape(queries.shape[:-1])
+        return self._find(_as_queries(xi), _calls.SurfaceLocator.nearest)
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
         """Values between points, by linear interpolation in triangles.
@@ -213,15 +190,7 @@ class PeriodicDelaunay:
         >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
         array([1. , 1.5])
         """
-        queries = _as_queries(xi)
-        numbers = np.asarray(as_floats(values, "values"), np.float64)
-        if numbers.ndim == 0 or len(numbers) != self.npoints:
-            raise UsageError(
-                f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
-            )
-        rows = numbers.reshape(self.npoints, -1) if self.npoints else numbers.reshape(0, 1)
-        found = self._locator.interpolate(rows, queries.reshape(-1, 2))
-        return found.reshape(queries.shape[:-1] + numbers.shape[1:])
+        return self._interpolate(values, _as_queries(xi))
 
 
 def periodic(

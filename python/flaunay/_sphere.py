@@ -12,9 +12,8 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
+from flaunay._surfaces import Doubles, Indices, WithLocator
 
-Doubles = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int32]
 
 
 def _as_points(given: ArrayLike, name: str) -> Doubles:
@@ -61,7 +60,7 @@ class SphericalVoronoi:
         return [self.cells[first:last].tolist() for first, last in zip(ends, ends[1:])]
 
 
-class SphericalDelaunay:
+class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
     """Delaunay triangulations of points on the unit sphere: their convex hulls. `spherical` makes them.
 
     Attributes
@@ -84,6 +83,8 @@ class SphericalDelaunay:
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
     """
 
+    _Locator = _calls.SphericalLocator
+
     def __init__(
         self,
         points: Doubles,
@@ -102,21 +103,6 @@ class SphericalDelaunay:
         self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
         self._kept_locator: Kept[_calls.SphericalLocator] = Kept()
 
-    def __repr__(self) -> str:
-        return summary(self, points=self.npoints, triangles=self.nsimplex)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # The result is a function of the points.
-        return SphericalDelaunay, self._given
-
-    @property
-    def npoints(self) -> int:
-        return len(self.points)
-
-    @property
-    def nsimplex(self) -> int:
-        return len(self.simplices)
-
     @cached_property
     def voronoi(self) -> SphericalVoronoi:
         """The Voronoi cells, computed when they are first asked for.
@@ -131,15 +117,8 @@ class SphericalDelaunay:
         >>> len(cells.regions[0])
         4
         """
-        arrays = self._handle.voronoi(_triangulators.of_device(self._given[2]))
+        arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()})
-
-    @property
-    def _locator(self) -> _calls.SphericalLocator:
-        return self._kept_locator.get(self._make_locator)
-
-    def _make_locator(self) -> _calls.SphericalLocator:
-        return _calls.SphericalLocator(_triangulators.of_device(self._given[2]), self._handle)
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
@@ -166,9 +145,7 @@ class SphericalDelaunay:
         >>> tri.find_simplex([[10, 20], [190, -20]])
         array([ 0, -1], dtype=int32)
         """
-        queries = _as_points(xi, "xi")
-        found = self._locator.locate(queries.reshape(-1, queries.shape[-1]))
-        return found.reshape(queries.shape[:-1])
+        return self._find(_as_points(xi, "xi"), _calls.SurfaceLocator.locate)
 
     def nearest(self, xi: ArrayLike) -> Indices:
         """The points that are nearest to others, exactly; of several the first one.
@@ -196,9 +173,7 @@ class SphericalDelaunay:
         >>> tri.nearest([[-175, 10], [60, 80]])
         array([0, 2], dtype=int32)
         """
-        queries = _as_points(xi, "xi")
-        found = self._locator.nearest(queries.reshape(-1, queries.shape[-1]))
-        return found.reshape(queries.shape[:-1])
+        return self._find(_as_points(xi, "xi"), _calls.SurfaceLocator.nearest)
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
         """Values between points, by linear interpolation in the triangles in space (Renka, 1984).
@@ -228,15 +203,7 @@ class SphericalDelaunay:
         >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
         array([1.5, 3. ])
         """
-        queries = _as_points(xi, "xi")
-        numbers = np.asarray(as_floats(values, "values"), np.float64)
-        if numbers.ndim == 0 or len(numbers) != self.npoints:
-            raise UsageError(
-                f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
-            )
-        rows = numbers.reshape(self.npoints, -1) if self.npoints else numbers.reshape(0, 1)
-        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]))
-        return found.reshape(queries.shape[:-1] + numbers.shape[1:])
+        return self._interpolate(values, _as_points(xi, "xi"))
 
 
 def spherical(

@@ -12,12 +12,11 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
 from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._errors import UsageError
-
-Doubles = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int32]
+from flaunay._surfaces import Doubles, Indices, OfPoints
 
 
-class WeightedDelaunay:
+
+class WeightedDelaunay(OfPoints):
     """Regular triangulations of weighted points, the duals of power diagrams. `weighted` makes them.
 
     Attributes
@@ -62,18 +61,6 @@ class WeightedDelaunay:
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex, hidden=len(self.hidden))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        # The result is a function of what was given.
-        return WeightedDelaunay, self._given
-
-    @property
-    def npoints(self) -> int:
-        return len(self.points)
-
-    @property
-    def nsimplex(self) -> int:
-        return len(self.simplices)
-
     @cached_property
     def hidden_by(self) -> Indices:
         """The triangle that hides each of the hidden points, exactly, shape (nhidden,).
@@ -81,7 +68,7 @@ class WeightedDelaunay:
         It has the point inside or on its border; of several it is the first. -1 in a set without triangles.
         """
         return frozen(
-            self._handle.hiding_triangles(_triangulators.of_device(self._given[3]), self.points)
+            self._handle.hiding_triangles(self._triangulator, self.points)
         )
 
     def verify(self) -> None:
@@ -92,7 +79,7 @@ class WeightedDelaunay:
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(_triangulators.of_device(self._given[3]), self.points, self.weights)
+        self._handle.verify(self._triangulator, self.points, self.weights)
 
     def cells(self, bounds: Any) -> ClippedVoronoi:
         """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.
@@ -122,7 +109,7 @@ class WeightedDelaunay:
             raise UsageError("power cells are of one set; triangulate the sets one by one")
         corners = corners_of(bounds)
         arrays = self._handle.cells(
-            _triangulators.of_device(self._given[3]), self.points, self.weights, corners
+            self._triangulator, self.points, self.weights, corners
         )
         return ClippedVoronoi(**arrays, bounds=corners)
 
