@@ -60,6 +60,11 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   add("triangulate places",
       [&] { return seconds_of([&] { triangulator.triangulate(on.mesh.places.data(), on.n); }); });
   add("cells", [&] { return seconds_of([&] { voronoi_on_sphere(triangulator, on.mesh); }); });
+  add("verify", [&] {
+    return seconds_of([&] {
+      verify_sphere(triangulator, on.points.data(), {0, on.n}, kDirections, on.mesh);
+    });
+  });
   add("locator", [&] { return seconds_of([&] { SphereLocator(triangulator, on.mesh); }); });
   const double* const queries = on.queries.data();
   add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n, kDirections); }); });

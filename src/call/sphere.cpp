@@ -10,6 +10,7 @@
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
+#include "derived/sphere/verify.hpp"
 #include "derived/sphere/walk.hpp"
 #include "geometry/indices.hpp"
 
@@ -106,7 +107,7 @@ SphericalTriangulation close_all(const Plane& plane, Triangulation planar, Spher
   return mesh;
 }
 
-void check(const SphericalTriangulation& mesh) {
+void check_arrays(const SphericalTriangulation& mesh) {
   const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
   const bool is_whole =
       mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 && mesh.representatives.size() == n &&
@@ -115,6 +116,10 @@ void check(const SphericalTriangulation& mesh) {
       geometry::are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
       geometry::are_indices(mesh.triangles, n) && geometry::are_indices(mesh.neighbors, triangles);
   call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
+}
+
+void check(const SphericalTriangulation& mesh) {
+  check_arrays(mesh);
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
     const std::int32_t* const t = &mesh.triangles[c / 3 * 3];
@@ -151,6 +156,18 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
   Triangulation planar = triangulator.triangulate(plane.places().data(), plane.offsets);
   number_by_points(plane, offsets.back(), planar);
   return close_all(plane, std::move(planar), std::move(mesh));
+}
+
+std::string verify_sphere(Triangulator& triangulator, const double* points,
+                          const std::vector<std::size_t>& offsets, SphereCoordinates coordinates,
+                          const SphericalTriangulation& triangulation) {
+  geometry::check_offsets(offsets);
+  check_arrays(triangulation);
+  if (offsets != triangulation.point_offsets) return "the sets have other points";
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  const std::vector<double> places = places_of(self, points, offsets.back(), coordinates, "point");
+  return call::take_turn(self,
+                         [&] { return sphere::find_problem(self.native().runtime, places, triangulation); });
 }
 
 std::vector<double> directions_of(const std::vector<double>& places) {

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "derived/sphere/places.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
@@ -125,6 +126,12 @@ SphericalTriangulation triangulated(const Numbers& points, SphereCoordinates coo
                             points.size() / (coordinates == kDirections ? 3 : 2), coordinates);
 }
 
+std::string problem_of(const SphericalTriangulation& mesh, const Numbers& points,
+                       SphereCoordinates coordinates) {
+  const std::vector<std::size_t> offsets = {0, points.size() / (coordinates == kDirections ? 3 : 2)};
+  return verify_sphere(testing::triangulator(), points.data(), offsets, coordinates, mesh);
+}
+
 struct Case {
   std::string name;
   SphereCoordinates coordinates;
@@ -209,7 +216,9 @@ std::vector<Case> cases() {
 TEST(Sphere, TrianglesAreTheConvexHull) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    expect_hull(triangulated(c.points, c.coordinates));
+    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    expect_hull(mesh);
+    EXPECT_EQ("", problem_of(mesh, c.points, c.coordinates));
   }
 }
 
@@ -251,6 +260,7 @@ TEST(Sphere, ManySetsAreEachAsAlone) {
   const SphericalTriangulation all =
       triangulate_sphere(testing::triangulator(), points.data(), offsets, kDirections);
   ASSERT_EQ(alone.size() + 1, all.triangle_offsets.size());
+  EXPECT_EQ("", verify_sphere(testing::triangulator(), points.data(), offsets, kDirections, all));
   for (std::size_t s = 0; s < alone.size(); ++s) {
     const std::size_t first = all.triangle_offsets[s], last = all.triangle_offsets[s + 1];
     ASSERT_EQ(alone[s].triangles.size(), 3 * (last - first));
@@ -474,19 +484,206 @@ TEST(Sphere, ManyPointsHaveAllTriangles) {
   double area = 0;
   for (const double each : dual.areas) area += each;
   EXPECT_NEAR(4 * std::numbers::pi, area, 1e-10);
-  // Each edge is locally convex, exactly, and the surface closed: so it is the hull.
-  const std::vector<Exact> exact_points = exact_places(mesh);
-  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
-    const auto at = [&](std::size_t k) -> const Exact& {
-      return exact_points[static_cast<std::size_t>(mesh.triangles[3 * t + k])];
-    };
+  EXPECT_EQ("", problem_of(mesh, points, kDirections));
+}
+
+/// A closed surface, of which edges can be replaced by others.
+class Surface {
+ public:
+  explicit Surface(const SphericalTriangulation& mesh) : mesh_(mesh), twins_(mesh.triangles.size()) {
+    for (std::size_t e = 0; e < twins_.size(); ++e) {
+      twins_[e] = 3 * static_cast<std::size_t>(mesh.neighbors[e]);
+      while (mesh_.triangles[next(twins_[e])] != mesh_.triangles[previous(e)] ||
+             mesh_.triangles[previous(twins_[e])] != mesh_.triangles[next(e)])
+        ++twins_[e];
+    }
+  }
+
+  /// The edge opposite to corner e becomes the other diagonal, unless the surface is too narrow there.
+  void flip(std::size_t e) {
+    Ids& corner = mesh_.triangles;
+    const std::size_t f = twins_[e], beyond_e = twins_[next(f)], beyond_f = twins_[next(e)];
+    for (const std::size_t beyond : {beyond_e, beyond_f}) {
+      if (corner[e] == corner[f] || beyond / 3 == e / 3 || beyond / 3 == f / 3) return;
+    }
+    corner[previous(e)] = corner[f];
+    corner[previous(f)] = corner[e];
+    join(e, beyond_e);
+    join(f, beyond_f);
+    join(next(e), next(f));
+  }
+
+  /// Triangles from their smallest corners on, and their neighbours.
+  SphericalTriangulation mesh() const {
+    SphericalTriangulation result = mesh_;
+    for (std::size_t t = 0; t < twins_.size(); t += 3) {
+      const auto first = static_cast<std::size_t>(
+          std::min_element(&mesh_.triangles[t], &mesh_.triangles[t] + 3) - mesh_.triangles.data());
+      std::size_t e = first;
+      for (std::size_t k = 0; k < 3; ++k, e = next(e)) {
+        result.triangles[t + k] = mesh_.triangles[e];
+        result.neighbors[t + k] = static_cast<std::int32_t>(twins_[e] / 3);
+      }
+    }
+    return result;
+  }
+
+ private:
+  static std::size_t next(std::size_t e) { return e % 3 == 2 ? e - 2 : e + 1; }
+  static std::size_t previous(std::size_t e) { return next(next(e)); }
+  void join(std::size_t e, std::size_t f) {
+    twins_[e] = f;
+    twins_[f] = e;
+  }
+
+  SphericalTriangulation mesh_;
+  std::vector<std::size_t> twins_;
+};
+
+/// What does not depend on the order of triangles: the corners of each, and of its neighbours.
+auto contents(const SphericalTriangulation& mesh) {
+  std::multiset<Ids> result;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    Ids triangle(&mesh.triangles[t], &mesh.triangles[t] + 3);
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t* const w = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[3 * t + k])];
-      for (std::size_t j = 0; j < 3; ++j) {
-        ASSERT_LE(outside(at(0), at(1), at(2), exact_points[static_cast<std::size_t>(w[j])]), 0);
+      const std::int32_t* const other = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[t + k])];
+      triangle.insert(triangle.end(), other, other + 3);
+    }
+    result.insert(triangle);
+  }
+  return result;
+}
+
+TEST(Sphere, VerifyRefusesOtherSurfaces) {
+  testing::FixtureRandom random(11);
+  std::size_t right = 0, wrong = 0;
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SphericalTriangulation hull = triangulated(c.points, c.coordinates);
+    if (hull.triangles.empty()) continue;
+    const auto expected = contents(hull);
+    Surface surface(hull);
+    for (int step = 0; step < 1000; ++step) {
+      if (random.integer(0, 9) == 0) surface = Surface(hull);
+      surface.flip(
+          static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(hull.triangles.size()) - 1)));
+      const SphericalTriangulation mesh = surface.mesh();
+      const bool is_right = contents(mesh) == expected;
+      ASSERT_EQ(is_right, problem_of(mesh, c.points, c.coordinates).empty()) << step;
+      ++(is_right ? right : wrong);
+    }
+  }
+  EXPECT_GT(right, 100u);
+  EXPECT_GT(wrong, 10000u);
+}
+
+/// A closed surface of triangles whose edges occur once in each direction.
+SphericalTriangulation surface_of(const Ids& triangles, SphericalTriangulation mesh) {
+  mesh.triangles = triangles;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> at_edge;
+  for (std::size_t c = 0; c < triangles.size(); ++c) {
+    const std::size_t t = c - c % 3;
+    at_edge[{triangles[t + (c + 1) % 3], triangles[t + (c + 2) % 3]}] = static_cast<std::int32_t>(c / 3);
+  }
+  EXPECT_EQ(triangles.size(), at_edge.size());
+  for (std::size_t c = 0; c < triangles.size(); ++c) {
+    const std::size_t t = c - c % 3;
+    mesh.neighbors[c] = at_edge.at({triangles[t + (c + 2) % 3], triangles[t + (c + 1) % 3]});
+  }
+  return mesh;
+}
+
+TEST(Sphere, VerifyRefusesSurfacesThatWindTwice) {
+  // Two pyramids over a polygon around each axis, whose corners are visited in steps of one or of two: all
+  // edges are convex, too.
+  const std::vector<Direction> axes = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {3, -4, 8}, {3, 9, -2}};
+  for (const int corners : {5, 7, 9}) {
+    for (const Direction& axis : axes) {
+      const Direction across = cross(axis, {1, 2, 3}), up = cross(axis, across);
+      const double height = std::sqrt(dot(axis, axis));
+      Numbers points = {axis.x, axis.y, axis.z, -axis.x, -axis.y, -axis.z};
+      for (int k = 0; k < corners; ++k) {
+        const double angle = 2 * std::numbers::pi * k / corners, u = height * std::cos(angle),
+                     v = std::sin(angle);
+        points.insert(points.end(),
+                      {u * across.x + v * up.x, u * across.y + v * up.y, u * across.z + v * up.z});
+      }
+      const SphericalTriangulation mesh = triangulated(points, kDirections);
+      for (const int step : {1, 2}) {
+        Ids triangles;
+        for (int k = 0; k < corners; ++k) {
+          const std::int32_t from = 2 + k * step % corners, to = 2 + (k + 1) * step % corners;
+          triangles.insert(triangles.end(), {0, from, to, 1, to, from});
+        }
+        const std::string problem = problem_of(surface_of(triangles, mesh), points, kDirections);
+        EXPECT_EQ(step == 1, problem.empty()) << problem;
       }
     }
   }
+}
+
+TEST(Sphere, VerifyFindsWhatIsWrong) {
+  using Mesh = SphericalTriangulation;
+  for (const double pole : {0.0, 1.0}) {
+    Numbers points = random_directions(70, 3);
+    points.insert(points.end(), {pole, 0, -1, points[0], points[1], points[2]});
+    const Mesh right = triangulated(points, kDirections);
+    const auto expect_problem = [&](const char* part, const auto& change) {
+      Mesh wrong = right;
+      change(wrong);
+      const std::string problem = problem_of(wrong, points, kDirections);
+      EXPECT_NE("", problem);
+      EXPECT_NE(std::string::npos, problem.find(part)) << problem << " has no " << part;
+    };
+    EXPECT_EQ("", problem_of(right, points, kDirections));
+    expect_problem("point 3 has a wrong place", [](Mesh& mesh) { mesh.places[6] += 0x1p-40; });
+    expect_problem("point 71 has a wrong representative", [](Mesh& mesh) { mesh.representatives[71] = 1; });
+    expect_problem("point 71 has a wrong representative", [](Mesh& mesh) { mesh.representatives[71] = 71; });
+    expect_problem("point 5 has a wrong representative", [](Mesh& mesh) { mesh.representatives[5] = -1; });
+    expect_problem("another point represents",
+                   [](Mesh& mesh) { std::replace(mesh.triangles.begin(), mesh.triangles.end(), 0, 71); });
+    expect_problem("smallest index", [](Mesh& mesh) {
+      std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + 1, mesh.triangles.begin() + 3);
+    });
+    expect_problem("two equal corners", [](Mesh& mesh) { mesh.triangles[1] = mesh.triangles[2]; });
+    expect_problem("", [](Mesh& mesh) { std::swap(mesh.triangles[1], mesh.triangles[2]); });
+    expect_problem("not neighbors", [](Mesh& mesh) { std::swap(mesh.neighbors[0], mesh.neighbors[1]); });
+    expect_problem("has 137 triangles, not 138", [](Mesh& mesh) {
+      mesh.triangles.resize(mesh.triangles.size() - 3);
+      mesh.neighbors.resize(mesh.triangles.size());
+      for (std::int32_t& t : mesh.neighbors) t = std::min(t, 136);
+      mesh.triangle_offsets[1] = 137;
+    });
+    expect_problem("sets", [](Mesh& mesh) {
+      mesh.point_offsets = {0, 1, 72};
+      mesh.triangle_offsets = {0, 0, 138};
+    });
+    // All triangles inside out.
+    expect_problem("", [](Mesh& mesh) {
+      for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        std::swap(mesh.triangles[t + 1], mesh.triangles[t + 2]);
+        std::swap(mesh.neighbors[t + 1], mesh.neighbors[t + 2]);
+      }
+    });
+    // Any other index of a corner or a neighbour.
+    for (std::size_t i = 0; i < 2 * right.triangles.size(); ++i) {
+      const std::size_t c = i / 2;
+      Mesh wrong = right;
+      std::int32_t& id = (i % 2 == 0 ? wrong.triangles : wrong.neighbors)[c];
+      id = static_cast<std::int32_t>((static_cast<std::size_t>(id) + 1 + c % 60) % 70);
+      EXPECT_NE("", problem_of(wrong, points, kDirections)) << i;
+    }
+    expect_failure(ErrorKind::usage, "triangulation on the sphere", [&] {
+      Mesh wrong = right;
+      wrong.neighbors.pop_back();
+      problem_of(wrong, points, kDirections);
+    });
+  }
+  // Two points with one place.
+  const Numbers twice = {1, 2, 3, 1, 2, 3};
+  Mesh equal = triangulated(twice, kDirections);
+  equal.representatives[1] = 1;
+  EXPECT_NE("", problem_of(equal, twice, kDirections));
 }
 
 }  // namespace
