@@ -1688,6 +1688,11 @@ static void test_sphere(void) {
   REQUIRE(flaunay_spherical_directions(spherical, directions) == FLAUNAY_SUCCESS);
   CHECK(directions[0] == 1 && directions[4] == 1 && directions[8] == 1 && directions[11] == -1);
 
+  const double other[] = {1, 0, 90, 0, 0, 90, 0, -90, 0, 90};
+  CHECK(flaunay_spherical_verify(triangulator, spherical, places, degrees) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_spherical_verify(triangulator, spherical, other, degrees), FLAUNAY_ERROR_INTERNAL,
+              "point 0 has a wrong place"));
+
   flaunay_spherical_voronoi* voronoi = NULL;
   REQUIRE(flaunay_spherical_voronoi_create(triangulator, spherical, &voronoi) == FLAUNAY_SUCCESS);
   double sum = 0;

@@ -1605,6 +1605,13 @@ class Spherical(Handle):
             ),
         }
 
+    def verify(self, triangulator: Triangulator, points: _Doubles) -> None:
+        points = _as_doubles(points)
+        triangulator.call(
+            library.spherical_verify,
+            *(triangulator.pointer, self.pointer, points, _sphere_coordinates(points)),
+        )
+
     def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
         made = _SphericalVoronoi()
         triangulator.call(

@@ -120,6 +120,16 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()})
 
+    def verify(self) -> None:
+        """Checks exactly that this is the canonical triangulation of its points.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        self._handle.verify(self._triangulator, self.points)
+
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
 

@@ -39,6 +39,7 @@ def test_triangles_are_scipys_convex_hull(random):
     np.testing.assert_array_equal(turned(tri.simplices), turned(simplices))
     np.testing.assert_allclose(tri.xyz, points, atol=1e-15)
     assert (tri.neighbors >= 0).all() and tri.nsimplex == 2 * 3000 - 4
+    tri.verify()
 
 
 def test_cells_are_scipys(random):
@@ -66,6 +67,7 @@ def test_longitudes_and_latitudes_are_directions(random):
     tri = flaunay.spherical(globe.reshape(-1, 2))
     assert len(np.unique(tri.representatives)) == 24 * 11 + 2
     assert tri.nsimplex == 2 * (24 * 11 + 2) - 4
+    tri.verify()
 
 
 def test_queries_beside_brute_force(random):
@@ -99,6 +101,7 @@ def test_sets_are_each_as_alone(random):
         np.testing.assert_array_equal(tri.simplices[own] - offsets[s], alone.simplices)
         areas = tri.voronoi.areas[offsets[s] : offsets[s + 1]]
         np.testing.assert_array_equal(areas, alone.voronoi.areas)
+    tri.verify()
     with pytest.raises(flaunay.UsageError, match="one set"):
         tri.nearest([0, 0])
 

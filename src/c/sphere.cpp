@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "c/errors.hpp"
@@ -78,6 +79,18 @@ flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical, 
   return guarded([&] {
     const std::vector<double> all = directions_of(required(spherical, "the triangulation").cpp.places);
     if (!all.empty()) std::copy(all.begin(), all.end(), &required(directions, "the room for directions"));
+  });
+}
+
+flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
+                                        const flaunay_spherical* spherical, const double* points,
+                                        int coordinates) {
+  return guarded([&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const SphericalTriangulation& mesh = required(spherical, "the triangulation").cpp;
+    const std::string problem =
+        verify_sphere(cpp, points, mesh.point_offsets, to_coordinates(coordinates), mesh);
+    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
   });
 }
 

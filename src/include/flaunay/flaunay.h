@@ -1468,6 +1468,11 @@ FLAUNAY_API const size_t* flaunay_spherical_triangle_offsets(const flaunay_spher
 /// Writes the unit vectors of points, rounded. directions: room for 3 n values.
 FLAUNAY_API flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical,
                                                         double* directions);
+/// Checks exactly that this is the canonical triangulation of these points; if not, it is
+/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. points, coordinates: as it was made from. O(n).
+FLAUNAY_API flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
+                                                    const flaunay_spherical* spherical, const double* points,
+                                                    int coordinates);
 
 /// The Voronoi cells of points on the unit sphere.
 typedef struct flaunay_spherical_voronoi flaunay_spherical_voronoi;
