@@ -7,8 +7,8 @@
 # file that is built: the file itself, or the one that includes it.
 #
 # It understands the forms that our kernel files use: signatures `kernel void name(arguments)` without macros other than
-# COUNTERS (operations/counters.h), which Runtime sets, and the lists of arguments of headers named arguments.h, which
-# become structs; and SEGMENTED_ARG_REDUCE(name, candidate, better, arguments).
+# COUNTERS (operations/counters.h), which Runtime sets, ARG_REDUCE_ARGUMENTS (operations/segmented_arg_reduce.h) and the
+# lists of arguments of headers named arguments.h, which become structs.
 #
 # With NATIVE_OUTPUT it also writes a C++ file that compiles the kernels for the host (host/native/opencl.hpp), and with
 # COUNTING_OUTPUT another one, of those that count (operations/counters.h).
@@ -107,14 +107,17 @@ function(append_list LIST ARGUMENTS)
 endfunction()
 
 # Appends the launcher of a kernel to CODE. ARGUMENTS: the text of the arguments, separated by commas.
-function(append_launcher NAME FORM ARGUMENTS)
+function(append_launcher NAME ARGUMENTS)
   set(COUNTS FALSE)
-  if(FORM STREQUAL "ArgReduce" OR ARGUMENTS MATCHES "COUNTERS")
+  if(ARGUMENTS MATCHES "COUNTERS")
     set(COUNTS TRUE)
   endif()
-  read_arguments(${NAME} "${ARGUMENTS}")
-  if(FORM STREQUAL "")
+  if(ARGUMENTS MATCHES "^ARG_REDUCE_ARGUMENTS,(.*)")
+    set(FORM ArgReduce)
+    read_arguments(${NAME} "${ARG_REDUCE_MEMBERS}${CMAKE_MATCH_1}")
+  else()
     set(FORM Plain)
+    read_arguments(${NAME} "${ARGUMENTS}")
     foreach(CANDIDATE PerElement PerChunk)
       list(LENGTH LEADING_${CANDIDATE} COUNT)
       list(SUBLIST NAMES 0 ${COUNT} FIRST)
@@ -186,15 +189,13 @@ foreach(INCLUDE IN LISTS INCLUDES)
     endif()
   endforeach()
 endforeach()
-string(REGEX MATCHALL "(kernel void [a-z_0-9]+|\nSEGMENTED_ARG_REDUCE)\\([^)]*\\)" SIGNATURES "${TEXT}")
+string(REGEX MATCHALL "kernel void [a-z_0-9]+\\([^)]*\\)" SIGNATURES "${TEXT}")
 set(CODE "")
 set(NATIVE_CODE "")
 set(COUNTING_CODE "")
 foreach(SIGNATURE IN LISTS SIGNATURES)
   if(SIGNATURE MATCHES "kernel void ([a-z_0-9]+)\\(([^)]*)\\)")
-    append_launcher(${CMAKE_MATCH_1} "" "${CMAKE_MATCH_2}")
-  elseif(SIGNATURE MATCHES "SEGMENTED_ARG_REDUCE\\(([a-z_0-9]+),[^,]*,[^,]*,([^)]*)\\)")
-    append_launcher(${CMAKE_MATCH_1} ArgReduce "${ARG_REDUCE_MEMBERS}${CMAKE_MATCH_2}")
+    append_launcher(${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
   endif()
 endforeach()
 

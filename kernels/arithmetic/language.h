@@ -4,9 +4,10 @@
 // nothing.
 //
 // What the two languages spell differently is spelled by a macro here: GLOBAL for the address space `global`, RESTRICT,
-// VECTOR(type, components...) for a vector, INTEGER_CONSTANT(NAME, value) for a constant of type int, OUT_OF_LINE for a
-// function that is called rarely and is long (in OpenCL C nothing, unless a program chooses), and ASSERT_SIZE(type,
-// bytes), which does not compile unless the type has that size.
+// VECTOR(type, x, y) for a vector, VECTOR3 and VECTOR4 likewise, INTEGER_CONSTANT(NAME, value) for a constant of type
+// int, OUT_OF_LINE for a function that is called rarely and is long (in OpenCL C nothing, unless a program chooses),
+// and ASSERT_SIZE(type, bytes), which does not compile unless the type has that size. OpenCL C has no variadic macros,
+// and NVIDIA's compiler refuses them.
 #ifndef FLAUNAY_LANGUAGE_H
 #define FLAUNAY_LANGUAGE_H
 
@@ -25,7 +26,9 @@
 #define END_SHARED }
 #define GLOBAL
 #define RESTRICT __restrict
-#define VECTOR(type, ...) (type{__VA_ARGS__})
+#define VECTOR(type, x, y) (type{x, y})
+#define VECTOR3(type, x, y, z) (type{x, y, z})
+#define VECTOR4(type, x, y, z, w) (type{x, y, z, w})
 #define INTEGER_CONSTANT(NAME, VALUE) constexpr int NAME = VALUE
 #define ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), "kernels and host see the same bytes")
 #define OUT_OF_LINE [[gnu::noinline]]
@@ -129,7 +132,9 @@ typedef ulong uint64;
 #define END_SHARED
 #define GLOBAL global
 #define RESTRICT restrict
-#define VECTOR(type, ...) ((type)(__VA_ARGS__))
+#define VECTOR(type, x, y) ((type)(x, y))
+#define VECTOR3(type, x, y, z) ((type)(x, y, z))
+#define VECTOR4(type, x, y, z, w) ((type)(x, y, z, w))
 #define INTEGER_CONSTANT(NAME, VALUE) enum { NAME = VALUE }
 #define ASSERT_SIZE(type, bytes) typedef char type##_has_its_size[sizeof(type) == (bytes) ? 1 : -1]
 #ifndef OUT_OF_LINE

@@ -286,7 +286,7 @@ static inline int3 ascending(const polygon* g, int triangle) {
   int h = 3 * triangle;
   // The half-edge that leads to a larger position.
   while (g->edges[h].origin > g->edges[next_halfedge(h)].origin) ++h;
-  return VECTOR(int3, g->edges[h].origin, g->edges[previous_halfedge(h)].origin, g->edges[next_halfedge(h)].origin);
+  return VECTOR3(int3, g->edges[h].origin, g->edges[previous_halfedge(h)].origin, g->edges[next_halfedge(h)].origin);
 }
 
 // jumps: per vertex, one whose number of ancestors is known to be so much less.

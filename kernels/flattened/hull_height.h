@@ -143,8 +143,8 @@ static inline double chord_band(double2 a, double2 b, int planar) {
 
 #ifdef FLAUNAY_COUNT
 // From here on each call counts. Callers have COUNTERS.
-#define project(...) (COUNT(HULL, ARITHMETIC, PROJECT_OPERATIONS), project(__VA_ARGS__))
-#define hull_depth(...) (COUNT(HULL, DEPTH, 1), hull_depth(__VA_ARGS__))
+#define project(p, q, planar) (COUNT(HULL, ARITHMETIC, PROJECT_OPERATIONS), project(p, q, planar))
+#define hull_depth(a, b, p, planar) (COUNT(HULL, DEPTH, 1), hull_depth(a, b, p, planar))
 #endif
 
 END_SHARED

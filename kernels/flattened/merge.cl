@@ -173,15 +173,15 @@ static inline int wedge_parts(int start_is_after, int end_is_after, int start_in
   const int2 to_end = VECTOR(int2, end_in ? end : before, after);
   if (start_first) {
     if (!start_in) return 0;
-    *parts = VECTOR(int4, to_end.x, start_is_after ? after : start, 0, 0);
+    *parts = VECTOR4(int4, to_end.x, start_is_after ? after : start, 0, 0);
     return 1;
   }
   int count = 0;
   if (start_in) {
-    *parts = VECTOR(int4, before, start, to_end.x, to_end.y);
+    *parts = VECTOR4(int4, before, start, to_end.x, to_end.y);
     count = 1;
   } else {
-    *parts = VECTOR(int4, to_end.x, to_end.y, 0, 0);
+    *parts = VECTOR4(int4, to_end.x, to_end.y, 0, 0);
   }
   return count + !end_is_after;
 }

@@ -69,9 +69,11 @@ static inline int is_deeper(int s, int i, int j, global const int* restrict ids,
 }
 #define KEPT(i) flags[i] == 1 ? i : -1
 #define DEEPER(s, i, j) is_deeper(s, i, j, ids, depth, projections, path_region, axis, cut, points)
-SEGMENTED_ARG_REDUCE(deepest_points, KEPT, DEEPER, global const uchar* restrict flags, global const int* restrict ids,
-                     global const double* restrict depth, global const double2* restrict projections,
-                     global const int* restrict path_region, CUTS())
+kernel void deepest_points(ARG_REDUCE_ARGUMENTS, global const uchar* restrict flags, global const int* restrict ids,
+                           global const double* restrict depth, global const double2* restrict projections,
+                           global const int* restrict path_region, CUTS() COUNTERS) {
+  SEGMENTED_ARG_REDUCE(KEPT, DEEPER);
+}
 
 // Whether points i and i + 1 are a pair: places 2k and 2k + 1 of one segment, both below its chord. Pairs of equal u
 // have no slope.
@@ -83,8 +85,10 @@ static inline int is_pair(int i, int n, global const int* restrict segment, glob
 #define SLOPED_PAIR(i) is_pair(i, n, segment, first, flags) && projections[i].y != projections[(i) + 1].y ? i : -1
 #define COMES_FIRST(s, i, j) \
   (projections[i].y != projections[j].y ? comes_first(projections[i].y, projections[j].y) : i < j)
-SEGMENTED_ARG_REDUCE(random_pairs, SLOPED_PAIR, COMES_FIRST, global const int* restrict first,
-                     global const uchar* restrict flags, global const double2* restrict projections)
+kernel void random_pairs(ARG_REDUCE_ARGUMENTS, global const int* restrict first, global const uchar* restrict flags,
+                         global const double2* restrict projections COUNTERS) {
+  SEGMENTED_ARG_REDUCE(SLOPED_PAIR, COMES_FIRST);
+}
 
 kernel void tilted_depths(int n, HULL_POINTS(), global const double2* restrict path_projections,
                           global const int* restrict pair, global const double* restrict depth,

@@ -127,7 +127,7 @@ static inline int apex_of(region_cycle* g, int i, int j) {
 static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL const double2* RESTRICT points,
                                    filter_bounds bounds, GLOBAL int* triangles COUNTERS) {
   if (count == 3) {
-    const int3 t = VECTOR(int3, corners[0], corners[1], corners[2]);
+    const int3 t = VECTOR3(int3, corners[0], corners[1], corners[2]);
     triangles[0] = t.x;
     triangles[1] = t.y;
     triangles[2] = t.z;

@@ -280,7 +280,7 @@ static inline int make_without_merge(power_rings* g, int v, int size) {
     if (turns) make_three(&g->all, v);
     return turns;
   }
-  int4 q = VECTOR(int4, v, v, v, v);
+  int4 q = VECTOR4(int4, v, v, v, v);
   const int lie = lie_of_four(&g->all, v, &q);
   if (lie == FOUR_ARE_STRAIGHT) return 0;
   TALLY(g->all, circles, 1);
@@ -290,7 +290,7 @@ static inline int make_without_merge(power_rings* g, int v, int size) {
     if (is_below) make_star(&g->all, q);
     return is_below;
   }
-  make_quadrilateral(&g->all, is_below ? VECTOR(int4, q.y, q.z, q.w, q.x) : q);
+  make_quadrilateral(&g->all, is_below ? VECTOR4(int4, q.y, q.z, q.w, q.x) : q);
   return 1;
 }
 

@@ -530,24 +530,24 @@ static inline int lie_of_four(rings* g, int v, int4* q) {
   const int b_below = side_of(g, a, b, d), c_below = side_of(g, a, c, d);
   if (!b_below || !c_below) return FOUR_ARE_STRAIGHT;
   if (b_below != c_below) {
-    *q = b_below < 0 ? VECTOR(int4, v, v + 2, v + 3, v + 1) : VECTOR(int4, v, v + 1, v + 3, v + 2);
+    *q = b_below < 0 ? VECTOR4(int4, v, v + 2, v + 3, v + 1) : VECTOR4(int4, v, v + 1, v + 3, v + 2);
     return FOUR_ARE_CONVEX;
   }
   const int at_b = side_of(g, a, b, c), at_c = side_of(g, b, c, d);
   if (!at_b || !at_c) return FOUR_ARE_STRAIGHT;
   if (at_b == b_below && at_c == b_below) {
-    *q = b_below > 0 ? VECTOR(int4, v, v + 1, v + 2, v + 3) : VECTOR(int4, v, v + 3, v + 2, v + 1);
+    *q = b_below > 0 ? VECTOR4(int4, v, v + 1, v + 2, v + 3) : VECTOR4(int4, v, v + 3, v + 2, v + 1);
     return FOUR_ARE_CONVEX;
   }
   const int inside = at_b != b_below ? v + 1 : v + 2;
   const int corner = at_b != b_below ? v + 2 : v + 1;
-  *q = b_below > 0 ? VECTOR(int4, v, corner, v + 3, inside) : VECTOR(int4, v, v + 3, corner, inside);
+  *q = b_below > 0 ? VECTOR4(int4, v, corner, v + 3, inside) : VECTOR4(int4, v, v + 3, corner, inside);
   return FOUR_ARE_STAR;
 }
 
 // Four vertices from v on, in the order of axis 0.
 static inline void make_four(rings* g, int v) {
-  int4 q = VECTOR(int4, v, v + 1, v + 3, v + 2);
+  int4 q = VECTOR4(int4, v, v + 1, v + 3, v + 2);
   const int lie = lie_of_four(g, v, &q);
   if (lie == FOUR_ARE_STRAIGHT) {
     make_pair(g, v);
@@ -557,7 +557,7 @@ static inline void make_four(rings* g, int v) {
     make_star(g, q);
   } else {
     if (in_circle(g, g->points[q.x], g->points[q.y], g->points[q.z], g->points[q.w]))
-      q = VECTOR(int4, q.y, q.z, q.w, q.x);
+      q = VECTOR4(int4, q.y, q.z, q.w, q.x);
     make_quadrilateral(g, q);
   }
 }

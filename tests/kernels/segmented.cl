@@ -10,6 +10,12 @@
 #define KEPT(i) values[i] > 0 ? i : -1
 #define SMALLER(run, i, j) (values[i] < values[j] || (values[i] == values[j] && i < j))
 #define GREATER(run, i, j) (values[i] > values[j] || (values[i] == values[j] && i < j))
-SEGMENTED_ARG_REDUCE(segmented_arg_min, SELF, SMALLER, global const double* restrict values)
-SEGMENTED_ARG_REDUCE(segmented_arg_max, SELF, GREATER, global const double* restrict values)
-SEGMENTED_ARG_REDUCE(least_positive, KEPT, SMALLER, global const int* restrict values)
+kernel void segmented_arg_min(ARG_REDUCE_ARGUMENTS, global const double* restrict values COUNTERS) {
+  SEGMENTED_ARG_REDUCE(SELF, SMALLER);
+}
+kernel void segmented_arg_max(ARG_REDUCE_ARGUMENTS, global const double* restrict values COUNTERS) {
+  SEGMENTED_ARG_REDUCE(SELF, GREATER);
+}
+kernel void least_positive(ARG_REDUCE_ARGUMENTS, global const int* restrict values COUNTERS) {
+  SEGMENTED_ARG_REDUCE(KEPT, SMALLER);
+}
