@@ -46,12 +46,17 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
 #ifndef FLAUNAY_WITHOUT_OPENCL
       is_native_(backend_->threads() > 0),
 #endif
-      arena_(backend_->memory()) {
-  if (sizes_->separate_buffers != 0) arena_.separate_buffers();
+      arena_(memory()) {
 }
 
 // Kernels may still use what is kept, and the memory of the arena.
 Runtime::~Runtime() { settle(); }
+
+MemorySource Runtime::memory() const {
+  MemorySource source = backend_->memory();
+  source.arrays = static_cast<ArrayMemory>(std::min<std::size_t>(sizes_->separate_buffers, 2));
+  return source;
+}
 
 std::string Runtime::build_options() const {
   return fmt::format("{} {}", sizes_->build_options(), capabilities_.build_options());

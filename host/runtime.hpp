@@ -71,7 +71,7 @@ class Runtime {
   /// Calls work(k) for each k below n, on the threads that run native kernels. It must not use this runtime.
   void share(std::size_t n, const std::function<void(std::size_t)>& work) { backend_->share(n, work); }
   /// Where arenas and buffers get their memory from.
-  MemorySource memory() const { return backend_->memory(); }
+  MemorySource memory() const;
   /// What the device can do; the host can do everything.
   const Capabilities& capabilities() const { return capabilities_; }
   const Sizes& sizes() const { return *sizes_; }

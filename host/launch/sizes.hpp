@@ -59,7 +59,7 @@ struct Sizes {
   std::size_t scan_groups = 1;
   /// Other than 0: kernels read and write the caller's host memory instead of copies.
   std::size_t in_host_memory = 0;
-  /// Other than 0: every array is a separate buffer; see Arena::separate_buffers.
+  /// What arrays are made of, a value of ArrayMemory.
   std::size_t separate_buffers = 0;
 
   virtual ~Sizes() = default;

@@ -53,7 +53,12 @@ MemorySource memory_of(const boost::compute::context& context, const boost::comp
 
 MemorySource native_memory() { return {{}, true, kAlignment, kMostBytes}; }
 
-Arena::Arena(MemorySource source) : source_(std::move(source)), blocks_(1) {}
+Arena::Arena(MemorySource source) : source_(std::move(source)), blocks_(1) {
+  if (source_.arrays == ArrayMemory::reused) {
+    pool_ = std::make_shared<BufferPool>(
+        [memory = source_](std::size_t bytes) { return allocate_memory(memory, bytes); });
+  }
+}
 
 Arena::~Arena() = default;
 
@@ -61,7 +66,11 @@ std::size_t Arena::held_bytes() const {
   std::size_t sum = 0;
   for (const Block& block : blocks_) sum += block.size;
   for (const Block& block : own_blocks_) sum += block.size;
-  return sum;
+  return sum + (pool_ != nullptr ? pool_->bytes() : 0);
+}
+
+std::size_t Arena::block_allocations() const {
+  return block_allocations_ + (pool_ != nullptr ? pool_->made() : 0);
 }
 
 std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes) {
@@ -110,7 +119,9 @@ std::shared_ptr<_cl_mem> Arena::allocate_block(std::size_t bytes) {
 }
 
 void Arena::reserve(std::size_t bytes) {
-  if (separate_ || is_lent_ || current_ != 0 || blocks_[0].used != 0 || held_bytes() >= bytes) return;
+  if (source_.arrays != ArrayMemory::parts || is_lent_ || current_ != 0 || blocks_[0].used != 0 ||
+      held_bytes() >= bytes)
+    return;
   bytes = std::min(std::max(bytes, kSmallestBlock), source_.largest);
   blocks_.assign(1, {});
   blocks_[0].memory = allocate_block(bytes);
@@ -146,7 +157,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
         CL_INVALID_BUFFER_SIZE);
   }
   const std::size_t bytes = count * size;
-  if (separate_ && !is_lent_) {
+  if (source_.arrays == ArrayMemory::separate && !is_lent_) {
     ++block_allocations_;
     const std::size_t exact = std::max<std::size_t>(bytes, 1);
     return source_.context.get() == nullptr ? allocate_native(exact) : create_buffer(source_.context, exact);
@@ -154,6 +165,12 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
   // OpenCL has no empty buffers, so an empty array gets some bytes, too.
   const std::size_t rounded =
       (std::max<std::size_t>(bytes, 1) + source_.alignment - 1) / source_.alignment * source_.alignment;
+  if (pool_ != nullptr && !is_lent_) {
+    check_size(bytes);
+    blocks_[0].used += rounded;
+    peak_ = std::max(peak_, blocks_[0].used);
+    return pool_->take(bytes, source_.largest);
+  }
   while (blocks_[current_].used + rounded > blocks_[current_].size) {
     if (current_ + 1 == blocks_.size()) blocks_.emplace_back();
     Block& next = blocks_[current_ + 1];

@@ -1,4 +1,4 @@
-// Device memory: a stack of typed buffers inside of larger blocks that live as long as the arena.
+// Device memory: a stack of typed buffers, as a rule inside of larger blocks that live as long as the arena.
 #pragma once
 
 #include <CL/cl.h>
@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 #include <vector>
+
+#include "host/memory/buffer_pool.hpp"
 
 namespace flaunay::host {
 
@@ -33,12 +35,21 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
+/// What arrays are made of.
+enum class ArrayMemory {
+  parts,     ///< parts of larger blocks
+  separate,  ///< a buffer each of exactly its size, so that a simulator detects every access out of bounds;
+             ///< slow
+  reused     ///< a buffer each, of those that are not in use any more
+};
+
 /// Where memory for kernels comes from.
 struct MemorySource {
   boost::compute::context context;  ///< null: kernels run natively, in the memory of the process
   bool in_host_memory;              ///< whether kernels run in host memory
   std::size_t alignment;            ///< every array begins at a multiple of this many bytes
   std::size_t largest;              ///< the largest number of bytes in one piece
+  ArrayMemory arrays = ArrayMemory::parts;
 };
 /// No array has more bytes. The sum of two such sizes can be computed, even when they are rounded up.
 constexpr std::size_t kMostBytes = (std::numeric_limits<std::size_t>::max() >> 1) - (std::size_t{1} << 16);
@@ -53,7 +64,8 @@ inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory);
 
 /// A stack allocator: scopes release what was allocated last. Work that is enqueued on an in-order queue may
 /// go on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
-/// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them.
+/// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them. Where
+/// arrays are buffers of their own, scopes only count them.
 class Arena {
  public:
   explicit Arena(MemorySource source);
@@ -73,10 +85,6 @@ class Arena {
 
   /// Makes the arena count bytes only: it has no memory, and its arrays must not be accessed.
   void count_only() { lend({std::shared_ptr<void>(), handle_of(this)}, 0, kMostBytes); }
-
-  /// Makes every later allocation a separate OpenCL buffer of exactly its size, so that a simulator such as
-  /// oclgrind detects every access out of bounds. Slow.
-  void separate_buffers() { separate_ = true; }
 
   template <typename T>
   Buffer<T> allocate(std::size_t count) {
@@ -104,7 +112,7 @@ class Arena {
   /// The bytes of all blocks, the arena's own and lent ones.
   std::size_t held_bytes() const;
   /// The number of blocks and separate buffers made so far. Repeating the same work makes no more blocks.
-  std::size_t block_allocations() const { return block_allocations_; }
+  std::size_t block_allocations() const;
   void reset_peak() { peak_ = 0; }
 
  private:
@@ -122,7 +130,7 @@ class Arena {
   void release(std::size_t block, std::size_t used);
 
   MemorySource source_;
-  bool separate_ = false;
+  std::shared_ptr<BufferPool> pool_;  // null unless buffers are reused
   bool is_lent_ = false;
   std::vector<Block> blocks_;
   std::vector<Block> own_blocks_;  // kept here while a buffer is lent

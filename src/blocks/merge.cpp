@@ -51,14 +51,11 @@ struct Seams {
   Buffer<cl_int> slots{};
 };
 
-// Two walks and the sewing are more work than one merge, but a shorter chain: they pay where merges are so
-// few that the longest one decides.
-int first_height_of_seams(const Tuning& tuning, const PointBlocks& blocks, int heights) {
+// Two walks and the sewing are more work than one merge, but a shorter chain of it, and what diverges is
+// less.
+int first_height_of_seams(const Tuning& tuning) {
   int height = 1;
-  while (height <= heights &&
-         (least_vertices(height) < tuning.seam_points || cells_of(blocks, height) > tuning.merge_items)) {
-    ++height;
-  }
+  while (least_vertices(height) < tuning.seam_points) ++height;
   return height;
 }
 
@@ -188,7 +185,7 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   halves.parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   halves.states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
-  const int first_seams = first_height_of_seams(tuning_of(work.runtime), blocks, heights);
+  const int first_seams = first_height_of_seams(tuning_of(work.runtime));
   for (int height = 0; height < first_seams && height <= heights; ++height) {
     launch_on_parts<kernels::merge_parts>(halves, height);
     if (may_stop(work)) launch_on_parts<kernels::finish_parts>(halves, height);

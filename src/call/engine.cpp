@@ -55,9 +55,7 @@ Engine::Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads)
     : runtime(std::move(tuning), threads),
       persistent(runtime.memory()),
       even(runtime.memory()),
-      odd(runtime.memory()) {
-  separate_buffers();
-}
+      odd(runtime.memory()) {}
 
 Engine::Engine(const std::string& tuning) : Engine(native_tuning(tuning)) { check_arithmetic(); }
 
@@ -88,9 +86,7 @@ Engine::Engine(const boost::compute::context& context, const boost::compute::dev
     : runtime(context, device, std::move(settings)),
       persistent(runtime.memory()),
       even(runtime.memory()),
-      odd(runtime.memory()) {
-  separate_buffers();
-}
+      odd(runtime.memory()) {}
 
 std::unique_ptr<Engine> Engine::with_doubles() const {
   const boost::compute::device& device = runtime.device();
@@ -103,11 +99,6 @@ std::unique_ptr<Engine> Engine::with_doubles() const {
 }
 
 bool Engine::has_doubles() const { return !runtime.capabilities().fixed_point; }
-
-void Engine::separate_buffers() {
-  if (runtime.sizes().separate_buffers == 0) return;
-  for (host::Arena* arena : {&persistent, &even, &odd}) arena->separate_buffers();
-}
 
 void Engine::check_arithmetic() {
   const std::string failure = make_exact(runtime);

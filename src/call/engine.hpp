@@ -63,7 +63,6 @@ struct Engine {
   explicit Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads = 0);
   Engine(const boost::compute::context& context, const boost::compute::device& device,
          host::Settings settings);
-  void separate_buffers();
   void check_arithmetic();
   std::size_t allocations() const;
 

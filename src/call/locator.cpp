@@ -23,9 +23,7 @@ namespace call {
 
 /// A locator, and where it answers queries. Those in host memory need no device.
 struct Answerer {
-  explicit Answerer(const Place& used) : place(used), own(used.engine.runtime.memory()) {
-    if (place.engine.runtime.sizes().separate_buffers) own.separate_buffers();
-  }
+  explicit Answerer(const Place& used) : place(used), own(used.engine.runtime.memory()) {}
 
   /// Makes the locator in a call, and ends it.
   geometry::Fitted<geometry::Done> make(Frame& call, const points::DeviceMesh& mesh) {

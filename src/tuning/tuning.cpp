@@ -195,9 +195,11 @@ constexpr Row kTable[] = {
     {"seam_points",
      &Tuning::seam_points,
      {16},
-     {16},
      {8},
-     "From here on two walks save more than what a further launch costs."},
+     {8},
+     "From here on two walks save more than what a further launch costs: on an H100, of 10 million points, "
+     "64 ms "
+     "with 16 and 55 with 8."},
     {"sewing_group",
      &Tuning::sewing_group,
      {1},
@@ -342,9 +344,10 @@ constexpr Row kTable[] = {
     {"separate_buffers",
      &Tuning::separate_buffers,
      {0},
-     {0},
+     {2},
      {1},
-     "Shows a simulator every access beyond an array."},
+     "1 shows a simulator every access beyond an array. 2 are used again: with parts of one buffer, NVIDIA's "
+     "driver takes 8 times as long for a call on a million points."},
     {"depth_rounds",
      &Tuning::depth_rounds,
      {2},

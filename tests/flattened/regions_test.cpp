@@ -52,10 +52,6 @@ void check_regions(Runtime& runtime, const Coordinates& coordinates, int levels,
   std::vector<std::int32_t> representatives(coordinates.size() / 2);
   PointTable table = ingest(work, coordinates.data(), {0, coordinates.size() / 2}, representatives.data());
   Arena even(runtime.memory()), odd(runtime.memory());
-  if (runtime.sizes().separate_buffers) {
-    even.separate_buffers();
-    odd.separate_buffers();
-  }
   const research::Options options;
   Recursion recursion(work, table, options, {&even, &odd}, 1);
   std::vector<std::int32_t> in_host_memory;

@@ -99,10 +99,6 @@ class Call {
         scope_(used.arena()),
         work{used, persistent_, levels_} {
     work.children = &state_;
-    if (used.sizes().separate_buffers) {
-      persistent_.separate_buffers();
-      state_.separate_buffers();
-    }
     work.broken = persistent_.allocate<cl_int>(1);
     work.list_length = persistent_.allocate<cl_uint>(1);
     work.undecided = persistent_.allocate<cl_uint>(1);

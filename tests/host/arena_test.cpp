@@ -34,10 +34,58 @@ Place place_of(const Buffer<T>& buffer) {
 class SmallArena : public ::testing::Test {
  protected:
   SmallArena() : runtime_(find_device(""), settings_for(find_device(""))) {}
+  MemorySource memory_for(ArrayMemory arrays) const {
+    MemorySource source = runtime_.memory();
+    source.arrays = arrays;
+    return source;
+  }
+
   Runtime runtime_;
-  // Not the runtime's, which may be told to keep buffers apart.
-  Arena arena_{runtime_.memory()};
+  Arena arena_{memory_for(ArrayMemory::parts)};
 };
+
+TEST_F(SmallArena, UsesBuffersAgain) {
+  Arena arena(memory_for(ArrayMemory::reused));
+  const auto work = [&](std::size_t size) {
+    const Arena::Scope scope(arena);
+    std::vector<Buffer<cl_uint>> buffers;
+    for (cl_uint k = 0; k < 8; ++k) {
+      buffers.push_back(arena.allocate<cl_uint>(k * size));
+      runtime_.fill(buffers.back(), buffers.back().size(), k);
+      for (cl_uint j = 0; j < k; ++j) EXPECT_NE(buffers[j].memory(), buffers[k].memory());
+    }
+    for (cl_uint k = 0; k < 8; ++k) {
+      std::vector<cl_uint> values(buffers[k].size());
+      runtime_.read(buffers[k], 0, values.size(), values.data());
+      EXPECT_EQ(values, std::vector<cl_uint>(values.size(), k));
+    }
+  };
+  work(100000);
+  const std::size_t made = arena.block_allocations(), held = arena.held_bytes();
+  EXPECT_EQ(made, 8u);
+  EXPECT_GE(held, 28 * 400000u);
+  EXPECT_LE(held, 28 * 450000u + (8u << 16));
+  const std::size_t peak = arena.peak_bytes();
+  EXPECT_GE(peak, 28 * 400000u);
+  work(100000);
+  work(99000);
+  EXPECT_EQ(arena.block_allocations(), made);
+  EXPECT_EQ(arena.held_bytes(), held);
+  EXPECT_EQ(arena.peak_bytes(), peak);
+  // Buffers that are too large for what is asked for are not kept without end.
+  for (std::size_t size = 60000; size > 100; size = size * 9 / 10) work(size);
+  EXPECT_LE(arena.held_bytes(), 2 * held);
+}
+
+TEST_F(SmallArena, ReusedBuffersOutliveTheirArena) {
+  Buffer<cl_uint> kept;
+  {
+    Arena arena(memory_for(ArrayMemory::reused));
+    kept = arena.allocate<cl_uint>(1000);
+  }
+  runtime_.fill(kept, 1000, cl_uint{7});
+  EXPECT_EQ(runtime_.read_one(kept, 999), 7u);
+}
 
 TEST_F(SmallArena, GivesAlignedBuffersThatDoNotOverlap) {
   const std::size_t base = runtime_.device().get_info<cl_uint>(CL_DEVICE_MEM_BASE_ADDR_ALIGN) / 8;

@@ -171,8 +171,14 @@ TEST(Tuning, AGroupThatAKernelCannotHaveIsAnErrorWithItsName) {
   runtime.set_sizes(std::make_shared<Tuning>(tuning));
   const auto keys = upload(runtime, std::vector<cl_ulong>{3, 1, 2});
   const auto payloads = upload(runtime, std::vector<cl_int>{0, 1, 2});
-  const std::string message = message_of([&] { sort_by_key(runtime, keys, payloads, 3); }, CL_SUCCESS);
-  EXPECT_TRUE(contains(message, "kernel sort_count")) << message;
+  // Some compilers refuse the kernel, others say that it cannot have a group.
+  std::string message;
+  try {
+    sort_by_key(runtime, keys, payloads, 3);
+  } catch (const DeviceError& error) {
+    message = error.what();
+  }
+  EXPECT_TRUE(contains(message, "sort_count")) << message;
 }
 
 TEST(SmallTuning, ChunksAreNeitherTooSmallNorTooMany) {

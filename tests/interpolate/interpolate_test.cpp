@@ -31,7 +31,6 @@ const double kOutside = -7.25;
 struct Located {
   Located(const std::string& tuning, const Case& case_of_test)
       : runtime(Runtimes::get(tuning)), own(runtime.memory()), input(case_of_test) {
-    if (runtime.sizes().separate_buffers) own.separate_buffers();
     const host::Arena::Scope scope(runtime.arena());
     locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
   }

@@ -220,7 +220,6 @@ void check_lists(host::Runtime& runtime, const Case& input, const NaturalLists& 
 
 NaturalAnswers ask_natural(host::Runtime& runtime, const Case& input, NaturalWeights method) {
   host::Arena own(runtime.memory());
-  if (runtime.sizes().separate_buffers) own.separate_buffers();
   host::Arena::Scope scope(runtime.arena());
   const Locator locator = *locate::make_locator(runtime, own, upload_mesh(runtime, input), nullptr);
   const std::size_t m = input.query_count();

@@ -54,7 +54,6 @@ struct Answers {
 
 Fitted<Answers> ask_if_it_fits(Runtime& runtime, const Case& input, const std::vector<double>& values) {
   Arena own(runtime.memory());
-  if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
   Fitted<Locator> fitted = make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
   if (!fitted) return fitted.too_wide();
@@ -83,7 +82,6 @@ Answers ask(Runtime& runtime, const Case& input, const std::vector<double>& valu
 /// triangles from `kept` on.
 std::vector<cl_int> ask_constrained(Runtime& runtime, const Case& input, std::size_t kept) {
   Arena own(runtime.memory());
-  if (runtime.sizes().separate_buffers) own.separate_buffers();
   Arena::Scope scope(runtime.arena());
   Locator locator = *make_locator(runtime, own, upload_mesh(runtime, input), blocks::run);
   constrain(runtime, own, std::vector<cl_uchar>(3 * kept), locator);

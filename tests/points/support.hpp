@@ -131,9 +131,7 @@ void under_each_group_of_tiles(const Check& check) {
 class Call {
  public:
   explicit Call(Runtime& used)
-      : runtime(used), persistent_(used.memory()), scope_(used.arena()), work{used, persistent_} {
-    if (used.sizes().separate_buffers) persistent_.separate_buffers();
-  }
+      : runtime(used), persistent_(used.memory()), scope_(used.arena()), work{used, persistent_} {}
 
   template <typename T>
   std::vector<T> read(const Buffer<T>& buffer, std::size_t count) {

@@ -84,7 +84,6 @@ void make_levels(host::Runtime& runtime, Locator& locator) {
 
   Levels levels;
   levels.own = std::make_shared<Arena>(runtime.memory());
-  if (runtime.sizes().separate_buffers != 0) levels.own->separate_buffers();
   Arena& own = *levels.own;
   std::vector<cl_int> long_sets(locator.sets, -1), firsts;
   std::vector<std::size_t> vertices;
