@@ -1,5 +1,7 @@
 #include "call/triangulate.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "call/areas.hpp"
 #include "call/groups.hpp"
 #include "host/clock.hpp"
+#include "host/native/threads.hpp"
 #include "host/opencl/device.hpp"
 #include "launchers/call/areas.cl.hpp"
 #include "tuning/tuning.hpp"
@@ -35,8 +38,13 @@ class Arrays {
   }
 
   bool have_links() const { return neighbors_.is_wanted() || halfedges_.is_wanted(); }
-  void reserve() const {
-    for (const Output<cl_int>* rows : {&triangles_, &neighbors_, &halfedges_}) rows->reserve(rows_);
+  // For a GPU's results a thread each: the system takes longer for so much new memory than the GPU computes.
+  void reserve(const host::Runtime& runtime) const {
+    constexpr std::size_t kWorthAThread = std::size_t{1} << 20;
+    const Output<cl_int>* const arrays[] = {&triangles_, &neighbors_, &halfedges_};
+    const bool alone = runtime.is_native() || rows_ < kWorthAThread;
+    host::Threads threads(alone ? 1 : std::min(std::size(arrays), host::native_threads()));
+    threads.share_each(std::size(arrays), [&](std::size_t k) { arrays[k]->reserve(rows_); });
   }
   points::DeviceMesh mesh(const blocks::MeshSizes& sizes) const {
     const std::size_t rows = 3 * sizes.triangles();
@@ -76,7 +84,7 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
        arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
                                           : engine.persistent.allocate<cl_int>(n),
        arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-       [&] { arrays.reserve(); }, weights != nullptr ? &by_point : nullptr},
+       [&] { arrays.reserve(engine.runtime); }, weights != nullptr ? &by_point : nullptr},
       phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
