@@ -7,6 +7,7 @@ See docs/performance.md, "On a GPU".
 Exit code: 0, or 1 if a test failed, a result was wrong or a measurement ended with an error.
 """
 import argparse
+import concurrent.futures
 import glob
 import json
 import os
@@ -27,8 +28,10 @@ DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [0, 16384, 65536, 262144], "block_group": [1, 4, 32],
          "block_points": [512, 1024, 2048], "halve_group": [64, 128, 256], "tile_group": [0, 128, 256],
          "blocks_in_parallel": [0, 1], "map_group": [64, 128, 256], "sort_items": [8, 16, 32]}
+PARTS = ["device", "tests", "verify", "peers", "modes", "embedding", "batches", "cupy", "tuning", "predictions"]
 # What is less than this share faster may be noise.
 WORTH_A_CHANGE = 0.02
+TEST_SECONDS = 1800
 FULL = {"peer_size": 10000000, "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000, "runs": 5,
         "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
         "tests": None, "flags": []}
@@ -61,6 +64,8 @@ def arguments_of(command_line):
                         help="an OpenCL driver (a library, or an .icd file that names one) for the loader to use, for "
                         "this run alone and in place of those installed; more than once for several")
     parser.add_argument("--modes", default=MODES, help="the modes to measure, by default %(default)s")
+    parser.add_argument("--parts", default=",".join(PARTS), help="what to do, for a machine that is lent for minutes; by "
+                        "default %(default)s")
     parser.add_argument("--output", metavar="DIR", default=os.path.join(SOURCE, "bench", "results"),
                         help="where the record goes, by default bench/results")
     parser.add_argument("--prebuilt", metavar="DIR", help="programs of --pack, or a build folder, in place of building")
@@ -226,31 +231,37 @@ class Session:
             fail(f"points of {distribution} cannot be generated")
         return path
 
+    def run_test(self, name):
+        """What the record says of a test program, and its output."""
+        begin, code, output = time.monotonic(), 127, "not built"
+        if os.path.exists(os.path.join(self.folder, "tests", name)):
+            try:
+                result = self.run(os.path.join(self.folder, "tests", name), "--gtest_brief=1",
+                                  f"--gtest_filter={self.plan['filter']}", stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True, errors="replace", timeout=TEST_SECONDS)
+                code, output = result.returncode, result.stdout
+            except subprocess.TimeoutExpired as expired:
+                code, output = 124, (expired.stdout or b"").decode(errors="replace") + f"took over {TEST_SECONDS} s"
+        counts = [re.findall(pattern, output, re.MULTILINE) for pattern in
+                  (r"^\[  PASSED  \] (\d+) test", r"^\[  FAILED  \] (\d+) tests?, listed below:")]
+        passed, failed = (int(count[-1]) if count else 0 for count in counts)
+        if not any(counts) and code == 0:
+            code = 1  # without a summary the program has ended early
+        print(f"{name:<28} {passed:>5} passed {failed:>5} failed   exit code {code}   "
+              f"{time.monotonic() - begin:.0f} s", flush=True)
+        return {"program": name, "passed": passed, "failed": failed, "exit_code": code}, output
+
     def test(self):
         say("Tests")
-        self.record["tests"] = []
-        there = [os.path.basename(path) for path in programs_in(self.folder)[1]]
-        for name in self.plan["tests"] or there:
-            begin, code, output = time.monotonic(), 127, "not built"
-            if name in there:
-                try:
-                    result = self.run(os.path.join(self.folder, "tests", name), "--gtest_brief=1",
-                                      f"--gtest_filter={self.plan['filter']}", stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, text=True, errors="replace", timeout=1800)
-                    code, output = result.returncode, result.stdout
-                except subprocess.TimeoutExpired:
-                    code, output = 124, "took more than 1800 s"
-            counts = [re.findall(pattern, output, re.MULTILINE) for pattern in
-                      (r"^\[  PASSED  \] (\d+) test", r"^\[  FAILED  \] (\d+) tests?, listed below:")]
-            passed, failed = (int(count[-1]) if count else 0 for count in counts)
-            if not any(counts) and code == 0:
-                code = 1  # without a summary the program has ended early
-            print(f"{name:<28} {passed:>5} passed {failed:>5} failed   exit code {code}   "
-                  f"{time.monotonic() - begin:.0f} s", flush=True)
-            self.record["tests"].append({"program": name, "passed": passed, "failed": failed, "exit_code": code})
-            if code != 0:
-                self.failures.append(name)
-                print("\n".join(output.splitlines()[-40:]), file=sys.stderr)
+        names = self.plan["tests"] or [os.path.basename(path) for path in programs_in(self.folder)[1]]
+        # Most of a test's time is the host's, and a GPU serves several processes.
+        with concurrent.futures.ThreadPoolExecutor(max(1, (os.cpu_count() or 1) // 2)) as pool:
+            results = list(pool.map(self.run_test, names))
+        self.record["tests"] = [row for row, _ in results]
+        for row, output in results:
+            if row["exit_code"] != 0:
+                self.failures.append(row["program"])
+                print(f"\n{row['program']}\n" + "\n".join(output.splitlines()[-40:]), file=sys.stderr)
 
     def verify(self):
         n = self.plan["verify_size"]
@@ -319,13 +330,13 @@ class Session:
             times = [f"{1e3 * row[key]:9.3f} ms" for key in ("seconds", "solve_seconds")]
             print(f"{times[0]}, solve_blocks {times[1]}   {row['tuning']}")
         if best:
-            device, size = self.record["probed"].get("device"), self.plan["tuned_size"]
+            device, size = self.record.get("probed", {}).get("device"), self.plan["tuned_size"]
             print(f'{{"{device}", "{best["tuning"]}", "scripts/gpu.py at {size} points."}},')
 
     def predict(self):
         """Predictions of the device's launches beside their times."""
         record = self.bench("Launches", "launches", "--sizes", self.plan["launch_sizes"])
-        if "error" in record or "error" in self.record["probed"]:
+        if "error" in record or "error" in self.record.get("probed", {"error": "not measured"}):
             return
         name = predict.machine_of(record)
         machine = predict.with_device_record(predict.read_machine(name), self.record["probed"])
@@ -341,12 +352,20 @@ class Session:
                 {"mode": summary["mode"], "distribution": summary["distribution"], "n": summary["n"], **totals,
                  "measured_seconds": summary["seconds_median"], "kernels": rows})
 
-    def measure(self):
-        chosen = ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
+    def chosen(self):
+        return ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
+
+    def measure_peers(self):
         size = self.plan["peer_size"]
-        self.bench(f"Times beside others, {size} points", "peers", "--sizes", size, "--peers", "cgal", *chosen)
-        self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], *chosen)
+        self.bench(f"Times beside others, {size} points", "peers", "--sizes", size, "--peers", "cgal", *self.chosen())
+
+    def measure_modes(self):
+        self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], *self.chosen())
+
+    def measure_embedding(self):
         self.bench("From device memory to device memory, and queries", "embedding", *self.plan["flags"])
+
+    def measure_batches(self):
         self.bench("Thousands of sets in one call", "batches", *self.plan["flags"])
 
     def measure_cupy(self):
@@ -362,7 +381,7 @@ class Session:
         inputs = []
         for distribution in DISTRIBUTIONS:
             inputs.append(self.points(f"{distribution}-{self.plan['peer_size']}", distribution, self.plan["peer_size"]))
-            inputs.append(os.path.join(self.work, f"verify-{distribution}.npy"))
+            inputs.append(self.points(f"verify-{distribution}", distribution, self.plan["verify_size"]))
         # A separate process, because errors in CUDA can end it.
         command = [sys.executable, __file__, *self.plan["flags"], "--output", self.work, "--cupy", *inputs]
         result = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
@@ -384,7 +403,8 @@ class Session:
 
 
 def write_record(session, command_line, arguments):
-    of_bench = next((part for part in map(session.record.get, ("peers", "modes", "probed")) if "device" in part), {})
+    of_bench = next((session.record[part] for part in ("peers", "modes", "probed", "embedding", "batches", "launches")
+                     if "device" in session.record.get(part, {})), {})
     record = {key: of_bench.get(key) for key in ("device", "driver", "platform", "host", "commit", "date")}
     record["command"] = f"scripts/gpu.py {' '.join(command_line)}"
     record["tuning"] = os.environ.get("FLAUNAY_TUNING", "")
@@ -395,13 +415,15 @@ def write_record(session, command_line, arguments):
     with open(path, "w", encoding="utf-8") as file:
         json.dump(record, file, indent=1)
         file.write("\n")
-    say("Done")
-    print(f"record: {path}")
+    return path
 
 
 def main(command_line):
     arguments = arguments_of(command_line)
     plan = QUICK if arguments.quick else FULL
+    parts = arguments.parts.split(",")
+    if set(parts) - set(PARTS):
+        fail(f"--parts has {', '.join(sorted(set(parts) - set(PARTS)))}; there are {', '.join(PARTS)}")
     if arguments.cupy:
         print(json.dumps(measure_cupy(arguments.cupy, plan["runs"], arguments.output)))
         return 0
@@ -427,14 +449,16 @@ def main(command_line):
         say("Devices")
         if session.flaunay("devices").returncode != 0:
             fail("no usable device; --icd names a driver")
-        session.measure_device()
-        session.test()
-        session.verify()
-        session.measure()
-        session.measure_cupy()
-        session.tune()
-        session.predict()
-        write_record(session, command_line, arguments)
+        actions = [session.measure_device, session.test, session.verify, session.measure_peers, session.measure_modes,
+                   session.measure_embedding, session.measure_batches, session.measure_cupy, session.tune,
+                   session.predict]
+        for part, action in zip(PARTS, actions):
+            if part in parts:
+                action()
+                # After each part, so that a run that is ended leaves a record of the others.
+                path = write_record(session, command_line, arguments)
+        say("Done")
+        print(f"record: {path}")
         if session.failures:
             print("\n".join(f"FAILED: {failure}" for failure in session.failures))
             return 1
