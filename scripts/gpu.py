@@ -25,17 +25,17 @@ DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 # Values of src/tuning/tuning.cpp that are tried, one name after the other. round_points=0 merges up the trees instead
 # of rounds. With block_group=1 a warp has one lane that merges, and nothing diverges; merge_items says up to how many
 # merges have a warp each.
-TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [0, 16384, 65536, 262144], "block_group": [1, 4, 32],
+TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [16384, 65536, 262144], "leaf_spread": [1, 2, 3], "seam_points": [4, 8], "block_group": [1, 4, 32],
          "block_points": [512, 1024, 2048], "halve_group": [64, 128, 256], "tile_group": [0, 128, 256],
          "blocks_in_parallel": [0, 1], "map_group": [64, 128, 256], "sort_items": [8, 16, 32]}
 PARTS = ["device", "tests", "verify", "peers", "modes", "embedding", "batches", "cupy", "tuning", "predictions"]
 # What is less than this share faster may be noise.
 WORTH_A_CHANGE = 0.02
 TEST_SECONDS = 1800
-FULL = {"peer_size": 10000000, "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000, "runs": 5,
-        "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
+FULL = {"peer_sizes": [1000000, 10000000], "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000,
+        "runs": 5, "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
         "tests": None, "flags": []}
-QUICK = {"peer_size": 20000, "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1,
+QUICK = {"peer_sizes": [20000], "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1,
          "launch_sizes": "20000", "tuned_size": 20000, "tuned": {"block_group": [1, 32]}, "filter": "Small*",
          "tests": ["test_host", "test_embedding"], "flags": ["--quick"]}
 
@@ -64,6 +64,7 @@ def arguments_of(command_line):
                         help="an OpenCL driver (a library, or an .icd file that names one) for the loader to use, for "
                         "this run alone and in place of those installed; more than once for several")
     parser.add_argument("--modes", default=MODES, help="the modes to measure, by default %(default)s")
+    parser.add_argument("--runs", type=int, help="counted runs of each")
     parser.add_argument("--parts", default=",".join(PARTS), help="what to do, for a machine that is lent for minutes; by "
                         "default %(default)s")
     parser.add_argument("--output", metavar="DIR", default=os.path.join(SOURCE, "bench", "results"),
@@ -356,8 +357,9 @@ class Session:
         return ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
 
     def measure_peers(self):
-        size = self.plan["peer_size"]
-        self.bench(f"Times beside others, {size} points", "peers", "--sizes", size, "--peers", "cgal", *self.chosen())
+        sizes = self.plan["peer_sizes"]
+        self.bench("Times beside others", "peers", "--sizes", ",".join(map(str, sizes)), "--peers", "cgal",
+                   "--peers-most", sizes[0], *self.chosen())
 
     def measure_modes(self):
         self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], *self.chosen())
@@ -380,10 +382,11 @@ class Session:
             return
         inputs = []
         for distribution in DISTRIBUTIONS:
-            inputs.append(self.points(f"{distribution}-{self.plan['peer_size']}", distribution, self.plan["peer_size"]))
+            inputs += [self.points(f"{distribution}-{size}", distribution, size) for size in self.plan["peer_sizes"]]
             inputs.append(self.points(f"verify-{distribution}", distribution, self.plan["verify_size"]))
         # A separate process, because errors in CUDA can end it.
-        command = [sys.executable, __file__, *self.plan["flags"], "--output", self.work, "--cupy", *inputs]
+        command = [sys.executable, __file__, *self.plan["flags"], "--runs", str(self.plan["runs"]), "--output", self.work,
+                   "--cupy", *inputs]
         result = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
         if result.returncode != 0:
             self.failures.append("CuPy")
@@ -421,6 +424,7 @@ def write_record(session, command_line, arguments):
 def main(command_line):
     arguments = arguments_of(command_line)
     plan = QUICK if arguments.quick else FULL
+    plan = dict(plan, runs=arguments.runs or plan["runs"])
     parts = arguments.parts.split(",")
     if set(parts) - set(PARTS):
         fail(f"--parts has {', '.join(sorted(set(parts) - set(PARTS)))}; there are {', '.join(PARTS)}")

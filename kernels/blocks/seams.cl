@@ -108,6 +108,8 @@ static inline void sew_crossing(const sewing* s, int i) {
   sew_half(s, i, ends.y, ends.x, 1, s->seam.up.right_edge, s->seam.down.left_edge, is_long && lowest.y == highest.y);
 }
 
+#define FOUND_BITS 32
+
 kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict points,
                       global const int2* restrict crossings, global const seam_walk* restrict walks,
                       global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
@@ -131,13 +133,17 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
   for (int k = me; k < s.seam.down.crossings; k += lanes) {
     if (walks_meet(&s.seam, k, edges)) meets = k;
   }
-  const int share = share_of(PAIRS_PER_VERTEX * (end - begin)), last = PAIRS_PER_VERTEX * end;
-  const int own_first = min(last, PAIRS_PER_VERTEX * begin + me * share), own_end = min(last, own_first + share);
-  uint own = 0, all;
-  for (int pair = own_first; pair < own_end; ++pair) own += may_be_sewn(&s, pair);
+  // Neighbours look at neighbouring pairs. What an item has found of its first pairs, it need not look up again.
+  const int first = PAIRS_PER_VERTEX * begin, last = PAIRS_PER_VERTEX * end;
+  uint own = 0, found = 0, all;
+  for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
+    const int may_be = may_be_sewn(&s, pair);
+    own += may_be;
+    if (k < FOUND_BITS) found |= (uint)may_be << k;
+  }
   uint slot = sum_before(own, sums, &all);
-  for (int pair = own_first; pair < own_end; ++pair) {
-    if (may_be_sewn(&s, pair)) s.slots[slot++] = pair;
+  for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
+    if (k < FOUND_BITS ? found >> k & 1 : may_be_sewn(&s, pair)) s.slots[slot++] = pair;
   }
   const int count = s.seam.up.crossings + meets;
   // A walk that has stopped has not listed all that it should.
@@ -148,14 +154,14 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
   sewing sewn = s;
   sewn.seam.count = count;
   for (int i = me; is_sewn && i < count; i += lanes) sew_crossing(&sewn, i);
-  // The others are free, in the order of their places.
+  // The others are free.
   for (int k = count + me; is_sewn && k < (int)all; k += lanes) {
     const int e = 2 * s.slots[k];
     const ring_edge pair[2] = {{NO_VERTEX, k + 1 < (int)all ? 2 * s.slots[k + 1] : NO_EDGE, e}, {NO_VERTEX, e, e}};
     edges[e] = pair[0];
     edges[e + 1] = pair[1];
   }
-  for (int pair = own_first; pair < own_end; ++pair) s.removed_up[pair] = s.removed_down[pair] = 0;
+  for (int pair = first + me; pair < last; pair += lanes) s.removed_up[pair] = s.removed_down[pair] = 0;
   barrier(CLK_GLOBAL_MEM_FENCE);
   if (me == 0 && is_merge) {
     const filter_bounds none = {0, 0, 0, 0};

@@ -101,7 +101,9 @@ template <typename Kernel>
 void launch_on_parts(const Halves& halves, int height) {
   const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
   const std::size_t cells = cells_of(blocks, height);
-  const std::size_t spread = spread_of(tuning_of(work.runtime), cells);
+  const Tuning& tuning = tuning_of(work.runtime);
+  const std::size_t spread =
+      std::max(spread_of(tuning, cells), height == 0 ? std::min(tuning.leaf_spread, tuning.block_group) : 1);
   launch_spread(work, spread, cells,
                 Kernel{.spread = spread,
                        .places_of_parts = places_of_parts(halves, height),

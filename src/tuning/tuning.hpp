@@ -26,9 +26,10 @@ struct Tuning : host::Sizes {
   /// merges are not in one warp. If more cavities of constraints than this are filled at once, floating point
   /// is tried first, with fewer registers.
   std::size_t merge_items = 0;
-  /// Halves of blocks that have at least so many points together are merged from both ends of their seam, if
-  /// they are at most merge_items.
+  /// Halves of blocks that have at least so many points together are merged from both ends of their seam.
   std::size_t seam_points = 1;
+  /// Work-items that a leaf takes at least, of which one works.
+  std::size_t leaf_spread = 1;
   /// The work-group that sews the seam of a merge.
   std::size_t sewing_group = 1;
   /// Blocks with more than this many times block_points points are triangulated by a single work-item, which
