@@ -53,11 +53,13 @@ MemorySource memory_of(const boost::compute::context& context, const boost::comp
 
 MemorySource native_memory() { return {{}, true, kAlignment, kMostBytes}; }
 
-Arena::Arena(MemorySource source) : source_(std::move(source)), blocks_(1) {
-  if (source_.arrays == ArrayMemory::reused) {
-    pool_ = std::make_shared<BufferPool>(
-        [memory = source_](std::size_t bytes) { return allocate_memory(memory, bytes); });
-  }
+Arena::Arena(MemorySource source, std::shared_ptr<BufferPool> pool) : source_(std::move(source)), blocks_(1) {
+  if (source_.arrays != ArrayMemory::reused) return;
+  pool_ = std::move(pool);
+  if (pool_ != nullptr) return;
+  counts_pool_ = true;
+  pool_ = std::make_shared<BufferPool>(
+      [memory = source_](std::size_t bytes) { return allocate_memory(memory, bytes); });
 }
 
 Arena::~Arena() = default;
@@ -66,11 +68,11 @@ std::size_t Arena::held_bytes() const {
   std::size_t sum = 0;
   for (const Block& block : blocks_) sum += block.size;
   for (const Block& block : own_blocks_) sum += block.size;
-  return sum + (pool_ != nullptr ? pool_->bytes() : 0);
+  return sum + (counts_pool_ ? pool_->bytes() : 0);
 }
 
 std::size_t Arena::block_allocations() const {
-  return block_allocations_ + (pool_ != nullptr ? pool_->made() : 0);
+  return block_allocations_ + (counts_pool_ ? pool_->made() : 0);
 }
 
 std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes) {

@@ -68,7 +68,9 @@ inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory);
 /// arrays are buffers of their own, scopes only count them.
 class Arena {
  public:
-  explicit Arena(MemorySource source);
+  /// pool: of another arena, which counts what is in it, for arrays that are buffers of their own; null: a
+  /// pool of its own.
+  explicit Arena(MemorySource source, std::shared_ptr<BufferPool> pool = nullptr);
   ~Arena();
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
@@ -114,6 +116,8 @@ class Arena {
   /// The number of blocks and separate buffers made so far. Repeating the same work makes no more blocks.
   std::size_t block_allocations() const;
   void reset_peak() { peak_ = 0; }
+  /// Null unless buffers are reused.
+  const std::shared_ptr<BufferPool>& pool() const { return pool_; }
 
  private:
   struct Block {
@@ -131,6 +135,7 @@ class Arena {
 
   MemorySource source_;
   std::shared_ptr<BufferPool> pool_;  // null unless buffers are reused
+  bool counts_pool_ = false;
   bool is_lent_ = false;
   std::vector<Block> blocks_;
   std::vector<Block> own_blocks_;  // kept here while a buffer is lent

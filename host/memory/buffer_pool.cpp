@@ -15,6 +15,9 @@ constexpr std::size_t kSteps = 8;
 // A buffer serves arrays that need at least a share of this of it.
 constexpr std::size_t kMostSpare = 2;
 
+// The pool holds at most so many times what was in use at once.
+constexpr std::size_t kMostHeld = 2;
+
 std::size_t rounded_up(std::size_t bytes) {
   std::size_t step = kSmallest;
   while (step < bytes / kSteps) step *= 2;
@@ -35,7 +38,7 @@ std::shared_ptr<_cl_mem> BufferPool::take(std::size_t bytes, std::size_t largest
     idle_.erase(found);
   } else {
     // Sizes that nobody asks for any more would otherwise stay.
-    const std::size_t most = kMostSpare * std::max(most_in_use_, in_use_ + wanted);
+    const std::size_t most = kMostHeld * std::max(most_in_use_, in_use_ + wanted);
     while (!idle_.empty() && bytes_ + wanted > most) drop_one();
     memory = make(wanted);
     bytes_ += wanted;

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t kMostPoints = ((std::size_t{1} << 31) - 1) / 18;
 // The most device memory per point that any measured input has needed, including adversarial inputs.
 constexpr std::size_t kBytesPerPoint = 320;
-constexpr std::size_t kBytesPerPointInRounds = 384;
+constexpr std::size_t kBytesPerPointInRounds = 416;
 
 std::size_t bytes_per_point(const host::Runtime& runtime) {
   return tuning_of(runtime).round_points > 0 ? kBytesPerPointInRounds : kBytesPerPoint;
@@ -53,9 +53,9 @@ std::size_t largest_call(const host::Runtime& runtime) {
 
 Engine::Engine(std::shared_ptr<const Tuning> tuning, std::size_t threads)
     : runtime(std::move(tuning), threads),
-      persistent(runtime.memory()),
-      even(runtime.memory()),
-      odd(runtime.memory()) {}
+      persistent(runtime.memory(), runtime.arena().pool()),
+      even(runtime.memory(), runtime.arena().pool()),
+      odd(runtime.memory(), runtime.arena().pool()) {}
 
 Engine::Engine(const std::string& tuning) : Engine(native_tuning(tuning)) { check_arithmetic(); }
 
@@ -84,9 +84,9 @@ Engine::Engine(const boost::compute::context& context, const boost::compute::dev
 Engine::Engine(const boost::compute::context& context, const boost::compute::device& device,
                host::Settings settings)
     : runtime(context, device, std::move(settings)),
-      persistent(runtime.memory()),
-      even(runtime.memory()),
-      odd(runtime.memory()) {}
+      persistent(runtime.memory(), runtime.arena().pool()),
+      even(runtime.memory(), runtime.arena().pool()),
+      odd(runtime.memory(), runtime.arena().pool()) {}
 
 std::unique_ptr<Engine> Engine::with_doubles() const {
   const boost::compute::device& device = runtime.device();

@@ -40,6 +40,9 @@ Triangulation run(Triangulator& on, const Coordinates& points, Record record, Mo
   return research::triangulate(on, points.data(), points.size() / 2, options);
 }
 
+// Where a work-item solves a block, as on a CPU.
+Triangulator& block_by_block() { return triangulator_with("cpu"); }
+
 // Points that every cut divides by x, in the order of x; integers, for which the reference is fast.
 Coordinates flat_points(std::size_t n, std::uint64_t seed) {
   FixtureRandom random(seed);
@@ -160,7 +163,7 @@ TEST(Launches, StepsAreTheTwins) {
   for (const std::size_t n : {5, 8, 40, 1000}) {
     SCOPED_TRACE(n);
     const Coordinates points = flat_points(n, n);
-    const Triangulation mesh = run(triangulator(), points, Record::steps);
+    const Triangulation mesh = run(block_by_block(), points, Record::steps);
     const LaunchStatistics& solve = only(mesh.launches, "solve_blocks");
     EXPECT_EQ(solve.longest_chain, StepsTwin(points).steps());
     EXPECT_EQ(solve.steps, solve.longest_chain);
@@ -187,7 +190,7 @@ TEST(Launches, StepsOfSeveralSets) {
   }
   Options options;
   options.record = Record::steps;
-  const Triangulation mesh = research::triangulate(triangulator(), points.data(), offsets, options);
+  const Triangulation mesh = research::triangulate(block_by_block(), points.data(), offsets, options);
   const LaunchStatistics& solve = only(mesh.launches, "solve_blocks");
   EXPECT_EQ(solve.longest_chain, longest);
   EXPECT_EQ(solve.steps, sum);
@@ -196,7 +199,7 @@ TEST(Launches, StepsOfSeveralSets) {
 // A merge makes or removes an edge, or moves a tangent, in each step.
 TEST(Launches, StepsOfMergesOfBlocks) {
   const Coordinates points = make_fixture("uniform", 20000, 1);
-  const Triangulation mesh = run(triangulator(), points, Record::steps);
+  const Triangulation mesh = run(block_by_block(), points, Record::steps);
   std::size_t merges = 0;
   for (const LaunchStatistics& launch : mesh.launches) {
     if (launch.kernel != "merge_blocks") continue;
@@ -211,9 +214,8 @@ TEST(Launches, StepsOfMergesOfBlocks) {
 }
 
 TEST(Launches, ElementsAreThoseOfChunks) {
-  // So many that on a GPU's sizes a chunk has more points than the least, one for each block.
   constexpr std::size_t kPoints = 200000;
-  const Triangulation mesh = run(triangulator(), make_fixture("uniform", kPoints, 1), Record::launches);
+  const Triangulation mesh = run(block_by_block(), make_fixture("uniform", kPoints, 1), Record::launches);
   for (const char* kernel : {"inspect", "count_blocks", "move_points"}) {
     const LaunchStatistics& launch = only(mesh.launches, kernel);
     EXPECT_GE(launch.work_items * launch.elements, kPoints) << kernel;
