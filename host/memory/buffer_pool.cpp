@@ -1,6 +1,7 @@
 #include "host/memory/buffer_pool.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "host/error.hpp"
@@ -30,7 +31,7 @@ std::shared_ptr<_cl_mem> BufferPool::take(std::size_t bytes, std::size_t largest
   const std::size_t wanted = std::max(bytes, std::min(rounded_up(std::max<std::size_t>(bytes, 1)), largest));
   std::size_t size = wanted;
   std::shared_ptr<_cl_mem> memory;
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   const auto found = idle_.lower_bound(wanted);
   if (found != idle_.end() && found->first / kMostSpare <= wanted) {
     size = found->first;
@@ -46,6 +47,8 @@ std::shared_ptr<_cl_mem> BufferPool::take(std::size_t bytes, std::size_t largest
   }
   in_use_ += size;
   most_in_use_ = std::max(most_in_use_, in_use_);
+  // If there is no memory for the pointer, the buffer is given back at once.
+  lock.unlock();
   _cl_mem* const handle = memory.get();
   return {handle, [pool = shared_from_this(), owned = std::move(memory), size](cl_mem) mutable {
             pool->give_back(std::move(owned), size);
@@ -65,7 +68,11 @@ std::shared_ptr<_cl_mem> BufferPool::make(std::size_t bytes) {
 void BufferPool::give_back(std::shared_ptr<_cl_mem> memory, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   in_use_ -= bytes;
-  idle_.emplace(bytes, std::move(memory));
+  try {
+    idle_.emplace(bytes, std::move(memory));
+  } catch (const std::bad_alloc&) {
+    bytes_ -= bytes;
+  }
 }
 
 void BufferPool::drop_one() {
