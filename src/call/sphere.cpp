@@ -59,7 +59,7 @@ Plane make_plane(const std::vector<double>& places, const std::vector<std::size_
 }
 
 void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) {
-  if (plane.points.empty()) return;
+  if (plane.all != nullptr) return;
   const auto point = [&](std::int32_t v) { return plane.points[static_cast<std::size_t>(v)]; };
   for (Ids* ids : {&planar.triangles, &planar.hull})
     std::transform(ids->begin(), ids->end(), ids->begin(), point);

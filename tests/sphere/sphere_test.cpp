@@ -197,6 +197,7 @@ std::vector<Case> cases() {
   all.push_back({"cap in the south", kDirections, far_cap});
   far_cap.insert(far_cap.end(), {0, 0, -3});
   all.push_back({"cap around the pole", kDirections, far_cap});
+  all.push_back({"south poles", kDegrees, {17, -90, 0, -90}});
   all.push_back({"poles", kDegrees, {17, -90, 0, -90, 3, 90}});
   all.push_back({"poles and one", kDegrees, {17, -90, 5, 5, 3, 90, 17, -90}});
   // Tangents of the half angle are 3/4 and others: exactly cocircular, on a hull without the pole.
