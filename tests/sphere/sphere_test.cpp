@@ -200,6 +200,10 @@ std::vector<Case> cases() {
   all.push_back({"south poles", kDegrees, {17, -90, 0, -90}});
   all.push_back({"poles", kDegrees, {17, -90, 0, -90, 3, 90}});
   all.push_back({"poles and one", kDegrees, {17, -90, 5, 5, 3, 90, 17, -90}});
+  // Flat triangles, the sides of cells half a circle long, and two points too near each other for doubles.
+  all.push_back({"nearly one great circle",
+                 kDirections,
+                 {4, 0, 3, 0, 0, -1, 2, 0, -0x1p-52, 8, 0, 15, -0x1p-51, -0x1p-51, -1}});
   // Tangents of the half angle are 3/4 and others: exactly cocircular, on a hull without the pole.
   Numbers circle;
   for (const double a : {3.0, 4.0, -3.0, -4.0, 5.0, 0.0, -5.0}) {
