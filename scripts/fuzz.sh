@@ -9,13 +9,14 @@
 #   scripts/fuzz.sh 8h refinement [SEED]       the refinement of meshes alone
 #   scripts/fuzz.sh 8h weighted [SEED]         regular triangulations alone
 #   scripts/fuzz.sh 8h periodic [SEED]         triangulations on tori and cylinders alone
+#   scripts/fuzz.sh 8h sphere [SEED]           triangulations on the sphere alone
 # Fails if it found something. A file that a reader mishandles is then in build/fuzz/failures; what is triangulated
 # wrongly is printed. What the readers were tried with is kept in build/fuzz/found, for the next time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
-  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations | constrained | refinement | weighted | periodic [SEED]]' >&2
+  echo 'usage: scripts/fuzz.sh NUMBER{s,m,h} [readers | triangulations | constrained | refinement | weighted | periodic | sphere [SEED]]' >&2
   exit 2
 }
 
@@ -80,10 +81,10 @@ fuzz_library() {
 cores="$(nproc)"
 case "$what" in
   readers) fuzz_readers "$cores" ;;
-  triangulations | constrained | refinement | weighted | periodic) fuzz_library "$what" ;;
+  triangulations | constrained | refinement | weighted | periodic | sphere) fuzz_library "$what" ;;
   all)
     # Those of the library take one core or more.
-    fuzz_library triangulations constrained refinement weighted periodic &
+    fuzz_library triangulations constrained refinement weighted periodic sphere &
     library="$!"
     status=0
     fuzz_readers "$((cores > 2 ? cores - 2 : 1))" || status=1

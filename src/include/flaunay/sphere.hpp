@@ -73,8 +73,9 @@ struct SphericalVoronoi {
   /// smallest first. Points that another point represents have none, nor have one or two points.
   std::vector<std::int32_t> cells;
   /// n values: the areas of the cells, of which those of a set sum to 4 pi; rounded by some 1e-15, and if all
-  /// points are within an angle r, by that divided by r^2. Points that another one represents have 0, two
-  /// points a hemisphere each, and a point alone the sphere.
+  /// points are within an angle r, by that divided by r^2; of points within some 1e-15 of each other a sum
+  /// can rarely be another multiple of 4 pi. Points that another one represents have 0, two points a
+  /// hemisphere each, and a point alone the sphere.
   std::vector<double> areas;
 };
 
