@@ -364,8 +364,8 @@ TEST(Merge, LaunchesAreFew) {
     const DeviceBlocks on_device(call, points);
     const std::size_t launches = runtime.accounts().launches, waits = runtime.accounts().waits;
     solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
-    // From height 4 on there are at most 500 merges, and they begin with a fill.
-    EXPECT_EQ(runtime.accounts().launches - launches, 2u + 2 * 4 + 1 + 3 * 6);
+    // From height 2 on, with 8 points, merges are from both ends, and they begin with a fill.
+    EXPECT_EQ(runtime.accounts().launches - launches, 2u + 2 * 2 + 1 + 3 * 8);
     EXPECT_EQ(runtime.accounts().waits, waits);
   });
 }
