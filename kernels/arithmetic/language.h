@@ -4,7 +4,7 @@
 // nothing.
 //
 // What the two languages spell differently is spelled by a macro here: GLOBAL for the address space `global`, RESTRICT,
-// VECTOR(type, x, y) for a vector, VECTOR3 and VECTOR4 likewise, INTEGER_CONSTANT(NAME, value) for a constant of type
+// VECTOR(type, x, y) for a vector, VECTOR3, 4 and 8 likewise, INTEGER_CONSTANT(NAME, value) for a constant of type
 // int, OUT_OF_LINE for a function that is called rarely and is long (in OpenCL C nothing, unless a program chooses),
 // and ASSERT_SIZE(type, bytes), which does not compile unless the type has that size. OpenCL C has no variadic macros,
 // and NVIDIA's compiler refuses them.
@@ -29,6 +29,7 @@
 #define VECTOR(type, x, y) (type{x, y})
 #define VECTOR3(type, x, y, z) (type{x, y, z})
 #define VECTOR4(type, x, y, z, w) (type{x, y, z, w})
+#define VECTOR8(type, a, b, c, d, e, f, g, h) (type{a, b, c, d, e, f, g, h})
 #define INTEGER_CONSTANT(NAME, VALUE) constexpr int NAME = VALUE
 #define ASSERT_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), "kernels and host see the same bytes")
 #define OUT_OF_LINE [[gnu::noinline]]
@@ -135,6 +136,7 @@ typedef ulong uint64;
 #define VECTOR(type, x, y) ((type)(x, y))
 #define VECTOR3(type, x, y, z) ((type)(x, y, z))
 #define VECTOR4(type, x, y, z, w) ((type)(x, y, z, w))
+#define VECTOR8(type, a, b, c, d, e, f, g, h) ((type)(a, b, c, d, e, f, g, h))
 #define INTEGER_CONSTANT(NAME, VALUE) enum { NAME = VALUE }
 #define ASSERT_SIZE(type, bytes) typedef char type##_has_its_size[sizeof(type) == (bytes) ? 1 : -1]
 #ifndef OUT_OF_LINE

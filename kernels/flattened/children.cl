@@ -11,7 +11,7 @@
 // that is empty; to be scanned.
 static inline uint8 child_size(uint points, uint corners) {
   const uint goes_on = points > 0, retires = points == 0 && corners > 0;
-  return (uint8)(goes_on, goes_on ? corners : 0, points, retires, retires ? corners : 0, 0, 0, 0);
+  return VECTOR8(uint8, goes_on, goes_on ? corners : 0, points, retires, retires ? corners : 0, 0, 0, 0);
 }
 
 // sizes[2r + side]: of a child.

@@ -51,10 +51,10 @@ kernel void scan_write_uint2(int n, int chunk, int has_prefix, global const uint
 }
 
 kernel void scan_reduce_uint8(int n, int chunk, global const uint8* input, global uint8* restrict sums) {
-  SCAN_REDUCE(uint8, (uint8)(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
+  SCAN_REDUCE(uint8, VECTOR8(uint8, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
 }
 
 kernel void scan_write_uint8(int n, int chunk, int has_prefix, global const uint8* restrict prefix,
                              global const uint8* input, global uint8* output) {
-  SCAN_WRITE(uint8, (uint8)(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
+  SCAN_WRITE(uint8, VECTOR8(uint8, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
 }
