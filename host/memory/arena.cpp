@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::size_t kSmallestBlock = std::size_t{1} << 20;
 constexpr std::size_t kAlignment = 128;
+// Without OpenCL there are no GPUs: the module for browsers need not have the pool.
+#ifdef FLAUNAY_WITHOUT_OPENCL
+constexpr bool kHasPools = false;
+#else
+constexpr bool kHasPools = true;
+#endif
 
 std::shared_ptr<_cl_mem> own(cl_mem memory) {
   return std::shared_ptr<_cl_mem>(memory, [](cl_mem m) { clReleaseMemObject(m); });
@@ -54,7 +60,7 @@ MemorySource memory_of(const boost::compute::context& context, const boost::comp
 MemorySource native_memory() { return {{}, true, kAlignment, kMostBytes}; }
 
 Arena::Arena(MemorySource source, std::shared_ptr<BufferPool> pool) : source_(std::move(source)), blocks_(1) {
-  if (source_.arrays != ArrayMemory::reused) return;
+  if (!kHasPools || source_.arrays != ArrayMemory::reused) return;
   pool_ = std::move(pool);
   if (pool_ != nullptr) return;
   counts_pool_ = true;
@@ -68,11 +74,11 @@ std::size_t Arena::held_bytes() const {
   std::size_t sum = 0;
   for (const Block& block : blocks_) sum += block.size;
   for (const Block& block : own_blocks_) sum += block.size;
-  return sum + (counts_pool_ ? pool_->bytes() : 0);
+  return sum + (kHasPools && counts_pool_ ? pool_->bytes() : 0);
 }
 
 std::size_t Arena::block_allocations() const {
-  return block_allocations_ + (counts_pool_ ? pool_->made() : 0);
+  return block_allocations_ + (kHasPools && counts_pool_ ? pool_->made() : 0);
 }
 
 std::shared_ptr<_cl_mem> allocate_memory(const MemorySource& source, std::size_t bytes) {
@@ -167,7 +173,7 @@ std::shared_ptr<_cl_mem> Arena::allocate_bytes(std::size_t count, std::size_t si
   // OpenCL has no empty buffers, so an empty array gets some bytes, too.
   const std::size_t rounded =
       (std::max<std::size_t>(bytes, 1) + source_.alignment - 1) / source_.alignment * source_.alignment;
-  if (pool_ != nullptr && !is_lent_) {
+  if (kHasPools && pool_ != nullptr && !is_lent_) {
     check_size(bytes);
     blocks_[0].used += rounded;
     peak_ = std::max(peak_, blocks_[0].used);
