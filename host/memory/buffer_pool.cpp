@@ -11,11 +11,11 @@ namespace {
 
 // Drivers give no less to a buffer.
 constexpr std::size_t kSmallest = std::size_t{1} << 16;
-// Sizes are rounded up by at most a share of this, so that similar ones are the same.
+// Sizes are rounded up in steps of at least such a share of them, and of less than twice that: similar ones
+// are the same.
 constexpr std::size_t kSteps = 8;
-// A buffer serves arrays that need at least a share of this of it.
+// A buffer serves arrays that need at least half of it.
 constexpr std::size_t kMostSpare = 2;
-
 // The pool holds at most so many times what was in use at once.
 constexpr std::size_t kMostHeld = 2;
 

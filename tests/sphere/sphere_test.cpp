@@ -490,6 +490,19 @@ TEST(Sphere, ManyPointsHaveAllTriangles) {
   for (const double each : dual.areas) area += each;
   EXPECT_NEAR(4 * std::numbers::pi, area, 1e-10);
   EXPECT_EQ("", problem_of(mesh, points, kDirections));
+  // Each edge is locally convex, exactly, and the surface closed: so it is the hull.
+  const std::vector<Exact> exact_points = exact_places(mesh);
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+    const auto at = [&](std::size_t k) -> const Exact& {
+      return exact_points[static_cast<std::size_t>(mesh.triangles[3 * t + k])];
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t* const w = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[3 * t + k])];
+      for (std::size_t j = 0; j < 3; ++j) {
+        ASSERT_LE(outside(at(0), at(1), at(2), exact_points[static_cast<std::size_t>(w[j])]), 0);
+      }
+    }
+  }
 }
 
 /// A closed surface, of which edges can be replaced by others.
