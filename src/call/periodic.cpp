@@ -153,7 +153,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
     round.planes.resize(round.sets.size());
     for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
       const std::size_t s = round.sets[k];
-      round.planes[k] = Unrolled(runtime, places_of(s), boxes[s], margins[s]);
+      round.planes[k] = Unrolled(runtime, places_of(s), {boxes[s], margins[s]});
     });
     round.count_points();
     // Corners of triangles are numbered.
@@ -176,7 +176,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
       const std::size_t s = round.sets[k];
       mesh.images += round.planes[k].images();
       if (is_done[k] != 0) continue;
-      if (round.planes[k].is_whole())
+      if (round.planes[k].window().is_whole())
         throw Error(ErrorKind::internal, fmt::format("the triangles of set {} are not those of a torus", s));
       constexpr double kWider = 4;
       margins[s] *= kWider;

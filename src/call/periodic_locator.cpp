@@ -25,7 +25,7 @@ struct PeriodicLocator::Implementation {
     // direction that has one.
     double margin = box.repeats(0) && box.repeats(1) ? periodic::first_margin(box, n) : kWhole;
     for (; !make(used, mesh, box, margin); margin *= 4) {
-      if (plane->is_whole())
+      if (plane->window().is_whole())
         throw Error(ErrorKind::usage,
                     "the triangles are not those of a triangulation on a torus or a cylinder");
     }
@@ -34,10 +34,12 @@ struct PeriodicLocator::Implementation {
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest point of what is in the box is near enough.
   bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box, double margin) {
-    call::take_turn(*owner, [&] { plane.emplace(&owner->native().runtime, mesh.places, box, margin); });
+    call::take_turn(*owner, [&] {
+      plane.emplace(&owner->native().runtime, mesh.places, periodic::Window{box, margin});
+    });
     const std::vector<double>& places = plane->coordinates();
     const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
-    if (!plane->is_whole() && !periodic::is_box_inside(*plane, planar.hull)) return false;
+    if (!plane->window().is_whole() && !periodic::is_box_inside(*plane, planar.hull)) return false;
     call::take_turn(*owner, [&] {
       numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
     });
@@ -80,7 +82,7 @@ std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::s
   const std::vector<double> places = implementation_->to_places(queries, m);
   if (!implementation_->locator) return std::vector<std::int32_t>(m, -1);
   std::vector<std::int32_t> found = implementation_->locator->nearest(places.data(), m);
-  for (std::int32_t& v : found) v = implementation_->plane->image(v).point;
+  for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
   return found;
 }
 

@@ -20,7 +20,7 @@ using geometry::runs_of;
 
 using Ids = std::vector<std::int32_t>;
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // 2^52 units: the smallest power of two that is not less than the period. Numbers from there to twice as much
 // are multiples of the unit, and all multiples up to two periods are doubles.
@@ -65,19 +65,28 @@ Pair<double> rounded(const Period& period) {
   return {one(period.x), one(period.y)};
 }
 
+void take_into(const Pair<double>& period, double* points, std::size_t n, std::uint64_t first,
+               const char* what) {
+  const Axis across(period[0]), up(period[1]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = across.wrapped(points[2 * i]), y = up.wrapped(points[2 * i + 1]);
+    if (!std::isfinite(x) || !std::isfinite(y)) {
+      throw Error(ErrorKind::input, fmt::format("{} {} is not finite: ({}, {})", what, first + i,
+                                                points[2 * i], points[2 * i + 1]));
+    }
+    points[2 * i] = x;
+    points[2 * i + 1] = y;
+  }
+}
+
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what) {
   std::vector<double> places;
   runtime.resize(places, 2 * n);
-  const Axis across(period[0]), up(period[1]);
-  for_each(runtime, n, [&](std::size_t i) {
-    const double x = across.wrapped(points[2 * i]), y = up.wrapped(points[2 * i + 1]);
-    if (!std::isfinite(x) || !std::isfinite(y)) {
-      throw Error(ErrorKind::input,
-                  fmt::format("{} {} is not finite: ({}, {})", what, i, points[2 * i], points[2 * i + 1]));
-    }
-    places[2 * i] = x;
-    places[2 * i + 1] = y;
+  for_each_run(&runtime, n, [&](std::size_t, std::size_t begin, std::size_t end) {
+    double* const to = places.data() + 2 * begin;
+    std::copy(points + 2 * begin, points + 2 * end, to);
+    take_into(period, to, end - begin, begin, what);
   });
   return places;
 }
@@ -108,8 +117,8 @@ double first_margin(const Box& box, std::size_t n) {
   return margin;
 }
 
-Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box, double margin)
-    : box_(box), margin_(margin), points_(places.size() / 2), coordinates_(std::move(places)) {
+Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Window& window)
+    : window_(window), points_(places.size() / 2), coordinates_(std::move(places)) {
   struct Found {
     std::vector<double> coordinates;
     std::vector<Image> images;
@@ -117,18 +126,10 @@ Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box
   std::vector<Found> found(runs_of(points_));
   for_each_run(runtime, points_, [&](std::size_t run, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Point p{coordinates_[2 * i], coordinates_[2 * i + 1]};
-      // Near an end of the direction without a period, the nearest points may be a whole period away.
-      const bool is_at_end = is_near_end(p.x, 0) || is_near_end(p.y, 1);
-      const Pair<int> across = images_along(p.x, 0, is_at_end), up = images_along(p.y, 1, is_at_end);
-      for (int a = across[0]; a <= across[1]; ++a) {
-        for (int b = up[0]; b <= up[1]; ++b) {
-          if (a == 0 && b == 0) continue;
-          found[run].coordinates.push_back(a == 0 ? p.x : p.x + a * box.period[0]);
-          found[run].coordinates.push_back(b == 0 ? p.y : p.y + b * box.period[1]);
-          found[run].images.push_back({static_cast<std::int32_t>(i), {a, b}});
-        }
-      }
+      window_.for_each_image(place(static_cast<std::int32_t>(i)), [&](const Pair<int>& at, Point p) {
+        found[run].coordinates.insert(found[run].coordinates.end(), {p.x, p.y});
+        found[run].images.push_back({static_cast<std::int64_t>(i), at});
+      });
     }
   });
   for (const Found& some : found) {
@@ -142,18 +143,18 @@ std::vector<double> Unrolled::take_places() {
   return std::move(coordinates_);
 }
 
-bool Unrolled::is_near_end(double x, std::size_t axis) const {
-  return !box_.repeats(axis) && (x <= box_.low[axis] + margin_ || x >= box_.high[axis] - margin_);
+bool Window::is_near_end(double x, std::size_t axis) const {
+  return !box.repeats(axis) && (x <= box.low[axis] + margin || x >= box.high[axis] - margin);
 }
 
 // Which images there are, from -1 or 0 to 0 or 1.
-Pair<int> Unrolled::images_along(double x, std::size_t axis, bool all) const {
-  if (!box_.repeats(axis)) return {};
-  return {all || x >= box_.period[axis] - margin_ ? -1 : 0, all || x <= margin_ ? 1 : 0};
+Pair<int> Window::images_along(double x, std::size_t axis, bool all) const {
+  if (!box.repeats(axis)) return {};
+  return {all || x >= box.period[axis] - margin ? -1 : 0, all || x <= margin ? 1 : 0};
 }
 
-bool Unrolled::is_whole() const {
-  return (!box_.repeats(0) || margin_ >= box_.period[0]) && (!box_.repeats(1) || margin_ >= box_.period[1]);
+bool Window::is_whole() const {
+  return (!box.repeats(0) || margin >= box.period[0]) && (!box.repeats(1) || margin >= box.period[1]);
 }
 
 namespace {
@@ -207,14 +208,9 @@ Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangle
       const bool is_inside = v[0] < points && v[1] < points && v[2] < points;
       if (is_inside && (beyond[0] | beyond[1] | beyond[2]) >= 0) continue;
       if (!is_inside) {
-        // Kept is the image whose first corner is the point itself.
-        int first = 0;
-        for (int k = 1; k < 3; ++k) {
-          if (plane.image(v[k]) < plane.image(v[first])) first = k;
-        }
-        const bool is_kept = v[first] < points;
-        (is_kept ? borders[run].mixed : borders[run].dropped).push_back(static_cast<std::int32_t>(t));
-        if (!is_kept) continue;
+        const bool keep = is_kept({plane.image(v[0]), plane.image(v[1]), plane.image(v[2])});
+        (keep ? borders[run].mixed : borders[run].dropped).push_back(static_cast<std::int32_t>(t));
+        if (!keep) continue;
       }
       for (std::size_t k = 0; k < 3; ++k) {
         if (beyond[k] < 0) borders[run].open.push_back(static_cast<std::int32_t>(3 * t + k));
@@ -230,49 +226,21 @@ Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangle
   return border;
 }
 
-// An edge between a triangle that is kept and one that is not. Its first end is in its place.
-struct Seam {
-  Image from, to;
-  Image own, beyond;  // opposite corners of both triangles
-  std::int32_t at;    // 3 t + the corner opposite, of the triangle that is kept
-};
-
-bool is_same_edge(const Seam& a, const Seam& b) { return a.from == b.from && a.to == b.to; }
-
-// beyond: the corner in the plane, or -1.
-Seam seam_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
+// The edge of a kept triangle. beyond: the corner in the plane, or -1.
+Seams::Edge seam_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
   const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-  const auto corner = [&](std::size_t j) { return plane.image(all.corners[t + j % 3]); };
-  Seam seam{corner(k + 1), corner(k + 2), corner(k), beyond < 0 ? Image{-1, {}} : plane.image(beyond), at};
-  const Image step = beside(seam.to, seam.from);
-  if (seam.to.point < seam.from.point || (seam.to.point == seam.from.point && step.at < Pair<int>{}))
-    std::swap(seam.from, seam.to);
-  for (Image* const image : {&seam.to, &seam.own, &seam.beyond}) *image = beside(*image, seam.from);
-  seam.from.at = {};
-  return seam;
-}
-
-// Joins triangles that are kept at their edges. Returns whether they have the same edges, and, where that is
-// not known, whether what is beyond an edge in the plane is an image of what is joined to it.
-bool join(std::vector<Seam> seams, bool is_known, Ids& neighbors) {
-  std::sort(seams.begin(), seams.end(), [](const Seam& a, const Seam& b) {
-    return a.from < b.from || (a.from == b.from && a.to < b.to);
-  });
-  if (seams.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < seams.size(); i += 2) {
-    const Seam &a = seams[i], &b = seams[i + 1];
-    if (!is_same_edge(a, b)) return false;
-    if (!is_known && !(a.own == b.beyond && b.own == a.beyond)) return false;
-    neighbors[index(a.at)] = b.at / 3;
-    neighbors[index(b.at)] = a.at / 3;
-  }
-  return true;
+  const std::int32_t from = all.corners[t + (k + 1) % 3], to = all.corners[t + (k + 2) % 3];
+  return {plane.image(from),
+          plane.image(to),
+          plane.place(from),
+          plane.place(to),
+          plane.image(all.corners[t + k]),
+          beyond < 0 ? Image{-1, {}} : plane.image(beyond),
+          static_cast<std::uint64_t>(at)};
 }
 
 // The place in units of the box.
-Point in_box(const Unrolled& plane, std::int32_t v) {
-  const Point p = plane.place(v);
-  const Box& box = plane.box();
+Point in_box(const Box& box, Point p) {
   const auto share = [&](double x, std::size_t axis) {
     const double low = box.low[axis], size = box.high[axis] - low;
     return std::isfinite(size) ? (x - low) / size : (x / 2 - low / 2) / (box.high[axis] / 2 - low / 2);
@@ -280,42 +248,20 @@ Point in_box(const Unrolled& plane, std::int32_t v) {
   return {share(p.x, 0), share(p.y, 1)};
 }
 
-// Whether an edge without a triangle beyond is on the box's border, in a direction that has no period.
-bool is_on_border(const Box& box, Point a, Point b) {
+// Whether an edge is on an end of a direction that has no period.
+bool is_at_end(const Box& box, Point a, Point b) {
   const auto is_end = [&](double x, double y, std::size_t axis) {
     return !box.repeats(axis) && x == y && (x == box.low[axis] || x == box.high[axis]);
   };
   return is_end(a.x, b.x, 0) || is_end(a.y, b.y, 1);
 }
 
-std::size_t expected_triangles(const Unrolled& plane, const Ids& representatives) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < representatives.size(); ++i) {
-    if (index(representatives[i]) != i) continue;
-    count += 2;
-    const Point p = plane.place(static_cast<std::int32_t>(i));
-    const Box& box = plane.box();
-    if (!box.repeats(0)) count -= static_cast<std::size_t>(p.x == box.low[0]) + (p.x == box.high[0]);
-    if (!box.repeats(1)) count -= static_cast<std::size_t>(p.y == box.low[1]) + (p.y == box.high[1]);
-  }
-  return count;
-}
-
-// Rewrites a triangle of images: its first corner comes first, and offsets are relative to that.
+// Rewrites a triangle of images: offsets are relative to its first corner.
 void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles& all) {
-  std::array<std::int32_t, 3> neighbors{};
-  std::array<Image, 3> images;
-  std::size_t first = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t c = 3 * index(t) + k;
-    images[k] = plane.image(all.corners[c]);
-    neighbors[k] = all.neighbors[c];
-    if (images[k] < images[first]) first = k;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Image image = beside(images[(first + k) % 3], images[first]);
-    all.corners[3 * index(t) + k] = image.point;
-    all.neighbors[3 * index(t) + k] = neighbors[(first + k) % 3];
+    std::int32_t& corner = all.corners[3 * index(t) + k];
+    const Image image = plane.image(corner);
+    corner = static_cast<std::int32_t>(image.point);
     for (std::size_t axis = 0; axis < 2; ++axis)
       all.offsets[6 * index(rank) + 2 * k + axis] = static_cast<std::int8_t>(image.at[axis]);
   }
@@ -323,49 +269,70 @@ void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles
 
 }  // namespace
 
-bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
-  const std::size_t count = all.corners.size() / 3, expected = expected_triangles(plane, representatives);
-  const Border border = find_border(runtime, plane, all);
-  if (count - border.dropped.size() != expected) return false;
-  const Ranks ranks(border.dropped, count);
-  std::vector<Seam> seams;
-  for (const std::int32_t t : border.dropped) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t kept = all.neighbors[3 * index(t) + k];
-      if (kept < 0 || ranks.is_dropped(kept)) continue;
-      std::int32_t at = 3 * kept;
-      while (all.neighbors[index(at)] != t) ++at;
-      seams.push_back(seam_of(plane, all, at, all.corners[3 * index(t) + k]));
-    }
-  }
+void Seams::add(Edge edge) {
   // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
   // says: once. (The area is rounded, and computed from the border.)
-  double area = 0;
-  const auto add_edge = [&](std::int32_t at) {
-    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-    const Point a = in_box(plane, all.corners[t + (k + 1) % 3]),
-                b = in_box(plane, all.corners[t + (k + 2) % 3]);
-    area += (a.x + b.x) / 2 * (b.y - a.y);
-  };
-  for (const std::int32_t at : border.open) {
-    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-    if (is_on_border(plane.box(), plane.place(all.corners[t + (k + 1) % 3]),
-                     plane.place(all.corners[t + (k + 2) % 3]))) {
-      add_edge(at);
-    } else if (plane.is_whole()) {
-      seams.push_back(seam_of(plane, all, at, -1));
-    } else {
-      return false;
+  const Point a = in_box(window_.box, edge.a), b = in_box(window_.box, edge.b);
+  area_ += (a.x + b.x) / 2 * (b.y - a.y);
+  if (edge.beyond.point < 0 && is_at_end(window_.box, edge.a, edge.b)) {
+    ++ends_;
+    return;
+  }
+  is_torn_ |= edge.beyond.point < 0 && !window_.is_whole();
+  const Image step = beside(edge.to, edge.from);
+  if (edge.to.point < edge.from.point || (edge.to.point == edge.from.point && step.at < Pair<int>{}))
+    std::swap(edge.from, edge.to);
+  for (Image* const image : {&edge.to, &edge.own, &edge.beyond}) *image = beside(*image, edge.from);
+  edge.from.at = {};
+  edges_.push_back(edge);
+}
+
+bool Seams::match(std::uint64_t points, std::uint64_t triangles) {
+  const Box& box = window_.box;
+  const bool is_flat = box.low[0] == box.high[0] || box.low[1] == box.high[1];
+  // An end has as many edges as points.
+  const std::uint64_t expected = is_flat ? 0 : 2 * points - ends_;
+  if (is_torn_ || triangles != expected || edges_.size() % 2 != 0) return false;
+  if (expected > 0 && !(std::fabs(area_ - 1) < 0.5)) return false;
+  std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
+    return a.from < b.from || (a.from == b.from && a.to < b.to);
+  });
+  for (std::size_t i = 0; i < edges_.size(); i += 2) {
+    const Edge &a = edges_[i], &b = edges_[i + 1];
+    if (!(a.from == b.from && a.to == b.to)) return false;
+    // What is beyond an edge in the plane is an image of what is joined to it. Of a whole plane this is
+    // known.
+    if (!window_.is_whole() && !(a.own == b.beyond && b.own == a.beyond)) return false;
+  }
+  return true;
+}
+
+bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
+  const std::size_t count = all.corners.size() / 3;
+  const Border border = find_border(runtime, plane, all);
+  const std::size_t kept = count - border.dropped.size();
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < representatives.size(); ++i) different += index(representatives[i]) == i;
+  const Ranks ranks(border.dropped, count);
+  Seams seams(plane.window());
+  for (const std::int32_t t : border.dropped) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t other = all.neighbors[3 * index(t) + k];
+      if (other < 0 || ranks.is_dropped(other)) continue;
+      std::int32_t at = 3 * other;
+      while (all.neighbors[index(at)] != t) ++at;
+      seams.add(seam_of(plane, all, at, all.corners[3 * index(t) + k]));
     }
   }
-  for (const Seam& seam : seams) add_edge(seam.at);
-  if (expected > 0 && !(std::fabs(area - 1) < 0.5)) return false;
-  if (!join(std::move(seams), plane.is_whole(), all.neighbors)) return false;
+  for (const std::int32_t at : border.open) seams.add(seam_of(plane, all, at, -1));
+  if (!seams.match(different, kept)) return false;
+  seams.for_each_link(
+      [&](std::uint64_t at, std::uint64_t t) { all.neighbors[at] = static_cast<std::int32_t>(t); });
 
   if (runtime != nullptr) {
-    runtime->resize(all.offsets, 6 * expected);
+    runtime->resize(all.offsets, 6 * kept);
   } else {
-    all.offsets.resize(6 * expected);
+    all.offsets.resize(6 * kept);
   }
   for (const std::int32_t t : border.mixed) rewrite(plane, t, ranks.rank(t), all);
   for_each(runtime, all.neighbors.size(), [&](std::size_t c) {
@@ -381,7 +348,7 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
     };
     for (const std::int32_t t : border.dropped) keep_until(t);
     keep_until(static_cast<std::ptrdiff_t>(count));
-    ids->resize(3 * expected);
+    ids->resize(3 * kept);
   }
   return true;
 }
@@ -389,7 +356,8 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
 bool is_box_inside(const Unrolled& plane, const Ids& hull) {
   constexpr double kDistance = 0x1p-30;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = in_box(plane, hull[i]), b = in_box(plane, hull[(i + 1) % hull.size()]);
+    const Point a = in_box(plane.window().box, plane.place(hull[i])),
+                b = in_box(plane.window().box, plane.place(hull[(i + 1) % hull.size()]));
     for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
       if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
     }
@@ -422,7 +390,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     const auto found = std::find_if(first, last, is_same);
     return found == last ? -1 : *found;
   };
-  const Box& box = plane.box();
+  const Box& box = plane.window().box;
   const auto touches_box = [&](const std::array<Point, 3>& p) {
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [below, above] = std::minmax({p[0].y, p[1].y, p[2].y});
@@ -431,7 +399,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
   const auto is_small = [&](const std::array<Point, 3>& p) {
     constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
     const auto is_short = [&](Point a, Point b) {
-      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.margin();
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.window().margin;
     };
     return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
   };
@@ -447,9 +415,9 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     if (!touches_box(places)) return;
     std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
     result[t] = find(images);
-    if (!plane.is_whole() && (result[t] < 0 || !is_small(places))) is_right = false;
+    if (!plane.window().is_whole() && (result[t] < 0 || !is_small(places))) is_right = false;
   });
-  if (plane.is_whole()) {
+  if (plane.window().is_whole()) {
     std::vector<bool> is_found(by_first.size(), false);
     for (const std::int32_t t : result) {
       if (t >= 0) is_found[index(t)] = true;

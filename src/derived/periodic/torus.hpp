@@ -21,7 +21,10 @@ using Pair = std::array<T, 2>;
 Pair<double> rounded(const Period& period);
 
 /// Takes points into the periods, rounded to multiples of their units. The result is the same on every
-/// machine. Throws Error(input), with what: the name of a point, for one that is not finite. O(n).
+/// machine. Throws Error(input) for one that is not finite, with what: the name of a point. first: the number
+/// of the first one. O(n).
+void take_into(const Pair<double>& period, double* points, std::size_t n, std::uint64_t first,
+               const char* what);
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what);
 
@@ -40,7 +43,7 @@ double first_margin(const Box& box, std::size_t n);
 
 /// An image of a point, so many periods away from its place.
 struct Image {
-  std::int32_t point;
+  std::int64_t point;
   Pair<int> at;
 };
 inline bool operator==(const Image& a, const Image& b) { return a.point == b.point && a.at == b.at; }
@@ -48,26 +51,88 @@ inline bool operator<(const Image& a, const Image& b) {
   return a.point < b.point || (a.point == b.point && a.at < b.at);
 }
 
-/// The points of a set as they are triangulated in the plane, with all images within a margin around the box,
-/// and those of points within the margin of an end of the direction that has no period. No coordinate is
-/// farther away than two periods, so no image is rounded.
+/// Of all images of a triangle in the plane, the one is kept whose smallest corner is the point itself. Rows
+/// begin with the corner of the smallest number, points come before images, and images are in ascending
+/// order.
+inline bool is_kept(const std::array<Image, 3>& corners) {
+  return corners[0].at == Pair<int>{} && corners[0] < corners[1] && corners[0] < corners[2];
+}
+
+/// What is triangulated in the plane: a box, with all images of points within a margin around it, and those
+/// of points within the margin of an end of the direction that has no period. No coordinate is farther away
+/// than two periods, so no image is rounded.
+struct Window {
+  Box box;
+  double margin = 0;
+
+  /// Whether a point and all its neighbours are there, whatever the points are.
+  bool is_whole() const;
+  /// Calls visit(at, place) for each image of a point that has this place, in ascending order.
+  template <typename Visit>
+  void for_each_image(geometry::Point p, const Visit& visit) const {
+    // Near an end of the direction without a period, the nearest points may be a whole period away.
+    const bool is_at_end = is_near_end(p.x, 0) || is_near_end(p.y, 1);
+    const Pair<int> across = images_along(p.x, 0, is_at_end), up = images_along(p.y, 1, is_at_end);
+    for (int a = across[0]; a <= across[1]; ++a) {
+      for (int b = up[0]; b <= up[1]; ++b) {
+        if (a == 0 && b == 0) continue;
+        const geometry::Point place{a == 0 ? p.x : p.x + a * box.period[0],
+                                    b == 0 ? p.y : p.y + b * box.period[1]};
+        visit(Pair<int>{a, b}, place);
+      }
+    }
+  }
+
+ private:
+  bool is_near_end(double x, std::size_t axis) const;
+  Pair<int> images_along(double x, std::size_t axis, bool all) const;
+};
+
+/// The edges at which triangles that are kept end in the plane. There they are joined to each other.
+class Seams {
+ public:
+  explicit Seams(const Window& window) : window_(window) {}
+
+  struct Edge {
+    Image from, to;        // counter-clockwise for the triangle that is kept
+    geometry::Point a, b;  // where they lie
+    Image own, beyond;     // the opposite corners of that and of the other triangle; point -1: there is none
+    std::uint64_t at;      // the entry of `neighbors`: 3 t + the corner opposite
+  };
+  void add(Edge edge);
+  /// Whether so many triangles that are kept are the canonical Delaunay triangulation of so many different
+  /// points; otherwise the margin was too small. Each edge between two of them must have been added. O(s log
+  /// s).
+  bool match(std::uint64_t points, std::uint64_t triangles);
+  /// Calls link(at, t) for each edge: entry `at` of `neighbors` is triangle t. After match.
+  template <typename Link>
+  void for_each_link(const Link& link) const {
+    for (std::size_t i = 0; i < edges_.size(); ++i) link(edges_[i].at, edges_[i ^ 1].at / 3);
+  }
+
+ private:
+  Window window_;
+  std::vector<Edge> edges_;  // from the same end, which is in its place, for both triangles
+  std::uint64_t ends_ = 0;   // edges on the ends of a cylinder
+  bool is_torn_ = false;
+  double area_ = 0;  // in units of the box's
+};
+
+/// The points of a set as they are triangulated in the plane: first those in the box, then images.
 class Unrolled {
  public:
   /// No points.
   Unrolled() = default;
   /// runtime: its threads are used; null for this one alone. places: of the set's points. O(n).
-  Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box, double margin);
+  Unrolled(host::Runtime* runtime, std::vector<double> places, const Window& window);
   /// The places again. Images are no longer there.
   std::vector<double> take_places();
 
-  const Box& box() const { return box_; }
-  double margin() const { return margin_; }
+  const Window& window() const { return window_; }
   /// x and y of all: the points in their order, and then images.
   const std::vector<double>& coordinates() const { return coordinates_; }
   std::size_t points() const { return points_; }
   std::size_t images() const { return images_.size(); }
-  /// Whether a point and all its neighbours are there, whatever the points are.
-  bool is_whole() const;
   geometry::Point place(std::int32_t v) const {
     const std::size_t at = 2 * static_cast<std::size_t>(v);
     return {coordinates_[at], coordinates_[at + 1]};
@@ -79,11 +144,7 @@ class Unrolled {
   }
 
  private:
-  bool is_near_end(double x, std::size_t axis) const;
-  Pair<int> images_along(double x, std::size_t axis, bool all) const;
-
-  Box box_;
-  double margin_ = 0;
+  Window window_;
   std::size_t points_ = 0;
   std::vector<double> coordinates_;
   std::vector<Image> images_;

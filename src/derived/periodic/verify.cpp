@@ -39,7 +39,7 @@ class Checker {
   }
 
  private:
-  static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+  static std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
   bool repeats(std::size_t axis) const { return std::isfinite(period_[axis]); }
 
   void check_places() const {
