@@ -21,9 +21,8 @@
 namespace flaunay {
 namespace {
 
-// What a call uses however small its chunks are, and what it needs at least.
+// What a call uses however small its chunks are.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{64} << 20;
-constexpr std::uint64_t kLeastBytes = std::uint64_t{128} << 20;
 // Bytes on the host per point of a chunk: the points that are read ahead, the triangulation with its working
 // memory, the results, and the results of the chunk before, which are being written.
 constexpr std::uint64_t kBytesPerPoint = 480;
@@ -88,12 +87,7 @@ Devices open_devices(const ChunkOptions& options, bool with_areas) {
 
 chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devices& devices,
                        std::uint64_t bytes_per_point) {
-  const std::uint64_t memory =
-      options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
-  if (memory < kLeastBytes) {
-    throw Error(ErrorKind::usage, fmt::format("{} of memory are too little for chunks; give at least {}",
-                                              host::mebibytes(memory), host::mebibytes(kLeastBytes)));
-  }
+  const std::uint64_t memory = call::chunk_memory(options);
   chunks::Plan plan;
   plan.buffer_bytes = memory / kBufferShare;
   const std::uint64_t for_chunks = memory - kFixedBytes - plan.buffer_bytes;
@@ -129,9 +123,7 @@ void check_indices(std::uint64_t n, std::uint64_t most_index) {
 template <typename Index>
 ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
-  geometry::check_coordinates(coordinates, n);
-  check_count(n);
-  check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
+  call::check_chunk_arrays(coordinates, n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
   ArrayPoints points(coordinates, n);
   chunks::ArraySink<Index> sink(results);
   return triangulate_chunks(points, sink, options);
@@ -147,8 +139,24 @@ void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinat
   std::memcpy(coordinates, coordinates_ + 2 * first, 2 * count * sizeof(double));
 }
 
+std::uint64_t call::chunk_memory(const ChunkOptions& options) {
+  const std::uint64_t memory =
+      options.memory_bytes != 0 ? options.memory_bytes : host::memory_left().bytes / 2;
+  if (memory < kLeastChunkBytes) {
+    throw Error(ErrorKind::usage, fmt::format("{} of memory are too little for chunks; give at least {}",
+                                              host::mebibytes(memory), host::mebibytes(kLeastChunkBytes)));
+  }
+  return memory;
+}
+
+void call::check_chunk_arrays(const double* coordinates, std::uint64_t n, std::uint64_t most_index) {
+  geometry::check_coordinates(coordinates, n);
+  check_count(n);
+  check_indices(n, most_index);
+}
+
 ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
-                                         const ChunkOptions& options) {
+                                         const ChunkOptions& options, chunks::Folding* folding) {
   if (points.size() == 0) return ChunkStatistics();
   check_count(points.size());
   const bool with_areas = sink.wants(MeshArray::areas);
@@ -156,7 +164,7 @@ ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Valu
   const std::uint64_t bytes_per_point = kBytesPerPoint + (with_areas ? kAreasBytesPerPoint : 0) +
                                         (values != nullptr ? kValuesBytesPerPoint : 0);
   const chunks::Plan plan = make_plan(points.size(), options, devices, bytes_per_point);
-  return chunks::run(points, values, sink, plan, devices.solvers, options);
+  return chunks::run(points, values, sink, plan, devices.solvers, options, folding);
 }
 
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {

@@ -63,9 +63,9 @@ struct ChunkOptions {
   /// Points of a chunk. 0: as many as suit the devices. In any case no more than the memory permits at once,
   /// and not so few that the chunks' buffers would not fit it.
   std::size_t chunk_points = 0;
-  /// If not empty, called from time to time on the calling thread. stage: "sampling", "distributing" or
-  /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. An
-  /// exception that it throws ends the call.
+  /// If not empty, called from time to time on the calling thread. stage: "images" (with a period alone),
+  /// "sampling", "distributing" or "triangulating"; round: the round of chunks, from 0; done: the finished
+  /// share of the call, 0 to 1. An exception that it throws ends the call.
   std::function<void(const std::string& stage, int round, double done)> progress;
 };
 
@@ -94,6 +94,7 @@ struct ChunkStatistics {
   double seconds = 0;                        ///< wall time
   std::uint64_t host_points = 0;  ///< points of the chunks that devices without fp64 left to the host
   std::string note;               ///< as Statistics::note; of such chunks, that of the first
+  std::uint64_t images = 0;  ///< with a period, images of points that were triangulated besides the points
 };
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which

@@ -11,8 +11,8 @@
 namespace flaunay::chunks {
 
 /// Writes to arrays in memory, which it does not own.
-template <typename Index>
-class ArraySink : public MeshSink {
+template <typename Index, typename Base = MeshSink>
+class ArraySink : public Base {
  public:
   explicit ArraySink(const MeshArrays<Index>& arrays) : arrays_(arrays) {}
   bool wants(MeshArray array) const override {

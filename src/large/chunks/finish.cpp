@@ -30,7 +30,7 @@ kernel::vertex_box scaled(const kernel::vertex_box& box, kernel::scaling scale) 
 }  // namespace
 
 FinishedChunk::FinishedChunk(host::Threads& threads, ChunkPoints points, Triangulation mesh,
-                             const Place& place, const geometry::Scaling& scaling)
+                             const Place& place, const geometry::Scaling& scaling, const Folding* folding)
     : points_(std::move(points)), mesh_(std::move(mesh)), orient_bound_(scaling.bounds.orient) {
   const kernel::scaling scale = scaling.powers();
   scaled_.resize(points_.size());
@@ -41,7 +41,7 @@ FinishedChunk::FinishedChunk(host::Threads& threads, ChunkPoints points, Triangu
   kernel::block_frame frame{};
   frame.rectangle = scaled(place.rectangle, scale);
   frame.all = scaled(place.all, scale);
-  find_final(threads, frame);
+  find_final(threads, frame, folding);
   find_border(threads);
 }
 
@@ -78,30 +78,36 @@ bool FinishedChunk::is_missing(std::size_t t) const {
                              kExactly) == 1;
 }
 
-void FinishedChunk::find_final(host::Threads& threads, const kernel::block_frame& frame) {
+void FinishedChunk::find_final(host::Threads& threads, const kernel::block_frame& frame,
+                               const Folding* folding) {
+  const auto is_kept = [&](std::size_t t) {
+    return folding == nullptr || folding->is_kept({points_.ids[corner(t, 0)], points_.ids[corner(t, 1)],
+                                                   points_.ids[corner(t, 2)]});
+  };
   rows_.resize(mesh_.triangles.size() / 3);
   threads.share(rows_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const bool is_final = kernel::is_circle_inside(&frame, scaled_[corner(t, 0)], scaled_[corner(t, 1)],
                                                      scaled_[corner(t, 2)]) != 0 &&
                             is_missing(t);
-      rows_[t] = is_final ? 0 : -1;
+      rows_[t] = !is_final ? kNotFinal : is_kept(t) ? 0 : kDropped;
     }
   });
   std::int32_t row = 0;
   for (std::int32_t& each : rows_) {
     if (each == 0) each = row++;
+    dropped_ += each == kDropped;
   }
   triangles_ = static_cast<std::uint64_t>(row);
 }
 
-// The place of an open edge of a point, or -1.
+// The place of an open edge of a point, or kNone.
 std::int64_t FinishedChunk::open_edge(std::int32_t from, std::int32_t to, int begins) const {
-  if (points_.is_first_round()) return -1;
+  if (points_.is_first_round()) return kNone;
   for (std::size_t e = points_.edge_offsets[from]; e < points_.edge_offsets[from + 1]; ++e) {
     if (edges_[e].to == to && edges_[e].begins == begins) return static_cast<std::int64_t>(e);
   }
-  return -1;
+  return kNone;
 }
 
 void FinishedChunk::find_border(host::Threads& threads) {
@@ -109,11 +115,12 @@ void FinishedChunk::find_border(host::Threads& threads) {
   threads.share(rows_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     std::vector<Border> found;
     for (std::size_t t = begin; t < end; ++t) {
-      for (int k = 0; k < 3 && rows_[t] >= 0; ++k) {
+      for (int k = 0; k < 3 && rows_[t] != kNotFinal; ++k) {
         const std::int32_t neighbor = mesh_.neighbors[3 * t + k];
-        if (neighbor >= 0 && rows_[neighbor] >= 0) continue;
+        const bool is_beyond_final = neighbor >= 0 && rows_[neighbor] != kNotFinal;
+        if (is_beyond_final && (rows_[neighbor] >= 0 || rows_[t] < 0)) continue;
         const std::int32_t from = corner(t, after(k)), to = corner(t, after(after(k)));
-        found.push_back({static_cast<std::int32_t>(t), k, open_edge(from, to, 1)});
+        found.push_back({static_cast<std::int32_t>(t), k, is_beyond_final ? kFold : open_edge(from, to, 1)});
       }
     }
     const std::lock_guard lock(mutex);
@@ -124,14 +131,27 @@ void FinishedChunk::find_border(host::Threads& threads) {
   });
 }
 
+// The entry of `neighbors` of a side, or -1.
+std::int64_t FinishedChunk::entry(const Border& border, std::uint64_t first_row) const {
+  const std::int32_t row = rows_[border.triangle];
+  return row < 0 ? -1 : 3 * (static_cast<std::int64_t>(first_row) + row) + border.corner;
+}
+
+// The row beyond a side, or -1.
+std::int64_t FinishedChunk::row_beyond(const Border& border) const {
+  const std::int64_t waiting = border.closed < 0 ? -1 : points_.edges[border.closed].corner;
+  return waiting < 0 ? -1 : waiting / 3;
+}
+
 // The edges that are open after this chunk, by point: those of its border, and those before that it did not
 // close.
 std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first_row) const {
   std::vector<OpenAt> open;
   std::vector<char> is_closed(points_.edges.size(), 0);
-  const auto add = [&](std::int32_t at, std::int32_t to, std::int64_t waiting, std::int64_t begins) {
+  const auto add = [&](std::int32_t at, std::int32_t to, const Border& border, std::int64_t begins) {
     const kernel::double2 end = points_.point(to);
-    open.push_back({at, {points_.ids[to], end.x, end.y, waiting, begins}});
+    const std::int64_t opposite = points_.ids[corner(border.triangle, border.corner)];
+    open.push_back({at, {points_.ids[to], end.x, end.y, entry(border, first_row), begins, opposite}});
   };
   for (const Border& border : border_) {
     const std::int32_t from = corner(border.triangle, after(border.corner));
@@ -142,11 +162,9 @@ std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first
       if (there < 0)
         throw Error(ErrorKind::internal, "an edge is open at one of its ends alone; please report the input");
       is_closed[border.closed] = is_closed[there] = 1;
-    } else {
-      const auto waiting =
-          static_cast<std::int64_t>(3 * (first_row + rows_[border.triangle]) + border.corner);
-      add(from, to, waiting, 0);
-      add(to, from, waiting, 1);
+    } else if (border.closed == kNone) {
+      add(from, to, border, 0);
+      add(to, from, border, 1);
     }
   }
   for (std::size_t v = 0; v < points_.size(); ++v) {
@@ -165,7 +183,7 @@ std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first
 std::vector<char> FinishedChunk::unfinished() const {
   std::vector<char> unfinished(points_.size(), 0);
   for (std::size_t t = 0; t < rows_.size(); ++t) {
-    for (int k = 0; k < 3 && rows_[t] < 0; ++k) unfinished[corner(t, k)] = 1;
+    for (int k = 0; k < 3 && rows_[t] == kNotFinal; ++k) unfinished[corner(t, k)] = 1;
   }
   for (const std::int32_t v : mesh_.hull) unfinished[v] = 1;
   for (std::size_t v = 0; v < points_.size(); ++v) {
@@ -235,6 +253,40 @@ ChunkSurface FinishedChunk::take_surface() && {
   return surface;
 }
 
+std::vector<Fold> FinishedChunk::folds(std::uint64_t first_row, bool is_last) const {
+  std::vector<Fold> folds;
+  for (const Border& border : border_) {
+    if (border.closed == kNone) continue;
+    const auto t = static_cast<std::size_t>(border.triangle);
+    std::int32_t from = corner(t, after(border.corner)), to = corner(t, after(after(border.corner)));
+    std::int64_t own = points_.ids[corner(t, border.corner)], beyond = 0, at = entry(border, first_row);
+    if (border.closed == kFold) {
+      const auto other = static_cast<std::size_t>(mesh_.neighbors[3 * t + border.corner]);
+      int k = 0;
+      while (corner(other, after(k)) != to) ++k;
+      beyond = points_.ids[corner(other, k)];
+    } else {
+      const OpenEdge& edge = points_.edges[border.closed];
+      if ((at < 0) == (edge.corner < 0)) continue;
+      beyond = edge.opposite;
+      if (at < 0) {
+        std::swap(from, to);
+        std::swap(own, beyond);
+        at = edge.corner;
+      }
+    }
+    folds.push_back(
+        {points_.ids[from], points_.ids[to], points_.point(from), points_.point(to), own, beyond, at});
+  }
+  if (!is_last) return folds;
+  for (const auto& [from, edge] : open_edges(first_row)) {
+    if (edge.begins != 0 || edge.corner < 0) continue;
+    folds.push_back(
+        {points_.ids[from], edge.to, points_.point(from), {edge.x, edge.y}, edge.opposite, -1, edge.corner});
+  }
+  return folds;
+}
+
 void FinishedChunk::write(MeshSink& sink, std::uint64_t first_row) const {
   if (!sink.wants(MeshArray::triangles) && !sink.wants(MeshArray::neighbors) && mesh_.areas.empty()) return;
   write_rows(sink, first_row);
@@ -259,13 +311,14 @@ void FinishedChunk::write_rows(MeshSink& sink, std::uint64_t first_row) const {
   auto border = border_.begin();
   for (std::size_t t = 0; t < rows_.size(); ++t) {
     if (rows_[t] < 0) continue;
+    while (border != border_.end() && border->triangle < static_cast<std::int32_t>(t)) ++border;
     for (int k = 0; k < 3; ++k) {
       corners.push_back(points_.ids[corner(t, k)]);
       if (border == border_.end() || border->triangle != static_cast<std::int32_t>(t) ||
           border->corner != k) {
         neighbors.push_back(static_cast<std::int64_t>(first_row) + rows_[mesh_.neighbors[3 * t + k]]);
       } else {
-        neighbors.push_back(border->closed < 0 ? -1 : points_.edges[border->closed].corner / 3);
+        neighbors.push_back(row_beyond(*border));
         ++border;
       }
     }
@@ -279,7 +332,7 @@ void FinishedChunk::write_rows(MeshSink& sink, std::uint64_t first_row) const {
 void FinishedChunk::write_links(MeshSink& sink, std::uint64_t first_row) const {
   std::vector<std::pair<std::int64_t, std::int64_t>> links;
   for (const Border& border : border_) {
-    if (border.closed < 0) continue;
+    if (row_beyond(border) < 0 || rows_[border.triangle] < 0) continue;
     links.emplace_back(points_.edges[border.closed].corner,
                        static_cast<std::int64_t>(first_row) + rows_[border.triangle]);
   }

@@ -12,10 +12,11 @@ namespace flaunay::chunks {
 /// kernel::open_edge beyond one device: an edge out of a chunk's point of which the triangles on one side are
 /// written and those on the other are missing. Its other end may be in another chunk.
 struct OpenEdge {
-  std::int64_t to;      ///< the other end's number in the input
-  double x, y;          ///< its coordinates
-  std::int64_t corner;  ///< the entry of `neighbors` that waits for the missing triangle
-  std::int64_t begins;  ///< whether the missing side begins at the edge, counter-clockwise: 1 or 0
+  std::int64_t to;        ///< the other end's number in the input
+  double x, y;            ///< its coordinates
+  std::int64_t corner;    ///< the entry of `neighbors` that waits for the missing triangle; -1: it has no row
+  std::int64_t begins;    ///< whether the missing side begins at the edge, counter-clockwise: 1 or 0
+  std::int64_t opposite;  ///< the number of the written triangle's third corner
 };
 
 /// Points in ascending order of their numbers in the input. In the first round there are duplicates and no

@@ -73,10 +73,12 @@ class SharedSink : public MeshSink {
 struct Call {
   SharedSink& sink;
   const Values* values;
+  Folding* folding;
   ScratchFile& file;
   geometry::Scaling scaling;
   kernel::vertex_box all;
   std::uint64_t rows = 0;      // triangles so far
+  std::uint64_t dropped = 0;   // final ones without a row
   std::uint64_t vertices = 0;  // distinct points
 };
 
@@ -283,7 +285,7 @@ class Round {
     const Statistics statistics = mesh.statistics;
     auto finished = std::make_shared<FinishedChunk>(
         worker.threads, std::move(points), std::move(mesh),
-        Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling);
+        Place{is_last() ? whole_plane() : chunks_[k].rectangle, call_.all}, call_.scaling, call_.folding);
     if (is_first_ && call_.values != nullptr)
       finished->merge_values(call_.values->duplicates, call_.values->fixed);
     note_pace(worker.number, host::now() - begin);
@@ -325,6 +327,8 @@ class Round {
     if (error_) return std::nullopt;
     const std::uint64_t first_row = call_.rows;
     call_.rows += chunk.triangles();
+    call_.dropped += chunk.dropped();
+    if (call_.folding != nullptr) call_.folding->add(chunk.folds(first_row, is_last()));
     if (is_first_) call_.vertices += chunk.points().size() - made.duplicates;
     statistics_.duplicates += made.duplicates;
     statistics_.undecided += made.undecided;
@@ -376,7 +380,7 @@ void require_memory(std::uint64_t points, const Plan& plan) {
 }  // namespace
 
 ChunkStatistics run(PointSource& source, const Values* values, MeshSink& given_sink, const Plan& plan,
-                    const std::vector<Solver>& solvers, const ChunkOptions& options) {
+                    const std::vector<Solver>& solvers, const ChunkOptions& options, Folding* folding) {
   const double begin = host::now();
   double phase_begin = begin;
   ChunkStatistics statistics;
@@ -402,7 +406,7 @@ ChunkStatistics run(PointSource& source, const Values* values, MeshSink& given_s
   statistics.duplicates = first.equal_points;
   end_phase("distribute");
 
-  Call call{sink, values, file, first.scaling, first.all};
+  Call call{sink, values, folding, file, first.scaling, first.all};
   std::vector<bool> is_lost(solvers.size(), false);
   std::vector<Chunk> chunks = std::move(first.chunks);
   std::optional<ChunkPoints> last;
@@ -434,7 +438,7 @@ ChunkStatistics run(PointSource& source, const Values* values, MeshSink& given_s
     }
   }
   statistics.triangles = call.rows;
-  geometry::check_euler(statistics.triangles, statistics.hull_vertices, call.vertices);
+  geometry::check_euler(call.rows + call.dropped, statistics.hull_vertices, call.vertices);
   statistics.scratch_bytes = file.largest_bytes();
   statistics.seconds = host::now() - begin;
   progress("triangulating", static_cast<int>(statistics.rounds.size()) - 1, 1);

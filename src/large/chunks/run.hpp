@@ -23,8 +23,10 @@ struct Solver {
 };
 
 /// Triangulates the points of a source of one point or more; see triangulate_chunks. options: progress and
-/// scratch alone. values: those of the same points, or null.
+/// scratch alone. values: those of the same points, or null. folding: if some points are images; otherwise
+/// null.
 ChunkStatistics run(PointSource& source, const Values* values, MeshSink& sink, const Plan& plan,
-                    const std::vector<Solver>& solvers, const ChunkOptions& options);
+                    const std::vector<Solver>& solvers, const ChunkOptions& options,
+                    Folding* folding = nullptr);
 
 }  // namespace flaunay::chunks

@@ -1,0 +1,310 @@
+// The public calls for more points on a torus or a cylinder than fit memory: chunks of the points and of
+// images of those near the border, which are in memory.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "call/chunks.hpp"
+#include "call/periodic.hpp"
+#include "call/with_errors.hpp"
+#include "derived/periodic/torus.hpp"
+#include "geometry/expect.hpp"
+#include "host/clock.hpp"
+#include "host/memory/system_memory.hpp"
+#include "large/chunks/array_sink.hpp"
+#include "large/chunks/runs.hpp"
+
+namespace flaunay {
+namespace {
+
+using geometry::Point;
+using periodic::Box;
+using periodic::Image;
+using periodic::Pair;
+using periodic::Window;
+
+// Points that are read at once.
+constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 18;
+
+// The places of points, piece by piece.
+class Places {
+ public:
+  Places(PointSource& points, const Pair<double>& period, const ChunkOptions& options)
+      : points_(points), period_(period), options_(options) {}
+
+  std::uint64_t size() const { return points_.size(); }
+  void read(std::uint64_t first, std::size_t count, double* places) const {
+    points_.read(first, count, places);
+    periodic::take_into(period_, places, count, first, "point");
+  }
+  // Calls visit(i, place) for each point.
+  template <typename Visit>
+  void for_each(const Visit& visit) const {
+    std::vector<double> places;
+    for (std::uint64_t first = 0; first < size(); first += kPlacesAtOnce) {
+      if (options_.progress) options_.progress("images", 0, 0);
+      const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kPlacesAtOnce, size() - first));
+      places.resize(2 * count);
+      read(first, count, places.data());
+      for (std::size_t i = 0; i < count; ++i) visit(first + i, Point{places[2 * i], places[2 * i + 1]});
+    }
+  }
+
+ private:
+  PointSource& points_;
+  Pair<double> period_;
+  const ChunkOptions& options_;
+};
+
+Box box_of(const Places& places, const Pair<double>& period) {
+  Box box{{}, period, period};
+  if (box.repeats(0) && box.repeats(1)) return box;
+  const std::size_t axis = box.repeats(0) ? 1 : 0;
+  box.low[axis] = HUGE_VAL;
+  box.high[axis] = -HUGE_VAL;
+  places.for_each([&](std::uint64_t, Point p) {
+    const double x = axis == 0 ? p.x : p.y;
+    box.low[axis] = std::min(box.low[axis], x);
+    box.high[axis] = std::max(box.high[axis], x);
+  });
+  return box;
+}
+
+// Points and, after them, the images that are in the window.
+class Plane : public PointSource {
+ public:
+  // Bytes that an image may take: 24 for itself, the rest for edges where triangles are joined.
+  static constexpr std::uint64_t kBytesPerImage = 48;
+
+  Plane(const Places& places, const Window& window, std::uint64_t memory) : places_(places) {
+    const std::uint64_t most = (memory - call::kLeastChunkBytes) / kBytesPerImage;
+    places.for_each([&](std::uint64_t i, Point p) {
+      window.for_each_image(p, [&](const Pair<int>& at, Point place) {
+        if (images_.size() == most) throw too_many(memory);
+        images_.push_back({place, (i << kBits) + static_cast<std::uint64_t>((at[0] + 1) * 4 + at[1] + 1)});
+      });
+    });
+  }
+
+  std::uint64_t images() const { return images_.size(); }
+  std::uint64_t bytes() const { return kBytesPerImage * images(); }
+  Image image(std::int64_t v) const {
+    const auto k = static_cast<std::uint64_t>(v);
+    if (k < places_.size()) return {v, {}};
+    const std::uint64_t code = images_[k - places_.size()].code;
+    return {static_cast<std::int64_t>(code >> kBits),
+            {static_cast<int>(code >> 2 & 3) - 1, static_cast<int>(code & 3) - 1}};
+  }
+
+  std::uint64_t size() const override { return places_.size() + images(); }
+  void read(std::uint64_t first, std::size_t count, double* coordinates) override {
+    const std::uint64_t n = places_.size(), end = first + count;
+    if (first < n) places_.read(first, static_cast<std::size_t>(std::min(end, n) - first), coordinates);
+    for (std::uint64_t v = std::max(first, n); v < end; ++v) {
+      const Point& place = images_[v - n].place;
+      coordinates[2 * (v - first)] = place.x;
+      coordinates[2 * (v - first) + 1] = place.y;
+    }
+  }
+
+ private:
+  struct Stored {
+    Point place;
+    std::uint64_t code;  // the point, and so many periods + 1, in two bits each
+  };
+  static constexpr int kBits = 4;
+
+  Error too_many(std::uint64_t memory) const {
+    return Error(ErrorKind::input,
+                 fmt::format("more than {} images of the {} points lie near the border, which do not fit "
+                             "memory_bytes, {}, beside chunks",
+                             images(), places_.size(), host::mebibytes(memory)));
+  }
+
+  const Places& places_;
+  std::deque<Stored> images_;  // it grows without being copied
+};
+
+// Takes the edges where triangles that are kept end.
+class Folding : public chunks::Folding {
+ public:
+  Folding(const Plane& plane, std::uint64_t points, const Window& window)
+      : chunks::Folding(static_cast<std::int64_t>(points)), plane_(plane), seams_(window) {}
+
+  void add(const std::vector<chunks::Fold>& folds) override {
+    for (const chunks::Fold& fold : folds) {
+      seams_.add({plane_.image(fold.from), plane_.image(fold.to), fold.a, fold.b, plane_.image(fold.own),
+                  fold.beyond < 0 ? Image{-1, {}} : plane_.image(fold.beyond),
+                  static_cast<std::uint64_t>(fold.entry)});
+    }
+  }
+  bool match(std::uint64_t points, std::uint64_t triangles) { return seams_.match(points, triangles); }
+  // After match.
+  void write_neighbors(MeshSink& sink) const {
+    std::vector<std::pair<std::uint64_t, std::int64_t>> links;
+    seams_.for_each_link([&](std::uint64_t entry, std::uint64_t t) {
+      links.emplace_back(entry, static_cast<std::int64_t>(t));
+    });
+    std::sort(links.begin(), links.end());
+    chunks::RunWriter writer(sink, MeshArray::neighbors);
+    for (const auto& [entry, t] : links) writer.add(entry, t);
+    writer.flush();
+  }
+
+ private:
+  bool is_kept_image(const std::array<std::int64_t, 3>& corners) const override {
+    return periodic::is_kept({plane_.image(corners[0]), plane_.image(corners[1]), plane_.image(corners[2])});
+  }
+
+  const Plane& plane_;
+  periodic::Seams seams_;
+};
+
+// Turns images into points and offsets, and counts duplicates.
+class FoldedSink : public MeshSink {
+ public:
+  FoldedSink(PeriodicMeshSink& sink, const Plane& plane, std::uint64_t points)
+      : sink_(sink), plane_(plane), points_(points) {}
+
+  std::uint64_t duplicates() const { return duplicates_; }
+
+  bool wants(MeshArray array) const override {
+    return is_needed(array) || (array != MeshArray::hull && sink_.wants(array));
+  }
+  void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
+    count = possible(first, count, array == MeshArray::representatives ? points_ : 6 * points_);
+    if (count == 0) return;
+    if (array == MeshArray::triangles) {
+      corners_.clear();
+      offsets_.clear();
+      for (std::size_t k = 0; k < count; ++k) {
+        const Image image = plane_.image(values[k]);
+        corners_.push_back(image.point);
+        for (const int x : image.at) offsets_.push_back(static_cast<std::int8_t>(x));
+      }
+      sink_.write_offsets(2 * first, offsets_.data(), offsets_.size());
+      values = corners_.data();
+    } else if (array == MeshArray::representatives) {
+      for (std::size_t k = 0; k < count; ++k)
+        duplicates_ += static_cast<std::uint64_t>(values[k]) != first + k;
+    }
+    if (sink_.wants(array)) sink_.write(array, first, values, count);
+  }
+  void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
+    count = possible(first, count, 2 * points_);
+    if (count > 0) sink_.write_doubles(array, first, values, count);
+  }
+
+ private:
+  // Images have no entries. Of a margin that is too small, there may be more triangles than there is room
+  // for.
+  static std::size_t possible(std::uint64_t first, std::size_t count, std::uint64_t entries) {
+    return static_cast<std::size_t>(std::min<std::uint64_t>(count, entries - std::min(first, entries)));
+  }
+  static bool is_needed(MeshArray array) {
+    return array == MeshArray::triangles || array == MeshArray::representatives;
+  }
+
+  PeriodicMeshSink& sink_;
+  const Plane& plane_;
+  std::uint64_t points_, duplicates_ = 0;
+  std::vector<std::int64_t> corners_;
+  std::vector<std::int8_t> offsets_;
+};
+
+// Triangulates what is in a window. Returns nothing if its margin is too small.
+std::optional<ChunkStatistics> triangulate_window(const Places& places, const Window& window,
+                                                  PeriodicMeshSink& sink, ChunkOptions options) {
+  const std::uint64_t n = places.size(), memory = call::chunk_memory(options);
+  Plane plane(places, window, memory);
+  options.memory_bytes = memory - plane.bytes();
+  Folding folding(plane, n, window);
+  FoldedSink folded(sink, plane, n);
+  ChunkStatistics statistics = call::triangulate_chunks(plane, nullptr, folded, options, &folding);
+  if (!folding.match(n - folded.duplicates(), statistics.triangles)) return std::nullopt;
+  if (sink.wants(MeshArray::neighbors)) folding.write_neighbors(sink);
+  statistics.points = n;
+  statistics.duplicates = folded.duplicates();
+  statistics.hull_vertices = 0;
+  statistics.images = plane.images();
+  return statistics;
+}
+
+// Results are arrays in memory.
+template <typename Index>
+class PeriodicArrays : public chunks::ArraySink<Index, PeriodicMeshSink> {
+ public:
+  PeriodicArrays(const MeshArrays<Index>& arrays, std::int8_t* offsets)
+      : chunks::ArraySink<Index, PeriodicMeshSink>(arrays), offsets_(offsets) {}
+  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
+    if (offsets_ != nullptr) std::copy_n(offsets, count, offsets_ + first);
+  }
+
+ private:
+  std::int8_t* offsets_;
+};
+
+template <typename Index>
+ChunkStatistics triangulate_into(const double* coordinates, std::uint64_t n, const Period& period,
+                                 const MeshArrays<Index>& results, std::int8_t* offsets,
+                                 const ChunkOptions& options) {
+  call::check_chunk_arrays(coordinates, n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
+  ArrayPoints points(coordinates, n);
+  PeriodicArrays<Index> sink(results, offsets);
+  return triangulate_periodic_chunks(points, period, sink, options);
+}
+
+}  // namespace
+
+PeriodicMeshSink::~PeriodicMeshSink() = default;
+
+Period take_to_places(const Period& period, double* points, std::size_t n) {
+  call::check(period);
+  geometry::check_coordinates(points, n);
+  const Pair<double> lengths = periodic::rounded(period);
+  periodic::take_into(lengths, points, n, 0, "point");
+  return {lengths[0], lengths[1]};
+}
+
+ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& period, PeriodicMeshSink& sink,
+                                            const ChunkOptions& options) {
+  return with_errors([&] {
+    call::check(period);
+    expect(!sink.wants(MeshArray::hull), "a torus or a cylinder has no hull");
+    const double begin = host::now();
+    const Pair<double> lengths = periodic::rounded(period);
+    const Places places(points, lengths, options);
+    Window window{box_of(places, lengths), 0};
+    window.margin = periodic::first_margin(window.box, places.size());
+    constexpr double kWider = 4;
+    for (;; window.margin *= kWider) {
+      if (places.size() == 0) return ChunkStatistics();
+      if (std::optional<ChunkStatistics> done = triangulate_window(places, window, sink, options)) {
+        done->seconds = host::now() - begin;
+        return std::move(*done);
+      }
+      if (window.is_whole())
+        throw Error(ErrorKind::internal, "the triangles are not those of a torus or a cylinder");
+    }
+  });
+}
+
+ChunkStatistics triangulate_periodic_chunks(const double* coordinates, std::uint64_t n, const Period& period,
+                                            const MeshArrays<std::int32_t>& results, std::int8_t* offsets,
+                                            const ChunkOptions& options) {
+  return triangulate_into(coordinates, n, period, results, offsets, options);
+}
+
+ChunkStatistics triangulate_periodic_chunks(const double* coordinates, std::uint64_t n, const Period& period,
+                                            const MeshArrays<std::int64_t>& results, std::int8_t* offsets,
+                                            const ChunkOptions& options) {
+  return triangulate_into(coordinates, n, period, results, offsets, options);
+}
+
+}  // namespace flaunay

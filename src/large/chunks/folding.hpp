@@ -1,0 +1,41 @@
+// Points some of which are images of others, on a torus or a cylinder: of all images of a triangle one gets a
+// row.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "arithmetic/language.h"
+
+namespace flaunay::chunks {
+
+/// An edge of a final triangle that has a row. The triangle beyond is final and has none, or there is none.
+struct Fold {
+  std::int64_t from, to;     ///< the ends, counter-clockwise
+  kernel::double2 a, b;      ///< where they lie
+  std::int64_t own, beyond;  ///< the opposite corners; -1 if there is no triangle beyond
+  std::int64_t entry;        ///< of `neighbors`
+};
+
+/// Says which triangles get rows, and takes the edges where they end.
+class Folding {
+ public:
+  /// Points with numbers from here on are images.
+  explicit Folding(std::int64_t points) : points_(points) {}
+  virtual ~Folding() = default;
+  /// Whether a triangle gets a row, whose first corner has the smallest number.
+  bool is_kept(const std::array<std::int64_t, 3>& corners) const {
+    return (corners[0] < points_ && corners[1] < points_ && corners[2] < points_) || is_kept_image(corners);
+  }
+  /// No two calls are made at a time.
+  virtual void add(const std::vector<Fold>& folds) = 0;
+
+ private:
+  /// The same for a triangle with a corner that is an image. Several threads may call it.
+  virtual bool is_kept_image(const std::array<std::int64_t, 3>& corners) const = 0;
+
+  std::int64_t points_;
+};
+
+}  // namespace flaunay::chunks
