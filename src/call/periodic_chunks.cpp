@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -135,8 +136,12 @@ class Plane : public PointSource {
 class Folding : public chunks::Folding {
  public:
   Folding(const Plane& plane, std::uint64_t points, const Window& window)
-      : chunks::Folding(static_cast<std::int64_t>(points)), plane_(plane), seams_(window) {}
+      : plane_(plane), points_(points), seams_(window) {}
 
+  std::int64_t first_image() const override { return static_cast<std::int64_t>(points_); }
+  bool is_kept(const std::array<std::int64_t, 3>& corners) const override {
+    return periodic::is_kept({plane_.image(corners[0]), plane_.image(corners[1]), plane_.image(corners[2])});
+  }
   void add(const std::vector<chunks::Fold>& folds) override {
     for (const chunks::Fold& fold : folds) {
       seams_.add({plane_.image(fold.from), plane_.image(fold.to), fold.a, fold.b, plane_.image(fold.own),
@@ -158,11 +163,8 @@ class Folding : public chunks::Folding {
   }
 
  private:
-  bool is_kept_image(const std::array<std::int64_t, 3>& corners) const override {
-    return periodic::is_kept({plane_.image(corners[0]), plane_.image(corners[1]), plane_.image(corners[2])});
-  }
-
   const Plane& plane_;
+  std::uint64_t points_;
   periodic::Seams seams_;
 };
 
@@ -181,15 +183,8 @@ class FoldedSink : public MeshSink {
     count = possible(first, count, array == MeshArray::representatives ? points_ : 6 * points_);
     if (count == 0) return;
     if (array == MeshArray::triangles) {
-      corners_.clear();
-      offsets_.clear();
-      for (std::size_t k = 0; k < count; ++k) {
-        const Image image = plane_.image(values[k]);
-        corners_.push_back(image.point);
-        for (const int x : image.at) offsets_.push_back(static_cast<std::int8_t>(x));
-      }
+      values = without_images(values, count);
       sink_.write_offsets(2 * first, offsets_.data(), offsets_.size());
-      values = corners_.data();
     } else if (array == MeshArray::representatives) {
       for (std::size_t k = 0; k < count; ++k)
         duplicates_ += static_cast<std::uint64_t>(values[k]) != first + k;
@@ -209,6 +204,20 @@ class FoldedSink : public MeshSink {
   }
   static bool is_needed(MeshArray array) {
     return array == MeshArray::triangles || array == MeshArray::representatives;
+  }
+
+  // Returns the corners' points, and leaves their offsets in offsets_. Mostly no corner is an image.
+  const std::int64_t* without_images(const std::int64_t* corners, std::size_t count) {
+    offsets_.assign(2 * count, 0);
+    if (static_cast<std::uint64_t>(*std::max_element(corners, corners + count)) < points_) return corners;
+    corners_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Image image = plane_.image(corners[k]);
+      corners_[k] = image.point;
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        offsets_[2 * k + axis] = static_cast<std::int8_t>(image.at[axis]);
+    }
+    return corners_.data();
   }
 
   PeriodicMeshSink& sink_;

@@ -80,9 +80,14 @@ bool FinishedChunk::is_missing(std::size_t t) const {
 
 void FinishedChunk::find_final(host::Threads& threads, const kernel::block_frame& frame,
                                const Folding* folding) {
+  const auto first_image = static_cast<std::int32_t>(
+      folding == nullptr ? points_.size()
+                         : std::lower_bound(points_.ids.begin(), points_.ids.end(), folding->first_image()) -
+                               points_.ids.begin());
   const auto is_kept = [&](std::size_t t) {
-    return folding == nullptr || folding->is_kept({points_.ids[corner(t, 0)], points_.ids[corner(t, 1)],
-                                                   points_.ids[corner(t, 2)]});
+    const std::int32_t a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+    if (std::max({a, b, c}) < first_image) return true;
+    return folding->is_kept({points_.ids[a], points_.ids[b], points_.ids[c]});
   };
   rows_.resize(mesh_.triangles.size() / 3);
   threads.share(rows_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {

@@ -21,21 +21,14 @@ struct Fold {
 /// Says which triangles get rows, and takes the edges where they end.
 class Folding {
  public:
-  /// Points with numbers from here on are images.
-  explicit Folding(std::int64_t points) : points_(points) {}
   virtual ~Folding() = default;
-  /// Whether a triangle gets a row, whose first corner has the smallest number.
-  bool is_kept(const std::array<std::int64_t, 3>& corners) const {
-    return (corners[0] < points_ && corners[1] < points_ && corners[2] < points_) || is_kept_image(corners);
-  }
+  /// Points with numbers from here on are images. Triangles without images get rows.
+  virtual std::int64_t first_image() const = 0;
+  /// Whether a triangle with images gets a row, whose first corner has the smallest number. Several threads
+  /// may call it.
+  virtual bool is_kept(const std::array<std::int64_t, 3>& corners) const = 0;
   /// No two calls are made at a time.
   virtual void add(const std::vector<Fold>& folds) = 0;
-
- private:
-  /// The same for a triangle with a corner that is an image. Several threads may call it.
-  virtual bool is_kept_image(const std::array<std::int64_t, 3>& corners) const = 0;
-
-  std::int64_t points_;
 };
 
 }  // namespace flaunay::chunks
