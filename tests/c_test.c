@@ -2305,6 +2305,63 @@ static int write_areas(unsigned part, uint64_t first, const double* values, size
   return 0;
 }
 
+static void test_chunks_with_a_period(void) {
+  const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
+  char neighbors_path[4096], offsets_path[4096];
+  snprintf(neighbors_path, sizeof neighbors_path, "%s/flaunay-%d-neighbors.npy", folder, (int)getpid());
+  snprintf(offsets_path, sizeof offsets_path, "%s/flaunay-%d-offsets.npy", folder, (int)getpid());
+  const flaunay_strided_points source = {.coordinates = points,
+                                         .count = kPoints,
+                                         .point_stride = 2 * sizeof *points,
+                                         .coordinate_stride = sizeof *points};
+  const flaunay_mesh_arrays arrays = {.triangles = make_indices(6 * kPoints),
+                                      .representatives = make_indices(kPoints)};
+  flaunay_mesh_files files = {.neighbors = neighbors_path, .offsets = offsets_path};
+  flaunay_chunk_report* report = NULL;
+  REQUIRE(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, &arrays, &files, &kSmallChunks,
+                                              &report) == FLAUNAY_SUCCESS);
+  flaunay_periodic* expected = NULL;
+  REQUIRE(flaunay_periodic_create(triangulator, points, kPoints, NULL, 0, 0.7, INFINITY, &expected) ==
+          FLAUNAY_SUCCESS);
+  const size_t count = flaunay_periodic_triangle_count(expected);
+  const flaunay_chunk_statistics* const statistics = flaunay_chunk_report_statistics(report);
+  CHECK(statistics->triangles == count && statistics->points == kPoints && statistics->hull_vertices == 0);
+  CHECK(statistics->images > 0 && statistics->rounds[0].points == kPoints + statistics->images);
+  int32_t* const neighbors = read_entries(neighbors_path, 3 * count * sizeof *neighbors);
+  int8_t* const offsets = read_entries(offsets_path, 6 * count);
+  CHECK(row_sum(arrays.triangles, neighbors, count) ==
+        row_sum(flaunay_periodic_triangles(expected), flaunay_periodic_neighbors(expected), count));
+  CHECK(same(arrays.representatives, flaunay_periodic_representatives(expected), kPoints));
+  int sums[2] = {0, 0};
+  for (size_t k = 0; k < 6 * count; ++k) {
+    sums[0] += offsets[k] * (k % 2 == 0 ? 1 : 1000);
+    sums[1] += flaunay_periodic_offsets(expected)[k] * (k % 2 == 0 ? 1 : 1000);
+  }
+  CHECK(sums[0] == sums[1]);
+  double period[] = {0.7, INFINITY};
+  double* const places = make_doubles(2 * kPoints);
+  memcpy(places, points, 2 * kPoints * sizeof *places);
+  REQUIRE(flaunay_take_to_places(period, places, kPoints) == FLAUNAY_SUCCESS);
+  CHECK(period[0] == flaunay_periodic_period(expected)[0] && period[1] == INFINITY);
+  CHECK(memcmp(places, flaunay_periodic_places(expected), 2 * kPoints * sizeof *places) == 0);
+  flaunay_chunk_report_destroy(report);
+
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE;
+  report = NULL;
+  CHECK(
+      fails(flaunay_triangulate_periodic_chunks(&source, 0, 1, NULL, NULL, NULL, &report), usage, "period"));
+  const flaunay_mesh_arrays hull = {.hull = arrays.representatives}, own = {.offsets = offsets};
+  CHECK(fails(flaunay_triangulate_periodic_chunks(&source, 1, 1, &hull, NULL, NULL, &report), usage, "hull"));
+  CHECK(fails(flaunay_triangulate_periodic_chunks(&source, 1, 1, &own, &files, NULL, &report), usage,
+              "offsets are wanted"));
+  CHECK(fails(flaunay_triangulate_chunks(points, 4, &own, NULL, &report), usage, "no period"));
+  CHECK(fails(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), usage, "no period"));
+  CHECK(fails(flaunay_take_to_places(NULL, places, 1), usage, "period") && report == NULL);
+  CHECK(remove(neighbors_path) == 0 && remove(offsets_path) == 0);
+  flaunay_periodic_destroy(expected);
+  free(neighbors), free(offsets), free(places), free(arrays.triangles), free(arrays.representatives);
+}
+
 static void test_chunks_in_files(void) {
   FILE* file = tmpfile();
   stored_mesh mesh = {.triangles = tmpfile(),
@@ -2900,6 +2957,7 @@ static void test_all(void) {
   test_relax_on_device();
   test_chunks_in_arrays();
   test_chunks_to_files();
+  test_chunks_with_a_period();
   test_chunks_in_files();
   test_progress_of_chunks();
   test_chunks_of_no_points();

@@ -28,6 +28,8 @@ std::int64_t read_some(int file, void* to, std::size_t bytes);
 std::int64_t write_some(int file, const void* data, std::size_t bytes);
 std::int64_t read_some_at(int file, std::uint64_t place, void* to, std::size_t bytes);
 std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std::size_t bytes);
+/// Leaves so many bytes of the file. Returns whether that is done.
+bool cut_file(int file, std::uint64_t bytes);
 
 /// Calls `part(done)`, which reads or writes some of the bytes after those that are done, until all are or no
 /// more come. Returns how many are done; if not all, errno is the reason, or 0 if no more came.

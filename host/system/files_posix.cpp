@@ -52,6 +52,8 @@ std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std:
   return ::pwrite(file, data, bytes, static_cast<off_t>(place));
 }
 
+bool cut_file(int file, std::uint64_t bytes) { return ::ftruncate(file, static_cast<off_t>(bytes)) == 0; }
+
 bool write_to_disk(int file) { return ::fsync(file) == 0; }
 
 bool write_folder_to_disk(const std::string& name) {

@@ -143,6 +143,12 @@ std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std:
   });
 }
 
+bool cut_file(int file, std::uint64_t bytes) {
+  FILE_END_OF_FILE_INFO end{};
+  end.EndOfFile.QuadPart = static_cast<LONGLONG>(bytes);
+  return succeeded(SetFileInformationByHandle(handle_of(file), FileEndOfFileInfo, &end, sizeof end));
+}
+
 bool write_to_disk(int file) { return succeeded(FlushFileBuffers(handle_of(file))); }
 
 // Only an administrator can do that for files that are closed.

@@ -25,7 +25,7 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
     const void* array;
   };
 #define PART(name) Part{#name, files.name, arrays.name},
-  const std::array parts = {FLAUNAY_MESH_ARRAYS(PART)};
+  const std::array parts = {FLAUNAY_MESH_ARRAYS(PART) PART(offsets)};
 #undef PART
   Paths paths;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -35,20 +35,23 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
                   fmt::format("{} are wanted in an array and in a file; only one of them is possible",
                               parts[k].name));
     }
-    paths[k] = parts[k].path;
-    io::check_ending(paths[k], ".npy");
+    io::check_ending(parts[k].path, ".npy");
+    if (k < paths.size()) paths[k] = parts[k].path;
   }
   return paths;
 }
 
 // Each part goes to its file, or else to its array.
 template <typename Index>
-class Results : public MeshSink {
+class Results : public PeriodicMeshSink {
  public:
   Results(const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files, std::uint64_t n,
           const std::string& scratch)
-      : paths_(to_paths(files, arrays)), files_(outputs_, paths_, kType), arrays_(to_arrays<Index>(arrays)) {
-    io::check_room(paths_, n, kType, scratch);
+      : paths_(to_paths(files, arrays)),
+        offsets_(files.offsets != nullptr ? files.offsets : ""),
+        files_(outputs_, paths_, kType, {}, offsets_),
+        arrays_(to_arrays<Index>(arrays), arrays.offsets) {
+    io::check_room(paths_, n, kType, scratch, offsets_);
   }
 
   bool wants(MeshArray array) const override { return files_.wants(array) || arrays_.wants(array); }
@@ -60,8 +63,14 @@ class Results : public MeshSink {
     sink_of(array).write_doubles(array, first, values, count);
   }
 
+  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
+    files_.write_offsets(first, offsets, count);
+    arrays_.write_offsets(first, offsets, count);
+  }
+
   // Gives the files their names, all or none.
-  void commit() {
+  void commit(std::uint64_t triangles) {
+    files_.keep_triangles(triangles);
     files_.finish();
     outputs_.commit();
   }
@@ -76,8 +85,9 @@ class Results : public MeshSink {
 
   io::Outputs outputs_;
   Paths paths_;
+  std::string offsets_;
   io::MeshFiles files_;
-  chunks::ArraySink<Index> arrays_;
+  chunks::PeriodicArraySink<Index> arrays_;
 };
 
 // Neighbours refer to triangles, of which there may be twice as many as points.
@@ -91,28 +101,39 @@ void check_index_type(std::uint64_t n, bool has_neighbors) {
 }
 
 template <typename Index>
-ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
+ChunkStatistics triangulate(PointSource& source, const Period* period, const flaunay_mesh_arrays& arrays,
                             const flaunay_mesh_files& files, const ChunkOptions& options) {
   // First what the input says: it has the same error on every disk.
   check_index_type<Index>(source.size(), arrays.neighbors != nullptr || files.neighbors != nullptr);
   Results<Index> results(arrays, files, source.size(), options.scratch);
-  ChunkStatistics statistics = triangulate_chunks(source, results, options);
-  results.commit();
+  ChunkStatistics statistics = period != nullptr
+                                   ? triangulate_periodic_chunks(source, *period, results, options)
+                                   : triangulate_chunks(source, results, options);
+  results.commit(statistics.triangles);
   return statistics;
 }
 
 }  // namespace
 
-ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
-                                     const flaunay_mesh_files& files, const ChunkOptions& options) {
+void refuse_offsets(const void* offsets) {
+  if (offsets != nullptr) throw Error(ErrorKind::usage, "offsets are wanted, but there is no period");
+}
+
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const Period* period,
+                                     const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files,
+                                     const ChunkOptions& options) {
   check_reserved(arrays, "flaunay_mesh_arrays");
   check_reserved(files, "flaunay_mesh_files");
+  if (period == nullptr) {
+    refuse_offsets(arrays.offsets);
+    refuse_offsets(files.offsets);
+  }
   StridedPoints source(points);
   switch (arrays.index_type) {
     case FLAUNAY_INT32:
-      return triangulate<std::int32_t>(source, arrays, files, options);
+      return triangulate<std::int32_t>(source, period, arrays, files, options);
     case FLAUNAY_INT64:
-      return triangulate<std::int64_t>(source, arrays, files, options);
+      return triangulate<std::int64_t>(source, period, arrays, files, options);
   }
   throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", arrays.index_type));
 }

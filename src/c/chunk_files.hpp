@@ -3,6 +3,7 @@
 
 #include "flaunay/chunks.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/periodic.hpp"
 #include "flaunay/result_arrays.hpp"
 
 namespace flaunay::c {
@@ -14,8 +15,11 @@ MeshArrays<Index> to_arrays(const flaunay_mesh_arrays& given) {
 #undef ARRAY
 }
 
-/// Does flaunay_triangulate_chunks_to_files.
-ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
-                                     const flaunay_mesh_files& files, const ChunkOptions& options);
+/// Does flaunay_triangulate_chunks_to_files, or, with a period, flaunay_triangulate_periodic_chunks.
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const Period* period,
+                                     const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files,
+                                     const ChunkOptions& options);
+/// Throws Error(usage) if offsets are wanted, which there are with a period alone.
+void refuse_offsets(const void* offsets);
 
 }  // namespace flaunay::c

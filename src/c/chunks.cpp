@@ -19,6 +19,7 @@
 using namespace flaunay;
 
 using c::create;
+using c::guarded;
 using c::read;
 using c::required;
 
@@ -47,6 +48,7 @@ struct flaunay_chunk_report {
     view.phase_count = phases.size();
     view.host_points = cpp.host_points;
     view.note = cpp.note.c_str();
+    view.images = cpp.images;
   }
   // The view refers to the other members.
   flaunay_chunk_report(const flaunay_chunk_report&) = delete;
@@ -93,6 +95,7 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
 ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const flaunay_mesh_arrays& results,
                             const ChunkOptions& options) {
   c::check_reserved(results, "flaunay_mesh_arrays");
+  c::refuse_offsets(results.offsets);
   switch (results.index_type) {
     case FLAUNAY_INT32:
       return triangulate_chunks(coordinates, n, c::to_arrays<std::int32_t>(results), options);
@@ -209,6 +212,17 @@ class CallersSink : public MeshSink {
   unsigned parts_ = FLAUNAY_PART_TRIANGLES;
 };
 
+std::unique_ptr<flaunay_chunk_report> to_files(const flaunay_strided_points* points, const Period* period,
+                                               const flaunay_mesh_arrays* arrays,
+                                               const flaunay_mesh_files* files,
+                                               const flaunay_chunk_options* options) {
+  const flaunay_mesh_arrays no_arrays{};
+  const flaunay_mesh_files no_files{};
+  return std::make_unique<flaunay_chunk_report>(
+      c::triangulate_to_files(required(points, "the points"), period, arrays != nullptr ? *arrays : no_arrays,
+                              files != nullptr ? *files : no_files, to_options(options)));
+}
+
 }  // namespace
 
 flaunay_status flaunay_triangulate_chunks(const double* coordinates, uint64_t n,
@@ -237,12 +251,26 @@ flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points*
                                                    const flaunay_mesh_files* files,
                                                    const flaunay_chunk_options* options,
                                                    flaunay_chunk_report** report) {
+  return create(report, [&] { return to_files(points, nullptr, arrays, files, options); });
+}
+
+flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points, double period_x,
+                                                   double period_y, const flaunay_mesh_arrays* arrays,
+                                                   const flaunay_mesh_files* files,
+                                                   const flaunay_chunk_options* options,
+                                                   flaunay_chunk_report** report) {
   return create(report, [&] {
-    const flaunay_mesh_arrays no_arrays{};
-    const flaunay_mesh_files no_files{};
-    return std::make_unique<flaunay_chunk_report>(
-        c::triangulate_to_files(required(points, "the points"), arrays != nullptr ? *arrays : no_arrays,
-                                files != nullptr ? *files : no_files, to_options(options)));
+    const Period period{period_x, period_y};
+    return to_files(points, &period, arrays, files, options);
+  });
+}
+
+flaunay_status flaunay_take_to_places(double* period, double* points, size_t n) {
+  return guarded([&] {
+    required(period, "the period");
+    const Period rounded = take_to_places({period[0], period[1]}, points, n);
+    period[0] = rounded.x;
+    period[1] = rounded.y;
   });
 }
 

@@ -245,27 +245,13 @@ std::optional<ChunkStatistics> triangulate_window(const Places& places, const Wi
   return statistics;
 }
 
-// Results are arrays in memory.
-template <typename Index>
-class PeriodicArrays : public chunks::ArraySink<Index, PeriodicMeshSink> {
- public:
-  PeriodicArrays(const MeshArrays<Index>& arrays, std::int8_t* offsets)
-      : chunks::ArraySink<Index, PeriodicMeshSink>(arrays), offsets_(offsets) {}
-  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
-    if (offsets_ != nullptr) std::copy_n(offsets, count, offsets_ + first);
-  }
-
- private:
-  std::int8_t* offsets_;
-};
-
 template <typename Index>
 ChunkStatistics triangulate_into(const double* coordinates, std::uint64_t n, const Period& period,
                                  const MeshArrays<Index>& results, std::int8_t* offsets,
                                  const ChunkOptions& options) {
   call::check_chunk_arrays(coordinates, n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
   ArrayPoints points(coordinates, n);
-  PeriodicArrays<Index> sink(results, offsets);
+  chunks::PeriodicArraySink<Index> sink(results, offsets);
   return triangulate_periodic_chunks(points, period, sink, options);
 }
 

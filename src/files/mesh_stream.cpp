@@ -12,6 +12,8 @@
 namespace flaunay::io {
 namespace {
 
+constexpr std::size_t kOffsetsPerTriangle = 6;
+
 std::size_t bytes_of(IndexType type) { return type == IndexType::int32 ? 4 : 8; }
 
 // How an array's elements are stored, if its indices have this type.
@@ -48,7 +50,7 @@ void check_stream_output(const std::string& path) {
 }
 
 void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
-                const std::optional<std::string>& scratch) {
+                const std::optional<std::string>& scratch, const std::string& offsets) {
   std::vector<SizedOutput> files;
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     visit_mesh_array(k, [&](const auto& row) {
@@ -56,6 +58,7 @@ void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
       files.push_back({paths[k], most_rows(row.row, n) * row.columns * stored_as(k, type).bytes});
     });
   }
+  files.push_back({offsets, most_rows(RowOf::triangle, n) * kOffsetsPerTriangle});
   // It may be on the same disk as an output.
   if (scratch) files.push_back({scratch_folder(*scratch), n * kScratchBytesPerPoint, true});
   check_disk_space(files);
@@ -65,13 +68,16 @@ SizedOutput scratch_output(std::uint64_t n, const std::string& scratch) {
   return {scratch_folder(scratch), n * kScratchBytesPerPoint, true};
 }
 
-MeshFiles::MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials)
+MeshFiles::MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials,
+                     const std::string& offsets)
     : type_(type) {
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     check_stream_output(paths[k]);
     if (paths[k].empty()) continue;
     files_[k].output = partials[k].empty() ? &outputs.open(paths[k]) : &outputs.join(paths[k], partials[k]);
   }
+  check_stream_output(offsets);
+  if (!offsets.empty()) offsets_.output = &outputs.open(offsets);
 }
 
 MeshFiles::Paths MeshFiles::partial_paths() const {
@@ -111,19 +117,42 @@ void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* 
   }
 }
 
+void MeshFiles::write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) {
+  if (offsets_.output == nullptr) return;
+  offsets_.entries = std::max(offsets_.entries, first + count);
+  offsets_.output->write_at(kNpyHeaderBytes + first, offsets, count);
+}
+
+void MeshFiles::keep_triangles(std::uint64_t triangles) {
+  for (std::size_t k = 0; k < kMeshArrays; ++k) {
+    visit_mesh_array(k, [&](const auto& row) {
+      if (row.row == RowOf::triangle) keep(files_[k], triangles * row.columns, stored_as(k, type_).bytes);
+    });
+  }
+  keep(offsets_, triangles * kOffsetsPerTriangle, 1);
+}
+
+void MeshFiles::keep(File& file, std::uint64_t entries, std::size_t bytes) {
+  if (file.entries <= entries) return;
+  file.entries = entries;
+  file.output->cut(kNpyHeaderBytes + entries * bytes);
+}
+
 void MeshFiles::extend(MeshArray array, std::uint64_t entries) {
   std::uint64_t& known = files_[static_cast<std::size_t>(array)].entries;
   known = std::max(known, entries);
 }
 
 void MeshFiles::finish() {
-  for (std::size_t k = 0; k < kMeshArrays; ++k) {
-    if (files_[k].output == nullptr) continue;
-    const std::size_t columns = columns_of(static_cast<MeshArray>(k));
-    const std::uint64_t rows = columns == 0 ? files_[k].entries : files_[k].entries / columns;
-    const std::string header = npy_header(stored_as(k, type_).descr, rows, columns);
-    files_[k].output->write_at(0, header.data(), header.size());
-  }
+  for (std::size_t k = 0; k < kMeshArrays; ++k)
+    finish(files_[k], stored_as(k, type_).descr, columns_of(static_cast<MeshArray>(k)));
+  finish(offsets_, "|i1", kOffsetsPerTriangle);
+}
+
+void MeshFiles::finish(const File& file, const char* descr, std::size_t columns) {
+  if (file.output == nullptr) return;
+  const std::string header = npy_header(descr, columns == 0 ? file.entries : file.entries / columns, columns);
+  file.output->write_at(0, header.data(), header.size());
 }
 
 }  // namespace flaunay::io

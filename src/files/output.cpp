@@ -112,6 +112,8 @@ void OutputFile::write_at(std::uint64_t place, const void* data, std::size_t byt
   check_written(system::write_at(descriptor_, place, data, bytes));
 }
 
+void OutputFile::cut(std::uint64_t bytes) { check_written(system::cut_file(descriptor_, bytes)); }
+
 void OutputFile::check_written(bool is_written) const {
   if (!is_written) fail(path_, "cannot be written: {}", system_reason(errno));
 }

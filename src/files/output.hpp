@@ -54,6 +54,8 @@ class OutputFile {
   /// Writes at a place of the file, counted in bytes from its beginning, whatever else is written. Only
   /// regular files have places.
   void write_at(std::uint64_t place, const void* data, std::size_t bytes);
+  /// Leaves so many bytes of a regular file.
+  void cut(std::uint64_t bytes);
   template <typename Value>
   void write_value(const Value& value) {
     write(&value, sizeof value);

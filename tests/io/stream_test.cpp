@@ -433,6 +433,27 @@ TEST_F(MeshStreamTest, NoRows) {
   EXPECT_TRUE(read_triangles(path("t.npy")).empty());
 }
 
+TEST_F(MeshStreamTest, WhatIsBeyondTheLastTriangleIsDropped) {
+  Outputs outputs;
+  MeshFiles files(outputs, paths(), IndexType::int32, {}, path("o.npy"));
+  const Wide values(90, 5);
+  const std::vector<double> areas(30, 0.5);
+  const std::vector<std::int8_t> offsets(180, -1);
+  for (const MeshArray array : {MeshArray::triangles, MeshArray::hull, MeshArray::representatives})
+    files.write(array, 0, values.data(), values.size());
+  files.write(MeshArray::neighbors, 0, values.data(), 60);
+  files.write_doubles(MeshArray::areas, 0, areas.data(), areas.size());
+  files.write_offsets(60, offsets.data(), 120);
+  files.write_offsets(0, offsets.data(), 60);
+  files.keep_triangles(20);
+  files.finish();
+  outputs.commit();
+  EXPECT_EQ(read(path("o.npy")), npy_header("|i1", 20, 6) + std::string(120, '\xff'));
+  for (const auto& [name, bytes] : {std::pair("t.npy", 240), {"n.npy", 240}, {"h.npy", 360}, {"a.npy", 160}})
+    EXPECT_EQ(read(path(name)).size(), kNpyHeaderBytes + static_cast<std::size_t>(bytes)) << name;
+  EXPECT_EQ(read(path("t.npy")).substr(0, kNpyHeaderBytes), npy_header("<i4", 20, 3));
+}
+
 TEST_F(MeshStreamTest, AnIndexThatIsTooLargeForItsFileIsAnError) {
   Outputs outputs;
   MeshFiles files(outputs, paths(), IndexType::int32);

@@ -318,9 +318,9 @@ typedef struct flaunay_chunk_options {
   flaunay_triangulator* const* triangulators;
   size_t triangulator_count;  ///< number of triangulators; 0: the devices above
   size_t chunk_points;        ///< points of a chunk; 0: as many as suit the devices
-  /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing" or
-  /// "triangulating"; round: the round of chunks, from 0; done: the finished share of the call, 0 to 1. If it
-  /// returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
+  /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing",
+  /// "triangulating", and with a period "images"; round: the round of chunks, from 0; done: the finished
+  /// share of the call, 0 to 1. If it returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
   int (*progress)(const char* stage, int round, double done, void* progress_data);
   void* progress_data;    ///< passed to progress unchanged
   uintptr_t reserved[8];  ///< 0
@@ -335,7 +335,8 @@ typedef struct flaunay_mesh_arrays {
   void* hull;             ///< room for n indices; NULL: not wanted
   void* representatives;  ///< room for n indices; NULL: not wanted
   double* areas;          ///< room for 2 n numbers; NULL: not wanted
-  uintptr_t reserved[3];  ///< 0
+  int8_t* offsets;        ///< with a period alone: room for 12 n numbers; NULL: not wanted
+  uintptr_t reserved[2];  ///< 0
 } flaunay_mesh_arrays;
 
 /// Points in memory, such as a part of a larger table. {0}: no points.
@@ -356,7 +357,8 @@ typedef struct flaunay_mesh_files {
   const char* hull;             ///< the path for an array of one dimension
   const char* representatives;  ///< the path for an array of one dimension
   const char* areas;            ///< the path for an array of one dimension
-  uintptr_t reserved[3];        ///< 0
+  const char* offsets;          ///< with a period alone: the path for an array of six columns of int8
+  uintptr_t reserved[2];        ///< 0
 } flaunay_mesh_files;
 
 /// Points that a function of the caller's reads in pieces. {0}: no points.
@@ -679,6 +681,7 @@ typedef struct flaunay_chunk_statistics {
   size_t phase_count;                   ///< number of phases
   uint64_t host_points;                 ///< points of the chunks that devices without fp64 left to the host
   const char* note;                     ///< as in flaunay_statistics; of such chunks, that of the first
+  uint64_t images;                      ///< with a period: images of points that were triangulated, too
 } flaunay_chunk_statistics;
 
 /// An OpenCL device.
@@ -1152,6 +1155,17 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
                                                                const flaunay_mesh_files* files,
                                                                const flaunay_chunk_options* options,
                                                                flaunay_chunk_report** report);
+/// flaunay_triangulate_chunks_to_files on a torus or a cylinder: triangles, neighbours and offsets are those
+/// of flaunay_periodic_create, and the representatives, too. There is no hull. Points are read at least three
+/// times; the images of those near the border are in memory, 48 bytes for each. Further errors:
+/// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
+FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(
+    const flaunay_strided_points* points, double period_x, double period_y, const flaunay_mesh_arrays* arrays,
+    const flaunay_mesh_files* files, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+/// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_periodic_create and
+/// flaunay_triangulate_periodic_chunks do. period: x and y, which become the rounded ones. Errors are
+/// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite. O(n).
+FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);
 /// What the call did and how long it took.

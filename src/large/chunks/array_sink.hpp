@@ -1,11 +1,13 @@
 // Results of a triangulation in chunks that are arrays in memory.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
 #include "flaunay/chunks.hpp"
+#include "flaunay/periodic.hpp"
 #include "flaunay/result_arrays.hpp"
 
 namespace flaunay::chunks {
@@ -46,6 +48,20 @@ class ArraySink : public Base {
   }
 
   MeshArrays<Index> arrays_;
+};
+
+/// With offsets; null: they are not wanted.
+template <typename Index>
+class PeriodicArraySink : public ArraySink<Index, PeriodicMeshSink> {
+ public:
+  PeriodicArraySink(const MeshArrays<Index>& arrays, std::int8_t* offsets)
+      : ArraySink<Index, PeriodicMeshSink>(arrays), offsets_(offsets) {}
+  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
+    if (offsets_ != nullptr) std::copy_n(offsets, count, offsets_ + first);
+  }
+
+ private:
+  std::int8_t* offsets_;
 };
 
 }  // namespace flaunay::chunks
