@@ -52,7 +52,7 @@ from flaunay._interpolate import (
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._periodic import PeriodicDelaunay, periodic
+from flaunay._periodic import PeriodicDelaunay, periodic, to_places
 from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
@@ -114,6 +114,7 @@ __all__ = [
     "relax_device",
     "spherical",
     "terrain",
+    "to_places",
     "triangle",
     "triangulate",
     "triangulate_chunks",

@@ -1124,12 +1124,23 @@ def _strided_points(points: FloatArray) -> _declarations.StridedPoints:
     )
 
 
+def take_to_places(period: tuple[float, float], places: _Doubles) -> tuple[float, float]:
+    """Takes points, which are contiguous, into the period. Returns that as it is rounded."""
+    lengths = np.array(period)
+    check(library.take_to_places(lengths.ctypes.data, places.ctypes.data, places.size // 2))
+    return float(lengths[0]), float(lengths[1])
+
+
 def triangulate_chunks(
-    points: FloatArray, wanted: dict[str, Optional[bytes]], wide: bool, chunks: Chunks
+    points: FloatArray,
+    wanted: dict[str, Optional[bytes]],
+    wide: bool,
+    period: Optional[tuple[float, float]],
+    chunks: Chunks,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
 
-    Returns the arrays in memory, and the statistics.
+    Returns the arrays in memory, and the statistics. Arrays are those of triangulations, and, with a period, `offsets`.
     """
     given, n = _strided_points(points), len(points)
     places = _declarations.MeshArrays(index_type=INDEX_TYPE["int64" if wide else "int32"])
@@ -1140,13 +1151,20 @@ def triangulate_chunks(
             setattr(files, name, path)
             continue
         # Room for as many rows as there may be. What is never written is never in memory.
-        dtype, row, columns, _ = TRIANGULATION[name]
-        shape = _shape(2 * n if row == "triangle" else n, columns)
-        arrays[name] = np.empty(shape, _INT64 if wide and dtype == _INT32 else dtype)
+        if name == "offsets":
+            arrays[name] = np.empty((2 * n, 6), np.int8)
+        else:
+            dtype, row, columns, _ = TRIANGULATION[name]
+            shape = _shape(2 * n if row == "triangle" else n, columns)
+            arrays[name] = np.empty(shape, _INT64 if wide and dtype == _INT32 else dtype)
         setattr(places, name, arrays[name].ctypes.data if n else None)
 
     def call(options: _declarations.ChunkOptions, report: Any) -> int:
-        return int(library.triangulate_chunks_to_files(given, places, files, options, report))
+        if period is None:
+            return int(library.triangulate_chunks_to_files(given, places, files, options, report))
+        return int(
+            library.triangulate_periodic_chunks(given, *period, places, files, options, report)
+        )
 
     statistics = chunks.run(call)
     counts = {
@@ -1154,7 +1172,8 @@ def triangulate_chunks(
         "hull_vertex": statistics["hull_vertices"],
         "point": statistics["points"],
     }
-    arrays = {name: array[: counts[TRIANGULATION[name][1]]] for name, array in arrays.items()}
+    rows = {name: row for name, (_, row, _, _) in TRIANGULATION.items()} | {"offsets": "triangle"}
+    arrays = {name: array[: counts[rows[name]]] for name, array in arrays.items()}
     if "hull" in arrays:
         # It had room for all points.
         arrays["hull"] = arrays["hull"].copy()

@@ -27,6 +27,7 @@ from flaunay._arrays import (
     summary,
 )
 from flaunay._errors import UsageError
+from flaunay._periodic import as_lengths
 
 Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
 Result = Union[None, bool, str, "os.PathLike[str]"]
@@ -64,10 +65,15 @@ class ChunkedTriangulation:
         asked for.
     areas : ndarray or memmap of float64, shape (m,), or None
         The area of each triangle, rounded to the nearest number. None if not asked for.
+    corner_offsets : ndarray or memmap of int8, shape (m, 3, 2), or None
+        As of `PeriodicDelaunay`. None without a period, and if not asked for.
+    period : tuple of float or None
+        The period, rounded as that of `PeriodicDelaunay`. `to_places` takes points to their places.
     statistics : dict
         The numbers of ``points``, ``duplicates``, ``triangles`` and ``hull_vertices``; the ``rounds``,
         each with its ``points``, ``chunks``, final ``triangles`` and points ``handed_on``; the
         ``devices``, each with the ``points`` of its chunks; ``phases``, ``seconds`` and others.
+        ``images``, with a period, is how many images of points were triangulated, too;
         ``host_points`` and ``note`` say what devices without double precision have left to the host.
     """
 
@@ -76,6 +82,8 @@ class ChunkedTriangulation:
     hull: Optional[Indices]
     representatives: Optional[Indices]
     areas: Optional[FloatArray]
+    corner_offsets: Optional[npt.NDArray[np.int8]]
+    period: Optional[tuple[float, float]]
     statistics: dict[str, Any]
 
     def __repr__(self) -> str:
@@ -183,6 +191,8 @@ def triangulate_chunks(
     hull: Result = None,
     representatives: Result = None,
     areas: Result = None,
+    corner_offsets: Result = None,
+    period: Optional[tuple[Optional[float], Optional[float]]] = None,
     memory: Union[None, int, str] = None,
     scratch: Union[None, str, os.PathLike[str]] = None,
     devices: Union[None, str, Sequence[str]] = None,
@@ -207,6 +217,11 @@ def triangulate_chunks(
         Where each array goes: to a file whose path ends in ``.npy``, or with True to an array in
         memory. None and False: it is not wanted. Either all files are written, or after an error none:
         what was there before stays. Without any, the call finds the numbers alone.
+    corner_offsets : path, bool or None
+        As those, with a period alone.
+    period : (float or None, float or None), optional
+        As of `periodic`: triangulates on a torus or a cylinder, with the triangles of that. There is no hull.
+        Images of points near the border are in memory, 48 bytes each.
     memory : int or str, optional
         Bytes that the call may use on the host, such as ``"4G"``; K, M, G and T are powers of 1024.
         What the system keeps of files, and arrays in memory, do not count. Without it, half of what is
@@ -224,8 +239,9 @@ def triangulate_chunks(
         twice as many triangles.
     progress : callable, optional
         Called from time to time, on the calling thread, as ``progress(stage, round, done)``, with
-        ``"sampling"``, ``"distributing"`` or ``"triangulating"``, the round of chunks, from 0, and the
-        finished share of the call, 0 to 1. An exception that it raises ends the call.
+        ``"images"`` (with a period alone), ``"sampling"``, ``"distributing"`` or ``"triangulating"``, the
+        round of chunks, from 0, and the finished share of the call, 0 to 1. An exception that it raises ends
+        the call.
 
     Returns
     -------
@@ -272,19 +288,28 @@ def triangulate_chunks(
     """
     given = locals()
     source = _as_source(points)
-    wanted = _as_wanted({name: given[name] for name in _declarations.MESH_ARRAYS}, points)
+    names = [*_declarations.MESH_ARRAYS, "corner_offsets"]
+    wanted = _as_wanted({name: given[name] for name in names}, points)
+    lengths = None if period is None else as_lengths(period)
+    if lengths is None and "corner_offsets" in wanted:
+        raise UsageError("corner_offsets are wanted, but there is no period")
     in_memory, statistics = _calls.triangulate_chunks(
         source,
-        {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
+        {
+            name.removeprefix("corner_"): None if path is None else os.fsencode(path)
+            for name, path in wanted.items()
+        },
         _is_wide(index, len(source), wanted),
+        lengths,
         chunks_of(memory, scratch, devices, chunk_points, progress),
     )
-    arrays: dict[str, Any] = dict.fromkeys(_declarations.MESH_ARRAYS)
-    arrays |= in_memory
+    arrays: dict[str, Any] = dict.fromkeys(names)
     for name, path in wanted.items():
-        if path is not None:
-            arrays[name] = np.load(path, mmap_mode="r")
-    return ChunkedTriangulation(**arrays, statistics=statistics)
+        stored = in_memory[name.removeprefix("corner_")] if path is None else np.load(path, mmap_mode="r")
+        arrays[name] = stored.reshape(-1, 3, 2) if name == "corner_offsets" else stored
+    if lengths is not None:
+        lengths = _calls.take_to_places(lengths, np.empty(0))
+    return ChunkedTriangulation(**arrays, period=lengths, statistics=statistics)
 
 
 @contextlib.contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, Optional
 
@@ -193,6 +194,51 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         return self._interpolate(values, _as_queries(xi))
 
 
+def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, float]:
+    """Two lengths; None is infinite."""
+    given = [np.inf if length is None else length for length in period]
+    lengths = np.asarray(as_floats(given, "period"), np.float64)
+    if lengths.shape != (2,):
+        raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
+    return float(lengths[0]), float(lengths[1])
+
+
+def to_places(
+    points: ArrayLike, period: tuple[Optional[float], Optional[float]]
+) -> npt.NDArray[np.float64]:
+    """Takes points into a period, as `periodic` and `triangulate_chunks` do.
+
+    Parameters
+    ----------
+    points : array_like, shape (..., 2)
+        Any points.
+    period : (float or None, float or None)
+        As of `periodic`.
+
+    Returns
+    -------
+    ndarray of float64, shape (..., 2)
+        As `PeriodicDelaunay.places`.
+
+    Raises
+    ------
+    UsageError, InputError
+        As of `periodic`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.to_places([[5, -1], [2.5, 7]], (2, None))
+    array([[ 1. , -1. ],
+           [ 0.5,  7. ]])
+    """
+    places = np.array(as_floats(points, "points"), np.float64, order="C")
+    if places.ndim == 0 or places.shape[-1] != 2:
+        raise UsageError(f"points must have the shape (..., 2), not {places.shape}")
+    _calls.take_to_places(as_lengths(period), places)
+    return places
+
+
 def periodic(
     points: ArrayLike,
     period: tuple[Optional[float], Optional[float]],
@@ -248,9 +294,6 @@ def periodic(
     given = np.asarray(as_floats(points, "points"), np.float64)
     if given.ndim != 2 or given.shape[1] != 2:
         raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
-    given_lengths = [np.inf if length is None else length for length in period]
-    lengths = np.asarray(as_floats(given_lengths, "period"), np.float64)
-    if lengths.shape != (2,):
-        raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
+    lengths = as_lengths(period)
     sets = None if offsets is None else as_offsets(offsets)
-    return PeriodicDelaunay(frozen(given.copy()), (float(lengths[0]), float(lengths[1])), sets, device)
+    return PeriodicDelaunay(frozen(given.copy()), lengths, sets, device)

@@ -518,3 +518,61 @@ def test_contours(scan):
     with pytest.raises(flaunay.UsageError, match="finite"):
         flaunay.contour_chunks(scan[:, :2], scan[:, 2], np.inf)
     assert len(flaunay.contour_chunks(np.empty((0, 2)), [], 1)) == 0
+
+
+def places_of_rows(triangles, corner_offsets, neighbors):
+    """Each triangle with its offsets, and those beyond its sides."""
+    rows = [
+        (*corners, *steps)
+        for corners, steps in zip(triangles.tolist(), corner_offsets.reshape(-1, 6).tolist())
+    ]
+    return {
+        row: tuple(rows[t] if t >= 0 else None for t in beyond)
+        for row, beyond in zip(rows, neighbors.tolist())
+    }
+
+
+@pytest.mark.parametrize("period", [(1, 0.7), (0.5, None)])
+@pytest.mark.parametrize("in_files", [False, True])
+def test_with_a_period(points, tmp_path, period, in_files):
+    names = ("triangles", "neighbors", "representatives", "areas", "corner_offsets")
+    results = {name: tmp_path / f"{name}.npy" if in_files else True for name in names}
+    mesh = flaunay.triangulate_chunks(points, **results, period=period, **SMALL)
+    expected = flaunay.periodic(points, period)
+    assert places_of_rows(mesh.triangles, mesh.corner_offsets, mesh.neighbors) == places_of_rows(
+        expected.simplices, expected.corner_offsets, expected.neighbors
+    )
+    assert np.array_equal(mesh.representatives, expected.representatives)
+    assert mesh.corner_offsets.shape == (expected.nsimplex, 3, 2)
+    assert mesh.corner_offsets.dtype == np.int8
+    assert mesh.areas.shape == (expected.nsimplex,)
+    assert mesh.period == expected.period
+    assert mesh.statistics["hull_vertices"] == 0 and mesh.statistics["images"] > 0
+    assert len(mesh.statistics["rounds"]) > 1
+    assert np.array_equal(flaunay.to_places(points, period), expected.places)
+
+
+def test_of_a_margin_that_was_too_small_the_files_end_in_time(random, tmp_path):
+    points = random.random((4000, 2)) * [0.3, 1]
+    results = {name: tmp_path / f"{name}.npy" for name in ("triangles", "corner_offsets")}
+    mesh = flaunay.triangulate_chunks(points, **results, period=(1, None), **SMALL)
+    assert mesh.statistics["triangles"] == 7998
+    assert os.path.getsize(results["triangles"]) == 128 + 7998 * 12
+    assert os.path.getsize(results["corner_offsets"]) == 128 + 7998 * 6
+
+
+def test_wrong_periods(points, tmp_path):
+    with pytest.raises(flaunay.UsageError, match="period"):
+        flaunay.triangulate_chunks(points, period=(1, 0))
+    with pytest.raises(flaunay.UsageError, match="two lengths"):
+        flaunay.triangulate_chunks(points, period=(1, 2, 3))
+    with pytest.raises(flaunay.UsageError, match="no period"):
+        flaunay.triangulate_chunks(points, corner_offsets=True)
+    with pytest.raises(flaunay.UsageError, match="hull"):
+        flaunay.triangulate_chunks(points, hull=tmp_path / "hull.npy", period=(1, 1))
+    with pytest.raises(flaunay.UsageError, match="shape"):
+        flaunay.to_places([1, 2, 3], (1, 1))
+    points[17] = np.nan
+    with pytest.raises(flaunay.InputError, match="point 17 is not finite"):
+        flaunay.triangulate_chunks(points, period=(1, 1))
+    assert os.listdir(tmp_path) == []
