@@ -187,6 +187,7 @@ TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
   refused("--sphere", "--period", {"--sphere", "--period", "1,1"});
   refused("--offsets", "--period", {"--offsets", "o.npy"});
   refused("--device", "one device", {"--sphere", "--device", "all"});
+  refused("--points", "in chunks", {"--period", "1,1", "--points", "p.npy", "--memory", "1G"});
   refused("--period", "1", {"--period", "1"});
   const std::string points = write("points.xy", "0 0\n1 0\n0 100\n");
   expect_error(kUsage, {"the period 0 x 1"}, {"triangulate", points, "--period", "0,1"});
@@ -1136,6 +1137,21 @@ TEST_F(CommandTriangulateTest, OtherSurfaces) {
   EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["triangles"], 6);
   run_well({"triangulate", points, "--period", "inf,4", "--triangles", path("t.npy"), "--quiet"});
   EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
+  // In chunks, with the same triangles and duplicates.
+  const auto triangulate = [&](Arguments arguments) {
+    arguments.insert(arguments.end(),
+                     {"--period", "3,inf", "--triangles", path("t.npy"), "--offsets", path("o.npy"),
+                      "--duplicates", path("d.npy"), "--stats", path("s.json"), "--quiet"});
+    arguments.insert(arguments.begin(), {"triangulate", data("ukraine.xy")});
+    run_well(arguments);
+    return std::pair(sorted_rows(path("t.npy")), contents(path("d.npy")));
+  };
+  const auto expected = triangulate({});
+  EXPECT_EQ(triangulate({"--chunk-points", "50", "--memory", "300M"}), expected);
+  EXPECT_NE(contents(path("o.npy")).find("|i1"), std::string::npos);
+  const auto chunks = nlohmann::json::parse(contents(path("s.json")))["chunks"];
+  EXPECT_GT(chunks["number"], 2);
+  EXPECT_GT(chunks["images"], 0);
   // A tetrahedron's corners.
   const std::string globe = write("globe.xy", "0 -20\n120 -20\n240 -20\n0 90\n");
   run_well({"triangulate", globe, "--sphere", "--triangles", path("t.npy"), "--quiet"});

@@ -36,7 +36,7 @@ std::vector<std::string> devices_of(const std::string& list) {
 }
 
 ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, PointSource& points,
-                                 MeshSink& files, Progress& progress) {
+                                 PeriodicMeshSink& files, Progress& progress) {
   ChunkOptions options;
   options.memory_bytes = request.memory_bytes;
   options.scratch = request.scratch;
@@ -45,7 +45,10 @@ ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, 
   options.progress = [&progress](const std::string& stage, int round, double done) {
     progress.update(round > 0 ? fmt::format("{}, round {}", stage, round + 1) : stage, -1, done);
   };
-  return naming_files({{"point", task.input}}, [&] { return triangulate_chunks(points, files, options); });
+  return naming_files({{"point", task.input}}, [&] {
+    return request.period ? triangulate_periodic_chunks(points, *request.period, files, options)
+                          : triangulate_chunks(points, files, options);
+  });
 }
 
 }  // namespace
@@ -129,7 +132,9 @@ int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const s
   OutputFiles outputs({task.input});
   announce(outputs, task.results);
   const auto paths = mesh_paths(task.results);
+  outputs.add(request.offsets, ".npy");
   for (const std::string& path : paths) io::check_stream_output(path);
+  io::check_stream_output(request.offsets);
 
   RunFacts facts;
   facts.input = task.input;
@@ -141,12 +146,16 @@ int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const s
   facts.reading_seconds = stopwatch.restart();
 
   const io::IndexType type = index_type(task.index, points->size(), task.results);
-  io::check_room(paths, points->size(), type, request.scratch);
-  io::MeshFiles files(outputs, paths, type);
+  io::check_room(paths, points->size(), type, request.scratch, request.offsets);
+  io::MeshFiles files(outputs, paths, type, {}, request.offsets);
   const ChunkStatistics statistics = triangulate_file(task, request, *points, files, progress);
 
   write_files(
-      task.results, facts, progress, outputs, [&] { files.finish(); },
+      task.results, facts, progress, outputs,
+      [&] {
+        files.keep_triangles(statistics.triangles);
+        files.finish();
+      },
       [&] { return chunk_statistics_json(statistics, facts); });
   if (!task.quiet) print(note + host_note(statistics.note) + chunk_summary(statistics, facts));
   return kSuccess;

@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/command/results.hpp"
 #include "flaunay/flaunay.hpp"
+#include "flaunay/periodic.hpp"
 
 namespace flaunay::cli {
 
@@ -17,6 +19,8 @@ struct ChunkRequest {
   std::uint64_t memory_bytes = 0;  ///< 0: the library's choice
   std::size_t chunk_points = 0;    ///< 0: the library's choice
   std::string scratch;
+  std::optional<Period> period;
+  std::string offsets;  ///< with a period, the file for those of corners
 };
 
 /// Adds --memory, --chunk-points and --scratch.

@@ -198,7 +198,8 @@ std::string chunk_statistics_json(const ChunkStatistics& statistics, const RunFa
                                                    {"handed_on", round.handed_on}};
                                          })},
                     {"devices", devices},
-                    {"host_points", statistics.host_points}};
+                    {"host_points", statistics.host_points},
+                    {"images", statistics.images}};
   json["note"] = text_or_null(statistics.note);
   return text_of(json);
 }

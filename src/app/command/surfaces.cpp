@@ -20,7 +20,8 @@ namespace {
 // On the sphere, and with a period also the others.
 const std::vector<std::string> kCommon = {"--triangles", "--neighbors", "--duplicates", "--stats",
                                           "--device",    "--index",     "--quiet"};
-const std::vector<std::string> kPeriodic = {"--period", "--offsets", "--points"};
+const std::vector<std::string> kPeriodic = {"--period", "--offsets",      "--points",
+                                            "--memory", "--chunk-points", "--scratch"};
 
 // What both surfaces have.
 template <typename Mesh>
@@ -60,8 +61,9 @@ bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
   if (!is_periodic && !request.is_sphere) return false;
   refuse_all_but(command, is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, kCommon);
-  if (asks_for_chunks(command, command.get_option("--device")->as<std::string>()))
-    refuse(command, "--device", "other surfaces than the plane need one device");
+  const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
+  if (in_chunks && request.is_sphere) refuse(command, "--device", "the sphere needs one device");
+  if (in_chunks) refuse(command, "--points", "a triangulation in chunks does not write places");
   return true;
 }
 

@@ -131,7 +131,8 @@ int triangulate(const TriangulateRequest& request) {
   if (request.weighted.is_weighted) return triangulate_weighted(request, request.weighted);
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
-  if (request.is_on_surface) return triangulate_surface(request, request.surface, request.constraints.points);
+  if (request.is_on_surface && !request.in_chunks)
+    return triangulate_surface(request, request.surface, request.constraints.points);
   if (request.in_chunks) return triangulate_in_chunks(request, request.chunks, "");
   if (request.has_constraints) return triangulate_with_constraints(request, request.constraints);
   OutputFiles outputs({request.input});
@@ -233,9 +234,13 @@ void add_triangulate(CLI::App& app, Action& action) {
     check_combination(*command, *request);
     request->is_on_surface = asks_for_surface(*command, request->surface);
     action = [request] { return triangulate(*request); };
+    request->in_chunks = asks_for_chunks(*command, request->device);
+    if (request->is_on_surface && request->in_chunks) {
+      request->chunks.period = Period{request->surface.period[0], request->surface.period[1]};
+      request->chunks.offsets = request->surface.offsets;
+    }
     if (request->is_on_surface || asks_for_weighted(*command, request->weighted)) return;
     request->has_constraints = has_constraints(*command, request->input, request->constraints);
-    request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->in_chunks && request->has_constraints)
       refuse(*command, "--device", "constraints need one device");
     if (request->in_chunks) check_chunk_options(*command, to_string(request->mode));
