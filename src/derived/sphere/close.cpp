@@ -209,11 +209,21 @@ void append(const std::vector<Corners>& triangles, std::size_t first, SphericalT
   }
   mesh.neighbors.resize(mesh.triangles.size(), -1);
   std::vector<OpenEdge> open;
-  for (std::size_t c = 3 * first; c < mesh.triangles.size(); ++c) {
-    if (mesh.neighbors[c] >= 0) continue;
-    const std::size_t t = c / 3 * 3;
-    const std::int32_t a = mesh.triangles[t + (c + 1) % 3], b = mesh.triangles[t + (c + 2) % 3];
-    open.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(c)});
+  const auto add_open = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (mesh.neighbors[c] >= 0) continue;
+      const std::size_t t = c / 3 * 3;
+      const std::int32_t a = mesh.triangles[t + (c + 1) % 3], b = mesh.triangles[t + (c + 2) % 3];
+      open.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(c)});
+    }
+  };
+  // Few edges are open: most runs have none, and only these have no number below 0.
+  constexpr std::size_t kRun = 192;
+  for (std::size_t begin = 3 * first; begin < mesh.neighbors.size(); begin += kRun) {
+    const std::size_t end = std::min(begin + kRun, mesh.neighbors.size());
+    std::int32_t signs = 0;
+    for (std::size_t c = begin; c < end; ++c) signs |= mesh.neighbors[c];
+    if (signs < 0) add_open(begin, end);
   }
   const auto ends = [](const OpenEdge& e) { return std::pair(e.low, e.high); };
   std::sort(open.begin(), open.end(),

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "arithmetic/exact_arithmetic.h"
+#include "geometry/sort.hpp"
 
 namespace flaunay::sphere {
 namespace {
@@ -25,20 +27,21 @@ Point rounded_place(double x, double y) {
   return {rounded(x), rounded(y)};
 }
 
-Point place_of_direction(const double* p) {
-  double x = p[0], y = p[1], z = p[2];
-  const double most = std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
-  if (!(most > 0x1p-200 && most < 0x1p200)) {
-    // So that squares neither overflow nor vanish.
-    const int exponent = -std::ilogb(most);
-    x = std::ldexp(x, exponent);
-    y = std::ldexp(y, exponent);
-    z = std::ldexp(z, exponent);
-  }
+// Of a vector whose squares neither overflow nor vanish.
+Point place_of_vector(double x, double y, double z) {
   const double across = x * x + y * y, length = std::sqrt(across + z * z);
-  // In the south without a difference of nearly equal numbers.
-  const double factor = z >= 0 ? 1 / (length + z) : (length - z) / across;
+  // In the south without a difference of nearly equal numbers. Without a branch, as half of all points are
+  // there.
+  const double above = z >= 0 ? 1 : length - z, below = z >= 0 ? length + z : across;
+  const double factor = above / below;
   return rounded_place(x * factor, y * factor);
+}
+
+Point place_of_direction(const double* p) {
+  const double most = std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+  if (most > 0x1p-200 && most < 0x1p200) return place_of_vector(p[0], p[1], p[2]);
+  const int exponent = -std::ilogb(most);
+  return place_of_vector(std::ldexp(p[0], exponent), std::ldexp(p[1], exponent), std::ldexp(p[2], exponent));
 }
 
 struct Turn {
@@ -86,18 +89,22 @@ Point place_of_degrees(const double* p) {
   return rounded_place(radius * longitude.cosine, radius * longitude.sine);
 }
 
-void check(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what) {
-  const std::size_t width = width_of(coordinates);
-  if (!std::all_of(p, p + width, [](double x) { return std::isfinite(x); })) {
+// Whether a point is none.
+bool is_wrong(const double* p, SphereCoordinates coordinates) {
+  if (coordinates == SphereCoordinates::degrees) return !(std::isfinite(p[0]) && std::fabs(p[1]) <= 90);
+  const bool is_zero = p[0] == 0 && p[1] == 0 && p[2] == 0;
+  return is_zero || !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+}
+
+[[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what) {
+  if (!std::all_of(p, p + width_of(coordinates), [](double x) { return std::isfinite(x); })) {
     throw Error(ErrorKind::input, fmt::format("{} {} is not finite", what, i));
   }
-  if (coordinates == SphereCoordinates::degrees && std::fabs(p[1]) > 90) {
+  if (coordinates == SphereCoordinates::degrees) {
     throw Error(ErrorKind::input,
                 fmt::format("{} {}: the latitude {} is not between -90 and 90", what, i, p[1]));
   }
-  if (coordinates == SphereCoordinates::directions && p[0] == 0 && p[1] == 0 && p[2] == 0) {
-    throw Error(ErrorKind::input, fmt::format("{} {} is the vector 0, which has no direction", what, i));
-  }
+  throw Error(ErrorKind::input, fmt::format("{} {} is the vector 0, which has no direction", what, i));
 }
 
 }  // namespace
@@ -110,17 +117,34 @@ Direction direction_of(Point place) {
 
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what) {
-  std::vector<double> places(2 * n);
+  std::vector<double> places;
+  runtime.resize(places, 2 * n);
   const std::size_t width = width_of(coordinates);
   for_each(runtime, n, [&](std::size_t i) {
     const double* const p = points + width * i;
-    check(p, i, coordinates, what);
+    if (is_wrong(p, coordinates)) refuse(p, i, coordinates, what);
     const Point place =
         coordinates == SphereCoordinates::directions ? place_of_direction(p) : place_of_degrees(p);
     places[2 * i] = place.x;
     places[2 * i + 1] = place.y;
   });
   return places;
+}
+
+std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places) {
+  // The lower half of the octahedron is folded out over the corners of the upper one's square.
+  std::vector<Point> unfolded(places.size() / 2);
+  for_each(runtime, unfolded.size(), [&](std::size_t i) {
+    const Direction d = direction_of(place_at(places, i));
+    const double length = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+    const double x = d.x / length, y = d.y / length;
+    unfolded[i] = d.z >= 0 ? Point{x, y}
+                           : Point{std::copysign(1 - std::fabs(y), x), std::copysign(1 - std::fabs(x), y)};
+  });
+  std::vector<std::int32_t> order(unfolded.size());
+  std::iota(order.begin(), order.end(), 0);
+  geometry::sort_by_place(order, [&](std::int32_t i) { return unfolded[static_cast<std::size_t>(i)]; });
+  return order;
 }
 
 }  // namespace flaunay::sphere

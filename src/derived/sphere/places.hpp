@@ -24,17 +24,6 @@ inline Point place_at(const std::vector<double>& places, std::size_t i) {
   return {places[2 * i], places[2 * i + 1]};
 }
 
-/// The points that have a place in the plane.
-struct Plane {
-  const std::vector<double>* all = nullptr;  ///< of the sphere, if none is at the pole
-  std::vector<double> some;
-  std::vector<std::size_t> offsets;
-  std::vector<std::int32_t> points;              ///< per place; empty if all points have one
-  std::vector<std::vector<std::int32_t>> poles;  ///< per set, the points at the south pole
-
-  const std::vector<double>& places() const { return all != nullptr ? *all : some; }
-};
-
 /// A vector in space.
 struct Direction {
   double x, y, z;
@@ -59,5 +48,9 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
 /// rounds correctly. Throws Error(input), with what: the name of a point, for those that are none.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
+
+/// Returns the numbers of places in an order in which those of near points of the sphere are near each other:
+/// along a curve that fills the octahedron to which it is unfolded. O(n).
+std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places);
 
 }  // namespace flaunay::sphere
