@@ -26,8 +26,7 @@ std::vector<double> places_of(call::Implementation& self, const double* points, 
                               SphereCoordinates coordinates, const char* what) {
   return call::take_turn(self, [&] {
     call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
-    call::expect(coordinates == SphereCoordinates::directions || coordinates == SphereCoordinates::degrees,
-                 "coordinates of a sphere are directions or degrees");
+    sphere::check(coordinates);
     return sphere::to_places(self.native().runtime, points, n, coordinates, what);
   });
 }
@@ -42,6 +41,28 @@ void append(const Triangulation& planar, std::size_t set, SphericalTriangulation
   }
 }
 
+// The edges of triangles, from `first` on, without a triangle beyond, numbered from there.
+std::vector<sphere::OpenEdge> open_edges(const SphericalTriangulation& mesh, std::size_t first) {
+  std::vector<sphere::OpenEdge> open;
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (mesh.neighbors[c] >= 0) continue;
+      const std::size_t t = c / 3 * 3;
+      open.push_back({mesh.triangles[t + (c + 1) % 3], mesh.triangles[t + (c + 2) % 3],
+                      static_cast<std::int32_t>(c - 3 * first)});
+    }
+  };
+  // They are few: most runs have none, and only these have no number below 0.
+  constexpr std::size_t kCorners = 192;
+  for (std::size_t begin = 3 * first; begin < mesh.neighbors.size(); begin += kCorners) {
+    const std::size_t end = std::min(begin + kCorners, mesh.neighbors.size());
+    std::int32_t signs = 0;
+    for (std::size_t c = begin; c < end; ++c) signs |= mesh.neighbors[c];
+    if (signs < 0) add(begin, end);
+  }
+  return open;
+}
+
 SphericalTriangulation close_all(const Plane& plane, Triangulation planar, SphericalTriangulation mesh) {
   mesh.triangle_offsets = {0};
   const std::size_t sets = plane.poles.size(), most = 3 * mesh.places.size();  // corners
@@ -54,10 +75,20 @@ SphericalTriangulation close_all(const Plane& plane, Triangulation planar, Spher
   for (std::size_t s = 0; s < sets; ++s) {
     const std::size_t first = mesh.triangle_offsets.back();
     if (sets > 1) append(planar, s, mesh);
-    sphere::close(
-        {planar.hull.data() + planar.hull_offsets[s], planar.hull_offsets[s + 1] - planar.hull_offsets[s],
-         first, mesh.triangles.size() / 3, plane.poles[s].empty() ? -1 : plane.poles[s].front()},
-        mesh);
+    sphere::PlanarSet set{{planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s]),
+                           planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s + 1])},
+                          {},
+                          plane.poles[s].empty() ? -1 : plane.poles[s].front()};
+    for (const std::int32_t v : set.hull)
+      set.places.push_back(sphere::place_at(mesh.places, static_cast<std::size_t>(v)));
+    const sphere::Cap cap = sphere::close(set, open_edges(mesh, first), mesh.triangles.size() / 3 - first);
+    for (const auto& corners : cap.triangles)
+      mesh.triangles.insert(mesh.triangles.end(), corners.begin(), corners.end());
+    mesh.neighbors.resize(mesh.triangles.size(), -1);
+    for (const sphere::Cap::Link& link : cap.links) {
+      mesh.neighbors[3 * first + static_cast<std::size_t>(link.at)] =
+          static_cast<std::int32_t>(first) + link.beyond;
+    }
     mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
   }
   mesh.representatives = std::move(planar.representatives);
@@ -100,12 +131,7 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
                                           const std::vector<std::size_t>& offsets,
                                           SphereCoordinates coordinates) {
   geometry::check_offsets(offsets);
-  // The sphere has twice as many triangles as points.
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
-  if (offsets.back() > kMost) {
-    throw Error(ErrorKind::input,
-                "the sphere has too many points: at most " + std::to_string(kMost) + " are possible");
-  }
+  sphere::check_count(offsets.back());
   SphericalTriangulation mesh;
   mesh.places = places_of(TriangulatorAccess::implementation(triangulator), points, offsets.back(),
                           coordinates, "point");

@@ -1,4 +1,4 @@
-// Points of the unit sphere as places in a plane: the stereographic projection from the south pole.
+// Points of the unit sphere as places in a plane, and directions of these.
 #pragma once
 
 #include <cmath>
@@ -14,9 +14,6 @@ namespace flaunay::sphere {
 
 using geometry::for_each;
 using geometry::Point;
-
-/// Places are multiples of 2^-65, and below 2^62: what would be farther is the south pole.
-constexpr int kFinestExponent = -65, kLargestExponent = 62;
 
 inline bool is_pole(Point place) { return std::isinf(place.x); }
 inline Point pole() { return {HUGE_VAL, HUGE_VAL}; }
@@ -44,8 +41,14 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
   return coordinates == SphereCoordinates::directions ? 3 : 2;
 }
 
-/// Returns x and y per point. The result is the same on every machine: it is made of operations that IEEE 754
-/// rounds correctly. Throws Error(input), with what: the name of a point, for those that are none.
+/// Throws Error(usage) for a kind of coordinates that there is not.
+void check(SphereCoordinates coordinates);
+/// Throws Error(input) for more points than have triangles whose corners can be numbered.
+void check_count(std::size_t n);
+/// Throws Error(input) for what is no point. what: its name.
+[[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what);
+
+/// Returns x and y per point, as sphere/places.h says. Throws Error(input) for those that are none.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
 
