@@ -1315,9 +1315,7 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
   const std::vector<std::int32_t> segments = {0, 1, 2, 3};
   const Triangulation expected = expected_of(coordinates, {0, n});
   Triangulator kept(embedder().context(), embedder().device());
-  const char* const tuning = std::getenv("FLAUNAY_TUNING");
-  const bool uses_buffers_again =
-      kept.device().type == "GPU" || (tuning != nullptr && std::string(tuning).rfind("gpu", 0) == 0);
+  const bool uses_buffers_again = has_gpu_sizes(kept);
   const auto attack = [&](const char* what, const std::function<void()>& work) {
     bool is_over = false;
     std::size_t errors = 0;
