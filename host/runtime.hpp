@@ -217,11 +217,11 @@ class Runtime {
     return view_by(values, count, &Runtime::write_later<T>);
   }
   /// Makes a vector this long, for output(). New memory is in huge pages; if kernels run natively, their
-  /// threads share the work that the system has with it.
+  /// threads share the work that the system has with it. room: for how many new memory is.
   template <typename T>
-  void resize(std::vector<T>& values, std::size_t size) {
+  void resize(std::vector<T>& values, std::size_t size, std::size_t room = 0) {
     if (size > values.capacity()) {
-      values.reserve(size);
+      values.reserve(std::max(size, room));
       touch_new(values.data() + values.size(), (size - values.size()) * sizeof(T));
     }
     values.resize(size);

@@ -1959,6 +1959,46 @@ static void test_queries_with_constraints(void) {
   flaunay_constrained_destroy(result);
 }
 
+static void test_sphere_on_device(void) {
+  // Two sets, of which the second has a point at the south pole if they begin with the second point.
+  const double places[] = {0, 0, 120, 0, 240, 0, 0, 90, 10, -40, 50, -90};
+  const size_t sets[] = {0, 3, 5};
+  flaunay_device_points given = {
+      .memory = make_buffer(context, sizeof places, places), .count = 5, .offsets = sets, .sets = 2};
+  const flaunay_enqueue enqueue = {.queue = queue};
+  flaunay_spherical* host = NULL;
+  flaunay_device_spherical* spherical = NULL;
+  REQUIRE(flaunay_device_spherical_create(&spherical) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_spherical_triangle_count(spherical) == 0);
+  cl_mem own = make_buffer(context, 24 * 5, NULL);
+  CHECK(flaunay_device_spherical_set_buffer(spherical, FLAUNAY_SPHERICAL_TRIANGLES, own) == FLAUNAY_SUCCESS);
+  for (size_t first = 0; first < 2; ++first) {
+    given.first = first;
+    REQUIRE(flaunay_spherical_create(triangulator, places + 2 * first, 5, sets, 2, FLAUNAY_SPHERE_DEGREES,
+                                     &host) == FLAUNAY_SUCCESS);
+    REQUIRE(flaunay_spherical_compute_device(triangulator, &given, FLAUNAY_SPHERE_DEGREES, &enqueue,
+                                             spherical) == FLAUNAY_SUCCESS);
+    const size_t triangles = flaunay_spherical_triangle_count(host);
+    REQUIRE(flaunay_device_spherical_triangle_count(spherical) == triangles && triangles == 2);
+    CHECK(flaunay_device_spherical_triangle_offsets(spherical)[2] == triangles);
+    CHECK(flaunay_device_spherical_buffer(spherical, FLAUNAY_SPHERICAL_TRIANGLES) == own);
+    int32_t corners[6], neighbors[6];
+    clEnqueueReadBuffer(queue, own, CL_TRUE, 0, sizeof corners, corners, 0, NULL, NULL);
+    clEnqueueReadBuffer(queue, flaunay_device_spherical_buffer(spherical, FLAUNAY_SPHERICAL_NEIGHBORS),
+                        CL_TRUE, 0, sizeof neighbors, neighbors, 0, NULL, NULL);
+    CHECK(memcmp(corners, flaunay_spherical_triangles(host), sizeof corners) == 0);
+    CHECK(memcmp(neighbors, flaunay_spherical_neighbors(host), sizeof neighbors) == 0);
+    flaunay_spherical_destroy(host);
+  }
+  CHECK(fails(
+      flaunay_spherical_compute_device(triangulator, &given, FLAUNAY_SPHERE_DIRECTIONS, &enqueue, spherical),
+      FLAUNAY_ERROR_USAGE, "too small"));
+  CHECK(fails(flaunay_device_spherical_set_buffer(spherical, 16, own), FLAUNAY_ERROR_USAGE, "16"));
+  flaunay_device_spherical_destroy(spherical);
+  clReleaseMemObject(given.memory);
+  clReleaseMemObject(own);
+}
+
 static void test_derived_on_device(void) {
   flaunay_triangulation* mesh = NULL;
   REQUIRE(flaunay_triangulate(triangulator, kSquare, 4, NULL, 1, NULL, &mesh) == FLAUNAY_SUCCESS);
@@ -2954,6 +2994,7 @@ static void test_all(void) {
   test_point_tree();
   test_queries_with_constraints();
   test_derived_on_device();
+  test_sphere_on_device();
   test_relax_on_device();
   test_chunks_in_arrays();
   test_chunks_to_files();

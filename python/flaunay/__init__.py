@@ -34,6 +34,7 @@ from flaunay._chunks import (
 from flaunay._constrained import ConstrainedTriangulation
 from flaunay._delaunay import Delaunay
 from flaunay._device_queries import DeviceLocator
+from flaunay._device_sphere import DeviceSpherical, spherical_device
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi, relax_device
 from flaunay._dynamic import (
     Changes,
@@ -78,6 +79,7 @@ __all__ = [
     "DeviceError",
     "DeviceLocator",
     "DeviceRows",
+    "DeviceSpherical",
     "DeviceTriangulation",
     "DeviceVoronoi",
     "DynamicTriangulation",
@@ -113,6 +115,7 @@ __all__ = [
     "relax",
     "relax_device",
     "spherical",
+    "spherical_device",
     "terrain",
     "to_places",
     "triangle",

@@ -57,6 +57,7 @@ _ADDRESSES = operator.attrgetter(*TRIANGULATION)
 _CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
 _VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
 _CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
+_SPHERICAL = _arrays(_declarations.SPHERICAL_ARRAYS)
 
 
 # ---- Arrays
@@ -901,21 +902,14 @@ class _DeviceArrays(DeviceHandle):
     _parts: dict[str, int]
     _table: _Arrays
 
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: DevicePoints,
-        mesh: DeviceTriangulation,
-        *given: Any,
-    ) -> None:
-        """Computes from a triangulation of points, what else is given, and at last an `Enqueue`."""
+    def __init__(self, triangulator: Triangulator, points: DevicePoints, *given: Any) -> None:
+        """Computes from points, what else is given, and at last an `Enqueue`."""
         super().__init__()
         check(self._create(self.place))
         *others, enqueue = given
         triangulator.call(
             self._compute,
-            *(triangulator.pointer, points.struct, mesh.pointer, *others),
-            *(enqueue.struct, self.pointer),
+            *(triangulator.pointer, points.struct, *others, enqueue.struct, self.pointer),
         )
 
     def arrays(self, **counts: int) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
@@ -940,6 +934,15 @@ class DeviceVoronoi(_DeviceArrays):
     _compute, _buffer = library.voronoi_compute_device, library.device_voronoi_buffer
     _parts, _table = _declarations.VORONOI_PART, _VORONOI
 
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: DevicePoints,
+        mesh: DeviceTriangulation,
+        enqueue: Enqueue,
+    ) -> None:
+        super().__init__(triangulator, points, mesh.pointer, enqueue)
+
 
 class DeviceClippedVoronoi(_DeviceArrays):
     """Cells in device memory, clipped to a polygon with corners."""
@@ -958,11 +961,28 @@ class DeviceClippedVoronoi(_DeviceArrays):
         enqueue: Enqueue,
     ) -> None:
         corners = _as_doubles(corners)
-        super().__init__(triangulator, points, mesh, corners, len(corners), enqueue)
+        super().__init__(triangulator, points, mesh.pointer, corners, len(corners), enqueue)
 
     @property
     def vertex_count(self) -> int:
         return cast(int, library.device_clipped_voronoi_vertex_count(self.pointer))
+
+
+class DeviceSpherical(_DeviceArrays):
+    """Triangulations of points on a sphere, of 2 or 3 coordinates, in device memory."""
+
+    _create, _destroy = library.device_spherical_create, library.device_spherical_destroy
+    _compute, _buffer = library.spherical_compute_device, library.device_spherical_buffer
+    _parts, _table = _declarations.SPHERICAL_PART, _SPHERICAL
+
+    def __init__(
+        self, triangulator: Triangulator, points: DevicePoints, width: int, enqueue: Enqueue
+    ) -> None:
+        super().__init__(triangulator, points, _sphere_coordinates(width), enqueue)
+        offsets = library.device_spherical_triangle_offsets(self.pointer)
+        sets = points.struct.sets or 1
+        # A copy: the caller keeps the offsets for longer than the buffers.
+        self.triangle_offsets = _view(self, offsets, (sets + 1,), _INT64).copy()
 
 
 def relax_device(
@@ -1573,8 +1593,8 @@ class DeviceLocator(_Locator):
 # ---- Points on a sphere
 
 
-def _sphere_coordinates(points: _Doubles) -> int:
-    return int(_declarations.SPHERE_COORDINATES["degrees" if points.shape[1] == 2 else "directions"])
+def _sphere_coordinates(width: int) -> int:
+    return int(_declarations.SPHERE_COORDINATES["degrees" if width == 2 else "directions"])
 
 
 def _named_arrays(
@@ -1604,7 +1624,7 @@ class Spherical(Handle):
         offsets, sets = _as_offsets(given_offsets, n)
         triangulator.call(
             library.spherical_create,
-            *(triangulator.pointer, points, n, offsets, sets, _sphere_coordinates(points), self.place),
+            *(triangulator.pointer, points, n, offsets, sets, _sphere_coordinates(points.shape[1]), self.place),
         )
         self.point_count, self._sets = n, sets or 1
 
@@ -1628,7 +1648,7 @@ class Spherical(Handle):
         points = _as_doubles(points)
         triangulator.call(
             library.spherical_verify,
-            *(triangulator.pointer, self.pointer, points, _sphere_coordinates(points)),
+            *(triangulator.pointer, self.pointer, points, _sphere_coordinates(points.shape[1])),
         )
 
     def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
@@ -1697,7 +1717,7 @@ class SphericalLocator(SurfaceLocator):
     _name, _destroy = "spherical", library.spherical_locator_destroy
 
     def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
-        return (_sphere_coordinates(queries),)
+        return (_sphere_coordinates(queries.shape[1]),)
 
 
 # ---- Points on a torus or a cylinder

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -51,7 +51,7 @@ def _check_contiguous(array: pyopencl.array.Array, name: str) -> None:
 
 def _first_point(points: pyopencl.array.Array, name: str) -> int:
     """How many points precede a view's in its buffer."""
-    bytes_per_point = 2 * points.dtype.itemsize
+    bytes_per_point = int(points.shape[1]) * points.dtype.itemsize
     if points.offset % bytes_per_point:
         raise UsageError(
             f"{name} begin {points.offset} bytes after their buffer's begin, which is no multiple of a "
@@ -60,14 +60,15 @@ def _first_point(points: pyopencl.array.Array, name: str) -> int:
     return int(points.offset // bytes_per_point)
 
 
-def _check_points(points: Any, name: str) -> None:
+def _check_points(points: Any, name: str, widths: Sequence[int]) -> None:
     if not isinstance(points, import_pyopencl().array.Array):
         raise TypeError(
             f"{name} must be a pyopencl.array.Array, not {type(points).__name__}; of a pyopencl.Buffer, "
             "take Array(queue, (n, 2), numpy.float64, data=buffer)"
         )
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise UsageError(f"{name} must have the shape (n, 2), not {points.shape}")
+    if points.ndim != 2 or points.shape[1] not in widths:
+        shapes = " or ".join(f"(n, {width})" for width in widths)
+        raise UsageError(f"{name} must have the shape {shapes}, not {points.shape}")
     if points.dtype not in _COORDINATES:
         raise UsageError(f"{name} in device memory must be float64 or float32, not {points.dtype}")
     _check_contiguous(points, name)
@@ -120,9 +121,11 @@ class DeviceCall:
         """Makes the call wait for what these arrays wait for, and these know the call's event."""
         self._arrays += [array for array in arrays if array is not None]
 
-    def points(self, points: Any, offsets: Offsets, name: str) -> _calls.DevicePoints:
-        """Points as the library takes them."""
-        _check_points(points, name)
+    def points(
+        self, points: Any, offsets: Offsets, name: str, widths: Sequence[int] = (2,)
+    ) -> _calls.DevicePoints:
+        """Points as the library takes them. widths: how many coordinates a point may have."""
+        _check_points(points, name, widths)
         self.reads(points)
         place = (
             _handle(points),

@@ -2,6 +2,7 @@
 #include "flaunay/sphere.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ struct flaunay_spherical_voronoi {
   SphericalVoronoi cpp;
 };
 
+struct flaunay_device_spherical {
+  DeviceSphericalTriangulation cpp;
+};
+
 struct flaunay_spherical_locator {
   SphereLocator cpp;
 };
@@ -36,6 +41,14 @@ static_assert(FLAUNAY_SPHERE_DIRECTIONS == static_cast<int>(SphereCoordinates::d
 
 SphereCoordinates to_coordinates(int given) {
   return c::to_enum<SphereCoordinates>(given, FLAUNAY_SPHERE_DEGREES, "flaunay_sphere_coordinates");
+}
+
+template <typename Result>
+auto& buffer_of(Result& spherical, unsigned part) {
+#define BUFFER(type, name, ...) &DeviceSphericalTriangulation::name,
+  static constexpr std::array kBuffers = {FLAUNAY_SPHERICAL_ARRAYS(BUFFER)};
+#undef BUFFER
+  return c::buffer_of(spherical, kBuffers, part, "a triangulation on the sphere");
 }
 
 // Answers queries by answer(locator, coordinates) into the caller's array.
@@ -91,6 +104,30 @@ flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
     const std::string problem =
         verify_sphere(cpp, points, mesh.point_offsets, to_coordinates(coordinates), mesh);
     if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+  });
+}
+
+FLAUNAY_DEVICE_RESULT(spherical, "the triangulation")
+
+size_t flaunay_device_spherical_triangle_count(const flaunay_device_spherical* spherical) {
+  return read(spherical, [](const auto& handle) {
+    return handle.cpp.triangle_offsets.empty() ? 0 : handle.cpp.triangle_offsets.back();
+  });
+}
+
+const size_t* flaunay_device_spherical_triangle_offsets(const flaunay_device_spherical* spherical) {
+  return read(spherical, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
+}
+
+flaunay_status flaunay_spherical_compute_device(flaunay_triangulator* triangulator,
+                                                const flaunay_device_points* points, int coordinates,
+                                                const flaunay_enqueue* enqueue,
+                                                flaunay_device_spherical* result) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    triangulate_sphere(cpp, c::to_points(points), to_coordinates(coordinates),
+                       required(result, "the result").cpp, queued);
   });
 }
 

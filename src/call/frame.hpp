@@ -227,10 +227,11 @@ class Output {
     if (values_ != nullptr) frame_->runtime.resize(*values_, count);
   }
   /// The buffer to which kernels write so many values; none if they are not wanted. If more than half of the
-  /// memory is unused, it is released.
+  /// memory is unused, it is released; otherwise there is room for as many as there may be, which is only
+  /// addresses, so that a caller who appends some need not move all.
   Buffer<T> buffer(std::size_t count) const {
     if (values_ == nullptr) return there_;
-    frame_->runtime.resize(*values_, count);
+    frame_->runtime.resize(*values_, count, most_ / 2 > count ? count : most_);
     if (values_->capacity() / 2 > count) values_->shrink_to_fit();
     const Buffer<T> made = frame_->runtime.output(*values_);
     if (frame_->transfers_.empty()) frame_->transfers_.reserve(Frame::kUsualTransfers);
@@ -240,17 +241,18 @@ class Output {
 
  private:
   friend class Frame;
-  Output(Frame& frame, std::shared_ptr<std::vector<T>> values, Buffer<T> there)
-      : frame_(&frame), values_(std::move(values)), there_(std::move(there)) {}
+  Output(Frame& frame, std::size_t most, std::shared_ptr<std::vector<T>> values, Buffer<T> there)
+      : frame_(&frame), most_(most), values_(std::move(values)), there_(std::move(there)) {}
 
   Frame* frame_ = nullptr;
+  std::size_t most_ = 0;
   std::shared_ptr<std::vector<T>> values_;  // in host memory: the caller's, or those of a native engine
   Buffer<T> there_{};                       // in device memory
 };
 
 template <typename T>
-Output<T> Frame::output(std::vector<T>& to, std::size_t /*most*/, const char* /*what*/) {
-  return {*this, in_place(to), {}};
+Output<T> Frame::output(std::vector<T>& to, std::size_t most, const char* /*what*/) {
+  return {*this, most, in_place(to), {}};
 }
 
 template <typename T>
@@ -258,7 +260,7 @@ Output<T> Frame::output(DeviceBuffer& to, std::size_t most, const char* what) {
   const auto there =
       result_buffer<T>(place_.device->runtime, to, most, what, place_.device->buffer_allocations);
   memories_.push_back(there.memory());
-  return {*this, place_.is_apart() ? std::make_shared<std::vector<T>>() : nullptr, there};
+  return {*this, most, place_.is_apart() ? std::make_shared<std::vector<T>>() : nullptr, there};
 }
 
 }  // namespace flaunay::call

@@ -10,6 +10,7 @@
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
+#include "derived/sphere/plane.hpp"
 #include "derived/sphere/verify.hpp"
 #include "derived/sphere/walk.hpp"
 #include "geometry/indices.hpp"
@@ -25,53 +26,9 @@ std::vector<double> places_of(call::Implementation& self, const double* points, 
                               SphereCoordinates coordinates, const char* what) {
   return call::take_turn(self, [&] {
     call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
-    call::expect(coordinates == SphereCoordinates::directions || coordinates == SphereCoordinates::degrees,
-                 "coordinates of a sphere are directions or degrees");
+    sphere::check(coordinates);
     return sphere::to_places(self.native().runtime, points, n, coordinates, what);
   });
-}
-
-Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets) {
-  Plane plane;
-  plane.poles.resize(offsets.size() - 1);
-  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
-      if (sphere::is_pole(sphere::place_at(places, i)))
-        plane.poles[s].push_back(static_cast<std::int32_t>(i));
-    }
-  }
-  if (std::all_of(plane.poles.begin(), plane.poles.end(), [](const Ids& ids) { return ids.empty(); })) {
-    plane.all = &places;
-    plane.offsets = offsets;
-    return plane;
-  }
-  plane.offsets = {0};
-  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
-      const Point p = sphere::place_at(places, i);
-      if (sphere::is_pole(p)) continue;
-      plane.some.insert(plane.some.end(), {p.x, p.y});
-      plane.points.push_back(static_cast<std::int32_t>(i));
-    }
-    plane.offsets.push_back(plane.points.size());
-  }
-  return plane;
-}
-
-void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) {
-  if (plane.all != nullptr) return;
-  const auto point = [&](std::int32_t v) { return plane.points[static_cast<std::size_t>(v)]; };
-  for (Ids* ids : {&planar.triangles, &planar.hull})
-    std::transform(ids->begin(), ids->end(), ids->begin(), point);
-  Ids representatives(n);
-  for (std::size_t i = 0; i < plane.points.size(); ++i) {
-    representatives[static_cast<std::size_t>(point(static_cast<std::int32_t>(i)))] =
-        point(planar.representatives[i]);
-  }
-  for (const Ids& poles : plane.poles) {
-    for (const std::int32_t i : poles) representatives[static_cast<std::size_t>(i)] = poles.front();
-  }
-  planar.representatives = std::move(representatives);
 }
 
 // Appends the triangles of one set in the plane.
@@ -82,6 +39,28 @@ void append(const Triangulation& planar, std::size_t set, SphericalTriangulation
     mesh.triangles.push_back(planar.triangles[c]);
     mesh.neighbors.push_back(planar.neighbors[c] < 0 ? -1 : planar.neighbors[c] + shift);
   }
+}
+
+// The edges of triangles, from `first` on, without a triangle beyond, numbered from there.
+std::vector<sphere::OpenEdge> open_edges(const SphericalTriangulation& mesh, std::size_t first) {
+  std::vector<sphere::OpenEdge> open;
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (mesh.neighbors[c] >= 0) continue;
+      const std::size_t t = c / 3 * 3;
+      open.push_back({mesh.triangles[t + (c + 1) % 3], mesh.triangles[t + (c + 2) % 3],
+                      static_cast<std::int32_t>(c - 3 * first)});
+    }
+  };
+  // They are few: most runs have none, and only these have no number below 0.
+  constexpr std::size_t kCorners = 192;
+  for (std::size_t begin = 3 * first; begin < mesh.neighbors.size(); begin += kCorners) {
+    const std::size_t end = std::min(begin + kCorners, mesh.neighbors.size());
+    std::int32_t signs = 0;
+    for (std::size_t c = begin; c < end; ++c) signs |= mesh.neighbors[c];
+    if (signs < 0) add(begin, end);
+  }
+  return open;
 }
 
 SphericalTriangulation close_all(const Plane& plane, Triangulation planar, SphericalTriangulation mesh) {
@@ -96,10 +75,20 @@ SphericalTriangulation close_all(const Plane& plane, Triangulation planar, Spher
   for (std::size_t s = 0; s < sets; ++s) {
     const std::size_t first = mesh.triangle_offsets.back();
     if (sets > 1) append(planar, s, mesh);
-    sphere::close(
-        {planar.hull.data() + planar.hull_offsets[s], planar.hull_offsets[s + 1] - planar.hull_offsets[s],
-         first, mesh.triangles.size() / 3, plane.poles[s].empty() ? -1 : plane.poles[s].front()},
-        mesh);
+    sphere::PlanarSet set{{planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s]),
+                           planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s + 1])},
+                          {},
+                          plane.poles[s].empty() ? -1 : plane.poles[s].front()};
+    for (const std::int32_t v : set.hull)
+      set.places.push_back(sphere::place_at(mesh.places, static_cast<std::size_t>(v)));
+    const sphere::Cap cap = sphere::close(set, open_edges(mesh, first), mesh.triangles.size() / 3 - first);
+    for (const auto& corners : cap.triangles)
+      mesh.triangles.insert(mesh.triangles.end(), corners.begin(), corners.end());
+    mesh.neighbors.resize(mesh.triangles.size(), -1);
+    for (const sphere::Cap::Link& link : cap.links) {
+      mesh.neighbors[3 * first + static_cast<std::size_t>(link.at)] =
+          static_cast<std::int32_t>(first) + link.beyond;
+    }
     mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
   }
   mesh.representatives = std::move(planar.representatives);
@@ -142,19 +131,14 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
                                           const std::vector<std::size_t>& offsets,
                                           SphereCoordinates coordinates) {
   geometry::check_offsets(offsets);
-  // The sphere has twice as many triangles as points.
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
-  if (offsets.back() > kMost) {
-    throw Error(ErrorKind::input,
-                "the sphere has too many points: at most " + std::to_string(kMost) + " are possible");
-  }
+  sphere::check_count(offsets.back());
   SphericalTriangulation mesh;
   mesh.places = places_of(TriangulatorAccess::implementation(triangulator), points, offsets.back(),
                           coordinates, "point");
   mesh.point_offsets = offsets;
-  const Plane plane = make_plane(mesh.places, offsets);
+  const Plane plane = sphere::make_plane(mesh.places, offsets);
   Triangulation planar = triangulator.triangulate(plane.places().data(), plane.offsets);
-  number_by_points(plane, offsets.back(), planar);
+  sphere::number_by_points(plane, offsets.back(), planar);
   return close_all(plane, std::move(planar), std::move(mesh));
 }
 
@@ -194,35 +178,43 @@ struct SphereLocator::Implementation {
     check(mesh);
     call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
     walker.emplace(mesh);
-    plane = make_plane(mesh.places, mesh.point_offsets);
+    plane = sphere::make_plane(mesh.places, mesh.point_offsets);
     if (plane.places().empty()) return;
     const std::size_t n = plane.places().size() / 2;
-    locator.emplace(used, plane.places().data(), n, used.triangulate(plane.places().data(), n));
+    Triangulation planar = sphere::planar_part(plane, mesh);
+    if (planar.triangles.empty()) planar = used.triangulate(plane.places().data(), n);
+    locator.emplace(used, plane.places().data(), n, planar);
   }
 
-  /// Of each query's place a vertex near it; -1 if there are no points.
-  Ids starts(const std::vector<double>& places) {
+  /// Of each query a vertex near it, in the order given; -1 if there are no points.
+  Ids starts(const std::vector<double>& places, const Ids& order) {
     const std::int32_t other = plane.poles[0].empty() ? -1 : plane.poles[0].front();
-    if (!locator) return Ids(places.size() / 2, other);
-    std::vector<double> in_plane = places;
-    for (double& x : in_plane) {
-      if (std::isinf(x)) x = 0;
+    if (!locator) return Ids(order.size(), other);
+    std::vector<double> in_plane;
+    in_plane.reserve(places.size());
+    for (const std::int32_t i : order) {
+      const Point p = sphere::place_at(places, static_cast<std::size_t>(i));
+      in_plane.insert(in_plane.end(), {sphere::is_pole(p) ? 0 : p.x, sphere::is_pole(p) ? 0 : p.y});
     }
-    Ids result = locator->nearest(in_plane.data(), in_plane.size() / 2);
+    Ids result = locator->nearest(in_plane.data(), order.size());
     if (!plane.points.empty()) {
       for (std::int32_t& v : result) v = plane.points[static_cast<std::size_t>(v)];
     }
     return result;
   }
 
-  /// Calls work(i, place, start) for each query, on several threads.
+  /// Calls work(i, place, start) for each query, on several threads; for those that are near each other one
+  /// after the other, which finds what they need in the cache.
   template <typename Work>
   void answer(const double* queries, std::size_t m, SphereCoordinates coordinates, const Work& work) {
     const std::vector<double> places = places_of(*owner, queries, m, coordinates, "query");
-    const Ids start = starts(places);
+    const Ids order =
+        call::take_turn(*owner, [&] { return sphere::order_along_curve(owner->native().runtime, places); });
+    const Ids start = starts(places, order);
     call::take_turn(*owner, [&] {
-      sphere::for_each(owner->native().runtime, m, [&](std::size_t i) {
-        if (start[i] >= 0) work(i, sphere::place_at(places, i), start[i]);
+      sphere::for_each(owner->native().runtime, m, [&](std::size_t k) {
+        const auto i = static_cast<std::size_t>(order[k]);
+        if (start[k] >= 0) work(i, sphere::place_at(places, i), start[k]);
       });
     });
   }

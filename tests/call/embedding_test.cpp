@@ -20,7 +20,7 @@
 #include "flaunay/research.hpp"
 #include "flaunay/result_arrays.hpp"
 #include "tests/support/device.hpp"
-#include "tests/support/embedder.hpp"
+#include "tests/support/embedded.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/opencl_calls.hpp"
 #include "tests/support/reference.hpp"
@@ -36,39 +36,12 @@ constexpr Parts kTriangles{true, false, false, false, false};
 using Offsets = std::vector<std::size_t>;
 constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
-/// One context, and a triangulator in it, for all tests.
-struct World {
-  World() : embedder(triangulator().device_id()), in_context(embedder.context(), embedder.device()) {}
-  Embedder embedder;
-  Triangulator in_context;
-};
-
-class Worlds : public ::testing::Environment {
- public:
-  static World& get() {
-    if (!instance()) instance() = std::make_unique<World>();
-    return *instance();
-  }
-  void TearDown() override { instance().reset(); }
-
- private:
-  static std::unique_ptr<World>& instance() {
-    static std::unique_ptr<World> world;
-    return world;
-  }
-};
-[[maybe_unused]] ::testing::Environment* const kWorlds = ::testing::AddGlobalTestEnvironment(new Worlds);
-
-Embedder& embedder() { return Worlds::get().embedder; }
-
 // Modes that go level by level need double precision.
 bool runs(research::Mode mode) {
   const bool goes_by_levels = mode == research::Mode::flattened || mode == research::Mode::recursive_device ||
                               mode == research::Mode::partition;
   return !goes_by_levels || triangulator().device().fp64;
 }
-Triangulator& embedded() { return Worlds::get().in_context; }
-
 DevicePoints points_in(const Memory& memory, std::size_t count) {
   DevicePoints points;
   points.memory = memory.get();
@@ -1342,9 +1315,7 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
   const std::vector<std::int32_t> segments = {0, 1, 2, 3};
   const Triangulation expected = expected_of(coordinates, {0, n});
   Triangulator kept(embedder().context(), embedder().device());
-  const char* const tuning = std::getenv("FLAUNAY_TUNING");
-  const bool uses_buffers_again =
-      kept.device().type == "GPU" || (tuning != nullptr && std::string(tuning).rfind("gpu", 0) == 0);
+  const bool uses_buffers_again = has_gpu_sizes(kept);
   const auto attack = [&](const char* what, const std::function<void()>& work) {
     bool is_over = false;
     std::size_t errors = 0;

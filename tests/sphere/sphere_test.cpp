@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "derived/sphere/places.hpp"
+#include "derived/sphere/plane.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
@@ -409,6 +410,23 @@ TEST(Sphere, QueriesFindTheirTrianglesAndNearestPoints) {
       if (best >= 0 && within >= 0 && cosine(asked[q], points[static_cast<std::size_t>(best)]) == 1) {
         EXPECT_EQ(static_cast<double>(best), between[2 * q]);
       }
+    }
+  }
+}
+
+TEST(Sphere, PlanarPartsAreTheTriangulationsOfThePlane) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    const Plane plane = make_plane(mesh.places, mesh.point_offsets);
+    const Triangulation part = planar_part(plane, mesh);
+    const Triangulation planar =
+        testing::triangulator().triangulate(plane.places().data(), plane.places().size() / 2);
+    EXPECT_EQ(planar.triangles, part.triangles);
+    EXPECT_EQ(planar.neighbors, part.neighbors);
+    EXPECT_EQ(planar.representatives, part.representatives);
+    if (!planar.triangles.empty()) {
+      EXPECT_EQ(planar.hull, part.hull);
     }
   }
 }

@@ -47,6 +47,12 @@ class SharedTriangulators : public ::testing::Environment {
 [[maybe_unused]] inline ::testing::Environment* const kSharedTriangulators =
     ::testing::AddGlobalTestEnvironment(new SharedTriangulators);
 
+/// Whether a triangulator has the sizes that suit a GPU, by its device or by the environment.
+inline bool has_gpu_sizes(const Triangulator& made) {
+  const char* const tuning = std::getenv("FLAUNAY_TUNING");
+  return made.device().type == "GPU" || (tuning != nullptr && std::string(tuning).rfind("gpu", 0) == 0);
+}
+
 inline Triangulator& triangulator() { return SharedTriangulators::get(""); }
 inline Triangulator& triangulator_with(const std::string& tuning) { return SharedTriangulators::get(tuning); }
 

@@ -126,13 +126,13 @@ class FarthestTriangulation {
 };
 
 // Triangles of the set on the sphere that the plane does not have, each from its smallest corner on, sorted.
-class Cap {
+class Beyond {
  public:
-  Cap(const PlanarSet& set, const SphericalTriangulation& mesh) : set_(set), mesh_(mesh) {}
+  explicit Beyond(const PlanarSet& set) : set_(set) {}
 
   std::vector<Corners> beyond_hull() {
     if (set_.pole >= 0) {
-      for (std::size_t i = 0; i < set_.hull_size; ++i) add(set_.pole, hull(i + 1), hull(i));
+      for (std::size_t i = 0; i < size(); ++i) add(set_.pole, hull(i + 1), hull(i));
     } else {
       add_farthest();
     }
@@ -141,7 +141,7 @@ class Cap {
 
   // One side of a set whose points all lie on a circle through the pole, or else the other side.
   std::vector<Corners> side(bool other) {
-    Ids polygon(set_.hull, set_.hull + set_.hull_size);
+    Ids polygon = set_.hull;
     if (set_.pole >= 0) polygon.insert(polygon.begin(), set_.pole);
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
       add(polygon[0], polygon[other ? i + 1 : i], polygon[other ? i : i + 1]);
@@ -150,8 +150,9 @@ class Cap {
   }
 
  private:
-  std::int32_t hull(std::size_t i) const { return set_.hull[i % set_.hull_size]; }
-  Point place(std::int32_t v) const { return place_at(mesh_.places, static_cast<std::size_t>(v)); }
+  std::size_t size() const { return set_.hull.size(); }
+  std::int32_t hull(std::size_t i) const { return set_.hull[i % size()]; }
+  Point place(std::size_t i) const { return set_.places[i % size()]; }
   void add(std::int32_t a, std::int32_t b, std::int32_t c) { triangles_.push_back({a, b, c}); }
   std::vector<Corners> sorted() {
     for (Corners& corners : triangles_) {
@@ -164,25 +165,24 @@ class Cap {
   // As seen from outside of the sphere, the hull's triangles are clockwise in the plane.
   void add_farthest() {
     std::vector<std::size_t> corners = {0};
-    for (std::size_t i = 1; i < set_.hull_size; ++i) {
-      if (kernel::orient_sign(place(hull(corners.back())), place(hull(i)), place(hull(i + 1)),
-                              ORIENT_BOUND) != 0)
+    for (std::size_t i = 1; i < size(); ++i) {
+      if (kernel::orient_sign(place(corners.back()), place(i), place(i + 1), ORIENT_BOUND) != 0)
         corners.push_back(i);
     }
     std::vector<Point> polygon;
-    for (const std::size_t i : corners) polygon.push_back(place(hull(i)));
+    for (const std::size_t i : corners) polygon.push_back(place(i));
     const FarthestTriangulation farthest(std::move(polygon));
     for (const auto& [a, b, c] : farthest.triangles()) {
       add(hull(corners[static_cast<std::size_t>(a)]), hull(corners[static_cast<std::size_t>(c)]),
           hull(corners[static_cast<std::size_t>(b)]));
     }
-    corners.push_back(set_.hull_size);
+    corners.push_back(size());
     for (std::size_t k = 0; k + 1 < corners.size(); ++k) add_straight(corners[k], corners[k + 1]);
   }
 
   // Points on one edge of the hull are on a circle through the pole.
   void add_straight(std::size_t first, std::size_t last) {
-    const bool first_is_smaller = kernel::comes_before(place(hull(first)), place(hull(last))) != 0;
+    const bool first_is_smaller = kernel::comes_before(place(first), place(last)) != 0;
     for (std::size_t i = first + 1; i < last; ++i) {
       if (first_is_smaller) {
         add(hull(first), hull(i + 1), hull(i));
@@ -193,49 +193,47 @@ class Cap {
   }
 
   const PlanarSet& set_;
-  const SphericalTriangulation& mesh_;
   std::vector<Corners> triangles_;
 };
 
-// An edge that has one triangle so far, with its half-edge opposite to corner `at`, 3 t + k.
-struct OpenEdge {
-  std::int32_t low, high, at;
-};
-
-// Appends triangles and joins them and those from `first` on along edges that only two have.
-void append(const std::vector<Corners>& triangles, std::size_t first, SphericalTriangulation& mesh) {
+// Appends triangles to a cap, and links those at edges that only two have. Leaves the other edges in `open`.
+void append(const std::vector<Corners>& triangles, std::vector<OpenEdge>& open, std::int32_t first,
+            Cap& cap) {
   for (const Corners& corners : triangles) {
-    mesh.triangles.insert(mesh.triangles.end(), corners.begin(), corners.end());
+    const auto t = first + static_cast<std::int32_t>(cap.triangles.size());
+    for (std::size_t k = 0; k < 3; ++k)
+      open.push_back({corners[(k + 1) % 3], corners[(k + 2) % 3], 3 * t + static_cast<std::int32_t>(k)});
+    cap.triangles.push_back(corners);
   }
-  mesh.neighbors.resize(mesh.triangles.size(), -1);
-  std::vector<OpenEdge> open;
-  for (std::size_t c = 3 * first; c < mesh.triangles.size(); ++c) {
-    if (mesh.neighbors[c] >= 0) continue;
-    const std::size_t t = c / 3 * 3;
-    const std::int32_t a = mesh.triangles[t + (c + 1) % 3], b = mesh.triangles[t + (c + 2) % 3];
-    open.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(c)});
-  }
-  const auto ends = [](const OpenEdge& e) { return std::pair(e.low, e.high); };
+  const auto ends = [](const OpenEdge& e) { return std::minmax(e.from, e.to); };
   std::sort(open.begin(), open.end(),
             [&](const OpenEdge& a, const OpenEdge& b) { return ends(a) < ends(b); });
-  for (std::size_t i = 0; i + 1 < open.size(); ++i) {
-    if (ends(open[i]) != ends(open[i + 1])) continue;
-    mesh.neighbors[static_cast<std::size_t>(open[i].at)] = open[i + 1].at / 3;
-    mesh.neighbors[static_cast<std::size_t>(open[i + 1].at)] = open[i].at / 3;
+  std::vector<OpenEdge> rest;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    if (i + 1 == open.size() || ends(open[i]) != ends(open[i + 1])) {
+      rest.push_back(open[i]);
+      continue;
+    }
+    cap.links.push_back({open[i].at, open[i + 1].at / 3});
+    cap.links.push_back({open[i + 1].at, open[i].at / 3});
     ++i;
   }
+  open = std::move(rest);
 }
 
 }  // namespace
 
-void close(const PlanarSet& set, SphericalTriangulation& mesh) {
-  if (set.first_triangle < set.last_triangle) {
-    append(Cap(set, mesh).beyond_hull(), set.first_triangle, mesh);
-    return;
+Cap close(const PlanarSet& set, std::vector<OpenEdge> open, std::size_t triangles) {
+  Cap cap;
+  const auto first = static_cast<std::int32_t>(triangles);
+  if (triangles > 0) {
+    append(Beyond(set).beyond_hull(), open, first, cap);
+    return cap;
   }
   // First among themselves, since both sides have the same diagonals.
-  append(Cap(set, mesh).side(false), set.first_triangle, mesh);
-  append(Cap(set, mesh).side(true), set.first_triangle, mesh);
+  append(Beyond(set).side(false), open, first, cap);
+  append(Beyond(set).side(true), open, first, cap);
+  return cap;
 }
 
 }  // namespace flaunay::sphere

@@ -1,24 +1,41 @@
 // What a triangulation of places in the plane lacks on the sphere: the triangles around the south pole.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "flaunay/sphere.hpp"
+#include "geometry/predicates.hpp"
 
 namespace flaunay::sphere {
 
-/// One set of a plane's triangulation, with the numbers of points and triangles that it has on the sphere.
+using geometry::Point;
+
+/// The hull of one set of points in the plane.
 struct PlanarSet {
-  const std::int32_t* hull;  ///< its vertices, counter-clockwise; collinear points in their order
-  std::size_t hull_size;
-  std::size_t first_triangle, last_triangle;
-  std::int32_t pole;  ///< the point at the south pole, or -1
+  std::vector<std::int32_t> hull;  ///< its vertices, counter-clockwise; collinear points in their order
+  std::vector<Point> places;       ///< of these
+  std::int32_t pole;               ///< the point at the south pole, or -1
 };
 
-/// Appends the set's triangles beyond its hull to those of the mesh, which are the plane's, and makes all of
-/// them neighbours. Expected O(h log h) for h vertices of the hull, besides O(t).
-void close(const PlanarSet& set, SphericalTriangulation& mesh);
+/// An edge that has a triangle on one side only. at: 3 t + the corner opposite, of triangle t.
+struct OpenEdge {
+  std::int32_t from, to, at;
+};
+
+/// The triangles of a set beyond its hull in the plane.
+struct Cap {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  /// Triangle `beyond` is opposite to corner `at`, 3 t + k.
+  struct Link {
+    std::int32_t at, beyond;
+  };
+  std::vector<Link> links;  ///< among these, and between these and the plane's
+};
+
+/// Makes a cap. open: the edges of the hull. triangles: how many the set has in the plane, behind which those
+/// of the cap are numbered. Expected O(h log h) for h vertices of the hull.
+Cap close(const PlanarSet& set, std::vector<OpenEdge> open, std::size_t triangles);
 
 }  // namespace flaunay::sphere

@@ -1,4 +1,4 @@
-// Points of the unit sphere as places in a plane: the stereographic projection from the south pole.
+// Points of the unit sphere as places in a plane, and directions of these.
 #pragma once
 
 #include <cmath>
@@ -15,25 +15,11 @@ namespace flaunay::sphere {
 using geometry::for_each;
 using geometry::Point;
 
-/// Places are multiples of 2^-65, and below 2^62: what would be farther is the south pole.
-constexpr int kFinestExponent = -65, kLargestExponent = 62;
-
 inline bool is_pole(Point place) { return std::isinf(place.x); }
 inline Point pole() { return {HUGE_VAL, HUGE_VAL}; }
 inline Point place_at(const std::vector<double>& places, std::size_t i) {
   return {places[2 * i], places[2 * i + 1]};
 }
-
-/// The points that have a place in the plane.
-struct Plane {
-  const std::vector<double>* all = nullptr;  ///< of the sphere, if none is at the pole
-  std::vector<double> some;
-  std::vector<std::size_t> offsets;
-  std::vector<std::int32_t> points;              ///< per place; empty if all points have one
-  std::vector<std::vector<std::int32_t>> poles;  ///< per set, the points at the south pole
-
-  const std::vector<double>& places() const { return all != nullptr ? *all : some; }
-};
 
 /// A vector in space.
 struct Direction {
@@ -55,9 +41,19 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
   return coordinates == SphereCoordinates::directions ? 3 : 2;
 }
 
-/// Returns x and y per point. The result is the same on every machine: it is made of operations that IEEE 754
-/// rounds correctly. Throws Error(input), with what: the name of a point, for those that are none.
+/// Throws Error(usage) for a kind of coordinates that there is not.
+void check(SphereCoordinates coordinates);
+/// Throws Error(input) for more points than have triangles whose corners can be numbered.
+void check_count(std::size_t n);
+/// Throws Error(input) for what is no point. what: its name.
+[[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what);
+
+/// Returns x and y per point, as sphere/places.h says. Throws Error(input) for those that are none.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
+
+/// Returns the numbers of places in an order in which those of near points of the sphere are near each other:
+/// along a curve that fills the octahedron to which it is unfolded. O(n).
+std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places);
 
 }  // namespace flaunay::sphere

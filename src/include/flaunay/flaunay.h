@@ -1488,6 +1488,40 @@ FLAUNAY_API flaunay_status flaunay_spherical_verify(flaunay_triangulator* triang
                                                     const flaunay_spherical* spherical, const double* points,
                                                     int coordinates);
 
+/// The arrays of triangulations on the sphere in device memory, as bits, with their types and their sizes in
+/// bytes for n points.
+typedef enum flaunay_spherical_part {
+  FLAUNAY_SPHERICAL_PLACES = 1,          ///< double2, 16 n
+  FLAUNAY_SPHERICAL_TRIANGLES = 2,       ///< int32, 24 n
+  FLAUNAY_SPHERICAL_NEIGHBORS = 4,       ///< int32, 24 n
+  FLAUNAY_SPHERICAL_REPRESENTATIVES = 8  ///< int32, 4 n
+} flaunay_spherical_part;
+/// Triangulations of sets of points on the unit sphere, in device memory.
+typedef struct flaunay_device_spherical flaunay_device_spherical;
+/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
+FLAUNAY_API flaunay_status flaunay_device_spherical_create(flaunay_device_spherical** spherical);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_spherical_destroy(flaunay_device_spherical* spherical);
+/// Makes later calls write one part, one bit of flaunay_spherical_part, to the caller's buffer. Its size must
+/// be that given there. Otherwise see flaunay_device_triangulation_set_buffer.
+FLAUNAY_API flaunay_status flaunay_device_spherical_set_buffer(flaunay_device_spherical* spherical,
+                                                               unsigned part, cl_mem memory);
+/// The buffer of one part; see flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_spherical_buffer(const flaunay_device_spherical* spherical, unsigned part);
+/// The number of triangles.
+FLAUNAY_API size_t flaunay_device_spherical_triangle_count(const flaunay_device_spherical* spherical);
+/// Sets + 1 values in host memory: set s has the triangles [offsets[s], offsets[s + 1]).
+FLAUNAY_API const size_t* flaunay_device_spherical_triangle_offsets(
+    const flaunay_device_spherical* spherical);
+/// Triangulates points of the sphere in device memory, whose buffer has per point the numbers that the
+/// coordinates, one of flaunay_sphere_coordinates, have. All arrays stay there; the host reads what is around
+/// the south pole, and computes all if a point is there. The work is enqueued like that of
+/// flaunay_triangulate_device. Errors are those of that and of flaunay_spherical_create.
+FLAUNAY_API flaunay_status flaunay_spherical_compute_device(flaunay_triangulator* triangulator,
+                                                            const flaunay_device_points* points,
+                                                            int coordinates, const flaunay_enqueue* enqueue,
+                                                            flaunay_device_spherical* result);
+
 /// The Voronoi cells of points on the unit sphere.
 typedef struct flaunay_spherical_voronoi flaunay_spherical_voronoi;
 /// Computes the dual. The caller destroys the result. O(n).

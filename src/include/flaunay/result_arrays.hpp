@@ -66,6 +66,14 @@
   X(double, areas, point, 1)                \
   X(double, centroids, point, 2)
 
+/// The arrays of flaunay::DeviceSphericalTriangulation, in the order of the bits of flaunay_spherical_part:
+/// as above.
+#define FLAUNAY_SPHERICAL_ARRAYS(X)       \
+  X(double, places, point, 2)             \
+  X(std::int32_t, triangles, triangle, 3) \
+  X(std::int32_t, neighbors, triangle, 3) \
+  X(std::int32_t, representatives, point, 1)
+
 namespace flaunay {
 
 /// Of what an array of a triangulation has one row per thing.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay {
@@ -50,6 +51,30 @@ FLAUNAY_API SphericalTriangulation triangulate_sphere(Triangulator& triangulator
 FLAUNAY_API SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
                                                       const std::vector<std::size_t>& offsets,
                                                       SphereCoordinates coordinates);
+
+/// A SphericalTriangulation in device memory. For n points the caller's buffers must have, and flaunay's
+/// have, the sizes given here.
+struct DeviceSphericalTriangulation {
+  DeviceBuffer places;           ///< SphericalTriangulation::places, double2, 16 n bytes
+  DeviceBuffer triangles;        ///< SphericalTriangulation::triangles, int32, 24 n bytes
+  DeviceBuffer neighbors;        ///< SphericalTriangulation::neighbors, int32, 24 n bytes
+  DeviceBuffer representatives;  ///< SphericalTriangulation::representatives, int32, 4 n bytes
+  /// sets + 1 values in host memory: as those of SphericalTriangulation.
+  std::vector<std::size_t> point_offsets;
+  std::vector<std::size_t> triangle_offsets;  ///< see point_offsets
+  /// The triangulation of the places in the plane, kept for the memory that the next call needs for it.
+  DeviceTriangulation planar;
+  Statistics statistics;  ///< of that
+};
+
+/// Triangulates points in device memory, whose buffer has per point the numbers of the coordinates: x y z, or
+/// longitude and latitude. All arrays stay there; the host makes the triangles around the south pole, for
+/// which it reads the hull in the plane, and waits some times. If a point is at the south pole, the host
+/// computes all. The results are those of the call for host memory. The work is enqueued like that of
+/// Triangulator::triangulate for device memory, with the same errors.
+FLAUNAY_API void triangulate_sphere(Triangulator& triangulator, const DevicePoints& points,
+                                    SphereCoordinates coordinates, DeviceSphericalTriangulation& result,
+                                    const Enqueue& enqueue = own_queue());
 
 /// Checks a triangulation exactly: that places are those of the points, that triangles and neighbours are
 /// those of the hull, with the canonical choice at ties, and that its other arrays fit. Returns what is

@@ -1,0 +1,42 @@
+// Points of the sphere to places in the plane (sphere/places.h), with one work-item per point in one pass. Of the
+// points that are none, and of those at the south pole, the first are found; they are n if there are none.
+
+#include "sphere/places.h"
+
+#ifndef FIXED_POINT
+
+// width: 3 for directions, 2 for degrees.
+static inline void write_place(int i, int width, double x, double y, double z, global double2* places,
+                               global volatile int* first_wrong, global volatile int* first_pole) {
+  const int is_wrong = width == 3 ? is_no_direction(x, y, z) : are_no_degrees(x, y);
+  if (is_wrong) {
+    atomic_min(first_wrong, i);
+    return;
+  }
+  const double2 place = width == 3 ? place_of_direction(x, y, z) : place_of_degrees(x, y);
+  places[i] = place;
+  if (place.x > FARTHEST_PLACE) atomic_min(first_pole, i);
+}
+
+// points: from the number `first` on.
+kernel void places_of_doubles(int n, int width, uint64 first, global const double* restrict points,
+                              global double2* restrict places, global volatile int* first_wrong,
+                              global volatile int* first_pole) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const double* const p = points + first + (uint64)width * i;
+    write_place(i, width, p[0], p[1], width == 3 ? p[2] : 0, places, first_wrong, first_pole);
+  }
+}
+
+kernel void places_of_floats(int n, int width, uint64 first, global const float* restrict points,
+                             global double2* restrict places, global volatile int* first_wrong,
+                             global volatile int* first_pole) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    global const float* const p = points + first + (uint64)width * i;
+    write_place(i, width, p[0], p[1], width == 3 ? p[2] : 0, places, first_wrong, first_pole);
+  }
+}
+
+#endif

@@ -1,0 +1,106 @@
+"""Triangulations of points on a sphere in device memory, by pyopencl."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from flaunay import _calls, _triangulators
+from flaunay._arrays import summary
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
+
+if TYPE_CHECKING:
+    import pyopencl
+    import pyopencl.array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceSpherical:
+    """Triangulations of points on the unit sphere in device memory. `spherical_device` makes them.
+
+    The arrays are views of buffers that flaunay made for this result.
+
+    Attributes
+    ----------
+    points : pyopencl.array.Array
+        The points that were given.
+    places, simplices, neighbors, representatives : pyopencl.array.Array
+        As those of `SphericalDelaunay`, with its shapes and types.
+    simplex_offsets : ndarray of int64, shape (nsets + 1,)
+        As of `SphericalDelaunay`, in host memory.
+    event : pyopencl.Event
+        Complete when the results are there. The arrays know it: what pyopencl does with them waits.
+    """
+
+    points: pyopencl.array.Array
+    places: pyopencl.array.Array
+    simplices: pyopencl.array.Array
+    neighbors: pyopencl.array.Array
+    representatives: pyopencl.array.Array
+    simplex_offsets: npt.NDArray[np.int64]
+    event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        triangles = int(self.simplex_offsets[-1])
+        return summary(self, points=int(self.points.shape[0]), triangles=triangles)
+
+
+def spherical_device(
+    points: pyopencl.array.Array,
+    queue: Optional[pyopencl.CommandQueue] = None,
+    offsets: Offsets = None,
+    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+) -> DeviceSpherical:
+    """Triangulates points on the sphere in device memory into device memory.
+
+    The host makes the triangles around the south pole, for which it reads the hull in the plane. If a
+    point is at the south pole, it computes all.
+
+    Parameters
+    ----------
+    points : pyopencl.array.Array, shape (n, 2) or (n, 3)
+        Longitudes and latitudes, or x, y and z, as of `spherical`. C-contiguous float64 or float32.
+    queue, offsets, wait_for : optional
+        As of `triangulate_device`.
+
+    Returns
+    -------
+    DeviceSpherical
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError, ImportError
+        As of `triangulate_device` and `spherical`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> import numpy as np
+    >>> import pyopencl as cl
+    >>> import pyopencl.array
+    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    >>> points = cl.array.to_device(queue, np.array([[0, 0], [120, 0], [240, 0], [0, 90.0]]))
+    >>> flaunay.spherical_device(points).simplices
+    cl.Array([[1, 2, 3],
+           [0, 3, 2],
+           [0, 1, 3],
+           [0, 2, 1]], dtype=int32)
+    """
+    call = DeviceCall(queue_for(points, queue, "points"), wait_for)
+    device_points = call.points(points, offsets, "points", widths=(2, 3))
+    triangulator = _triangulators.of_queue(call.queue)
+    n, width = map(int, points.shape)
+    made, event = call.run(_calls.DeviceSpherical, triangulator, device_points, width)
+    places = made.arrays(point=n, triangle=int(made.triangle_offsets[-1]))
+    views = {name: view(*place, call.queue, event) for name, place in places.items()}
+    return DeviceSpherical(
+        simplices=views.pop("triangles"),
+        **views,
+        points=points,
+        simplex_offsets=made.triangle_offsets,
+        event=event,
+    )
