@@ -6,9 +6,12 @@
 #include <atomic>
 #include <bitset>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "geometry/for_each.hpp"
+#include "periodic/torus.h"
 
 namespace flaunay::periodic {
 namespace {
@@ -29,27 +32,6 @@ double whole_of(double period) {
   return power < period ? 2 * power : power;
 }
 
-struct Axis {
-  explicit Axis(double length) : period(length) {
-    if (std::isfinite(period)) whole = whole_of(period);
-  }
-
-  // Of x in [-period / 2, period / 2], or not finite.
-  double place_of(double x) const {
-    const double place = std::copysign((std::fabs(x) + whole) - whole, x);
-    return place + period * static_cast<double>(place < 0);  // without a branch
-  }
-  double wrapped(double x) const {
-    if (!std::isfinite(period)) return x + 0.0;
-    if (x >= 0 && x < period) return place_of(x - period * static_cast<double>(x >= period / 2));
-    // Without a rounding. Of both ends, the lower one.
-    const double rest = std::remainder(x, period);
-    return place_of(rest < period / 2 ? rest : rest - period);
-  }
-
-  double period, whole = 0;
-};
-
 template <typename T>
 void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -65,13 +47,20 @@ Pair<double> rounded(const Period& period) {
   return {one(period.x), one(period.y)};
 }
 
+kernel::periodic_axes axes_of(const Pair<double>& period) {
+  const auto one = [](double length) {
+    return kernel::periodic_axis{length, std::isfinite(length) ? whole_of(length) : 0};
+  };
+  return {one(period[0]), one(period[1])};
+}
+
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what) {
   std::vector<double> places;
   runtime.resize(places, 2 * n);
-  const Axis across(period[0]), up(period[1]);
+  const kernel::periodic_axes axes = axes_of(period);
   for_each(runtime, n, [&](std::size_t i) {
-    const double x = across.wrapped(points[2 * i]), y = up.wrapped(points[2 * i + 1]);
+    const double x = kernel::place_of(points[2 * i], axes.x), y = kernel::place_of(points[2 * i + 1], axes.y);
     if (!std::isfinite(x) || !std::isfinite(y)) {
       throw Error(ErrorKind::input,
                   fmt::format("{} {} is not finite: ({}, {})", what, i, points[2 * i], points[2 * i + 1]));
@@ -84,7 +73,7 @@ std::vector<double> to_places(host::Runtime& runtime, const double* points, std:
 
 Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
            const Pair<double>& period) {
-  Box box{{}, period, period};
+  Box box{{period[0], period[1]}, {}, {period[0], period[1]}, 0};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (std::isfinite(period[axis]) || first == last) continue;
     box.low[axis] = box.high[axis] = places[2 * first + axis];
@@ -108,8 +97,29 @@ double first_margin(const Box& box, std::size_t n) {
   return margin;
 }
 
-Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box, double margin)
-    : box_(box), margin_(margin), points_(places.size() / 2), coordinates_(std::move(places)) {
+void check_size(std::size_t points_and_images) {
+  // Corners of triangles are numbered.
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
+  if (points_and_images > kMost) {
+    throw Error(ErrorKind::input,
+                fmt::format("{} points and their images are too many: at most {} are possible",
+                            points_and_images, kMost));
+  }
+}
+
+bool is_whole(const Box& box) {
+  return (!repeats(box, 0) || box.margin >= box.period[0]) &&
+         (!repeats(box, 1) || box.margin >= box.period[1]);
+}
+
+void widen(Box& box, std::size_t s) {
+  if (is_whole(box))
+    throw Error(ErrorKind::internal, fmt::format("the triangles of set {} are not those of a torus", s));
+  box.margin *= kWider;
+}
+
+Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box)
+    : box_(box), points_(places.size() / 2), coordinates_(std::move(places)) {
   struct Found {
     std::vector<double> coordinates;
     std::vector<Image> images;
@@ -118,14 +128,12 @@ Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box
   for_each_run(runtime, points_, [&](std::size_t run, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Point p{coordinates_[2 * i], coordinates_[2 * i + 1]};
-      // Near an end of the direction without a period, the nearest points may be a whole period away.
-      const bool is_at_end = is_near_end(p.x, 0) || is_near_end(p.y, 1);
-      const Pair<int> across = images_along(p.x, 0, is_at_end), up = images_along(p.y, 1, is_at_end);
-      for (int a = across[0]; a <= across[1]; ++a) {
-        for (int b = up[0]; b <= up[1]; ++b) {
+      const kernel::image_range to = kernel::images_around(p.x, p.y, &box_);
+      for (int a = to.low[0]; a <= to.high[0]; ++a) {
+        for (int b = to.low[1]; b <= to.high[1]; ++b) {
           if (a == 0 && b == 0) continue;
-          found[run].coordinates.push_back(a == 0 ? p.x : p.x + a * box.period[0]);
-          found[run].coordinates.push_back(b == 0 ? p.y : p.y + b * box.period[1]);
+          found[run].coordinates.push_back(kernel::moved(p.x, a, box_.period[0]));
+          found[run].coordinates.push_back(kernel::moved(p.y, b, box_.period[1]));
           found[run].images.push_back({static_cast<std::int32_t>(i), {a, b}});
         }
       }
@@ -140,20 +148,6 @@ Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box
 std::vector<double> Unrolled::take_places() {
   coordinates_.resize(2 * points_);
   return std::move(coordinates_);
-}
-
-bool Unrolled::is_near_end(double x, std::size_t axis) const {
-  return !box_.repeats(axis) && (x <= box_.low[axis] + margin_ || x >= box_.high[axis] - margin_);
-}
-
-// Which images there are, from -1 or 0 to 0 or 1.
-Pair<int> Unrolled::images_along(double x, std::size_t axis, bool all) const {
-  if (!box_.repeats(axis)) return {};
-  return {all || x >= box_.period[axis] - margin_ ? -1 : 0, all || x <= margin_ ? 1 : 0};
-}
-
-bool Unrolled::is_whole() const {
-  return (!box_.repeats(0) || margin_ >= box_.period[0]) && (!box_.repeats(1) || margin_ >= box_.period[1]);
 }
 
 namespace {
@@ -230,49 +224,38 @@ Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangle
   return border;
 }
 
-// An edge between a triangle that is kept and one that is not. Its first end is in its place.
+// An edge as one triangle at it has it, and as the other one has it: from its first end, which is in its
+// place.
 struct Seam {
-  Image from, to;
-  Image own, beyond;  // opposite corners of both triangles
-  std::int32_t at;    // 3 t + the corner opposite, of the triangle that is kept
+  explicit Seam(const BorderEdge& edge)
+      : from(edge.from), to(edge.to), own(edge.own), beyond(edge.beyond), at(edge.at) {
+    const Image step = beside(to, from);
+    if (to.point < from.point || (to.point == from.point && step.at < Pair<int>{})) std::swap(from, to);
+    for (Image* const image : {&to, &own, &beyond}) *image = beside(*image, from);
+    from.at = {};
+  }
+
+  Image from, to, own, beyond;
+  std::int32_t at;
 };
 
 bool is_same_edge(const Seam& a, const Seam& b) { return a.from == b.from && a.to == b.to; }
 
 // beyond: the corner in the plane, or -1.
-Seam seam_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
+BorderEdge edge_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
   const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-  const auto corner = [&](std::size_t j) { return plane.image(all.corners[t + j % 3]); };
-  Seam seam{corner(k + 1), corner(k + 2), corner(k), beyond < 0 ? Image{-1, {}} : plane.image(beyond), at};
-  const Image step = beside(seam.to, seam.from);
-  if (seam.to.point < seam.from.point || (seam.to.point == seam.from.point && step.at < Pair<int>{}))
-    std::swap(seam.from, seam.to);
-  for (Image* const image : {&seam.to, &seam.own, &seam.beyond}) *image = beside(*image, seam.from);
-  seam.from.at = {};
-  return seam;
-}
-
-// Joins triangles that are kept at their edges. Returns whether they have the same edges, and, where that is
-// not known, whether what is beyond an edge in the plane is an image of what is joined to it.
-bool join(std::vector<Seam> seams, bool is_known, Ids& neighbors) {
-  std::sort(seams.begin(), seams.end(), [](const Seam& a, const Seam& b) {
-    return a.from < b.from || (a.from == b.from && a.to < b.to);
-  });
-  if (seams.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < seams.size(); i += 2) {
-    const Seam &a = seams[i], &b = seams[i + 1];
-    if (!is_same_edge(a, b)) return false;
-    if (!is_known && !(a.own == b.beyond && b.own == a.beyond)) return false;
-    neighbors[index(a.at)] = b.at / 3;
-    neighbors[index(b.at)] = a.at / 3;
-  }
-  return true;
+  const std::int32_t from = all.corners[t + (k + 1) % 3], to = all.corners[t + (k + 2) % 3];
+  return {plane.image(from),
+          plane.image(to),
+          plane.image(all.corners[t + k]),
+          beyond < 0 ? Image{-1, {}} : plane.image(beyond),
+          plane.place(from),
+          plane.place(to),
+          at};
 }
 
 // The place in units of the box.
-Point in_box(const Unrolled& plane, std::int32_t v) {
-  const Point p = plane.place(v);
-  const Box& box = plane.box();
+Point in_box(const Box& box, Point p) {
   const auto share = [&](double x, std::size_t axis) {
     const double low = box.low[axis], size = box.high[axis] - low;
     return std::isfinite(size) ? (x - low) / size : (x / 2 - low / 2) / (box.high[axis] / 2 - low / 2);
@@ -282,10 +265,8 @@ Point in_box(const Unrolled& plane, std::int32_t v) {
 
 // Whether an edge without a triangle beyond is on the box's border, in a direction that has no period.
 bool is_on_border(const Box& box, Point a, Point b) {
-  const auto is_end = [&](double x, double y, std::size_t axis) {
-    return !box.repeats(axis) && x == y && (x == box.low[axis] || x == box.high[axis]);
-  };
-  return is_end(a.x, b.x, 0) || is_end(a.y, b.y, 1);
+  return (a.x == b.x && kernel::ends_at(a.x, &box, 0) > 0) ||
+         (a.y == b.y && kernel::ends_at(a.y, &box, 1) > 0);
 }
 
 std::size_t expected_triangles(const Unrolled& plane, const Ids& representatives) {
@@ -295,8 +276,7 @@ std::size_t expected_triangles(const Unrolled& plane, const Ids& representatives
     count += 2;
     const Point p = plane.place(static_cast<std::int32_t>(i));
     const Box& box = plane.box();
-    if (!box.repeats(0)) count -= static_cast<std::size_t>(p.x == box.low[0]) + (p.x == box.high[0]);
-    if (!box.repeats(1)) count -= static_cast<std::size_t>(p.y == box.low[1]) + (p.y == box.high[1]);
+    count -= static_cast<std::size_t>(kernel::ends_at(p.x, &box, 0) + kernel::ends_at(p.y, &box, 1));
   }
   return count;
 }
@@ -323,44 +303,58 @@ void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles
 
 }  // namespace
 
+std::optional<std::vector<cl_int2>> join(const Box& box, const std::vector<BorderEdge>& edges,
+                                         std::size_t expected) {
+  // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
+  // says: once. (The area is rounded, and computed from the border.)
+  double area = 0;
+  std::vector<Seam> seams;
+  for (const BorderEdge& edge : edges) {
+    const Point a = in_box(box, edge.a), b = in_box(box, edge.b);
+    area += (a.x + b.x) / 2 * (b.y - a.y);
+    const bool is_open = edge.beyond.point < 0;
+    if (is_open && is_on_border(box, edge.a, edge.b)) continue;
+    if (is_open && !is_whole(box)) return {};
+    seams.emplace_back(edge);
+  }
+  if (expected > 0 && !(std::fabs(area - 1) < 0.5)) return {};
+
+  // Two triangles that are joined have the same edge, and, if images may be missing, what is beyond it in the
+  // plane is an image of the other one.
+  std::sort(seams.begin(), seams.end(), [](const Seam& a, const Seam& b) {
+    return a.from < b.from || (a.from == b.from && a.to < b.to);
+  });
+  if (seams.size() % 2 != 0) return {};
+  std::vector<cl_int2> links;
+  for (std::size_t i = 0; i < seams.size(); i += 2) {
+    const Seam &a = seams[i], &b = seams[i + 1];
+    if (!is_same_edge(a, b)) return {};
+    if (!is_whole(box) && !(a.own == b.beyond && b.own == a.beyond)) return {};
+    links.push_back({{a.at, b.at / 3}});
+    links.push_back({{b.at, a.at / 3}});
+  }
+  return links;
+}
+
 bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
   const std::size_t count = all.corners.size() / 3, expected = expected_triangles(plane, representatives);
   const Border border = find_border(runtime, plane, all);
   if (count - border.dropped.size() != expected) return false;
   const Ranks ranks(border.dropped, count);
-  std::vector<Seam> seams;
+  std::vector<BorderEdge> edges;
   for (const std::int32_t t : border.dropped) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t kept = all.neighbors[3 * index(t) + k];
       if (kept < 0 || ranks.is_dropped(kept)) continue;
       std::int32_t at = 3 * kept;
       while (all.neighbors[index(at)] != t) ++at;
-      seams.push_back(seam_of(plane, all, at, all.corners[3 * index(t) + k]));
+      edges.push_back(edge_of(plane, all, at, all.corners[3 * index(t) + k]));
     }
   }
-  // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
-  // says: once. (The area is rounded, and computed from the border.)
-  double area = 0;
-  const auto add_edge = [&](std::int32_t at) {
-    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-    const Point a = in_box(plane, all.corners[t + (k + 1) % 3]),
-                b = in_box(plane, all.corners[t + (k + 2) % 3]);
-    area += (a.x + b.x) / 2 * (b.y - a.y);
-  };
-  for (const std::int32_t at : border.open) {
-    const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-    if (is_on_border(plane.box(), plane.place(all.corners[t + (k + 1) % 3]),
-                     plane.place(all.corners[t + (k + 2) % 3]))) {
-      add_edge(at);
-    } else if (plane.is_whole()) {
-      seams.push_back(seam_of(plane, all, at, -1));
-    } else {
-      return false;
-    }
-  }
-  for (const Seam& seam : seams) add_edge(seam.at);
-  if (expected > 0 && !(std::fabs(area - 1) < 0.5)) return false;
-  if (!join(std::move(seams), plane.is_whole(), all.neighbors)) return false;
+  for (const std::int32_t at : border.open) edges.push_back(edge_of(plane, all, at, -1));
+  const auto links = join(plane.box(), edges, expected);
+  if (!links) return false;
+  for (const cl_int2& link : *links) all.neighbors[index(link.s[0])] = link.s[1];
 
   if (runtime != nullptr) {
     runtime->resize(all.offsets, 6 * expected);
@@ -389,7 +383,8 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
 bool is_box_inside(const Unrolled& plane, const Ids& hull) {
   constexpr double kDistance = 0x1p-30;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = in_box(plane, hull[i]), b = in_box(plane, hull[(i + 1) % hull.size()]);
+    const Point a = in_box(plane.box(), plane.place(hull[i])),
+                b = in_box(plane.box(), plane.place(hull[(i + 1) % hull.size()]));
     for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
       if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
     }
@@ -431,7 +426,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
   const auto is_small = [&](const std::array<Point, 3>& p) {
     constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
     const auto is_short = [&](Point a, Point b) {
-      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.margin();
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.box().margin;
     };
     return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
   };
