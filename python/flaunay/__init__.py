@@ -53,7 +53,7 @@ from flaunay._interpolate import (
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._periodic import PeriodicDelaunay, periodic
+from flaunay._periodic import DevicePeriodic, PeriodicDelaunay, periodic, periodic_device
 from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
@@ -78,6 +78,7 @@ __all__ = [
     "DeviceClippedVoronoi",
     "DeviceError",
     "DeviceLocator",
+    "DevicePeriodic",
     "DeviceRows",
     "DeviceSpherical",
     "DeviceTriangulation",
@@ -109,6 +110,7 @@ __all__ = [
     "griddata",
     "modes",
     "periodic",
+    "periodic_device",
     "polygons",
     "rasterize_chunks",
     "refine",
