@@ -4,8 +4,8 @@
 // fold_representatives, over points: which are the same, and how many triangles are missing for that or at ends.
 // keep_triangles, over triangles: of all images of a triangle, the one is kept whose smallest corner is in its place.
 // The host scans this to ranks. find_seams, over triangles: which kept ones have an edge that is a seam. list_seams,
-// over these: their edges, of which the host finds out which belong together. link_seams, over half of these: their
-// neighbours. write_folded, over triangles: those that are kept.
+// over these: their edges, of which the host finds out which belong together. link_seams, over seams: the triangles
+// beyond. write_folded, over triangles: those that are kept.
 
 #include "mesh/halfedges.h"
 #include "operations/search.h"

@@ -8,7 +8,7 @@ SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clip
 for one set of points or many at once, also with segments that are to be edges, and ``polygons`` fills any
 number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
-result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
+result, ``relax_device``, ``periodic_device`` and ``spherical_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files; ``rasterize_chunks`` and ``contour_chunks`` make maps of them.
 ``Delaunay(points, incremental=True)`` and ``DynamicTriangulation`` have points that are added, removed and moved. The module ``triangle`` has the calls of the package of
 that name.

@@ -1358,6 +1358,11 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
   });
   // Without double precision, it is computed on the host.
   if (kept.device().fp64) attack("a diagram", [&] { kept.voronoi(coordinates.data(), n, expected); });
+  attack("a torus", [&] {
+    DevicePeriodicTriangulation result;
+    triangulate_periodic(kept, points_in(memory, n), Period(), result, on_own());
+    EXPECT_EQ(result.triangle_offsets.back(), 2 * n);
+  });
   attack("a locator", [&] {
     Locator locator(kept, coordinates.data(), n, expected);
     locator.nearest(coordinates.data(), n);
