@@ -26,9 +26,10 @@ NUMBERS = {
     "flaunay_status": "c_int",
     "void": "None",
 }
-# Of elements of arrays, as NumPy names them. What has 8 bits is a flag.
+# Of elements of arrays, as NumPy names them. What has 8 bits and no sign is a flag.
 ELEMENTS = {
     "double": "float64",
+    "std::int8_t": "int8",
     "std::int32_t": "int32",
     "std::size_t": "int64",
     "std::uint8_t": "bool",

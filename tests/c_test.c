@@ -2075,6 +2075,63 @@ static void test_derived_on_device(void) {
   clReleaseMemObject(near);
 }
 
+static void test_periodic_on_device(void) {
+  enum { COUNT = 50 };
+  double places[2 * COUNT];
+  for (size_t i = 0; i < 2 * COUNT; ++i) places[i] = fmod(0.618034 * (double)(i * i), 1);
+  flaunay_periodic* expected = NULL;
+  const size_t offsets[] = {0, 10, COUNT};
+  REQUIRE(flaunay_periodic_create(triangulator, places, COUNT, offsets, 2, 1, 0.75, &expected) ==
+          FLAUNAY_SUCCESS);
+  flaunay_device_points given = {
+      .memory = make_buffer(context, sizeof places, places), .count = COUNT, .offsets = offsets, .sets = 2};
+  const flaunay_enqueue enqueue = {.queue = queue};
+  flaunay_device_periodic* periodic = NULL;
+  REQUIRE(flaunay_device_periodic_create(&periodic) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_device_periodic_triangle_count(periodic) == 0);
+  cl_mem own = make_buffer(context, 12 * COUNT, NULL), small = make_buffer(context, 12 * COUNT - 1, NULL);
+  REQUIRE(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, own) == FLAUNAY_SUCCESS);
+  REQUIRE(flaunay_periodic_compute_device(triangulator, &given, 1, 0.75, &enqueue, periodic) ==
+          FLAUNAY_SUCCESS);
+  const size_t triangles = flaunay_periodic_triangle_count(expected);
+  CHECK(flaunay_device_periodic_triangle_count(periodic) == triangles);
+  CHECK(flaunay_device_periodic_triangle_offsets(periodic)[1] ==
+        flaunay_periodic_triangle_offsets(expected)[1]);
+  CHECK(flaunay_device_periodic_image_count(periodic) == flaunay_periodic_image_count(expected));
+  CHECK(flaunay_device_periodic_period(periodic)[1] == 0.75);
+  const struct {
+    unsigned part;
+    const void* values;
+    size_t bytes;
+  } parts[] = {{FLAUNAY_PERIODIC_PLACES, flaunay_periodic_places(expected), 16 * COUNT},
+               {FLAUNAY_PERIODIC_TRIANGLES, flaunay_periodic_triangles(expected), 12 * triangles},
+               {FLAUNAY_PERIODIC_OFFSETS, flaunay_periodic_offsets(expected), 6 * triangles},
+               {FLAUNAY_PERIODIC_NEIGHBORS, flaunay_periodic_neighbors(expected), 12 * triangles},
+               {FLAUNAY_PERIODIC_REPRESENTATIVES, flaunay_periodic_representatives(expected), 4 * COUNT}};
+  for (size_t p = 0; p < sizeof parts / sizeof *parts; ++p) {
+    char found[24 * COUNT];
+    cl_mem memory = flaunay_device_periodic_buffer(periodic, parts[p].part);
+    REQUIRE(clEnqueueReadBuffer(queue, memory, CL_TRUE, 0, parts[p].bytes, found, 0, NULL, NULL) ==
+            CL_SUCCESS);
+    CHECK(memcmp(found, parts[p].values, parts[p].bytes) == 0);
+  }
+  CHECK(flaunay_device_periodic_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS) == own);
+  CHECK(flaunay_device_periodic_buffer(periodic, 3) == NULL && flaunay_device_periodic_period(NULL) == NULL);
+  CHECK(fails(flaunay_periodic_compute_device(triangulator, &given, 0, 1, &enqueue, periodic),
+              FLAUNAY_ERROR_USAGE, "period"));
+  CHECK(fails(flaunay_periodic_compute_device(triangulator, &given, 1, 1, &enqueue, NULL),
+              FLAUNAY_ERROR_USAGE, "NULL"));
+  REQUIRE(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, small) == FLAUNAY_SUCCESS);
+  CHECK(fails(flaunay_periodic_compute_device(triangulator, &given, 1, 1, &enqueue, periodic),
+              FLAUNAY_ERROR_USAGE, "too small"));
+  flaunay_device_periodic_destroy(periodic);
+  flaunay_device_periodic_destroy(NULL);
+  flaunay_periodic_destroy(expected);
+  clReleaseMemObject(given.memory);
+  clReleaseMemObject(own);
+  clReleaseMemObject(small);
+}
+
 // ---- Chunks
 
 // So few that there are several rounds.
@@ -2995,6 +3052,7 @@ static void test_all(void) {
   test_queries_with_constraints();
   test_derived_on_device();
   test_sphere_on_device();
+  test_periodic_on_device();
   test_relax_on_device();
   test_chunks_in_arrays();
   test_chunks_to_files();

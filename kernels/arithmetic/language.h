@@ -74,6 +74,7 @@ struct float2 {
 inline double2 vload2(std::size_t i, const double* from) { return {from[2 * i], from[2 * i + 1]}; }
 inline long2 vload2(std::size_t i, const int64* from) { return {from[2 * i], from[2 * i + 1]}; }
 
+using std::copysign;
 using std::fabs;
 using std::fma;
 inline int min(int a, int b) { return b < a ? b : a; }

@@ -8,7 +8,7 @@ SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clip
 for one set of points or many at once, also with segments that are to be edges, and ``polygons`` fills any
 number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
 memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
-result, and ``relax_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
+result, ``relax_device``, ``periodic_device`` and ``spherical_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
 arrays that are mapped from files, and writes files; ``rasterize_chunks`` and ``contour_chunks`` make maps of them.
 ``Delaunay(points, incremental=True)`` and ``DynamicTriangulation`` have points that are added, removed and moved. The module ``triangle`` has the calls of the package of
 that name.
@@ -53,7 +53,13 @@ from flaunay._interpolate import (
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
-from flaunay._periodic import PeriodicDelaunay, periodic, to_places
+from flaunay._periodic import (
+    DevicePeriodic,
+    PeriodicDelaunay,
+    periodic,
+    periodic_device,
+    to_places,
+)
 from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
@@ -78,6 +84,7 @@ __all__ = [
     "DeviceClippedVoronoi",
     "DeviceError",
     "DeviceLocator",
+    "DevicePeriodic",
     "DeviceRows",
     "DeviceSpherical",
     "DeviceTriangulation",
@@ -109,6 +116,7 @@ __all__ = [
     "griddata",
     "modes",
     "periodic",
+    "periodic_device",
     "polygons",
     "rasterize_chunks",
     "refine",

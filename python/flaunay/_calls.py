@@ -58,6 +58,7 @@ _CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
 _VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
 _CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
 _SPHERICAL = _arrays(_declarations.SPHERICAL_ARRAYS)
+_PERIODIC = _arrays(_declarations.PERIODIC_ARRAYS)
 
 
 # ---- Arrays
@@ -912,6 +913,10 @@ class _DeviceArrays(DeviceHandle):
             *(triangulator.pointer, points.struct, *others, enqueue.struct, self.pointer),
         )
 
+    def _kept(self, address: Optional[int], count: int, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+        """A copy of what is in host memory, for longer than the buffers."""
+        return _view(self, address, (count,), dtype).copy()
+
     def arrays(self, **counts: int) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
         """For each array the handle of its buffer, 0 if it is empty, its shape and its type.
 
@@ -980,9 +985,27 @@ class DeviceSpherical(_DeviceArrays):
     ) -> None:
         super().__init__(triangulator, points, _sphere_coordinates(width), enqueue)
         offsets = library.device_spherical_triangle_offsets(self.pointer)
-        sets = points.struct.sets or 1
-        # A copy: the caller keeps the offsets for longer than the buffers.
-        self.triangle_offsets = _view(self, offsets, (sets + 1,), _INT64).copy()
+        self.triangle_offsets = self._kept(offsets, (points.struct.sets or 1) + 1, _INT64)
+
+
+class DevicePeriodic(_DeviceArrays):
+    """Triangulations of points on a torus or a cylinder in device memory."""
+
+    _create, _destroy = library.device_periodic_create, library.device_periodic_destroy
+    _compute, _buffer = library.periodic_compute_device, library.device_periodic_buffer
+    _parts, _table = _declarations.PERIODIC_PART, _PERIODIC
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: DevicePoints,
+        period: tuple[float, float],
+        enqueue: Enqueue,
+    ) -> None:
+        super().__init__(triangulator, points, *period, enqueue)
+        offsets = library.device_periodic_triangle_offsets(self.pointer)
+        self.triangle_offsets = self._kept(offsets, (points.struct.sets or 1) + 1, _INT64)
+        self.period = self._kept(library.device_periodic_period(self.pointer), 2, _FLOAT64)
 
 
 def relax_device(

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
+if TYPE_CHECKING:
+    import pyopencl
+    import pyopencl.array
 
 
 def _as_queries(given: ArrayLike) -> Doubles:
@@ -22,6 +27,14 @@ def _as_queries(given: ArrayLike) -> Doubles:
     if queries.ndim == 0 or queries.shape[-1] != 2:
         raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
     return queries
+
+
+def _as_lengths(period: tuple[Optional[float], Optional[float]]) -> tuple[float, float]:
+    given = [np.inf if length is None else length for length in period]
+    lengths = np.asarray(as_floats(given, "period"), np.float64)
+    if lengths.shape != (2,):
+        raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
+    return float(lengths[0]), float(lengths[1])
 
 
 class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
@@ -297,3 +310,95 @@ def periodic(
     lengths = as_lengths(period)
     sets = None if offsets is None else as_offsets(offsets)
     return PeriodicDelaunay(frozen(given.copy()), lengths, sets, device)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DevicePeriodic:
+    """Triangulations on a torus or a cylinder in device memory. `periodic_device` makes them.
+
+    The arrays are views of buffers that flaunay made for this result.
+
+    Attributes
+    ----------
+    points : pyopencl.array.Array
+        The points that were given.
+    places, simplices, corner_offsets, neighbors, representatives : pyopencl.array.Array
+        As those of `PeriodicDelaunay`, with its shapes and types.
+    period : tuple of float
+        As of `PeriodicDelaunay`.
+    simplex_offsets : ndarray of int64, shape (nsets + 1,)
+        As of `PeriodicDelaunay`, in host memory.
+    event : pyopencl.Event
+        Complete when the results are there. The arrays know it: what pyopencl does with them waits.
+    """
+
+    points: pyopencl.array.Array
+    places: pyopencl.array.Array
+    simplices: pyopencl.array.Array
+    corner_offsets: pyopencl.array.Array
+    neighbors: pyopencl.array.Array
+    representatives: pyopencl.array.Array
+    period: tuple[float, float]
+    simplex_offsets: npt.NDArray[np.int64]
+    event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        triangles = int(self.simplex_offsets[-1])
+        return summary(self, points=int(self.points.shape[0]), triangles=triangles)
+
+
+def periodic_device(
+    points: pyopencl.array.Array,
+    period: tuple[Optional[float], Optional[float]],
+    queue: Optional[pyopencl.CommandQueue] = None,
+    offsets: Offsets = None,
+    wait_for: Optional[Sequence[pyopencl.Event]] = None,
+) -> DevicePeriodic:
+    """Triangulates points in device memory as `periodic` does, into device memory.
+
+    Parameters
+    ----------
+    points : pyopencl.array.Array, shape (n, 2)
+        As of `triangulate_device`.
+    period : (float or None, float or None)
+        As of `periodic`.
+    queue, offsets, wait_for : optional
+        As of `triangulate_device`.
+
+    Returns
+    -------
+    DevicePeriodic
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError, ImportError
+        As of `periodic` and `triangulate_device`.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> import numpy as np
+    >>> import pyopencl as cl
+    >>> import pyopencl.array
+    >>> queue = cl.CommandQueue(cl.create_some_context(interactive=False))
+    >>> points = cl.array.to_device(queue, np.random.default_rng(1).random((1000, 2)))
+    >>> flaunay.periodic_device(points, (1, 1))
+    <flaunay.DevicePeriodic: 1000 points, 2000 triangles>
+    """
+    call = DeviceCall(queue_for(points, queue, "points"), wait_for)
+    device_points, lengths = call.points(points, offsets, "points"), as_lengths(period)
+    triangulator = _triangulators.of_queue(call.queue)
+    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, lengths)
+    triangles = int(made.triangle_offsets[-1])
+    places = made.arrays(point=int(points.shape[0]), triangle=triangles)
+    views = {name: view(*place, call.queue, event) for name, place in places.items()}
+    across, up = made.period.tolist()
+    return DevicePeriodic(
+        simplices=views.pop("triangles"),
+        corner_offsets=views.pop("offsets").reshape(triangles, 3, 2),
+        **views,
+        points=points,
+        period=(across, up),
+        simplex_offsets=made.triangle_offsets,
+        event=event,
+    )

@@ -359,3 +359,36 @@ def test_a_context_is_forgotten_while_its_queue_waits_for_a_thread():
         queue.finish()
     """
     subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("period", [(1, 1), (0.7, 2), (1, None)])
+@pytest.mark.parametrize("offsets", [None, [0, 1, 1, 300, 2000]])
+def test_points_on_a_torus_or_a_cylinder(random, queue, dtype, period, offsets):
+    points = (random.random((2000, 2)) * 3).astype(dtype)
+    given = cl_array.to_device(queue, points)
+    found = flaunay.periodic_device(given, period, offsets=offsets)
+    expected = flaunay.periodic(points, period, offsets)
+    for name in "places", "simplices", "corner_offsets", "neighbors", "representatives":
+        mine, other = getattr(found, name).get(), getattr(expected, name)
+        assert mine.dtype == other.dtype and np.array_equal(mine, other), name
+    assert found.period == expected.period
+    assert np.array_equal(found.simplex_offsets, expected.simplex_offsets)
+    sizes = f"2000 points, {expected.nsimplex} triangles"
+    assert repr(found) == f"<flaunay.DevicePeriodic: {sizes}>"
+    assert given.events
+
+
+def test_a_torus_of_no_points_and_wrong_input(random, queue):
+    none = flaunay.periodic_device(cl_array.zeros(queue, (0, 2), np.float64), (1, 1))
+    assert none.simplices.shape == (0, 3) and none.places.shape == (0, 2)
+    points = random.random((20, 2))
+    given = cl_array.to_device(queue, points)
+    for period in (0, 1), (1, -1), (None, None), (np.nan, 1), (1, 1, 1):
+        with pytest.raises(flaunay.UsageError, match="period"):
+            flaunay.periodic_device(given, period)
+    with pytest.raises(TypeError, match="points must be a pyopencl.array.Array"):
+        flaunay.periodic_device(points, (1, 1), queue)
+    points[7, 1] = np.inf
+    with pytest.raises(flaunay.InputError, match="point 7 is not finite"):
+        flaunay.periodic_device(cl_array.to_device(queue, points), (1, 1))

@@ -2,6 +2,7 @@
 #include "flaunay/periodic.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,11 +22,23 @@ struct flaunay_periodic {
   PeriodicTriangulation cpp;
 };
 
+struct flaunay_device_periodic {
+  DevicePeriodicTriangulation cpp;
+};
+
 struct flaunay_periodic_locator {
   PeriodicLocator cpp;
 };
 
 namespace {
+
+template <typename Result>
+auto& buffer_of(Result& periodic, unsigned part) {
+#define BUFFER(type, name, ...) &DevicePeriodicTriangulation::name,
+  static constexpr std::array kBuffers = {FLAUNAY_PERIODIC_ARRAYS(BUFFER)};
+#undef BUFFER
+  return c::buffer_of(periodic, kBuffers, part, "a triangulation on a torus");
+}
 
 // Answers queries by answer(locator) into the caller's array.
 template <typename Value, typename Answer>
@@ -97,6 +110,36 @@ flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator, const
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     const std::string problem = verify_periodic(cpp, required(periodic, "the triangulation").cpp);
     if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+  });
+}
+
+FLAUNAY_DEVICE_RESULT(periodic, "the triangulation")
+
+size_t flaunay_device_periodic_triangle_count(const flaunay_device_periodic* periodic) {
+  return read(periodic, [](const auto& handle) { return c::total(handle.cpp.triangle_offsets); });
+}
+
+size_t flaunay_device_periodic_image_count(const flaunay_device_periodic* periodic) {
+  return read(periodic, [](const auto& handle) { return handle.cpp.images; });
+}
+
+const double* flaunay_device_periodic_period(const flaunay_device_periodic* periodic) {
+  return read(periodic, [](const auto& handle) { return &handle.cpp.period.x; });
+}
+
+const size_t* flaunay_device_periodic_triangle_offsets(const flaunay_device_periodic* periodic) {
+  return read(periodic, [](const auto& handle) { return c::elements(handle.cpp.triangle_offsets); });
+}
+
+flaunay_status flaunay_periodic_compute_device(flaunay_triangulator* triangulator,
+                                               const flaunay_device_points* points, double period_x,
+                                               double period_y, const flaunay_enqueue* enqueue,
+                                               flaunay_device_periodic* result) {
+  return guarded([&] {
+    const Enqueue queued = c::to_enqueue(enqueue);
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    triangulate_periodic(cpp, c::to_points(points), {period_x, period_y}, required(result, "the result").cpp,
+                         queued);
   });
 }
 

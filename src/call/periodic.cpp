@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "call/frame.hpp"
@@ -129,7 +128,6 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
   mesh.places = call::take_turn(
       self, [&] { return periodic::to_places(self.native().runtime, points, n, lengths, "point"); });
   mesh.point_offsets = offsets;
-  std::vector<double> margins(sets);
   std::vector<periodic::Box> boxes(sets);
   std::vector<periodic::Triangles> done(sets);
   std::vector<Ids> representatives(sets);
@@ -137,7 +135,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
   for (std::size_t s = 0; s < sets; ++s) {
     if (offsets[s] == offsets[s + 1]) continue;
     boxes[s] = periodic::box_of(mesh.places, offsets[s], offsets[s + 1], lengths);
-    margins[s] = periodic::first_margin(boxes[s], offsets[s + 1] - offsets[s]);
+    boxes[s].margin = periodic::first_margin(boxes[s], offsets[s + 1] - offsets[s]);
     waiting.push_back(s);
   }
   // Those of a set alone are not copied.
@@ -153,16 +151,10 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
     round.planes.resize(round.sets.size());
     for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
       const std::size_t s = round.sets[k];
-      round.planes[k] = Unrolled(runtime, places_of(s), {boxes[s], margins[s]});
+      round.planes[k] = Unrolled(runtime, places_of(s), boxes[s]);
     });
     round.count_points();
-    // Corners of triangles are numbered.
-    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
-    if (round.offsets.back() > kMost) {
-      throw Error(ErrorKind::input,
-                  fmt::format("{} points and their images are too many: at most {} are possible",
-                              round.offsets.back(), kMost));
-    }
+    periodic::check_size(round.offsets.back());
     Triangulation planar = triangulator.triangulate(round.all_coordinates(), round.offsets);
     std::vector<char> is_done(round.sets.size());
     for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
@@ -176,10 +168,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
       const std::size_t s = round.sets[k];
       mesh.images += round.planes[k].images();
       if (is_done[k] != 0) continue;
-      if (round.planes[k].window().is_whole())
-        throw Error(ErrorKind::internal, fmt::format("the triangles of set {} are not those of a torus", s));
-      constexpr double kWider = 4;
-      margins[s] *= kWider;
+      periodic::widen(boxes[s], s);
       waiting.push_back(s);
     }
     mesh.statistics = std::move(planar.statistics);

@@ -28,7 +28,6 @@ using geometry::Point;
 using periodic::Box;
 using periodic::Image;
 using periodic::Pair;
-using periodic::Window;
 
 // Points that are read at once.
 constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 18;
@@ -64,9 +63,9 @@ class Places {
 };
 
 Box box_of(const Places& places, const Pair<double>& period) {
-  Box box{{}, period, period};
-  if (box.repeats(0) && box.repeats(1)) return box;
-  const std::size_t axis = box.repeats(0) ? 1 : 0;
+  Box box = periodic::box_of({}, 0, 0, period);
+  if (periodic::repeats(box, 0) && periodic::repeats(box, 1)) return box;
+  const std::size_t axis = periodic::repeats(box, 0) ? 1 : 0;
   box.low[axis] = HUGE_VAL;
   box.high[axis] = -HUGE_VAL;
   places.for_each([&](std::uint64_t, Point p) {
@@ -77,16 +76,16 @@ Box box_of(const Places& places, const Pair<double>& period) {
   return box;
 }
 
-// Points and, after them, the images that are in the window.
+// Points and, after them, the images within the margin.
 class Plane : public PointSource {
  public:
   // Bytes that an image may take: 24 for itself, the rest for edges where triangles are joined.
   static constexpr std::uint64_t kBytesPerImage = 48;
 
-  Plane(const Places& places, const Window& window, std::uint64_t memory) : places_(places) {
+  Plane(const Places& places, const Box& box, std::uint64_t memory) : places_(places) {
     const std::uint64_t most = (memory - call::kLeastChunkBytes) / kBytesPerImage;
     places.for_each([&](std::uint64_t i, Point p) {
-      window.for_each_image(p, [&](const Pair<int>& at, Point place) {
+      periodic::for_each_image(box, p, [&](const Pair<int>& at, Point place) {
         if (images_.size() == most) throw too_many(memory);
         images_.push_back({place, (i << kBits) + static_cast<std::uint64_t>((at[0] + 1) * 4 + at[1] + 1)});
       });
@@ -135,8 +134,8 @@ class Plane : public PointSource {
 // Takes the edges where triangles that are kept end.
 class Folding : public chunks::Folding {
  public:
-  Folding(const Plane& plane, std::uint64_t points, const Window& window)
-      : plane_(plane), points_(points), seams_(window) {}
+  Folding(const Plane& plane, std::uint64_t points, const Box& box)
+      : plane_(plane), points_(points), seams_(box) {}
 
   std::int64_t first_image() const override { return static_cast<std::int64_t>(points_); }
   bool is_kept(const std::array<std::int64_t, 3>& corners) const override {
@@ -149,7 +148,9 @@ class Folding : public chunks::Folding {
                   static_cast<std::uint64_t>(fold.entry)});
     }
   }
-  bool match(std::uint64_t points, std::uint64_t triangles) { return seams_.match(points, triangles); }
+  bool match(std::uint64_t points, std::uint64_t triangles) {
+    return triangles == seams_.expected(points) && seams_.match(triangles);
+  }
   // After match.
   void write_neighbors(MeshSink& sink) const {
     std::vector<std::pair<std::uint64_t, std::int64_t>> links;
@@ -227,13 +228,13 @@ class FoldedSink : public MeshSink {
   std::vector<std::int8_t> offsets_;
 };
 
-// Triangulates what is in a window. Returns nothing if its margin is too small.
-std::optional<ChunkStatistics> triangulate_window(const Places& places, const Window& window,
-                                                  PeriodicMeshSink& sink, ChunkOptions options) {
+// Returns nothing if the margin is too small.
+std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& box, PeriodicMeshSink& sink,
+                                              ChunkOptions options) {
   const std::uint64_t n = places.size(), memory = call::chunk_memory(options);
-  Plane plane(places, window, memory);
+  Plane plane(places, box, memory);
   options.memory_bytes = memory - plane.bytes();
-  Folding folding(plane, n, window);
+  Folding folding(plane, n, box);
   FoldedSink folded(sink, plane, n);
   ChunkStatistics statistics = call::triangulate_chunks(plane, nullptr, folded, options, &folding);
   if (!folding.match(n - folded.duplicates(), statistics.triangles)) return std::nullopt;
@@ -275,17 +276,14 @@ ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& p
     const double begin = host::now();
     const Pair<double> lengths = periodic::rounded(period);
     const Places places(points, lengths, options);
-    Window window{box_of(places, lengths), 0};
-    window.margin = periodic::first_margin(window.box, places.size());
-    constexpr double kWider = 4;
-    for (;; window.margin *= kWider) {
+    Box box = box_of(places, lengths);
+    box.margin = periodic::first_margin(box, places.size());
+    for (;; periodic::widen(box, 0)) {
       if (places.size() == 0) return ChunkStatistics();
-      if (std::optional<ChunkStatistics> done = triangulate_window(places, window, sink, options)) {
+      if (std::optional<ChunkStatistics> done = triangulate_in(places, box, sink, options)) {
         done->seconds = host::now() - begin;
         return std::move(*done);
       }
-      if (window.is_whole())
-        throw Error(ErrorKind::internal, "the triangles are not those of a torus or a cylinder");
     }
   });
 }

@@ -19,13 +19,14 @@ struct PeriodicLocator::Implementation {
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
     if (n == 0) return;
-    const periodic::Box box = periodic::box_of(mesh.places, 0, n, period);
+    periodic::Box box = periodic::box_of(mesh.places, 0, n, period);
     constexpr double kWhole = std::numeric_limits<double>::infinity();
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
-    double margin = box.repeats(0) && box.repeats(1) ? periodic::first_margin(box, n) : kWhole;
-    for (; !make(used, mesh, box, margin); margin *= 4) {
-      if (plane->window().is_whole())
+    const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
+    box.margin = is_torus ? periodic::first_margin(box, n) : kWhole;
+    for (; !make(used, mesh, box); box.margin *= periodic::kWider) {
+      if (periodic::is_whole(plane->box()))
         throw Error(ErrorKind::usage,
                     "the triangles are not those of a triangulation on a torus or a cylinder");
     }
@@ -33,13 +34,11 @@ struct PeriodicLocator::Implementation {
 
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest point of what is in the box is near enough.
-  bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box, double margin) {
-    call::take_turn(*owner, [&] {
-      plane.emplace(&owner->native().runtime, mesh.places, periodic::Window{box, margin});
-    });
+  bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box) {
+    call::take_turn(*owner, [&] { plane.emplace(&owner->native().runtime, mesh.places, box); });
     const std::vector<double>& places = plane->coordinates();
     const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
-    if (!plane->window().is_whole() && !periodic::is_box_inside(*plane, planar.hull)) return false;
+    if (!periodic::is_whole(plane->box()) && !periodic::is_box_inside(*plane, planar.hull)) return false;
     call::take_turn(*owner, [&] {
       numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
     });

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bitset>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "geometry/for_each.hpp"
@@ -29,27 +30,6 @@ double whole_of(double period) {
   return power < period ? 2 * power : power;
 }
 
-struct Axis {
-  explicit Axis(double length) : period(length) {
-    if (std::isfinite(period)) whole = whole_of(period);
-  }
-
-  // Of x in [-period / 2, period / 2], or not finite.
-  double place_of(double x) const {
-    const double place = std::copysign((std::fabs(x) + whole) - whole, x);
-    return place + period * static_cast<double>(place < 0);  // without a branch
-  }
-  double wrapped(double x) const {
-    if (!std::isfinite(period)) return x + 0.0;
-    if (x >= 0 && x < period) return place_of(x - period * static_cast<double>(x >= period / 2));
-    // Without a rounding. Of both ends, the lower one.
-    const double rest = std::remainder(x, period);
-    return place_of(rest < period / 2 ? rest : rest - period);
-  }
-
-  double period, whole = 0;
-};
-
 template <typename T>
 void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -65,11 +45,18 @@ Pair<double> rounded(const Period& period) {
   return {one(period.x), one(period.y)};
 }
 
+kernel::periodic_axes axes_of(const Pair<double>& period) {
+  const auto one = [](double length) {
+    return kernel::periodic_axis{length, std::isfinite(length) ? whole_of(length) : 0};
+  };
+  return {one(period[0]), one(period[1])};
+}
+
 void take_into(const Pair<double>& period, double* points, std::size_t n, std::uint64_t first,
                const char* what) {
-  const Axis across(period[0]), up(period[1]);
+  const kernel::periodic_axes axes = axes_of(period);
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = across.wrapped(points[2 * i]), y = up.wrapped(points[2 * i + 1]);
+    const double x = kernel::place_of(points[2 * i], axes.x), y = kernel::place_of(points[2 * i + 1], axes.y);
     if (!std::isfinite(x) || !std::isfinite(y)) {
       throw Error(ErrorKind::input, fmt::format("{} {} is not finite: ({}, {})", what, first + i,
                                                 points[2 * i], points[2 * i + 1]));
@@ -93,7 +80,7 @@ std::vector<double> to_places(host::Runtime& runtime, const double* points, std:
 
 Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
            const Pair<double>& period) {
-  Box box{{}, period, period};
+  Box box{{period[0], period[1]}, {}, {period[0], period[1]}, 0};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (std::isfinite(period[axis]) || first == last) continue;
     box.low[axis] = box.high[axis] = places[2 * first + axis];
@@ -117,8 +104,29 @@ double first_margin(const Box& box, std::size_t n) {
   return margin;
 }
 
-Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Window& window)
-    : window_(window), points_(places.size() / 2), coordinates_(std::move(places)) {
+void check_size(std::size_t points_and_images) {
+  // Corners of triangles are numbered.
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
+  if (points_and_images > kMost) {
+    throw Error(ErrorKind::input,
+                fmt::format("{} points and their images are too many: at most {} are possible",
+                            points_and_images, kMost));
+  }
+}
+
+bool is_whole(const Box& box) {
+  return (!repeats(box, 0) || box.margin >= box.period[0]) &&
+         (!repeats(box, 1) || box.margin >= box.period[1]);
+}
+
+void widen(Box& box, std::size_t s) {
+  if (is_whole(box))
+    throw Error(ErrorKind::internal, fmt::format("the triangles of set {} are not those of a torus", s));
+  box.margin *= kWider;
+}
+
+Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box)
+    : box_(box), points_(places.size() / 2), coordinates_(std::move(places)) {
   struct Found {
     std::vector<double> coordinates;
     std::vector<Image> images;
@@ -126,7 +134,7 @@ Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Win
   std::vector<Found> found(runs_of(points_));
   for_each_run(runtime, points_, [&](std::size_t run, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      window_.for_each_image(place(static_cast<std::int32_t>(i)), [&](const Pair<int>& at, Point p) {
+      for_each_image(box_, place(static_cast<std::int32_t>(i)), [&](const Pair<int>& at, Point p) {
         found[run].coordinates.insert(found[run].coordinates.end(), {p.x, p.y});
         found[run].images.push_back({static_cast<std::int64_t>(i), at});
       });
@@ -141,20 +149,6 @@ Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Win
 std::vector<double> Unrolled::take_places() {
   coordinates_.resize(2 * points_);
   return std::move(coordinates_);
-}
-
-bool Window::is_near_end(double x, std::size_t axis) const {
-  return !box.repeats(axis) && (x <= box.low[axis] + margin || x >= box.high[axis] - margin);
-}
-
-// Which images there are, from -1 or 0 to 0 or 1.
-Pair<int> Window::images_along(double x, std::size_t axis, bool all) const {
-  if (!box.repeats(axis)) return {};
-  return {all || x >= box.period[axis] - margin ? -1 : 0, all || x <= margin ? 1 : 0};
-}
-
-bool Window::is_whole() const {
-  return (!box.repeats(0) || margin >= box.period[0]) && (!box.repeats(1) || margin >= box.period[1]);
 }
 
 namespace {
@@ -250,10 +244,8 @@ Point in_box(const Box& box, Point p) {
 
 // Whether an edge is on an end of a direction that has no period.
 bool is_at_end(const Box& box, Point a, Point b) {
-  const auto is_end = [&](double x, double y, std::size_t axis) {
-    return !box.repeats(axis) && x == y && (x == box.low[axis] || x == box.high[axis]);
-  };
-  return is_end(a.x, b.x, 0) || is_end(a.y, b.y, 1);
+  return (a.x == b.x && kernel::ends_at(a.x, &box, 0) > 0) ||
+         (a.y == b.y && kernel::ends_at(a.y, &box, 1) > 0);
 }
 
 // Rewrites a triangle of images: offsets are relative to its first corner.
@@ -272,13 +264,13 @@ void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles
 void Seams::add(Edge edge) {
   // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
   // says: once. (The area is rounded, and computed from the border.)
-  const Point a = in_box(window_.box, edge.a), b = in_box(window_.box, edge.b);
+  const Point a = in_box(box_, edge.a), b = in_box(box_, edge.b);
   area_ += (a.x + b.x) / 2 * (b.y - a.y);
-  if (edge.beyond.point < 0 && is_at_end(window_.box, edge.a, edge.b)) {
+  if (edge.beyond.point < 0 && is_at_end(box_, edge.a, edge.b)) {
     ++ends_;
     return;
   }
-  is_torn_ |= edge.beyond.point < 0 && !window_.is_whole();
+  is_torn_ |= edge.beyond.point < 0 && !is_whole(box_);
   const Image step = beside(edge.to, edge.from);
   if (edge.to.point < edge.from.point || (edge.to.point == edge.from.point && step.at < Pair<int>{}))
     std::swap(edge.from, edge.to);
@@ -287,13 +279,15 @@ void Seams::add(Edge edge) {
   edges_.push_back(edge);
 }
 
-bool Seams::match(std::uint64_t points, std::uint64_t triangles) {
-  const Box& box = window_.box;
-  const bool is_flat = box.low[0] == box.high[0] || box.low[1] == box.high[1];
+std::uint64_t Seams::expected(std::uint64_t points) const {
+  const bool is_flat = box_.low[0] == box_.high[0] || box_.low[1] == box_.high[1];
   // An end has as many edges as points.
-  const std::uint64_t expected = is_flat ? 0 : 2 * points - ends_;
-  if (is_torn_ || triangles != expected || edges_.size() % 2 != 0) return false;
-  if (expected > 0 && !(std::fabs(area_ - 1) < 0.5)) return false;
+  return is_flat ? 0 : 2 * points - ends_;
+}
+
+bool Seams::match(std::uint64_t triangles) {
+  if (is_torn_ || edges_.size() % 2 != 0) return false;
+  if (triangles > 0 && !(std::fabs(area_ - 1) < 0.5)) return false;
   std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
     return a.from < b.from || (a.from == b.from && a.to < b.to);
   });
@@ -302,7 +296,7 @@ bool Seams::match(std::uint64_t points, std::uint64_t triangles) {
     if (!(a.from == b.from && a.to == b.to)) return false;
     // What is beyond an edge in the plane is an image of what is joined to it. Of a whole plane this is
     // known.
-    if (!window_.is_whole() && !(a.own == b.beyond && b.own == a.beyond)) return false;
+    if (!is_whole(box_) && !(a.own == b.beyond && b.own == a.beyond)) return false;
   }
   return true;
 }
@@ -314,7 +308,7 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
   std::size_t different = 0;
   for (std::size_t i = 0; i < representatives.size(); ++i) different += index(representatives[i]) == i;
   const Ranks ranks(border.dropped, count);
-  Seams seams(plane.window());
+  Seams seams(plane.box());
   for (const std::int32_t t : border.dropped) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t other = all.neighbors[3 * index(t) + k];
@@ -325,7 +319,7 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
     }
   }
   for (const std::int32_t at : border.open) seams.add(seam_of(plane, all, at, -1));
-  if (!seams.match(different, kept)) return false;
+  if (kept != seams.expected(different) || !seams.match(kept)) return false;
   seams.for_each_link(
       [&](std::uint64_t at, std::uint64_t t) { all.neighbors[at] = static_cast<std::int32_t>(t); });
 
@@ -356,8 +350,8 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
 bool is_box_inside(const Unrolled& plane, const Ids& hull) {
   constexpr double kDistance = 0x1p-30;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = in_box(plane.window().box, plane.place(hull[i])),
-                b = in_box(plane.window().box, plane.place(hull[(i + 1) % hull.size()]));
+    const Point a = in_box(plane.box(), plane.place(hull[i])),
+                b = in_box(plane.box(), plane.place(hull[(i + 1) % hull.size()]));
     for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
       if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
     }
@@ -390,7 +384,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     const auto found = std::find_if(first, last, is_same);
     return found == last ? -1 : *found;
   };
-  const Box& box = plane.window().box;
+  const Box& box = plane.box();
   const auto touches_box = [&](const std::array<Point, 3>& p) {
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [below, above] = std::minmax({p[0].y, p[1].y, p[2].y});
@@ -399,7 +393,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
   const auto is_small = [&](const std::array<Point, 3>& p) {
     constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
     const auto is_short = [&](Point a, Point b) {
-      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.window().margin;
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.box().margin;
     };
     return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
   };
@@ -415,9 +409,9 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     if (!touches_box(places)) return;
     std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
     result[t] = find(images);
-    if (!plane.window().is_whole() && (result[t] < 0 || !is_small(places))) is_right = false;
+    if (!is_whole(plane.box()) && (result[t] < 0 || !is_small(places))) is_right = false;
   });
-  if (plane.window().is_whole()) {
+  if (is_whole(plane.box())) {
     std::vector<bool> is_found(by_first.size(), false);
     for (const std::int32_t t : result) {
       if (t >= 0) is_found[index(t)] = true;

@@ -10,6 +10,8 @@
 #include "flaunay/periodic.hpp"
 #include "geometry/predicates.hpp"
 #include "host/runtime.hpp"
+#include "periodic/records.h"
+#include "periodic/torus.h"
 
 namespace flaunay::periodic {
 
@@ -20,6 +22,9 @@ using Pair = std::array<T, 2>;
 /// The periods, rounded to multiples of their units.
 Pair<double> rounded(const Period& period);
 
+/// The periods with their units.
+kernel::periodic_axes axes_of(const Pair<double>& period);
+
 /// Takes points into the periods, rounded to multiples of their units. The result is the same on every
 /// machine. Throws Error(input) for one that is not finite, with what: the name of a point. first: the number
 /// of the first one. O(n).
@@ -28,18 +33,39 @@ void take_into(const Pair<double>& period, double* points, std::size_t n, std::u
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what);
 
-/// The box of one set: where there is a period from 0 to that, otherwise as its points have it.
-struct Box {
-  Pair<double> low{}, high{};
-  Pair<double> period{};
-
-  bool repeats(std::size_t axis) const { return std::isfinite(period[axis]); }
-};
+/// The box of one set, and a margin around it. All images of points within the margin are triangulated in the
+/// plane, and those of points within the margin of an end of the direction that has no period. No coordinate
+/// is farther away than two periods, so no image is rounded.
+using Box = kernel::periodic_box;
+inline bool repeats(const Box& box, std::size_t axis) { return std::isfinite(box.period[axis]); }
+/// Whether a point and all its neighbours are within the margin, whatever the points are.
+bool is_whole(const Box& box);
+/// Without a margin.
 Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
            const Pair<double>& period);
 
 /// How wide the gaps of so many uniform points may be, with some to spare.
 double first_margin(const Box& box, std::size_t n);
+/// By what a margin grows that was too small.
+constexpr double kWider = 4;
+/// Widens the margin of set s. Throws Error(internal) if its box is whole.
+void widen(Box& box, std::size_t s);
+
+/// Throws Error(input) for more points and images than can be triangulated in one call.
+void check_size(std::size_t points_and_images);
+
+/// Calls visit(at, place) for each image of a point that has this place, in ascending order.
+template <typename Visit>
+void for_each_image(const Box& box, geometry::Point p, const Visit& visit) {
+  const kernel::image_range to = kernel::images_around(p.x, p.y, &box);
+  for (int across = to.low[0]; across <= to.high[0]; ++across) {
+    for (int up = to.low[1]; up <= to.high[1]; ++up) {
+      if (across == 0 && up == 0) continue;
+      visit(Pair<int>{across, up}, geometry::Point{kernel::moved(p.x, across, box.period[0]),
+                                                   kernel::moved(p.y, up, box.period[1])});
+    }
+  }
+}
 
 /// An image of a point, so many periods away from its place.
 struct Image {
@@ -58,40 +84,10 @@ inline bool is_kept(const std::array<Image, 3>& corners) {
   return corners[0].at == Pair<int>{} && corners[0] < corners[1] && corners[0] < corners[2];
 }
 
-/// What is triangulated in the plane: a box, with all images of points within a margin around it, and those
-/// of points within the margin of an end of the direction that has no period. No coordinate is farther away
-/// than two periods, so no image is rounded.
-struct Window {
-  Box box;
-  double margin = 0;
-
-  /// Whether a point and all its neighbours are there, whatever the points are.
-  bool is_whole() const;
-  /// Calls visit(at, place) for each image of a point that has this place, in ascending order.
-  template <typename Visit>
-  void for_each_image(geometry::Point p, const Visit& visit) const {
-    // Near an end of the direction without a period, the nearest points may be a whole period away.
-    const bool is_at_end = is_near_end(p.x, 0) || is_near_end(p.y, 1);
-    const Pair<int> across = images_along(p.x, 0, is_at_end), up = images_along(p.y, 1, is_at_end);
-    for (int a = across[0]; a <= across[1]; ++a) {
-      for (int b = up[0]; b <= up[1]; ++b) {
-        if (a == 0 && b == 0) continue;
-        const geometry::Point place{a == 0 ? p.x : p.x + a * box.period[0],
-                                    b == 0 ? p.y : p.y + b * box.period[1]};
-        visit(Pair<int>{a, b}, place);
-      }
-    }
-  }
-
- private:
-  bool is_near_end(double x, std::size_t axis) const;
-  Pair<int> images_along(double x, std::size_t axis, bool all) const;
-};
-
 /// The edges at which triangles that are kept end in the plane. There they are joined to each other.
 class Seams {
  public:
-  explicit Seams(const Window& window) : window_(window) {}
+  explicit Seams(const Box& box) : box_(box) {}
 
   struct Edge {
     Image from, to;        // counter-clockwise for the triangle that is kept
@@ -100,10 +96,11 @@ class Seams {
     std::uint64_t at;      // the entry of `neighbors`: 3 t + the corner opposite
   };
   void add(Edge edge);
-  /// Whether so many triangles that are kept are the canonical Delaunay triangulation of so many different
-  /// points; otherwise the margin was too small. Each edge between two of them must have been added. O(s log
-  /// s).
-  bool match(std::uint64_t points, std::uint64_t triangles);
+  /// The triangles of so many different points.
+  std::uint64_t expected(std::uint64_t points) const;
+  /// Whether so many triangles that are kept, as many as expected, are the canonical Delaunay triangulation;
+  /// otherwise the margin was too small. Each edge where one of them ends must have been added. O(s log s).
+  bool match(std::uint64_t triangles);
   /// Calls link(at, t) for each edge: entry `at` of `neighbors` is triangle t. After match.
   template <typename Link>
   void for_each_link(const Link& link) const {
@@ -111,7 +108,7 @@ class Seams {
   }
 
  private:
-  Window window_;
+  Box box_;
   std::vector<Edge> edges_;  // from the same end, which is in its place, for both triangles
   std::uint64_t ends_ = 0;   // edges on the ends of a cylinder
   bool is_torn_ = false;
@@ -124,11 +121,11 @@ class Unrolled {
   /// No points.
   Unrolled() = default;
   /// runtime: its threads are used; null for this one alone. places: of the set's points. O(n).
-  Unrolled(host::Runtime* runtime, std::vector<double> places, const Window& window);
+  Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box);
   /// The places again. Images are no longer there.
   std::vector<double> take_places();
 
-  const Window& window() const { return window_; }
+  const Box& box() const { return box_; }
   /// x and y of all: the points in their order, and then images.
   const std::vector<double>& coordinates() const { return coordinates_; }
   std::size_t points() const { return points_; }
@@ -144,7 +141,7 @@ class Unrolled {
   }
 
  private:
-  Window window_;
+  Box box_{};
   std::size_t points_ = 0;
   std::vector<double> coordinates_;
   std::vector<Image> images_;

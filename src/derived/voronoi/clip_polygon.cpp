@@ -8,7 +8,6 @@
 #include "voronoi/codes.h"
 
 namespace flaunay::voronoi {
-using namespace points;
 
 using geometry::Magnitudes;
 using geometry::Point;

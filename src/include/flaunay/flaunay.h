@@ -1615,6 +1615,45 @@ FLAUNAY_API flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* p
 FLAUNAY_API flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator,
                                                    const flaunay_periodic* periodic);
 
+/// The arrays of a triangulation on a torus or a cylinder in device memory, as bits, with their types and the
+/// sizes in bytes that buffers need for n points.
+typedef enum flaunay_periodic_part {
+  FLAUNAY_PERIODIC_PLACES = 1,           ///< double2, 16 n
+  FLAUNAY_PERIODIC_TRIANGLES = 2,        ///< int32, 24 n
+  FLAUNAY_PERIODIC_OFFSETS = 4,          ///< char, 12 n
+  FLAUNAY_PERIODIC_NEIGHBORS = 8,        ///< int32, 24 n
+  FLAUNAY_PERIODIC_REPRESENTATIVES = 16  ///< int32, 4 n
+} flaunay_periodic_part;
+/// The triangulations of sets of points on a torus or a cylinder, in device memory.
+typedef struct flaunay_device_periodic flaunay_device_periodic;
+/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
+FLAUNAY_API flaunay_status flaunay_device_periodic_create(flaunay_device_periodic** periodic);
+/// Releases its buffers; what is enqueued with them goes on.
+FLAUNAY_API void flaunay_device_periodic_destroy(flaunay_device_periodic* periodic);
+/// Makes later calls write one part (one bit of flaunay_periodic_part) to the caller's buffer, whose size
+/// must be that given there. Otherwise see flaunay_device_triangulation_set_buffer.
+FLAUNAY_API flaunay_status flaunay_device_periodic_set_buffer(flaunay_device_periodic* periodic,
+                                                              unsigned part, cl_mem memory);
+/// The buffer of one part; see flaunay_device_triangulation_buffer.
+FLAUNAY_API cl_mem flaunay_device_periodic_buffer(const flaunay_device_periodic* periodic, unsigned part);
+/// t, as of flaunay_periodic_triangle_count. This and the following values are in host memory, and known when
+/// the call returns.
+FLAUNAY_API size_t flaunay_device_periodic_triangle_count(const flaunay_device_periodic* periodic);
+/// See flaunay_periodic_image_count.
+FLAUNAY_API size_t flaunay_device_periodic_image_count(const flaunay_device_periodic* periodic);
+/// See flaunay_periodic_period.
+FLAUNAY_API const double* flaunay_device_periodic_period(const flaunay_device_periodic* periodic);
+/// See flaunay_periodic_triangle_offsets.
+FLAUNAY_API const size_t* flaunay_device_periodic_triangle_offsets(const flaunay_device_periodic* periodic);
+/// flaunay_periodic_create for points in device memory, into device memory: the same bytes. The host joins
+/// what meets at the border, about the square root of n triangles. Otherwise the work is enqueued like that
+/// of flaunay_triangulate_device, with the same errors. Devices without fp64 leave it to the host.
+FLAUNAY_API flaunay_status flaunay_periodic_compute_device(flaunay_triangulator* triangulator,
+                                                           const flaunay_device_points* points,
+                                                           double period_x, double period_y,
+                                                           const flaunay_enqueue* enqueue,
+                                                           flaunay_device_periodic* result);
+
 /// Answers queries on a torus or a cylinder with one set of points. Queries are any places of the plane.
 typedef struct flaunay_periodic_locator flaunay_periodic_locator;
 /// Makes a locator, which copies what it needs: as a flaunay_locator does, for points and images around the

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flaunay/chunks.hpp"
+#include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay {
@@ -104,6 +105,29 @@ FLAUNAY_API ChunkStatistics triangulate_periodic_chunks(const double* coordinate
                                                         const MeshArrays<std::int64_t>& results,
                                                         std::int8_t* offsets,
                                                         const ChunkOptions& options = {});
+
+/// A PeriodicTriangulation in device memory. For n points the caller's buffers must have, and flaunay's have,
+/// the sizes given here.
+struct DevicePeriodicTriangulation {
+  DeviceBuffer places;                     ///< PeriodicTriangulation::places, double2, 16 n bytes
+  DeviceBuffer triangles;                  ///< PeriodicTriangulation::triangles, int32, 24 n bytes
+  DeviceBuffer offsets;                    ///< PeriodicTriangulation::offsets, char, 12 n bytes
+  DeviceBuffer neighbors;                  ///< PeriodicTriangulation::neighbors, int32, 24 n bytes
+  DeviceBuffer representatives;            ///< PeriodicTriangulation::representatives, int32, 4 n bytes
+  Period period;                           ///< PeriodicTriangulation::period; the rest is in host memory, too
+  std::vector<std::size_t> point_offsets;  ///< PeriodicTriangulation::point_offsets
+  std::vector<std::size_t> triangle_offsets;  ///< PeriodicTriangulation::triangle_offsets
+  std::size_t images = 0;                     ///< PeriodicTriangulation::images
+  Statistics statistics;                      ///< of the call
+};
+
+/// Triangulates points in device memory, in one or more sets, into device memory: the same bytes. The host
+/// joins what meets at the border, about the square root of n triangles, and waits about 5 times more than
+/// for Triangulator::triangulate; otherwise the work is enqueued like that of triangulate for device memory,
+/// with the same errors. Devices without double precision leave it to the host.
+FLAUNAY_API void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points,
+                                      const Period& period, DevicePeriodicTriangulation& result,
+                                      const Enqueue& enqueue = own_queue());
 
 /// Returns the areas of the Voronoi cells on the torus, one per point, rounded; those of a set sum to that of
 /// the period. Points that another one represents have 0. Throws Error(usage) for arrays that are none's, and

@@ -74,6 +74,15 @@
   X(std::int32_t, neighbors, triangle, 3) \
   X(std::int32_t, representatives, point, 1)
 
+/// The arrays of flaunay::DevicePeriodicTriangulation, in the order of the bits of flaunay_periodic_part: as
+/// above.
+#define FLAUNAY_PERIODIC_ARRAYS(X)        \
+  X(double, places, point, 2)             \
+  X(std::int32_t, triangles, triangle, 3) \
+  X(std::int8_t, offsets, triangle, 6)    \
+  X(std::int32_t, neighbors, triangle, 3) \
+  X(std::int32_t, representatives, point, 1)
+
 namespace flaunay {
 
 /// Of what an array of a triangulation has one row per thing.

@@ -1,0 +1,86 @@
+// Points on a torus or a cylinder as they are triangulated in the plane. Segments: sets.
+//
+// find_places, over all points: their places in the period. find_box_ends, over pieces of sets: the lowest and the
+// highest of these, for boxes of cylinders. Then, for some of the sets: count_images, over their points; the host scans
+// the counts. write_images, over the points: in the plane each set has its points, and behind them their images.
+
+#include "operations/search.h"
+#include "periodic/records.h"
+#include "periodic/torus.h"
+
+#ifndef FIXED_POINT
+
+// bad: the first point that is not finite.
+kernel void find_places(int n, periodic_axes axes, global const double* restrict input, global double* restrict places,
+                        global volatile int* restrict bad) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const double2 p = vload2(i, input);
+    const double2 place = VECTOR(double2, place_of(p.x, axes.x), place_of(p.y, axes.y));
+    vstore2(place, i, places);
+    if (!(fabs(place.x) < INFINITY && fabs(place.y) < INFINITY)) atomic_min(bad, i);
+  }
+}
+
+// n pieces, not empty: from a point to before another one. ends: 4 per piece, the lowest x and y, the highest x and y.
+kernel void find_box_ends(int n, global const int2* restrict pieces, global const double* restrict places,
+                          global double* restrict ends) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    double2 low = vload2(pieces[i].x, places), high = low;
+    for (int j = pieces[i].x + 1; j < pieces[i].y; ++j) {
+      const double2 p = vload2(j, places);
+      low = VECTOR(double2, min(low.x, p.x), min(low.y, p.y));
+      high = VECTOR(double2, max(high.x, p.x), max(high.y, p.y));
+    }
+    vstore2(low, 2 * i, ends);
+    vstore2(high, 2 * i + 1, ends);
+  }
+}
+
+// n points of sets, which have the points from offsets on.
+kernel void count_images(int n, int sets, global const int* restrict offsets, global const unrolled_set* restrict all,
+                         global const double* restrict places, global uint* restrict counts) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int k = segment_of(i, sets, offsets);
+    const unrolled_set set = all[k];
+    const double2 p = vload2(set.first + i - offsets[k], places);
+    const image_range to = images_around(p.x, p.y, &set.box);
+    counts[i] = (uint)((to.high[0] - to.low[0] + 1) * (to.high[1] - to.low[1] + 1) - 1);
+  }
+}
+
+// n places in the sums that a scan has made.
+kernel void read_totals(int n, global const int* restrict offsets, global const uint* restrict sums,
+                        global uint* restrict totals) {
+  const int k = get_global_id(0);
+  if (k < n) totals[k] = sums[offsets[k]];
+}
+
+// counts: scanned. images: what is at each place of the plane.
+kernel void write_images(int n, int sets, global const int* restrict offsets, global const unrolled_set* restrict all,
+                         global const double* restrict places, global const uint* restrict counts,
+                         global double* restrict coordinates, global uint* restrict images) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int k = segment_of(i, sets, offsets);
+    const unrolled_set set = all[k];
+    const int point = set.first + i - offsets[k], at = i + (int)counts[offsets[k]];
+    const double2 p = vload2(point, places);
+    vstore2(p, at, coordinates);
+    images[at] = image_of(point, 0, 0);
+    const image_range to = images_around(p.x, p.y, &set.box);
+    int next = offsets[k + 1] + (int)counts[i];
+    for (int across = to.low[0]; across <= to.high[0]; ++across) {
+      for (int up = to.low[1]; up <= to.high[1]; ++up) {
+        if (across == 0 && up == 0) continue;
+        const double2 image = VECTOR(double2, moved(p.x, across, set.box.period[0]), moved(p.y, up, set.box.period[1]));
+        vstore2(image, next, coordinates);
+        images[next++] = image_of(point, across, up);
+      }
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,230 @@
+#include "derived/periodic/on_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "host/launch/vector_operations.hpp"
+#include "launchers/periodic/fold.cl.hpp"
+#include "launchers/periodic/unroll.cl.hpp"
+#include "periodic/torus.h"
+#include "points/download.hpp"
+
+namespace flaunay::periodic {
+
+using points::integers;
+
+namespace {
+
+// Enqueues the transfer of what a scan has where sets begin, and at their end.
+void read_totals_later(host::Runtime& runtime, const Buffer<cl_uint>& sums, const Buffer<cl_int>& offsets,
+                       std::vector<cl_uint>& to) {
+  to.resize(offsets.size());
+  const auto totals = runtime.arena().allocate<cl_uint>(to.size());
+  runtime.map(to.size(), kernels::read_totals{.offsets = offsets, .sums = sums, .totals = totals});
+  runtime.read_later(totals, 0, to.size(), to.data());
+}
+
+Image image_of(cl_uint image) {
+  if (image == NO_IMAGE) return {-1, {}};
+  return {kernel::point_of(image), {kernel::periods_across(image), kernel::periods_up(image)}};
+}
+
+}  // namespace
+
+void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::size_t n,
+                 const Pair<double>& period, const Buffer<cl_double>& places) {
+  Arena::Scope scope(runtime.arena());
+  constexpr cl_int kNone = std::numeric_limits<cl_int>::max();
+  const auto first_bad = runtime.upload(runtime.arena(), std::vector<cl_int>{kNone});
+  runtime.map(
+      n, kernels::find_places{.axes = axes_of(period), .input = points, .places = places, .bad = first_bad});
+  const cl_int bad = runtime.read_one(first_bad, 0);
+  if (bad == kNone) return;
+  const auto at = static_cast<std::size_t>(bad);
+  const std::vector<double> p = points::download(runtime, points, 2 * at, 2);
+  throw Error(ErrorKind::input, fmt::format("point {} is not finite: ({}, {})", at, p[0], p[1]));
+}
+
+std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& places,
+                            const std::vector<std::size_t>& offsets, const Pair<double>& period) {
+  std::vector<Box> boxes;
+  if (std::isfinite(period[0]) && std::isfinite(period[1])) {
+    boxes.resize(offsets.size() - 1, box_of({}, 0, 0, period));
+    return boxes;
+  }
+  Arena::Scope scope(runtime.arena());
+  const std::size_t most = runtime.sizes().chunk(offsets.back());
+  std::vector<cl_int2> pieces;
+  std::vector<std::size_t> set_pieces{0};
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; i += most)
+      pieces.push_back({{static_cast<cl_int>(i), static_cast<cl_int>(std::min(i + most, offsets[s + 1]))}});
+    set_pieces.push_back(pieces.size());
+  }
+  const std::size_t count = pieces.size();
+  const auto found = runtime.arena().allocate<cl_double>(4 * count);
+  runtime.map(count, kernels::find_box_ends{.pieces = runtime.upload(runtime.arena(), std::move(pieces)),
+                                            .places = places,
+                                            .ends = found});
+  std::vector<double> ends(4 * count);
+  runtime.read(found, 0, ends.size(), ends.data());
+  // Of a piece the lowest and the highest place.
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
+    boxes.push_back(box_of(ends, 2 * set_pieces[s], 2 * set_pieces[s + 1], period));
+  return boxes;
+}
+
+UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
+                           const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
+                           std::vector<Box> boxes)
+    : boxes_(std::move(boxes)), first_(first.front()) {
+  std::vector<kernel::unrolled_set> records;
+  std::vector<std::size_t> point_offsets{0};
+  for (std::size_t k = 0; k < sets(); ++k) {
+    counts_.push_back(last[k] - first[k]);
+    point_offsets.push_back(point_offsets.back() + counts_[k]);
+    records.push_back({boxes_[k], static_cast<cl_int>(first[k]), 0});
+  }
+  points_ = point_offsets.back();
+  point_offsets_ = runtime.upload(arena, integers(point_offsets));
+  records_ = runtime.upload(arena, std::move(records));
+  image_counts_ = arena.allocate<cl_uint>(points_ + 1);
+  runtime.map(points_, kernels::count_images{.sets = sets(),
+                                             .offsets = point_offsets_,
+                                             .all = records_,
+                                             .places = places,
+                                             .counts = image_counts_});
+  host::exclusive_scan(runtime, image_counts_, points_, image_counts_);
+  std::vector<cl_uint> images_before;
+  {
+    const host::Runtime::Settled settled(runtime);
+    Arena::Scope scope(runtime.arena());
+    read_totals_later(runtime, image_counts_, point_offsets_, images_before);
+    runtime.finish();
+  }
+  for (std::size_t k = 0; k <= sets(); ++k) {
+    offsets_.push_back(point_offsets[k] + images_before[k]);
+    if (k > 0) images_.push_back(images_before[k] - images_before[k - 1]);
+  }
+  check_size(offsets_.back());
+  coordinates_ = arena.allocate<cl_double>(2 * offsets_.back());
+  at_ = arena.allocate<cl_uint>(offsets_.back());
+  runtime.map(points_, kernels::write_images{.sets = sets(),
+                                             .offsets = point_offsets_,
+                                             .all = records_,
+                                             .places = places,
+                                             .counts = image_counts_,
+                                             .coordinates = coordinates_,
+                                             .images = at_});
+}
+
+FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets& plane,
+                       const points::DeviceMesh& mesh, const Buffer<cl_int>& representatives)
+    : runtime_(runtime),
+      plane_(plane),
+      mesh_(mesh),
+      triangle_offsets_(runtime.upload(arena, integers(mesh.triangle_offsets))),
+      is_done_(plane.sets()) {
+  const std::size_t sets = plane.sets(), count = mesh.triangle_count();
+  const auto missing = arena.allocate<cl_uint>(sets);
+  runtime.fill(missing, sets, cl_uint{0});
+  runtime.map(plane.points_, kernels::fold_representatives{.sets = sets,
+                                                           .offsets = plane.point_offsets_,
+                                                           .all = plane.records_,
+                                                           .counts = plane.image_counts_,
+                                                           .coordinates = plane.coordinates_,
+                                                           .planar = mesh.representatives,
+                                                           .representatives = representatives,
+                                                           .missing = missing});
+  ranks_ = arena.allocate<cl_uint>(count + 1);
+  runtime.map(count,
+              kernels::keep_triangles{
+                  .own = plane.own(), .triangles = mesh.triangles, .images = plane.at_, .kept = ranks_});
+  host::exclusive_scan(runtime, ranks_, count, ranks_);
+
+  std::vector<cl_uint> fewer(sets);
+  const host::Runtime::Settled settled(runtime);
+  Arena::Scope scope(runtime.arena());
+  const auto flags = runtime.arena().allocate<cl_uchar>(count);
+  runtime.map(count, kernels::find_seams{.neighbors = mesh.neighbors, .ranks = ranks_, .flags = flags});
+  read_totals_later(runtime, ranks_, triangle_offsets_, kept_before_);
+  runtime.read_later(missing, 0, sets, fewer.data());
+  const auto list = runtime.arena().allocate<cl_int>(count);
+  const auto found = runtime.arena().allocate<cl_uint>(1);
+  host::pack_positions(runtime, flags, count, 1, list, found);
+  const std::size_t seams = runtime.read_one(found, 0);
+  for (std::size_t k = 0; k < sets; ++k) expected_.push_back(2 * plane.counts_[k] - fewer[k]);
+  join(arena, list, seams);
+}
+
+// list: the triangles that have seams, in ascending order.
+void FoldedSets::join(Arena& arena, const Buffer<cl_int>& list, std::size_t count) {
+  std::vector<kernel::seam_record> seams(3 * count);
+  if (count > 0) {
+    const auto records = runtime_.arena().allocate<kernel::seam_record>(seams.size());
+    runtime_.map(count, kernels::list_seams{.own = plane_.own(),
+                                            .list = list,
+                                            .triangles = mesh_.triangles,
+                                            .neighbors = mesh_.neighbors,
+                                            .ranks = ranks_,
+                                            .images = plane_.at_,
+                                            .coordinates = plane_.coordinates_,
+                                            .seams = records});
+    runtime_.read(records, 0, seams.size(), seams.data());
+  }
+  seams.erase(
+      std::remove_if(seams.begin(), seams.end(), [](const auto& seam) { return seam.at == kernel::NO_SEAM; }),
+      seams.end());
+  std::vector<cl_int2> links;
+  auto next = seams.begin();
+  for (std::size_t k = 0; k < plane_.sets(); ++k) {
+    const auto end = static_cast<cl_int>(3 * mesh_.triangle_offsets[k + 1]);
+    Seams joined(plane_.boxes_[k]);
+    for (; next != seams.end() && next->at < end; ++next) {
+      const double* const x = next->ends;
+      joined.add({image_of(next->from),
+                  image_of(next->to),
+                  {x[0], x[1]},
+                  {x[2], x[3]},
+                  image_of(next->own),
+                  image_of(next->beyond),
+                  static_cast<std::uint64_t>(next->at)});
+    }
+    if (kept_before_[k + 1] - kept_before_[k] != expected_[k]) continue;
+    if (!joined.match(expected_[k])) continue;
+    is_done_[k] = 1;
+    joined.for_each_link([&](std::uint64_t at, std::uint64_t t) {
+      links.push_back({{static_cast<cl_int>(at), static_cast<cl_int>(t)}});
+    });
+  }
+  const std::size_t link_count = links.size();
+  runtime_.map(link_count, kernels::link_seams{.links = runtime_.upload(arena, std::move(links)),
+                                               .neighbors = mesh_.neighbors});
+}
+
+void FoldedSets::write(const std::vector<std::size_t>& first_rows, const Buffer<cl_int>& triangles,
+                       const Buffer<cl_char>& offsets, const Buffer<cl_int>& neighbors) const {
+  Arena::Scope scope(runtime_.arena());
+  std::vector<cl_int> shifts;
+  for (std::size_t k = 0; k < plane_.sets(); ++k)
+    shifts.push_back(is_done(k) ? static_cast<cl_int>(first_rows[k]) - static_cast<cl_int>(kept_before_[k])
+                                : kernel::NOT_WRITTEN);
+  runtime_.map(mesh_.triangle_count(),
+               kernels::write_folded{.sets = plane_.sets(),
+                                     .offsets = triangle_offsets_,
+                                     .shifts = runtime_.upload(runtime_.arena(), shifts),
+                                     .own = plane_.own(),
+                                     .triangles = mesh_.triangles,
+                                     .neighbors = mesh_.neighbors,
+                                     .ranks = ranks_,
+                                     .images = plane_.at_,
+                                     .folded = triangles,
+                                     .periods = offsets.as<cl_uchar>(),
+                                     .folded_neighbors = neighbors});
+}
+
+}  // namespace flaunay::periodic

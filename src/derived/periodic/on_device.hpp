@@ -1,0 +1,83 @@
+// Points on a torus or a cylinder, and triangles of these, where kernels run. Only seams cross to the host.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "derived/periodic/torus.hpp"
+#include "points/device_mesh.hpp"
+
+namespace flaunay::periodic {
+
+using host::Arena;
+using host::Buffer;
+
+/// Does what to_places does. Waits once. O(n).
+void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::size_t n,
+                 const Pair<double>& period, const Buffer<cl_double>& places);
+
+/// The boxes of sets, without margins, which have the places from offsets on. Waits once for a cylinder.
+/// O(n).
+std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& places,
+                            const std::vector<std::size_t>& offsets, const Pair<double>& period);
+
+/// Some sets of points as Unrolled has each of them, one after the other.
+class UnrolledSets {
+ public:
+  /// first, last: per set its points, at least one. arena: where results come from; that of the runtime must
+  /// be another one. Waits once. O(n).
+  UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
+               const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
+               std::vector<Box> boxes);
+
+  /// Where sets begin among points and images; sets + 1.
+  const std::vector<std::size_t>& offsets() const { return offsets_; }
+  const Buffer<cl_double>& coordinates() const { return coordinates_; }
+  std::size_t sets() const { return boxes_.size(); }
+  std::size_t points() const { return points_; }
+  std::size_t images(std::size_t k) const { return images_[k]; }
+
+ private:
+  friend class FoldedSets;
+  /// Points in the plane below this number are those of this number.
+  std::size_t own() const { return sets() == 1 && first_ == 0 ? points_ : 0; }
+
+  std::vector<Box> boxes_;
+  std::size_t points_ = 0, first_ = 0;
+  std::vector<std::size_t> counts_, images_, offsets_;
+  Buffer<cl_int> point_offsets_;
+  Buffer<kernel::unrolled_set> records_;
+  Buffer<cl_uint> image_counts_;  // scanned
+  Buffer<cl_double> coordinates_{};
+  Buffer<cl_uint> at_;  // per place in the plane what is there
+};
+
+/// Does what fold does, with all sets at once.
+class FoldedSets {
+ public:
+  /// mesh: of the plane, with neighbours and representatives; its neighbours are changed. representatives: of
+  /// all points; those of the sets are set. Waits twice. O(t).
+  FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets& plane, const points::DeviceMesh& mesh,
+             const Buffer<cl_int>& representatives);
+
+  /// How many triangles a set must have.
+  std::size_t expected(std::size_t k) const { return expected_[k]; }
+  bool is_done(std::size_t k) const { return is_done_[k] != 0; }
+  /// Writes the triangles of the sets that are done, of each from a row on. Does not wait.
+  void write(const std::vector<std::size_t>& first_rows, const Buffer<cl_int>& triangles,
+             const Buffer<cl_char>& offsets, const Buffer<cl_int>& neighbors) const;
+
+ private:
+  void join(Arena& arena, const Buffer<cl_int>& list, std::size_t count);
+
+  host::Runtime& runtime_;
+  const UnrolledSets& plane_;
+  const points::DeviceMesh& mesh_;
+  Buffer<cl_int> triangle_offsets_;
+  Buffer<cl_uint> ranks_{};
+  std::vector<cl_uint> kept_before_;
+  std::vector<std::size_t> expected_;
+  std::vector<char> is_done_;
+};
+
+}  // namespace flaunay::periodic

@@ -1,0 +1,236 @@
+// Kernels for a torus and a cylinder against plain loops, and against what the host does with one set.
+//
+// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "derived/periodic/on_device.hpp"
+#include "launchers/periodic/fold.cl.hpp"
+#include "periodic/torus.h"
+#include "tests/locate/support.hpp"
+
+namespace flaunay::locate {
+namespace {
+
+// The place of x, by the C library's remainder.
+double place_of_twin(double x, double period) {
+  if (!std::isfinite(period)) return x + 0.0;
+  const double power = std::ldexp(1.0, std::ilogb(period)), unit = (power < period ? 2 : 1) * power * 0x1p-52;
+  const double rest = std::remainder(x, period), near = rest < period / 2 ? rest : rest - period;
+  const double place = std::nearbyint(near / unit) * unit;
+  return place < 0 ? place + period : place + 0.0;
+}
+
+// Numbers of all magnitudes, and what lies close to multiples of half a period.
+Coordinates numbers(double period, std::size_t n, std::uint64_t seed) {
+  FixtureRandom random(seed);
+  Coordinates all = {0.0, -0.0, 5e-324, -5e-324, 1e308, -1e308};
+  while (all.size() < n) {
+    const double x = random.unit() - 0.5;
+    all.push_back(4 * period * x);
+    all.push_back(std::ldexp(x, static_cast<int>(random.integer(-1000, 1000))));
+    const double half = static_cast<double>(random.integer(-9, 9)) * (std::isfinite(period) ? period : 1) / 2;
+    all.insert(all.end(), {half, std::nextafter(half, 1e300), std::nextafter(half, -1e300)});
+  }
+  all.resize(n);
+  for (double& x : all) x = std::isfinite(x) ? x : 0;
+  return all;
+}
+
+TEST(SmallPeriodicKernels, Places) {
+  for (const std::string& tuning : tunings()) {
+    Runtime& runtime = Runtimes::get(tuning);
+    for (const Period& given :
+         {Period{}, {0.7, 1e-3}, {3e8, HUGE_VAL}, {0x1p-900, 0x1.8p-890}, {1e200, 3e200}}) {
+      host::Arena::Scope scope(runtime.arena());
+      const periodic::Pair<double> period = periodic::rounded(given);
+      Coordinates points;
+      const Coordinates x = numbers(period[0], 120, 3), y = numbers(period[1], 120, 4);
+      for (std::size_t i = 0; i < x.size(); ++i) points.insert(points.end(), {x[i], y[i]});
+      const auto places = guarded<cl_double>(runtime, points.size());
+      periodic::find_places(runtime, upload(runtime, points), x.size(), period, places);
+      Coordinates expected;
+      for (std::size_t c = 0; c < points.size(); ++c)
+        expected.push_back(place_of_twin(points[c], period[c % 2]));
+      EXPECT_TRUE(same(download(runtime, places, points.size()), expected)) << given.x;
+      EXPECT_TRUE(
+          std::none_of(expected.begin(), expected.end(), [](double p) { return std::signbit(p) && p == 0; }));
+      // The first one that is not finite.
+      points[2 * 77] = -std::numeric_limits<double>::infinity();
+      points[2 * 78] = std::nan("");
+      try {
+        periodic::find_places(runtime, upload(runtime, points), x.size(), period, places);
+        ADD_FAILURE() << "no error";
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find("point 77 is not finite: (-inf, "), 0u) << error.what();
+      }
+    }
+  }
+}
+
+TEST(SmallPeriodicKernels, ImagesHaveTheOrderOfPointAndPeriods) {
+  std::vector<cl_uint> all;
+  for (const int point : {0, 1, 7, std::numeric_limits<int>::max() / 6}) {
+    for (int across = -1; across <= 1; ++across) {
+      for (int up = -1; up <= 1; ++up) {
+        all.push_back(kernel::image_of(point, across, up));
+        EXPECT_EQ(kernel::point_of(all.back()), point);
+        EXPECT_EQ(kernel::periods_across(all.back()), across);
+        EXPECT_EQ(kernel::periods_up(all.back()), up);
+        EXPECT_EQ(kernel::is_in_place(all.back()), across == 0 && up == 0);
+      }
+    }
+  }
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+}
+
+// Sets with gaps between them that belong to none, some on a lattice.
+struct Sets {
+  Coordinates places;
+  Offsets first, last, all{0};
+
+  Sets(const periodic::Pair<double>& period, const std::vector<std::size_t>& sizes) {
+    FixtureRandom random(sizes.size());
+    for (const std::size_t n : sizes) {
+      const bool is_lattice = first.size() % 2 == 1;
+      if (first.size() == 1) places.insert(places.end(), {7, 7});
+      first.push_back(places.size() / 2);
+      for (std::size_t c = 0; c < 2 * n; ++c) {
+        const double x = is_lattice ? std::floor(4 * random.unit()) / 4 : random.unit();
+        places.push_back(x * (std::isfinite(period[c % 2]) ? period[c % 2] : 1));
+      }
+      last.push_back(places.size() / 2);
+      all.push_back(all.back() + n);
+    }
+  }
+  Coordinates of(std::size_t k) const {
+    return {places.begin() + static_cast<std::ptrdiff_t>(2 * first[k]),
+            places.begin() + static_cast<std::ptrdiff_t>(2 * last[k])};
+  }
+};
+
+TEST(SmallPeriodicKernels, BoxesOfSets) {
+  for (const std::string& tuning : tunings()) {
+    Runtime& runtime = Runtimes::get(tuning);
+    const Coordinates places = make_fixture("uniform", 50, 2);
+    const Offsets offsets{0, 0, 1, 20, 50, 50};
+    for (const periodic::Pair<double>& period :
+         {periodic::Pair<double>{2, HUGE_VAL}, {HUGE_VAL, 2}, {2, 2}}) {
+      host::Arena::Scope scope(runtime.arena());
+      const std::vector<periodic::Box> found =
+          periodic::find_boxes(runtime, upload(runtime, places), offsets, period);
+      for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+        const periodic::Box expected = periodic::box_of(places, offsets[s], offsets[s + 1], period);
+        for (int axis = 0; axis < 2; ++axis) {
+          EXPECT_EQ(found[s].period[axis], period[axis]);
+          EXPECT_EQ(found[s].low[axis], expected.low[axis]) << s;
+          EXPECT_EQ(found[s].high[axis], expected.high[axis]) << s;
+        }
+      }
+    }
+  }
+}
+
+// What the kernels make of all sets, as the host makes it of each: images, and then triangles, or that the
+// margin was too small.
+void expect_sets_of_the_host(Runtime& runtime, const periodic::Pair<double>& period, const Sets& sets,
+                             double margin) {
+  host::Arena::Scope scope(runtime.arena());
+  host::Arena arena(runtime.memory());
+  std::vector<periodic::Box> boxes;
+  std::vector<periodic::Unrolled> planes;
+  Coordinates coordinates;
+  for (std::size_t k = 0; k < sets.first.size(); ++k) {
+    boxes.push_back(periodic::box_of(sets.places, sets.first[k], sets.last[k], period));
+    boxes[k].margin = k % 2 == 0 ? margin : margin / 2;
+    planes.emplace_back(nullptr, sets.of(k), boxes[k]);
+    coordinates.insert(coordinates.end(), planes[k].coordinates().begin(), planes[k].coordinates().end());
+  }
+  const auto places = upload(runtime, sets.places);
+  const periodic::UnrolledSets plane(runtime, arena, places, sets.first, sets.last, boxes);
+  EXPECT_TRUE(same(points::download(runtime, plane.coordinates(), 2 * plane.offsets().back()), coordinates));
+
+  const Triangulation planar = testing::triangulator().triangulate(coordinates.data(), plane.offsets());
+  points::DeviceMesh mesh;
+  mesh.point_offsets = plane.offsets();
+  mesh.triangle_offsets = planar.triangle_offsets;
+  mesh.triangles = upload(runtime, planar.triangles);
+  mesh.neighbors = upload(runtime, planar.neighbors);
+  mesh.representatives = upload(runtime, planar.representatives);
+  const std::size_t points = sets.places.size() / 2;
+  const auto representatives = guarded<cl_int>(runtime, points);
+  const periodic::FoldedSets folded(runtime, arena, plane, mesh, representatives);
+  const std::vector<cl_int> same_points = download(runtime, representatives, points);
+
+  Offsets first_rows;
+  std::size_t rows = 0;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    first_rows.push_back(rows);
+    rows += folded.expected(k) + 1;  // with a row between that nobody writes
+  }
+  const auto triangles = guarded<cl_int>(runtime, 3 * rows), neighbors = guarded<cl_int>(runtime, 3 * rows);
+  const auto offsets = guarded<cl_char>(runtime, 6 * rows);
+  folded.write(first_rows, triangles, offsets, neighbors);
+  const std::vector<cl_int> found = download(runtime, triangles, 3 * rows),
+                            beyond = download(runtime, neighbors, 3 * rows);
+  const std::vector<cl_char> periods = download(runtime, offsets, 6 * rows);
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    EXPECT_EQ(plane.images(k), planes[k].images());
+    const auto part = [](const auto& all, std::size_t from, std::size_t to, std::size_t less) {
+      std::vector<std::int32_t> some(all.begin() + static_cast<std::ptrdiff_t>(from),
+                                     all.begin() + static_cast<std::ptrdiff_t>(to));
+      for (std::int32_t& i : some) i -= i < 0 ? 0 : static_cast<std::int32_t>(less);
+      return some;
+    };
+    const std::size_t t = planar.triangle_offsets[k], end = planar.triangle_offsets[k + 1];
+    periodic::Triangles expected{part(planar.triangles, 3 * t, 3 * end, plane.offsets()[k]),
+                                 part(planar.neighbors, 3 * t, 3 * end, t),
+                                 {}};
+    const std::size_t at = plane.offsets()[k];
+    const auto same_of = part(planar.representatives, at, at + planes[k].points(), at);
+    EXPECT_TRUE(same(part(same_points, sets.first[k], sets.last[k], sets.first[k]), same_of));
+    const bool is_done = periodic::fold(nullptr, planes[k], same_of, expected);
+    ASSERT_EQ(folded.is_done(k), is_done) << k << " " << margin;
+    const std::size_t row = first_rows[k], last = row + folded.expected(k);
+    EXPECT_EQ(beyond[3 * last], static_cast<cl_int>(0xa5a5a5a5u));
+    if (!is_done) {
+      EXPECT_EQ(beyond[3 * row], static_cast<cl_int>(0xa5a5a5a5u));
+      continue;
+    }
+    EXPECT_TRUE(same(part(found, 3 * row, 3 * last, sets.first[k]), expected.corners)) << k;
+    EXPECT_TRUE(same(part(beyond, 3 * row, 3 * last, row), expected.neighbors)) << k;
+    EXPECT_TRUE(
+        same(part(periods, 6 * row, 6 * last, 0), part(expected.offsets, 0, expected.offsets.size(), 0)));
+  }
+}
+
+TEST(SmallPeriodicKernels, SetsAreThoseOfTheHost) {
+  for (const std::string& tuning : tunings()) {
+    for (const periodic::Pair<double>& period :
+         {periodic::Pair<double>{1, 1}, {2, 0.75}, {1, HUGE_VAL}, {HUGE_VAL, 1}}) {
+      for (const double margin : {0.0, 0.5, 2.0}) {
+        expect_sets_of_the_host(Runtimes::get(tuning), period, {period, {1, 2, 3, 12, 9}}, margin);
+        expect_sets_of_the_host(Runtimes::get(tuning), period, {period, {20}}, margin);
+      }
+    }
+  }
+}
+
+TEST(PeriodicKernels, LargerSetsAreThoseOfTheHost) {
+  for (const std::string& tuning : tunings()) {
+    for (const double margin : {0.02, 0.06, 0.2}) {
+      expect_sets_of_the_host(Runtimes::get(tuning), {1, 1}, {{1, 1}, {3000, 500, 1, 4000}}, margin);
+      expect_sets_of_the_host(Runtimes::get(tuning), {1, HUGE_VAL}, {{1, HUGE_VAL}, {8000}}, margin);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::locate

@@ -1,0 +1,227 @@
+// Points on a torus or a cylinder in device memory: the arrays are those of the call for host memory, which
+// periodic_test.cpp checks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "flaunay/device_memory.hpp"
+#include "flaunay/periodic.hpp"
+#include "tests/support/embedded.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/same.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing {
+namespace {
+
+using Offsets = std::vector<std::size_t>;
+
+DevicePoints points_in(const Memory& memory, std::size_t count) {
+  DevicePoints points;
+  points.memory = memory.get();
+  points.count = count;
+  return points;
+}
+
+Enqueue on_own() {
+  Enqueue enqueue;
+  enqueue.queue = embedder().queue();
+  return enqueue;
+}
+
+void expect_error(ErrorKind kind, const std::string& part, const std::function<void()>& work) {
+  try {
+    work();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+void expect_same(const DevicePeriodicTriangulation& found, const PeriodicTriangulation& expected) {
+  EXPECT_EQ(found.period.x, expected.period.x);
+  EXPECT_EQ(found.period.y, expected.period.y);
+  EXPECT_EQ(found.images, expected.images);
+  EXPECT_EQ(found.point_offsets, expected.point_offsets);
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  const auto expect_array = [](const DeviceBuffer& buffer, const auto& values) {
+    using Element = typename std::decay_t<decltype(values)>::value_type;
+    EXPECT_TRUE(same(embedder().download<Element>(buffer.memory(), values.size()), values));
+  };
+  expect_array(found.places, expected.places);
+  expect_array(found.triangles, expected.triangles);
+  expect_array(found.offsets, expected.offsets);
+  expect_array(found.neighbors, expected.neighbors);
+  expect_array(found.representatives, expected.representatives);
+}
+
+// Points on a torus, and on cylinders: as they come, with ties, close to the border, twice, and far away.
+std::vector<Coordinates> periodic_points(std::size_t n) {
+  const Coordinates uniform = make_fixture("uniform", n, n);
+  Coordinates lattice, border, twice = uniform, far;
+  for (const double x : uniform) {
+    lattice.push_back(std::floor(5 * x) / 5);
+    border.push_back((x - 0.5) / 64);
+    far.push_back(std::ldexp(x - 0.5, static_cast<int>(far.size() * 37 % 1000)));
+  }
+  twice.insert(twice.end(), uniform.begin(), uniform.end());
+  for (std::size_t i = 0; i < n; ++i) twice.insert(twice.end(), {uniform[2 * i] - 3, uniform[2 * i + 1] + 2});
+  return {uniform, lattice, border, twice, far};
+}
+
+// Returns whether it is no error: points on a cylinder may be of too different magnitudes.
+bool expect_that_of_the_host(const Coordinates& points, const Period& period,
+                             DevicePeriodicTriangulation& found) {
+  const std::size_t n = points.size() / 2;
+  const Memory memory = embedder().upload(points);
+  const auto run = [&] { triangulate_periodic(embedded(), points_in(memory, n), period, found, on_own()); };
+  PeriodicTriangulation expected;
+  try {
+    expected = triangulate_periodic(triangulator(), points.data(), n, period);
+  } catch (const Error& error) {
+    expect_error(error.kind(), "", run);
+    return false;
+  }
+  run();
+  expect_same(found, expected);
+  return true;
+}
+
+TEST(SmallPeriodicOnDevice, IsThatOfTheHost) {
+  std::size_t count = 0;
+  for (const std::size_t n : {1u, 2u, 3u, 30u}) {
+    for (const Coordinates& points : periodic_points(n)) {
+      for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}}) {
+        SCOPED_TRACE(std::to_string(n) + " " + std::to_string(period.x) + " " + std::to_string(period.y));
+        DevicePeriodicTriangulation found;
+        count += expect_that_of_the_host(points, period, found);
+      }
+    }
+  }
+  EXPECT_GE(count, 70u);
+}
+
+TEST(PeriodicOnDevice, LargerIsThatOfTheHost) {
+  std::vector<Coordinates> inputs = periodic_points(6000);
+  // A gap, which needs more images than uniform points do.
+  Coordinates gap;
+  for (std::size_t i = 0; i < inputs[0].size(); i += 2) {
+    if (std::hypot(inputs[0][i] - 0.5, inputs[0][i + 1]) > 0.3)
+      gap.insert(gap.end(), {inputs[0][i], inputs[0][i + 1]});
+  }
+  inputs.push_back(gap);
+  DevicePeriodicTriangulation found;
+  for (const Coordinates& points : inputs) {
+    for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}}) {
+      if (!expect_that_of_the_host(points, period, found)) continue;
+      EXPECT_EQ(found.statistics.triangles, found.triangle_offsets.back());
+      // Less than places alone take.
+      if (&points == &inputs[0] && period.y == 1 && embedded().device().fp64) {
+        EXPECT_LT(found.statistics.bytes_to_host, 8 * points.size());
+      }
+    }
+  }
+  // Sets of which some are done before others.
+  Coordinates all;
+  Offsets offsets{0};
+  for (const Coordinates& points : inputs) {
+    all.insert(all.end(), points.begin(), points.end());
+    offsets.push_back(all.size() / 2);
+  }
+  const Memory memory = embedder().upload(all);
+  DevicePoints sets = points_in(memory, offsets.back());
+  sets.offsets = offsets;
+  triangulate_periodic(embedded(), sets, {}, found, on_own());
+  expect_same(found, triangulate_periodic(triangulator(), all.data(), offsets, {}));
+}
+
+TEST(SmallPeriodicOnDevice, SetsOfFloatsThatBeginAnywhere) {
+  std::vector<float> all(6, std::nanf(""));
+  Coordinates wide;
+  Offsets offsets{0, 0};
+  for (const Coordinates& points : periodic_points(12)) {
+    for (const double x : points) {
+      all.push_back(static_cast<float>(std::fabs(x) < 1e30 ? x : 0));
+      wide.push_back(static_cast<double>(all.back()));
+    }
+    offsets.push_back(wide.size() / 2);
+  }
+  offsets.push_back(offsets.back());
+  const std::vector<std::int32_t> ids(offsets.begin(), offsets.end());
+  const Memory memory = embedder().upload(all), device_offsets = embedder().upload(ids);
+  for (const bool are_on_device : {false, true}) {
+    for (const Period& period : {Period{}, {1, HUGE_VAL}}) {
+      DevicePoints points = points_in(memory, offsets.back());
+      points.precision = Precision::float32;
+      points.first = 3;
+      if (are_on_device) {
+        points.device_offsets = device_offsets.get();
+        points.sets = offsets.size() - 1;
+      } else {
+        points.offsets = offsets;
+      }
+      DevicePeriodicTriangulation found;
+      triangulate_periodic(embedded(), points, period, found, on_own());
+      expect_same(found, triangulate_periodic(triangulator(), wide.data(), offsets, period));
+    }
+  }
+}
+
+TEST(SmallPeriodicOnDevice, CallersBuffersAndNoPoints) {
+  const std::size_t n = 40;
+  const Coordinates points = make_fixture("uniform", n, 6);
+  const Memory memory = embedder().upload(points);
+  DevicePeriodicTriangulation found;
+  const std::vector<std::pair<DeviceBuffer*, std::size_t>> buffers = {{&found.places, 16},
+                                                                      {&found.triangles, 24},
+                                                                      {&found.offsets, 12},
+                                                                      {&found.neighbors, 24},
+                                                                      {&found.representatives, 4}};
+  for (const auto& [buffer, bytes] : buffers) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
+  const auto run = [&](const Period& period = {}) {
+    triangulate_periodic(embedded(), points_in(memory, n), period, found, on_own());
+  };
+  run();
+  expect_same(found, triangulate_periodic(triangulator(), points.data(), n, Period()));
+  for (const auto& [buffer, bytes] : buffers) {
+    const DeviceBuffer kept = *buffer;
+    *buffer = DeviceBuffer(embedder().make_buffer(bytes * n - 1).get());
+    expect_error(ErrorKind::usage, "too small", [&] { run(); });
+    *buffer = kept;
+  }
+  const DeviceBuffer neighbors = std::exchange(found.neighbors, found.triangles);
+  expect_error(ErrorKind::usage, "two things", [&] { run(); });
+  found.neighbors = neighbors;
+  for (const Period& period : {Period{0, 1}, {1, -1}, {std::nan(""), 1}, {HUGE_VAL, HUGE_VAL}, {1, 1e30}})
+    EXPECT_THROW(run(period), Error);
+  triangulate_periodic(embedded(), {}, {}, found, on_own());
+  EXPECT_EQ(found.triangle_offsets, (Offsets{0, 0}));
+}
+
+TEST(SmallPeriodicOnDevice, PointsThatAreNotFiniteAreNamed) {
+  Coordinates points = make_fixture("uniform", 20, 5);
+  points[2 * 13 + 1] = std::numeric_limits<double>::infinity();
+  points[2 * 16] = std::nan("");
+  const Memory memory = embedder().upload(points);
+  cl_event done = reinterpret_cast<cl_event>(8);
+  Enqueue enqueue = on_own();
+  enqueue.event = &done;
+  for (const Period& period : {Period{}, {HUGE_VAL, 1}, {1, HUGE_VAL}}) {
+    DevicePeriodicTriangulation found;
+    expect_error(ErrorKind::input, "point 13 is not finite: (",
+                 [&] { triangulate_periodic(embedded(), points_in(memory, 20), period, found, enqueue); });
+    EXPECT_EQ(done, nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace flaunay::testing
