@@ -232,7 +232,9 @@ class FoldedSink : public MeshSink {
 std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& box, PeriodicMeshSink& sink,
                                               ChunkOptions options) {
   const std::uint64_t n = places.size(), memory = call::chunk_memory(options);
+  const double begin = host::now();
   Plane plane(places, box, memory);
+  const double end = host::now();
   options.memory_bytes = memory - plane.bytes();
   Folding folding(plane, n, box);
   FoldedSink folded(sink, plane, n);
@@ -243,6 +245,7 @@ std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& b
   statistics.duplicates = folded.duplicates();
   statistics.hull_vertices = 0;
   statistics.images = plane.images();
+  statistics.phases.insert(statistics.phases.begin(), {"images", end - begin});
   return statistics;
 }
 

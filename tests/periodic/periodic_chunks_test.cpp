@@ -177,11 +177,11 @@ TEST(PeriodicChunks, OfTies) {
 
 TEST(PeriodicChunks, OfClustersAtTheBorder) {
   testing::FixtureRandom random(7);
-  for (const double width : {1e-9, 1e-3, 0.2}) {
+  for (const double width : {1e-9, 0.2}) {
     for (const double x : {0.0, 0.3}) {
       SCOPED_TRACE(width);
       Numbers around, corner;
-      for (int i = 0; i < 1500; ++i) {
+      for (int i = 0; i < 700; ++i) {
         const double a = random.unit(), b = random.unit();
         around.insert(around.end(), {x + width * (a * a - 0.5), width * (b * b - 0.5)});
         corner.insert(corner.end(), {x + width * a, width * b * a});
