@@ -143,9 +143,10 @@ class Folding : public chunks::Folding {
   }
   void add(const std::vector<chunks::Fold>& folds) override {
     for (const chunks::Fold& fold : folds) {
-      seams_.add({plane_.image(fold.from), plane_.image(fold.to), fold.a, fold.b, plane_.image(fold.own),
+      seams_.add({plane_.image(fold.from), plane_.image(fold.to), plane_.image(fold.own),
                   fold.beyond < 0 ? Image{-1, {}} : plane_.image(fold.beyond),
-                  static_cast<std::uint64_t>(fold.entry)});
+                  static_cast<std::uint64_t>(fold.entry)},
+                 fold.a, fold.b);
     }
   }
   bool match(std::uint64_t points, std::uint64_t triangles) {

@@ -186,13 +186,9 @@ void FoldedSets::join(Arena& arena, const Buffer<cl_int>& list, std::size_t coun
     Seams joined(plane_.boxes_[k]);
     for (; next != seams.end() && next->at < end; ++next) {
       const double* const x = next->ends;
-      joined.add({image_of(next->from),
-                  image_of(next->to),
-                  {x[0], x[1]},
-                  {x[2], x[3]},
-                  image_of(next->own),
-                  image_of(next->beyond),
-                  static_cast<std::uint64_t>(next->at)});
+      joined.add({image_of(next->from), image_of(next->to), image_of(next->own), image_of(next->beyond),
+                  static_cast<std::uint64_t>(next->at)},
+                 {x[0], x[1]}, {x[2], x[3]});
     }
     if (kept_before_[k + 1] - kept_before_[k] != expected_[k]) continue;
     if (!joined.match(expected_[k])) continue;

@@ -220,17 +220,14 @@ Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangle
   return border;
 }
 
-// The edge of a kept triangle. beyond: the corner in the plane, or -1.
-Seams::Edge seam_of(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond) {
+// Adds the edge of a kept triangle. beyond: the corner in the plane, or -1.
+void add_edge(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond,
+              Seams& seams) {
   const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
   const std::int32_t from = all.corners[t + (k + 1) % 3], to = all.corners[t + (k + 2) % 3];
-  return {plane.image(from),
-          plane.image(to),
-          plane.place(from),
-          plane.place(to),
-          plane.image(all.corners[t + k]),
-          beyond < 0 ? Image{-1, {}} : plane.image(beyond),
-          static_cast<std::uint64_t>(at)};
+  seams.add({plane.image(from), plane.image(to), plane.image(all.corners[t + k]),
+             beyond < 0 ? Image{-1, {}} : plane.image(beyond), static_cast<std::uint64_t>(at)},
+            plane.place(from), plane.place(to));
 }
 
 // The place in units of the box.
@@ -261,12 +258,12 @@ void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles
 
 }  // namespace
 
-void Seams::add(Edge edge) {
+void Seams::add(Edge edge, Point from, Point to) {
   // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
   // says: once. (The area is rounded, and computed from the border.)
-  const Point a = in_box(box_, edge.a), b = in_box(box_, edge.b);
+  const Point a = in_box(box_, from), b = in_box(box_, to);
   area_ += (a.x + b.x) / 2 * (b.y - a.y);
-  if (edge.beyond.point < 0 && is_at_end(box_, edge.a, edge.b)) {
+  if (edge.beyond.point < 0 && is_at_end(box_, from, to)) {
     ++ends_;
     return;
   }
@@ -315,10 +312,10 @@ bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representati
       if (other < 0 || ranks.is_dropped(other)) continue;
       std::int32_t at = 3 * other;
       while (all.neighbors[index(at)] != t) ++at;
-      seams.add(seam_of(plane, all, at, all.corners[3 * index(t) + k]));
+      add_edge(plane, all, at, all.corners[3 * index(t) + k], seams);
     }
   }
-  for (const std::int32_t at : border.open) seams.add(seam_of(plane, all, at, -1));
+  for (const std::int32_t at : border.open) add_edge(plane, all, at, -1, seams);
   if (kept != seams.expected(different) || !seams.match(kept)) return false;
   seams.for_each_link(
       [&](std::uint64_t at, std::uint64_t t) { all.neighbors[at] = static_cast<std::int32_t>(t); });

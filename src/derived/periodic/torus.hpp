@@ -90,12 +90,12 @@ class Seams {
   explicit Seams(const Box& box) : box_(box) {}
 
   struct Edge {
-    Image from, to;        // counter-clockwise for the triangle that is kept
-    geometry::Point a, b;  // where they lie
-    Image own, beyond;     // the opposite corners of that and of the other triangle; point -1: there is none
-    std::uint64_t at;      // the entry of `neighbors`: 3 t + the corner opposite
+    Image from, to;     // counter-clockwise for the triangle that is kept
+    Image own, beyond;  // the opposite corners of that and of the other triangle; point -1: there is none
+    std::uint64_t at;   // the entry of `neighbors`: 3 t + the corner opposite
   };
-  void add(Edge edge);
+  /// from, to: where its ends lie.
+  void add(Edge edge, geometry::Point from, geometry::Point to);
   /// The triangles of so many different points.
   std::uint64_t expected(std::uint64_t points) const;
   /// Whether so many triangles that are kept, as many as expected, are the canonical Delaunay triangulation;

@@ -83,12 +83,12 @@ class FLAUNAY_API PeriodicMeshSink : public MeshSink {
 /// triangulate_periodic; rows are in the order that triangulate_chunks says, and indices are 64-bit numbers.
 ///
 /// First, all points are read once more, on a cylinder twice, to find those near the border ("images" for
-/// progress). Their images are held in memory, 48 bytes for each, beside what chunks need. If these were too
-/// few, which is found out at the end, all begins again with a wider margin, and everything is written again.
-/// So there may be rows of no use beyond the number of triangles that is returned, but never more than 2 n.
-/// Statistics are of the last time; rounds count images as points. Throws what triangulate_periodic and
-/// triangulate_chunks throw; Error(input), too, if the images do not fit memory_bytes, as if most points are
-/// near the border. O(n log n) work.
+/// progress). Their images are held in memory and count as 48 bytes each, beside what chunks need. If these
+/// were too few, which is found out at the end, all begins again with a wider margin, and everything is
+/// written again. So there may be rows of no use beyond the number of triangles that is returned, but never
+/// more than 2 n. Statistics are of the last time; rounds count images as points. Throws what
+/// triangulate_periodic and triangulate_chunks throw; Error(input), too, if the images do not fit
+/// memory_bytes, as if most points are near the border. O(n log n) work.
 FLAUNAY_API ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& period,
                                                         PeriodicMeshSink& sink,
                                                         const ChunkOptions& options = {});
