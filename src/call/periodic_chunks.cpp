@@ -41,7 +41,7 @@ class Places {
   std::uint64_t size() const { return points_.size(); }
   void read(std::uint64_t first, std::size_t count, double* places) const {
     points_.read(first, count, places);
-    periodic::take_into(period_, places, count, first, "point");
+    periodic::take_into(period_, places, count, first, "point", places);
   }
   // Calls visit(i, place) for each point.
   template <typename Visit>
@@ -268,7 +268,7 @@ Period take_to_places(const Period& period, double* points, std::size_t n) {
   call::check(period);
   geometry::check_coordinates(points, n);
   const Pair<double> lengths = periodic::rounded(period);
-  periodic::take_into(lengths, points, n, 0, "point");
+  periodic::take_into(lengths, points, n, 0, "point", points);
   return {lengths[0], lengths[1]};
 }
 

@@ -52,8 +52,8 @@ kernel::periodic_axes axes_of(const Pair<double>& period) {
   return {one(period[0]), one(period[1])};
 }
 
-void take_into(const Pair<double>& period, double* points, std::size_t n, std::uint64_t first,
-               const char* what) {
+void take_into(const Pair<double>& period, const double* points, std::size_t n, std::uint64_t first,
+               const char* what, double* places) {
   const kernel::periodic_axes axes = axes_of(period);
   for (std::size_t i = 0; i < n; ++i) {
     const double x = kernel::place_of(points[2 * i], axes.x), y = kernel::place_of(points[2 * i + 1], axes.y);
@@ -61,19 +61,18 @@ void take_into(const Pair<double>& period, double* points, std::size_t n, std::u
       throw Error(ErrorKind::input, fmt::format("{} {} is not finite: ({}, {})", what, first + i,
                                                 points[2 * i], points[2 * i + 1]));
     }
-    points[2 * i] = x;
-    points[2 * i + 1] = y;
+    places[2 * i] = x;
+    places[2 * i + 1] = y;
   }
 }
 
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what) {
   std::vector<double> places;
-  runtime.resize(places, 2 * n);
+  const std::size_t room_for_images = n / 4;
+  runtime.resize(places, 2 * n, 2 * (n + room_for_images));
   for_each_run(&runtime, n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    double* const to = places.data() + 2 * begin;
-    std::copy(points + 2 * begin, points + 2 * end, to);
-    take_into(period, to, end - begin, begin, what);
+    take_into(period, points + 2 * begin, end - begin, begin, what, places.data() + 2 * begin);
   });
   return places;
 }

@@ -27,9 +27,10 @@ kernel::periodic_axes axes_of(const Pair<double>& period);
 
 /// Takes points into the periods, rounded to multiples of their units. The result is the same on every
 /// machine. Throws Error(input) for one that is not finite, with what: the name of a point. first: the number
-/// of the first one. O(n).
-void take_into(const Pair<double>& period, double* points, std::size_t n, std::uint64_t first,
-               const char* what);
+/// of the first one. places: may be the points. O(n).
+void take_into(const Pair<double>& period, const double* points, std::size_t n, std::uint64_t first,
+               const char* what, double* places);
+/// As a vector that has room for images, too.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what);
 
