@@ -45,7 +45,8 @@ static inline double2 place_of_vector(double x, double y, double z) {
 }
 
 static inline double2 place_of_direction(double x, double y, double z) {
-  const double most = fmax(fmax(fabs(x), fabs(y)), fabs(z));
+  // Not by fmax, which C++ calls.
+  const double across = fabs(x) > fabs(y) ? fabs(x) : fabs(y), most = across > fabs(z) ? across : fabs(z);
   if (most > 0x1p-200 && most < 0x1p200) return place_of_vector(x, y, z);
   const int exponent = -ilogb(most);
   return place_of_vector(ldexp(x, exponent), ldexp(y, exponent), ldexp(z, exponent));
