@@ -1777,8 +1777,14 @@ static void test_periodic(void) {
   }
   CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
-  REQUIRE(flaunay_periodic_cell_areas(periodic, areas) == FLAUNAY_SUCCESS);
-  for (size_t i = 0; i < COUNT; ++i) CHECK(fabs(areas[i] - 2) < 1e-12);
+  flaunay_clipped_voronoi* cells = NULL;
+  REQUIRE(flaunay_periodic_cells(triangulator, periodic, &cells) == FLAUNAY_SUCCESS);
+  for (size_t i = 0; i < COUNT; ++i) {
+    areas[i] = flaunay_clipped_voronoi_areas(cells)[i];
+    CHECK(fabs(areas[i] - 2) < 1e-12);
+  }
+  CHECK(flaunay_clipped_voronoi_vertex_count(cells) == 3 * triangles);
+  flaunay_clipped_voronoi_destroy(cells);
   CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
   CHECK(flaunay_periodic_verify(triangulator, periodic) == FLAUNAY_SUCCESS);
   CHECK(fails(flaunay_periodic_verify(triangulator, NULL), FLAUNAY_ERROR_USAGE, "NULL"));
@@ -1801,10 +1807,11 @@ static void test_periodic(void) {
   REQUIRE(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, &periodic) ==
           FLAUNAY_SUCCESS);
   CHECK(flaunay_periodic_triangle_count(periodic) == 2 * COUNT - 2 * SIDE);
-  CHECK(fails(flaunay_periodic_cell_areas(periodic, areas), FLAUNAY_ERROR_USAGE, "cylinder"));
+  CHECK(fails(flaunay_periodic_cells(triangulator, periodic, &cells), FLAUNAY_ERROR_USAGE, "cylinder"));
   CHECK(fails(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), FLAUNAY_ERROR_USAGE,
               "period"));
-  CHECK(none == NULL && fails(flaunay_periodic_cell_areas(NULL, areas), FLAUNAY_ERROR_USAGE, "NULL"));
+  CHECK(none == NULL &&
+        fails(flaunay_periodic_cells(triangulator, NULL, &cells), FLAUNAY_ERROR_USAGE, "NULL"));
   flaunay_periodic_destroy(periodic);
 }
 

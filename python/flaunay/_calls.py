@@ -1783,10 +1783,12 @@ class Periodic(Handle):
     def verify(self, triangulator: Triangulator) -> None:
         triangulator.call(library.periodic_verify, triangulator.pointer, self.pointer)
 
-    def cell_areas(self) -> _Doubles:
-        areas = np.empty(self._point_count)
-        check(library.periodic_cell_areas(self.pointer, _address_of(areas)))
-        return areas
+    def cells(self, triangulator: Triangulator) -> dict[str, Any]:
+        result = _ClippedVoronoi()
+        triangulator.call(
+            library.periodic_cells, triangulator.pointer, self.pointer, result.place
+        )
+        return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", self._point_count)
 
 
 class PeriodicLocator(SurfaceLocator):

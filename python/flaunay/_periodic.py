@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._cells import ClippedVoronoi
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
@@ -88,13 +89,27 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         self._kept_locator: Kept[_calls.PeriodicLocator] = Kept()
 
     @cached_property
-    def cell_areas(self) -> Doubles:
-        """The areas of the points' Voronoi cells, rounded, shape (npoints,).
+    def cells(self) -> ClippedVoronoi:
+        """The Voronoi cells on the torus, computed when they are first asked for.
 
-        Those of a set sum to that of the period. Points that another one represents have 0. On a cylinder
-        this is a UsageError: cells there have no end.
+        Each cell is around its point's place, so that some reach beyond the period, whose box is the
+        ``bounds``. Vertices are rounded, each cell by itself; where more than three points are cocircular,
+        some are the same but for that. The areas of a set's cells sum to that of the period. Points that
+        another one represents have no vertices. On a cylinder this is a UsageError: cells there have no
+        end.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> cells = flaunay.periodic([[0.25, 0.5], [0.75, 0.5]], (1, 1)).cells
+        >>> cells.areas.tolist()
+        [0.5, 0.5]
+        >>> sorted(set(map(tuple, cells.polygon(0).tolist())))
+        [(0.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 1.0)]
         """
-        return frozen(self._handle.cell_areas())
+        across, up = self.period
+        box = np.array([[0, 0], [across, 0], [across, up], [0, up]])
+        return ClippedVoronoi(**self._handle.cells(self._triangulator), bounds=box)
 
     @cached_property
     def corners(self) -> Doubles:
@@ -299,7 +314,7 @@ def periodic(
     >>> tri = flaunay.periodic(points, (1, 1))
     >>> tri
     <flaunay.PeriodicDelaunay: 1000 points, 2000 triangles>
-    >>> tri.cell_areas.sum().round(12).item()
+    >>> tri.cells.areas.sum().round(12).item()
     1.0
     >>> flaunay.periodic(points, (1, None)).nsimplex
     1998

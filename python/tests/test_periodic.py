@@ -41,7 +41,7 @@ def test_triangles_are_scipys_of_nine_copies(random):
 def test_one_point_has_two_triangles():
     tri = flaunay.periodic([[7.5, -1]], PERIOD)
     assert tri.simplices.tolist() == [[0, 0, 0], [0, 0, 0]]
-    assert tri.cell_areas.tolist() == [6]
+    assert tri.cells.areas.tolist() == [6]
     assert tri.corners.tolist() == [
         [[1.5, 2], [3.5, 2], [3.5, 5]],
         [[1.5, 2], [3.5, 5], [1.5, 5]],
@@ -76,8 +76,11 @@ def test_cells_are_those_of_the_voronoi_diagram(random):
     tri = flaunay.periodic(points, PERIOD)
     copies = (points + (np.indices((3, 3)).reshape(2, 9).T * PERIOD)[:, None]).reshape(-1, 2)
     cells = flaunay.Voronoi(copies).clipped((-9, -9, 19, 19))
-    np.testing.assert_allclose(tri.cell_areas, cells.areas[4 * 300 : 5 * 300], rtol=1e-9)
-    assert tri.cell_areas.sum() == pytest.approx(6, abs=1e-12)
+    np.testing.assert_allclose(tri.cells.areas, cells.areas[4 * 300 : 5 * 300], rtol=1e-9)
+    centroids = cells.centroids[4 * 300 : 5 * 300] - PERIOD
+    np.testing.assert_allclose(tri.cells.centroids, centroids, atol=1e-9)
+    assert tri.cells.areas.sum() == pytest.approx(6, abs=1e-12)
+    assert len(tri.cells.polygons()) == 300 and tri.cells.bounds[2].tolist() == list(PERIOD)
     edges = tri.corners[:, 1:] - tri.corners[:, :1]
     assert (np.abs(edges) < 1).all()
 
@@ -126,7 +129,7 @@ def test_sets(random):
     tri = flaunay.periodic(np.concatenate(parts), (1, 1), [0, 200, 350])
     alone = flaunay.periodic(parts[1], (1, 1))
     np.testing.assert_array_equal(tri.simplices[tri.simplex_offsets[1] :] - 200, alone.simplices)
-    np.testing.assert_array_equal(tri.cell_areas[200:], alone.cell_areas)
+    np.testing.assert_array_equal(tri.cells.areas[200:], alone.cells.areas)
 
 
 def test_errors_say_what_is_wrong():
@@ -140,7 +143,7 @@ def test_errors_say_what_is_wrong():
     with pytest.raises(flaunay.UsageError, match="one set"):
         flaunay.periodic([[0.5, 0.5]], (1, 1), [0, 0, 1]).nearest([0, 0])
     with pytest.raises(flaunay.UsageError, match="cells on a cylinder"):
-        flaunay.periodic([[0.5, 0.5]], (1, None)).cell_areas
+        flaunay.periodic([[0.5, 0.5]], (1, None)).cells
     with pytest.raises(flaunay.InputError, match="point 0 is not finite"):
         flaunay.periodic([[np.inf, 0.5]], (1, 1))
     with pytest.raises(flaunay.UsageError, match="the period 0 x 1"):

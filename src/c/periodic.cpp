@@ -98,10 +98,12 @@ ACCESSOR(int32_t, representatives)
 ACCESSOR(size_t, triangle_offsets)
 #undef ACCESSOR
 
-flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas) {
-  return guarded([&] {
-    const std::vector<double> all = periodic_cell_areas(required(periodic, "the triangulation").cpp);
-    if (!all.empty()) std::copy(all.begin(), all.end(), &required(areas, "the room for areas"));
+flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangulator, const flaunay_periodic* periodic,
+                                      flaunay_clipped_voronoi** cells) {
+  return create(cells, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_clipped_voronoi>(
+        flaunay_clipped_voronoi{periodic_cells(cpp, required(periodic, "the triangulation").cpp)});
   });
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "call/frame.hpp"
+#include "derived/periodic/cells.hpp"
 #include "derived/periodic/torus.hpp"
 #include "derived/periodic/verify.hpp"
 #include "geometry/indices.hpp"
@@ -188,32 +189,14 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
   return mesh;
 }
 
-std::vector<double> periodic_cell_areas(const PeriodicTriangulation& mesh) {
-  call::check(mesh);
-  const Period& period = mesh.period;
-  call::expect(std::isfinite(period.x) && std::isfinite(period.y), "cells on a cylinder have no areas");
-  const std::size_t n = mesh.places.size() / 2;
-  std::vector<double> areas(n, 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    // Of each corner the quarters that the heights from the triangle's centre cut off: signed, and summed
-    // around a point its cell.
-    double x[3], y[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(mesh.triangles[t + k]);
-      x[k] = mesh.places[2 * v] + mesh.offsets[2 * (t + k)] * period.x;
-      y[k] = mesh.places[2 * v + 1] + mesh.offsets[2 * (t + k) + 1] * period.y;
-    }
-    const double twice = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-      const double ax = x[a] - x[k], ay = y[a] - y[k], bx = x[b] - x[k], by = y[b] - y[k];
-      const double cotangent = (ax * bx + ay * by) / twice;  // of the angle at k
-      const double quarter = cotangent * ((x[a] - x[b]) * (x[a] - x[b]) + (y[a] - y[b]) * (y[a] - y[b])) / 8;
-      areas[static_cast<std::size_t>(mesh.triangles[t + a])] += quarter;
-      areas[static_cast<std::size_t>(mesh.triangles[t + b])] += quarter;
-    }
-  }
-  return areas;
+ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    call::check(mesh);
+    call::expect(std::isfinite(mesh.period.x) && std::isfinite(mesh.period.y),
+                 "cells on a cylinder have no end");
+    return periodic::make_cells(self.native().runtime, mesh);
+  });
 }
 
 std::string verify_periodic(Triangulator& triangulator, const PeriodicTriangulation& mesh) {

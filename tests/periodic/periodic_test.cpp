@@ -157,7 +157,7 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
   }
   if (!is_across || !is_up) return;
   double sum = 0;
-  for (const double area : periodic_cell_areas(mesh)) sum += area;
+  for (const double area : periodic_cells(testing::triangulator(), mesh).areas) sum += area;
   EXPECT_NEAR(1, sum / (period.x * period.y), 1e-12);
 }
 
@@ -507,6 +507,53 @@ void expect_refusal(ErrorKind kind, const char* part, const Work& work) {
   }
 }
 
+// Against the diagram of nine copies in the plane.
+TEST(Periodic, CellsAreThoseOfThePlane) {
+  const Period period{2, 0.75};
+  for (const std::size_t n : {1, 2, 3, 40, 700}) {
+    SCOPED_TRACE(n);
+    Numbers points = uniform(n, period, n);
+    points.insert(points.end(), {points[0], points[1]});  // has no cell
+    const PeriodicTriangulation mesh = triangulated(points, period);
+    const ClippedVoronoi cells = periodic_cells(testing::triangulator(), mesh);
+    Numbers copies;
+    for (std::size_t i = 0; i < n; ++i)
+      copies.insert(copies.end(), {mesh.places[2 * i], mesh.places[2 * i + 1]});
+    for (int k = 0; k < 25; ++k) {
+      for (std::size_t i = 0; i < n && k != 12; ++i) {
+        copies.insert(copies.end(), {mesh.places[2 * i] + (k / 5 - 2) * period.x,
+                                     mesh.places[2 * i + 1] + (k % 5 - 2) * period.y});
+      }
+    }
+    const double box[] = {-9, -9, 9, -9, 9, 9, -9, 9};
+    Triangulator& triangulator = testing::triangulator();
+    Options options;
+    options.neighbors = true;
+    const ClippedVoronoi plane = triangulator.clipped_voronoi(
+        copies.data(), copies.size() / 2, triangulator.triangulate(copies.data(), copies.size() / 2, options),
+        box, 4);
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_NEAR(plane.areas[i], cells.areas[i], 1e-12) << i;
+      for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
+        EXPECT_NEAR(plane.centroids[k], cells.centroids[k], 1e-9) << i;
+      // Each vertex is one of the plane's cell.
+      for (int v = cells.offsets[i]; v < cells.offsets[i + 1]; ++v) {
+        double nearest = HUGE_VAL;
+        for (int w = plane.offsets[i]; w < plane.offsets[i + 1]; ++w) {
+          nearest = std::min(nearest, std::hypot(plane.vertices[2 * static_cast<std::size_t>(w)] -
+                                                     cells.vertices[2 * static_cast<std::size_t>(v)],
+                                                 plane.vertices[2 * static_cast<std::size_t>(w) + 1] -
+                                                     cells.vertices[2 * static_cast<std::size_t>(v) + 1]));
+        }
+        EXPECT_LT(nearest, 1e-9) << i;
+      }
+    }
+    EXPECT_EQ(0, cells.areas[n]);
+    EXPECT_EQ(cells.offsets[n], cells.offsets[n + 1]);
+    EXPECT_TRUE(std::isnan(cells.centroids[2 * n]));
+  }
+}
+
 TEST(Periodic, ErrorsSayWhatIsWrong) {
   const Numbers few = {0.5, 0.5, 0.2, 0.1};
   expect_refusal(ErrorKind::input, "point 1 is not finite", [] { triangulated({1, 1, HUGE_VAL, 0}, {}); });
@@ -515,7 +562,7 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
     expect_refusal(ErrorKind::usage, "the period", [&] { triangulated(few, period); });
   }
   expect_refusal(ErrorKind::usage, "cells on a cylinder", [&] {
-    periodic_cell_areas(triangulated(few, {1, HUGE_VAL}));
+    periodic_cells(testing::triangulator(), triangulated(few, {1, HUGE_VAL}));
   });
   PeriodicTriangulation mesh = triangulated(few, {});
   PeriodicLocator locator(testing::triangulator(), mesh);
@@ -528,6 +575,8 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
   std::swap(mesh.triangles[1], mesh.triangles[2]);
   expect_refusal(ErrorKind::usage, "not those of a triangulation",
                  [&] { PeriodicLocator(testing::triangulator(), mesh); });
+  expect_refusal(ErrorKind::usage, "not those of a triangulation",
+                 [&] { periodic_cells(testing::triangulator(), mesh); });
   mesh.triangles[0] = 7;
   expect_refusal(ErrorKind::usage, "not those of a triangulation",
                  [&] { PeriodicLocator(testing::triangulator(), mesh); });
@@ -540,7 +589,7 @@ TEST(Periodic, ManyPointsHaveTwiceAsManyTriangles) {
   EXPECT_EQ(200000u, mesh.triangles.size() / 3);
   EXPECT_LT(mesh.images, 15000u);
   double sum = 0;
-  for (const double area : periodic_cell_areas(mesh)) sum += area;
+  for (const double area : periodic_cells(testing::triangulator(), mesh).areas) sum += area;
   EXPECT_NEAR(1, sum, 1e-10);
 }
 

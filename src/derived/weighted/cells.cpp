@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "derived/voronoi/moments.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
 
@@ -12,6 +13,8 @@ namespace flaunay::weighted {
 namespace {
 
 using geometry::Point;
+using voronoi::Moments;
+using voronoi::moments_of;
 using Ids = std::vector<std::int32_t>;
 
 // Visits the neighbours of vertices.
@@ -83,25 +86,6 @@ void clip(std::vector<Point>& polygon, Point d, double constant, std::vector<Poi
     at_p = at_q;
   }
   polygon.swap(spare);
-}
-
-struct Moments {
-  double area = 0;
-  Point centroid{NAN, NAN};
-};
-
-// Of a convex polygon, by triangles from its first corner.
-Moments moments_of(const std::vector<Point>& polygon) {
-  double twice = 0, x = 0, y = 0;
-  for (std::size_t k = 2; k < polygon.size(); ++k) {
-    const Point o = polygon[0], p = polygon[k - 1], q = polygon[k];
-    const double part = (p.x - o.x) * (q.y - o.y) - (p.y - o.y) * (q.x - o.x);
-    twice += part;
-    x += part * ((p.x - o.x) + (q.x - o.x));
-    y += part * ((p.y - o.y) + (q.y - o.y));
-  }
-  if (!(twice > 0)) return {};
-  return {twice / 2, {polygon[0].x + x / (3 * twice), polygon[0].y + y / (3 * twice)}};
 }
 
 }  // namespace

@@ -1606,9 +1606,12 @@ FLAUNAY_API const int32_t* flaunay_periodic_neighbors(const flaunay_periodic* pe
 FLAUNAY_API const int32_t* flaunay_periodic_representatives(const flaunay_periodic* periodic);
 /// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
 FLAUNAY_API const size_t* flaunay_periodic_triangle_offsets(const flaunay_periodic* periodic);
-/// Writes the areas of the points' Voronoi cells, rounded; those of a set sum to that of the period. areas:
-/// room for n values. A cylinder is FLAUNAY_ERROR_USAGE: cells there have no end.
-FLAUNAY_API flaunay_status flaunay_periodic_cell_areas(const flaunay_periodic* periodic, double* areas);
+/// Computes the Voronoi cells, each around its point's place, so that some reach beyond the period; rounded.
+/// The areas of a set's cells sum to that of the period. A cylinder is FLAUNAY_ERROR_USAGE: cells there have
+/// no end. The caller destroys the result. O(n).
+FLAUNAY_API flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangulator,
+                                                  const flaunay_periodic* periodic,
+                                                  flaunay_clipped_voronoi** cells);
 
 /// Checks exactly that this is the canonical triangulation of its places; if not, it is
 /// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).

@@ -129,10 +129,13 @@ FLAUNAY_API void triangulate_periodic(Triangulator& triangulator, const DevicePo
                                       const Period& period, DevicePeriodicTriangulation& result,
                                       const Enqueue& enqueue = own_queue());
 
-/// Returns the areas of the Voronoi cells on the torus, one per point, rounded; those of a set sum to that of
-/// the period. Points that another one represents have 0. Throws Error(usage) for arrays that are none's, and
-/// for a cylinder, where cells have no end. O(n).
-FLAUNAY_API std::vector<double> periodic_cell_areas(const PeriodicTriangulation& triangulation);
+/// Computes the Voronoi cells on the torus, each around its point's place, so that some reach beyond the
+/// period. Vertices are rounded, each cell by itself; where more than three points are cocircular, some are
+/// the same but for that. The areas of a set's cells sum to that of the period. Points that another one
+/// represents have no vertices. Throws Error(usage) for arrays that are none's, and for a cylinder, where
+/// cells have no end. O(n).
+FLAUNAY_API ClippedVoronoi periodic_cells(Triangulator& triangulator,
+                                          const PeriodicTriangulation& triangulation);
 
 /// Checks a triangulation exactly: that it is the canonical one of its places. Returns what is wrong; nothing
 /// if it is right. Shares predicates with what makes triangulations, and nothing else. Throws Error(usage)

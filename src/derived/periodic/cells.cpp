@@ -1,0 +1,110 @@
+#include "derived/periodic/cells.hpp"
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "arithmetic/exact_arithmetic.h"
+#include "derived/voronoi/moments.hpp"
+#include "geometry/expect.hpp"
+#include "geometry/for_each.hpp"
+
+namespace flaunay::periodic {
+namespace {
+
+using geometry::for_each;
+using geometry::Point;
+using Ids = std::vector<std::int32_t>;
+
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::int32_t turned(std::int32_t corner, int steps) { return corner - corner % 3 + (corner + steps) % 3; }
+
+// a b' - a' b, with about an ulp's error.
+double determinant(double a, double b, double a2, double b2) {
+  const kernel::double2 first = kernel::two_product(a, b2), second = kernel::two_product(a2, b);
+  return (first.x - second.x) + (first.y - second.y);
+}
+
+// Corners of triangles, 3 t + k, and what is around them.
+class Corners {
+ public:
+  explicit Corners(const PeriodicTriangulation& mesh) : mesh_(mesh) {}
+
+  std::int32_t point(std::int32_t c) const { return mesh_.triangles[index(c)]; }
+  // The same point's corner in the next triangle, counter-clockwise; -1 if the arrays are no triangulation's.
+  // A point can have several corners of a triangle, but an edge has other offsets than any other.
+  std::int32_t next(std::int32_t c) const {
+    const std::int32_t t = mesh_.neighbors[index(turned(c, 1))], end = turned(c, 2);
+    for (std::int32_t k = 0; k < 3; ++k) {
+      const std::int32_t at = 3 * t + k, to = turned(at, 1);
+      if (point(at) == point(c) && point(to) == point(end) && step(at, to, 0) == step(c, end, 0) &&
+          step(at, to, 1) == step(c, end, 1))
+        return at;
+    }
+    return -1;
+  }
+  // The centre of the corner's triangle when the corner is at its place, as seen from there.
+  Point centre(std::int32_t c) const {
+    const Point a = seen(c, turned(c, 1)), b = seen(c, turned(c, 2));
+    const double twice = 2 * determinant(a.x, a.y, b.x, b.y);
+    const double a_square = a.x * a.x + a.y * a.y, b_square = b.x * b.x + b.y * b.y;
+    return {determinant(a_square, a.y, b_square, b.y) / twice,
+            determinant(a.x, a_square, b.x, b_square) / twice};
+  }
+  Point place(std::int32_t v) const { return {mesh_.places[2 * index(v)], mesh_.places[2 * index(v) + 1]}; }
+
+ private:
+  // So many periods from one corner of a triangle to another one.
+  int step(std::int32_t from, std::int32_t to, std::size_t axis) const {
+    return mesh_.offsets[2 * index(to) + axis] - mesh_.offsets[2 * index(from) + axis];
+  }
+  Point seen(std::int32_t from, std::int32_t to) const {
+    const Point p = place(point(from)), q = place(point(to));
+    return {(q.x + step(from, to, 0) * mesh_.period.x) - p.x,
+            (q.y + step(from, to, 1) * mesh_.period.y) - p.y};
+  }
+
+  const PeriodicTriangulation& mesh_;
+};
+
+}  // namespace
+
+ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+  const std::size_t n = mesh.places.size() / 2;
+  ClippedVoronoi cells;
+  cells.areas.assign(n, 0);
+  cells.centroids.assign(2 * n, NAN);
+  cells.offsets.assign(n + 1, 0);
+  Ids first(n, -1);
+  for (std::size_t c = mesh.triangles.size(); c-- > 0;) {
+    ++cells.offsets[index(mesh.triangles[c]) + 1];
+    first[index(mesh.triangles[c])] = static_cast<std::int32_t>(c);
+  }
+  std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
+  cells.vertices.resize(2 * mesh.triangles.size());
+  const Corners corners(mesh);
+  // In the order of corners, those of a cell are near each other in memory.
+  for_each(runtime, mesh.triangles.size(), [&](std::size_t at) {
+    const auto begin = static_cast<std::int32_t>(at);
+    const std::int32_t v = corners.point(begin);
+    if (first[index(v)] != begin) return;
+    const Point p = corners.place(v);
+    std::vector<Point> polygon;
+    std::int32_t c = begin;
+    for (std::int32_t i = cells.offsets[index(v)]; i < cells.offsets[index(v) + 1] && c >= 0; ++i) {
+      const Point q = corners.centre(c);
+      polygon.push_back(q);
+      cells.vertices[2 * index(i)] = p.x + q.x;
+      cells.vertices[2 * index(i) + 1] = p.y + q.y;
+      c = corners.next(c);
+    }
+    expect(c == begin, "the arrays are not those of a triangulation on a torus or a cylinder");
+    const voronoi::Moments moments = voronoi::moments_of(polygon);
+    cells.areas[index(v)] = moments.area;
+    cells.centroids[2 * index(v)] = p.x + moments.centroid.x;
+    cells.centroids[2 * index(v) + 1] = p.y + moments.centroid.y;
+  });
+  return cells;
+}
+
+}  // namespace flaunay::periodic
