@@ -11,7 +11,6 @@
 BEGIN_SHARED
 
 // Places are multiples of 2^-65, and below 2^62: what would be farther is the south pole, whose place is infinite.
-INTEGER_CONSTANT(FINEST_PLACE_EXPONENT, -65);
 #define FARTHEST_PLACE 0x1p62
 
 // Doubles from 2^-13 on are multiples of the finest place. Smaller numbers are rounded to multiples of twice that by

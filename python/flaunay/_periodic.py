@@ -30,14 +30,6 @@ def _as_queries(given: ArrayLike) -> Doubles:
     return queries
 
 
-def _as_lengths(period: tuple[Optional[float], Optional[float]]) -> tuple[float, float]:
-    given = [np.inf if length is None else length for length in period]
-    lengths = np.asarray(as_floats(given, "period"), np.float64)
-    if lengths.shape != (2,):
-        raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
-    return float(lengths[0]), float(lengths[1])
-
-
 class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
     """Delaunay triangulations of points on a torus or a cylinder. `periodic` makes them.
 

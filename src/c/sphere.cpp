@@ -110,9 +110,7 @@ flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
 FLAUNAY_DEVICE_RESULT(spherical, "the triangulation")
 
 size_t flaunay_device_spherical_triangle_count(const flaunay_device_spherical* spherical) {
-  return read(spherical, [](const auto& handle) {
-    return handle.cpp.triangle_offsets.empty() ? 0 : handle.cpp.triangle_offsets.back();
-  });
+  return read(spherical, [](const auto& handle) { return c::total(handle.cpp.triangle_offsets); });
 }
 
 const size_t* flaunay_device_spherical_triangle_offsets(const flaunay_device_spherical* spherical) {
