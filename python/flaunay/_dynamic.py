@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+import re
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_integers, as_points, number_of, summary
+from flaunay._arrays import (
+    ArrayLike,
+    as_integers,
+    as_points,
+    is_on_device,
+    number_of,
+    summary,
+)
 from flaunay._constrained import as_segments
 from flaunay._declarations import CROSSINGS
-from flaunay._device_arrays import DeviceCall, is_on_device, queue_for, view
-from flaunay._errors import UsageError
+from flaunay._device_arrays import DeviceCall, queue_for, view
+from flaunay._errors import InputError, UsageError
 from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -115,6 +124,18 @@ def as_numbers(given: npt.ArrayLike) -> Indices:
     return kept
 
 
+def _place_beyond(points: Doubles) -> Doubles:
+    """A place beyond the box of points, NaN among them, and as near to it as coordinates of their size can be."""
+    there = points[~np.isnan(points[:, 0])]
+    if not len(there):
+        return np.zeros(2)
+    low, high = there.min(axis=0), there.max(axis=0)
+    step = np.spacing(np.abs(there).max())
+    with np.errstate(over="ignore"):
+        beyond = [*(high + step * np.eye(2)), *(low - step * np.eye(2))]
+    return next(place for place in beyond if np.isfinite(place).all())
+
+
 class DynamicTriangulation:
     """A triangulation to which batches of points are inserted, removed and moved, each in one call.
 
@@ -125,6 +146,9 @@ class DynamicTriangulation:
     Points have numbers: those it is made from come first, then those inserted, in their order. A number
     stays the same as long as the point is there, and is not used again. Of points in one place, the one
     with the smallest number is in triangles.
+
+    Copies, also by pickling, have the same points, numbers and constraints, and change on their own; their rows
+    have other numbers.
 
     Parameters
     ----------
@@ -169,6 +193,9 @@ class DynamicTriangulation:
         rule = number_of(CROSSINGS, crossings, "crossings")
         pairs: Optional[Indices] = None
         self._queue: Optional[pyopencl.CommandQueue] = None
+        self._device = device
+        # Of a copy, the segment that each edge is of from which it was made.
+        self._segments: Optional[Indices] = None
         if is_on_device(points):
             if segments is not None or device is not None:
                 raise UsageError("segments and device are for points in host memory")
@@ -193,6 +220,29 @@ class DynamicTriangulation:
 
     def __repr__(self) -> str:
         return summary(self, points=self.point_count, triangles=self.triangle_count)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._queue is not None:
+            raise TypeError(
+                "a DynamicTriangulation in device memory cannot be copied or pickled: make another one of the "
+                "points of rows_on_device()"
+            )
+        with self._handle.turn:
+            return type(self)._copy, (self.points, *self.constraints(), self._device)
+
+    @classmethod
+    def _copy(
+        cls, points: Doubles, edges: Indices, segments: Indices, device: Optional[str]
+    ) -> DynamicTriangulation:
+        """A triangulation with these points, NaN for those that were removed, and edges of segments."""
+        removed = np.flatnonzero(np.isnan(points[:, 0]))
+        # Points that are removed at once must not equal others, nor lie on edges.
+        places = np.where(np.isnan(points), _place_beyond(points), points)
+        copy = cls(places, edges if len(edges) else None, device=device)
+        copy._segments = segments if len(edges) else None
+        if len(removed):
+            copy.remove(removed)
+        return copy
 
     def insert(self, points: Points) -> Changes:
         """Inserts points.
@@ -233,7 +283,8 @@ class DynamicTriangulation:
             For a number that no point has, one that is there twice, and a vertex of a constraint. Nothing
             is changed then.
         """
-        return Changes(**self._handle.remove(as_numbers(indices)))
+        with self._naming_segments():
+            return Changes(**self._handle.remove(as_numbers(indices)))
 
     def move(self, indices: npt.ArrayLike, points: ArrayLike) -> Changes:
         """Moves points, all at once.
@@ -257,7 +308,22 @@ class DynamicTriangulation:
         numbers, places = as_numbers(indices), np.asarray(as_points(points), np.float64)
         if len(numbers) != len(places):
             raise UsageError(f"{len(numbers)} points cannot be moved to {len(places)} places")
-        return Changes(**self._handle.move(numbers, places))
+        with self._naming_segments():
+            return Changes(**self._handle.move(numbers, places))
+
+    @contextlib.contextmanager
+    def _naming_segments(self) -> Iterator[None]:
+        """Errors with the numbers of the segments that were given, of which a copy has the edges."""
+        try:
+            yield
+        except InputError as error:
+            segments = self._segments
+            if segments is None:
+                raise
+            text = re.sub(
+                r"segment (\d+)", lambda match: f"segment {segments[int(match[1])]}", str(error)
+            )
+            raise InputError(text, error.code, error.call) from None
 
     @property
     def numbers(self) -> int:
@@ -333,4 +399,5 @@ class DynamicTriangulation:
         >>> sorted(tri.constraints().edges.tolist())
         [[3, 4], [4, 1]]
         """
-        return LivingConstraints(*self._handle.constraints())
+        edges, of = self._handle.constraints()
+        return LivingConstraints(edges, of if self._segments is None else self._segments[of])

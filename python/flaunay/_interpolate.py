@@ -19,6 +19,7 @@ from flaunay._arrays import (
     as_any,
     as_floats,
     check_memory,
+    check_points_shape,
     frozen,
     is_masked,
     summary,
@@ -158,9 +159,17 @@ class _Interpolator(Fixed):
             raise UsageError(
                 "points must be an array or a flaunay.Delaunay, not another triangulation"
             )
-        coordinates = _as_coordinates(points, "points")
-        if coordinates.ndim != 2:
-            raise UsageError(f"points must have the shape (n, 2), not {coordinates.shape}")
+        coordinates = (
+            _as_coordinates(points, "points")
+            if isinstance(points, tuple)
+            else np.asarray(as_floats(points, "points"), np.float64)
+        )
+        if coordinates.ndim == 1 or coordinates.ndim == 2 and coordinates.shape[1] == 1:
+            raise UsageError(
+                f"points must have the shape (n, 2), not {coordinates.shape}: numpy.interp and SciPy "
+                "interpolate on a line; if x and y are two arrays, take the tuple (x, y)"
+            )
+        check_points_shape(coordinates)
         self._scale = _Scale(coordinates, rescale)
         self.points = self._keep(self._scale(coordinates))
 
@@ -323,10 +332,12 @@ class _Columns(_Interpolator):
         tri, beyond = self.tri, self._beyond
         numbers, gradients, fill = table.values, table.gradients, table.options.fill
         found = tri._locator.locate(queries)
-        outside = np.flatnonzero(found < 0)
-        if len(outside) and tri.nsimplex and (beyond.tol is not None or beyond.extrapolate):
-            border = tri._border
-            edges, parts, distances = border.nearest(queries[outside])
+        outside, border = np.flatnonzero(found < 0), tri._border
+        if not tri.nsimplex and getattr(self, "_are_estimated", True):
+            gradients = None  # on one line there are none
+        if len(outside) and len(border.firsts) and (beyond.tol is not None or beyond.extrapolate):
+            at = None if tri.nsimplex else tri._locator.nearest(queries[outside])
+            edges, parts, distances = border.nearest(queries[outside], at)
             if beyond.extrapolate is None and beyond.tol is not None:
                 near = distances <= beyond.tol
                 outside, edges, parts = outside[near], edges[near], parts[near]
@@ -338,8 +349,10 @@ class _Columns(_Interpolator):
                 steps = queries[outside] - places
                 values += (slopes * steps[:, None]).sum(axis=-1)
             rows[outside] = values
-        if beyond.max_edge is not None and tri.nsimplex:
-            corners = np.asarray(self.points, np.float64)[tri.simplices[found]]
+        if beyond.max_edge is not None and len(border.firsts):
+            # On one line, edges are in the place of triangles.
+            shapes = tri.simplices if tri.nsimplex else np.stack([border.firsts, border.seconds], 1)
+            corners = np.asarray(self.points, np.float64)[shapes[found]]
             sides = np.roll(corners, -1, axis=1) - corners
             longest = np.hypot(sides[..., 0], sides[..., 1]).max(axis=1)
             rows[(found >= 0) & (longest > beyond.max_edge)] = fill
@@ -383,6 +396,13 @@ class _Columns(_Interpolator):
             part = parts[:, None, None]
             between: Doubles = (1 - part) * gradients[ends[0]] + part * gradients[ends[1]]
             return between
+        if not self.tri.nsimplex:
+            begin, end = (np.asarray(self.points, np.float64)[vertices] for vertices in ends)
+            along = end - begin
+            with np.errstate(invalid="ignore"):
+                steps = np.nan_to_num(along / (along * along).sum(axis=1, keepdims=True))
+            along_line: Doubles = (numbers[ends[1]] - numbers[ends[0]])[:, :, None] * steps[:, None]
+            return along_line
         corners = self.tri.simplices[triangles]
         points = np.asarray(self.points, np.float64)[corners]
         first, second = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
@@ -450,7 +470,8 @@ class LinearInterpolator(_Columns):
     Notes
     -----
     Queries are located exactly, and at a point the result is exactly its value. A query that is not
-    finite is outside. Points on one line have no triangles, so that all queries are outside; SciPy
+    finite is outside. Points on one line have no triangles, so that all queries are outside, and the border is
+    the line between them: with `tol` or `extrapolate`, its values are linear from each point to the next. SciPy
     raises an exception for them.
 
     Examples

@@ -162,9 +162,22 @@ def test_auto_is_the_smallest_radius_that_covers_all_in_one_component(random):
                 expected = radius
                 break
         shape = flaunay.alpha_shape(tri)
-        assert shape.alpha == expected
+        # With a tolerance, within which there is no other radius here.
+        assert expected <= shape.alpha <= expected * (1 + 2e-6) + 1e-4
+        assert np.array_equal(shape.inside, tri.circumradii <= expected)
         assert len(shape.polygons()) == min(tri.nsimplex, 1)
         assert len(shape.isolated) == 0 or tri.nsimplex == 0
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("begin, step", [(100, 0.1), (-180, 0.05), (4.2e5, 0.7)])
+def test_grids_of_rounded_coordinates_have_no_holes(begin, step, dtype):
+    if dtype == np.float32:
+        begin = min(begin, 180)
+    along = (begin + step * np.arange(40)).astype(dtype)
+    shape = flaunay.alpha_shape(np.stack(np.meshgrid(along, along / 4), axis=-1).reshape(-1, 2))
+    assert shape.inside.all() and len(shape.rings()) == 1
+    assert len(np.unique(shape.delaunay.circumradii)) > 1
 
 
 def circle(radius, n):
