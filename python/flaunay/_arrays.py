@@ -82,7 +82,7 @@ _DEVICE_MEMORY = {
     10: "a ROCm device",
 }
 
-IN_TWO_ARRAYS = "; if x and y are two arrays, take numpy.column_stack([x, y])"
+_IN_TWO_ARRAYS = "; if x and y are two arrays, take numpy.column_stack([x, y])"
 
 _INTERPOLATE = "call triangulate_device(...).locator().interpolate, or "
 # What takes arrays of pyopencl as they are.
@@ -297,6 +297,9 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         raise UsageError(f"{name} are no array of numbers: {error}") from error
     if array.dtype.kind not in "biuf":
         _check_columns(given, name)
+    if array.ndim == 0 and array.dtype.kind == "O":
+        hint = f": take list({name})" if hasattr(given, "__next__") else ""
+        raise UsageError(f"{name} must be real numbers, not an object of {type(given).__name__}{hint}")
     return array
 
 
@@ -355,17 +358,22 @@ def are_rows(given: object) -> TypeGuard[Doubles]:
     return given.shape[1] == 2 and flags.c_contiguous and flags.aligned
 
 
+def hint_for(shape: tuple[int, ...], name: str) -> str:
+    """What to take in place of coordinates of a wrong shape, if one can guess what they are."""
+    if len(shape) == 1:
+        return _IN_TWO_ARRAYS
+    return f"; if its rows are x and y, take {name}.T" if len(shape) == 2 and shape[0] == 2 else ""
+
+
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
     shape = points.shape
-    if points.ndim != 2:
-        hint = IN_TWO_ARRAYS if points.ndim == 1 else ""
-        raise UsageError(
-            f"points must have two dimensions, of the shape (n, 2), not {shape}{hint}"
-        )
-    if shape[1] != 2:
-        hint = f"; of rows of x and y, shape {shape}, take points.T" if shape[0] == 2 else ""
-        raise UsageError(f"points must be two-dimensional, but have {shape[1]} coordinates{hint}")
+    if points.ndim == 2 and shape[1] == 2:
+        return
+    wrong = f"must have two dimensions, of the shape (n, 2), not {shape}"
+    if points.ndim == 2:
+        wrong = f"must be two-dimensional, but have {shape[1]} coordinates"
+    raise UsageError(f"points {wrong}{hint_for(shape, 'points')}")
 
 
 def as_points(given: ArrayLike) -> FloatArray:

@@ -21,6 +21,7 @@ from flaunay._arrays import (
     check_memory,
     check_points_shape,
     frozen,
+    hint_for,
     is_masked,
     summary,
 )
@@ -63,7 +64,8 @@ def _as_coordinates(given: Any, name: str, may_be_flat: bool = False) -> Doubles
     if may_be_flat and points.ndim == 1 and points.size % 2 == 0:
         points = points.reshape(-1, 2)
     if points.ndim == 0 or points.shape[-1] != 2:
-        raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}")
+        hint = hint_for(points.shape, name)
+        raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}{hint}")
     return points
 
 
@@ -878,7 +880,7 @@ class NaturalNeighborInterpolator(_Columns):
         max_edge: Optional[float] = None,
         max_distance: Optional[float] = None,
     ) -> None:
-        if method not in _WEIGHTS:
+        if not isinstance(method, str) or method not in _WEIGHTS:
             raise UsageError(f"method must be 'sibson' or 'laplace', not {method!r}")
         self._method = method
         beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
@@ -975,7 +977,7 @@ def griddata(
         "cubic": CloughTocherInterpolator,
         "natural": NaturalNeighborInterpolator,
     }
-    if method not in kinds:
+    if not isinstance(method, str) or method not in kinds:
         raise UsageError(
             f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
         )

@@ -63,7 +63,7 @@ class Handle:
     # Kept here because modules are emptied before the last handles are destroyed.
     _destroy: Any
     # Nothing, in an object that was never made.
-    pointer = ctypes.c_void_p()
+    pointer: ctypes.c_void_p = ctypes.c_void_p()
 
     def __init__(self) -> None:
         self.pointer = ctypes.c_void_p()

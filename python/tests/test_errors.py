@@ -66,7 +66,7 @@ def test_coordinates_in_other_shapes(call):
     x, y = FOUR.T
     with pytest.raises(flaunay.UsageError, match=r"take numpy.column_stack\(\[x, y\]\)"):
         call(x, y)
-    with pytest.raises(flaunay.UsageError, match="4 coordinates; of rows of x and y, .* take points.T"):
+    with pytest.raises(flaunay.UsageError, match="4 coordinates; if its rows are x and y, take points.T"):
         call(FOUR.T)
     for path in "points.csv", pathlib.Path("points.csv"), b"points.csv":
         with pytest.raises(flaunay.UsageError, match="not text or a path: .*points.csv.* by numpy.loadtxt"):
@@ -88,6 +88,11 @@ TRI = flaunay.Delaunay(FOUR)
         (lambda: TRI.raster(np.zeros(4), 5), r"rows and columns, such as \(200, 300\), not 5"),
         (lambda: TRI.raster(np.zeros(4), (5, 2.5)), r"rows and columns, .* not \(5, 2.5\)"),
         (lambda: TRI.raster(np.zeros(4), (1, 2, 3)), r"rows and columns, .* not \(1, 2, 3\)"),
+        (lambda: flaunay.griddata(FOUR[:, 0], FOUR[:, 1], [1, 2, 3, 4], FOUR), "method must be 'linear'"),
+        (lambda: TRI.find_simplex(*FOUR.T), r"\(4,\); if x and y are two arrays, take numpy.column_stack"),
+        (lambda: TRI.nearest(np.zeros((2, 3))), r"not \(2, 3\); if its rows are x and y, take xi.T"),
+        (lambda: flaunay.spherical([1, 2, 3, 4]), "numpy.column_stack"),
+        (lambda: flaunay.Delaunay(map(list, FOUR)), r"not an object of map: take list\(points\)"),
         (lambda: flaunay.griddata([1, 2, 3], [1, 2, 3], [1.5]), "numpy.interp and SciPy interpolate on a line"),
         (lambda: flaunay.griddata([[1], [2]], [1, 2], [1.5]), "numpy.interp"),
         (lambda: flaunay.LinearInterpolator(FOUR.T, [1, 2, 3, 4]), "take points.T"),
