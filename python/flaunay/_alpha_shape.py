@@ -324,7 +324,7 @@ def _inner_sides(tri: Delaunay) -> Indices:
 
 
 def _covering_alpha(tri: Delaunay) -> float:
-    """The smallest alpha whose triangles have all points and are one component, with a tolerance; infinite if none is."""
+    """The smallest alpha, with a tolerance, whose triangles have all points and are one component; else infinite."""
     if tri.nsimplex == 0:
         return np.inf
     radii = tri.circumradii
@@ -349,7 +349,9 @@ def _covering_alpha(tri: Delaunay) -> float:
 
 
 def alpha_shape(
-    points: Union[ArrayLike, Delaunay], alpha: Union[float, str] = "auto", **options: Unpack[_OfDelaunay]
+    points: Union[ArrayLike, Delaunay],
+    alpha: Union[float, str] = "auto",
+    **options: Unpack[_OfDelaunay],
 ) -> AlphaShape:
     """The alpha shape of points in the plane: their outline, as a disc of radius alpha sees it.
 

@@ -85,7 +85,9 @@ class LineBorder(Border):
         is_first = self.firsts[edges] == near
         along = line[(at + np.where(is_first, 1, -1)).clip(0, len(line) - 1)] - line[at]
         with np.errstate(invalid="ignore"):
-            part = np.nan_to_num((away * along).sum(axis=1) / (along * along).sum(axis=1)).clip(0, 1)
+            part = np.nan_to_num((away * along).sum(axis=1) / (along * along).sum(axis=1)).clip(
+                0, 1
+            )
         distances = np.hypot(*(part[:, None] * along - away).T)
         return edges, np.where(is_first, part, 1 - part), distances
 

@@ -130,10 +130,16 @@ def _place_beyond(points: Doubles) -> Doubles:
     if not len(there):
         return np.zeros(2)
     low, high = there.min(axis=0), there.max(axis=0)
-    step = np.spacing(np.abs(there).max())
+    step = max(np.abs(there).max() * 2.0**-52, 2.0**-1074) * np.eye(2)
     with np.errstate(over="ignore"):
-        beyond = [*(high + step * np.eye(2)), *(low - step * np.eye(2))]
-    return next(place for place in beyond if np.isfinite(place).all())
+        beyond = np.concatenate([high + step, low - step])
+    beyond = beyond[np.isfinite(beyond).all(axis=1)]
+    if not len(beyond):
+        raise TypeError(
+            "points as large as doubles can be, on all sides, cannot be copied: remove one of them"
+        )
+    place: Doubles = beyond[0]
+    return place
 
 
 class DynamicTriangulation:
@@ -228,21 +234,22 @@ class DynamicTriangulation:
                 "points of rows_on_device()"
             )
         with self._handle.turn:
-            return type(self)._copy, (self.points, *self.constraints(), self._device)
+            state = self.points, *self.constraints(), self._device
+        return type(self).__new__, (type(self),), state
 
-    @classmethod
-    def _copy(
-        cls, points: Doubles, edges: Indices, segments: Indices, device: Optional[str]
-    ) -> DynamicTriangulation:
-        """A triangulation with these points, NaN for those that were removed, and edges of segments."""
+    def __setstate__(self, state: tuple[Doubles, Indices, Indices, Optional[str]]) -> None:
+        """Makes it of points, NaN for those that were removed, and of edges of segments."""
+        points, edges, segments, device = state
         removed = np.flatnonzero(np.isnan(points[:, 0]))
-        # Points that are removed at once must not equal others, nor lie on edges.
-        places = np.where(np.isnan(points), _place_beyond(points), points)
-        copy = cls(places, edges if len(edges) else None, device=device)
-        copy._segments = segments if len(edges) else None
+        has_edges = len(edges) > 0
         if len(removed):
-            copy.remove(removed)
-        return copy
+            # Places that are left at once must not equal others, nor lie on edges.
+            points = np.where(np.isnan(points), _place_beyond(points), points)
+        DynamicTriangulation.__init__(self, points, edges if has_edges else None, device=device)
+        if has_edges:
+            self._segments = segments
+        if len(removed):
+            self.remove(removed)
 
     def insert(self, points: Points) -> Changes:
         """Inserts points.

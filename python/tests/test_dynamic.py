@@ -250,6 +250,16 @@ def test_copies_of_few_points():
         assert one.insert([[5, 5]]).first_point == len(points)
 
 
+def test_copies_of_large_points():
+    far = np.finfo(np.float64).max
+    tri = flaunay.DynamicTriangulation([[far, 0], [0, far], [-far, 0], [0, 0]], device="host")
+    tri.remove([3])
+    assert np.array_equal(copy.copy(tri).points, tri.points, equal_nan=True)
+    tri.insert([[0, -far]])
+    with pytest.raises(TypeError, match="cannot be copied: remove one"):
+        copy.copy(tri)
+
+
 def test_handles_of_the_library_say_that_they_cannot_be_copied(capfd):
     handle = flaunay._calls.PointTree(flaunay._triangulators.of_device("host"), np.zeros((1, 2)))
     for copied in COPIES:
