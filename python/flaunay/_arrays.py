@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Iterator, Mapping
@@ -175,7 +176,10 @@ def check_memory(given: Any, name: str) -> None:
     if is_on_device(given):
         hint = _DEVICE_CALLS.get(name, "")
         raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
-    kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
+    kind = 1
+    # Some columns of pyarrow are no arrays for DLPack, but are for NumPy.
+    with contextlib.suppress(AttributeError, TypeError, ValueError):
+        kind = int(given.__dlpack_device__()[0])
     if kind not in _HOST_MEMORY:
         memory = _DEVICE_MEMORY.get(kind, "a device")
         raise UsageError(f"{name} are in the memory of {memory}: copy them to the host before")
@@ -288,8 +292,10 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
                 return _of_dlpack(given)
             array = np.asarray(given)
             if array.dtype.kind == "O" and hasattr(given, "to_numpy"):
-                # Columns that may have missing values; those become NaN, which is an error where it matters.
-                array = np.asarray(given.to_numpy(dtype=np.float64, na_value=np.nan))
+                # Columns that may have missing values; those become NaN, which is an error where it matters. Others
+                # than those of pandas do not take these arguments.
+                with contextlib.suppress(TypeError):
+                    array = np.asarray(given.to_numpy(dtype=np.float64, na_value=np.nan))
     except UsageError:
         raise
     except (ValueError, TypeError, RuntimeError, BufferError) as error:

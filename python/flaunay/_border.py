@@ -31,6 +31,10 @@ class Border:
         self.seconds = triangles[self.triangles, (corners + 2) % 3]
         self._points = points
 
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        return np.stack([self.firsts, self.seconds], axis=1)
+
     def nearest(
         self, queries: Doubles, near: Optional[npt.NDArray[np.int32]] = None
     ) -> tuple[Indices, Doubles, Doubles]:

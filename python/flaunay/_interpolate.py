@@ -334,10 +334,12 @@ class _Columns(_Interpolator):
         tri, beyond = self.tri, self._beyond
         numbers, gradients, fill = table.values, table.gradients, table.options.fill
         found = tri._locator.locate(queries)
-        outside, border = np.flatnonzero(found < 0), tri._border
+        outside = np.flatnonzero(found < 0)
         if not tri.nsimplex and getattr(self, "_are_estimated", True):
             gradients = None  # on one line there are none
-        if len(outside) and len(border.firsts) and (beyond.tol is not None or beyond.extrapolate):
+        is_extended = beyond.tol is not None or beyond.extrapolate is not None
+        if len(outside) and is_extended and len(tri._border.firsts):
+            border = tri._border
             at = None if tri.nsimplex else tri._locator.nearest(queries[outside])
             edges, parts, distances = border.nearest(queries[outside], at)
             if beyond.extrapolate is None and beyond.tol is not None:
@@ -351,9 +353,9 @@ class _Columns(_Interpolator):
                 steps = queries[outside] - places
                 values += (slopes * steps[:, None]).sum(axis=-1)
             rows[outside] = values
-        if beyond.max_edge is not None and len(border.firsts):
+        if beyond.max_edge is not None and (tri.nsimplex or len(tri._border.firsts)):
             # On one line, edges are in the place of triangles.
-            shapes = tri.simplices if tri.nsimplex else np.stack([border.firsts, border.seconds], 1)
+            shapes = tri.simplices if tri.nsimplex else tri._border.edges
             corners = np.asarray(self.points, np.float64)[shapes[found]]
             sides = np.roll(corners, -1, axis=1) - corners
             longest = np.hypot(sides[..., 0], sides[..., 1]).max(axis=1)

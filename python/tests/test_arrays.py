@@ -228,6 +228,14 @@ def test_tables_and_columns_of_arrow(points):
         assert np.array_equal(tri.interpolate(heights, points), points.sum(axis=1))
     with pytest.raises(flaunay.UsageError, match="the column 'name', which has no numbers"):
         flaunay.Delaunay(arrow.table({"x": points[:, 0], "name": ["a"] * 50}))
+    # Columns that are no arrays for DLPack.
+    tri = flaunay.Delaunay([[0, 0], [1, 0], [0, 1]])
+    for kind in arrow.array, lambda numbers: arrow.chunked_array([numbers]):
+        for numbers in [True, False, True], [1, None, 0]:
+            assert tri.interpolate(kind(numbers), [[0, 0]]) == 1
+        for others in [True, None, False], ["a", "b", "c"]:
+            with pytest.raises(flaunay.UsageError, match="values must be real numbers, not object"):
+                tri.interpolate(kind(others), [[0, 0]])
     nulls = arrow.array([[0.0, 1.0], None, [1.0, 1.0]], arrow.list_(arrow.float64(), 2))
     with pytest.raises(flaunay.UsageError, match="points have nulls"):
         flaunay.Delaunay(nulls)
