@@ -119,7 +119,7 @@ def interrupted(call, seconds):
 
 
 def test_control_c_ends_relaxation(points):
-    assert interrupted(lambda: flaunay.relax(points, BOX, iterations=100_000, device="host"), 0.2) < 2
+    assert interrupted(lambda: flaunay.relax(points, BOX, iterations=100_000, device="host"), 0.2) < 5
     # What was interrupted has left nothing behind.
     parts = flaunay.relax(points, BOX, iterations=300)
     at = points
@@ -137,7 +137,7 @@ def test_control_c_ends_refinement_that_asks_for_areas():
             flaunay.refine(square, areas_at=lambda places: 2e-5)
 
     for _ in range(5):
-        assert interrupted(refine, 0.1) < 2
+        assert interrupted(refine, 0.1) < 5
 
 
 def test_shapely_takes_them(points):
