@@ -35,13 +35,13 @@ rm -rf build/python-wheel
 # What triangulations are handed over to, in versions for the system's NumPy. The tests of PyVista and Gmsh run where
 # these are installed: they are large.
 numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
-"${pip[@]}" install --quiet meshio networkx scikit-fem shapely mypy "numpy==$numpy"
+"${pip[@]}" install --quiet meshio networkx scikit-fem shapely geopandas mypy "numpy==$numpy"
 # What flaunay.terrain reads and writes files by. attrs: affine, which rasterio needs, does not work with the system's.
 "${pip[@]}" install --quiet --upgrade "laspy[lazrs]" rasterio pyogrio attrs "numpy==$numpy"
 
-# The annotations of the package, as it is installed, and of what its users are shown.
+# The annotations of the package, as it is installed, of what its users are shown, and of right and wrong calls.
 "$python" -m mypy --strict --package flaunay
-"$python" -m mypy --strict examples/python
+"$python" -m mypy --strict examples/python python/tests/typed_calls.py
 # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
 # no annotations.
 types=build/types

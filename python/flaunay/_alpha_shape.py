@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,23 @@ from flaunay._plot import AlphaShapeArtists, draw_alpha_shape
 if TYPE_CHECKING:
     import matplotlib.axes
     import shapely
+    from typing_extensions import Unpack
+
+# Of the default alpha: relative, and in units in the last place of the largest coordinate.
+_TOLERANCE, _ROUNDINGS = 1e-6, 8
 
 Indices = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
+
+
+class _OfDelaunay(TypedDict, total=False):
+    """The keywords of `Delaunay`."""
+
+    furthest_site: bool
+    incremental: bool
+    qhull_options: Optional[str]
+    mode: str
+    device: Optional[str]
 
 
 class AlphaShape(Fixed):
@@ -310,7 +324,7 @@ def _inner_sides(tri: Delaunay) -> Indices:
 
 
 def _covering_alpha(tri: Delaunay) -> float:
-    """The smallest alpha whose triangles have all points and are one component; infinite if none is."""
+    """The smallest alpha, with a tolerance, whose triangles have all points and are one component; else infinite."""
     if tri.nsimplex == 0:
         return np.inf
     radii = tri.circumradii
@@ -328,11 +342,16 @@ def _covering_alpha(tri: Delaunay) -> float:
     parts = np.searchsorted(radii[order[::-1]], candidates, "right")
     components = parts - np.searchsorted(joins, candidates, "right")
     fits = (candidates >= covered) & (components == 1)
-    return float(candidates[np.argmax(fits)])
+    alpha = float(candidates[np.argmax(fits)])
+    # Radii that are equal but for the rounding of coordinates, as in grids of degrees, are all taken.
+    largest = np.maximum(np.abs(tri.min_bound), np.abs(tri.max_bound)).max()
+    return alpha * (1 + _TOLERANCE) + _ROUNDINGS * float(np.spacing(largest))
 
 
 def alpha_shape(
-    points: Union[ArrayLike, Delaunay], alpha: Union[float, str] = "auto", **options: Any
+    points: Union[ArrayLike, Delaunay],
+    alpha: Union[float, str] = "auto",
+    **options: Unpack[_OfDelaunay],
 ) -> AlphaShape:
     """The alpha shape of points in the plane: their outline, as a disc of radius alpha sees it.
 
@@ -346,7 +365,9 @@ def alpha_shape(
     alpha : float or "auto"
         The radius, not negative; ``inf`` gives the convex hull. ``"auto"`` takes the smallest radius
         for which every point is in a triangle, and the triangles are one component: one can go from
-        each to each across common edges.
+        each to each across common edges. It is taken with a tolerance of a millionth and of 8 units in the last
+        place of the largest coordinate (which float32 has larger ones of), so that a grid of rounded
+        coordinates has no holes.
     **options
         As `Delaunay` takes them, such as ``device``. Not with a triangulation.
 
@@ -374,7 +395,7 @@ def alpha_shape(
 
     The triangulation is exact. Radii are computed with a relative error below 2**-45, and half lengths
     with one below 2**-51, so a triangle or an edge whose radius is closer to alpha than that may be
-    in the shape or not. ``"auto"`` is the smallest such radius exactly as computed.
+    in the shape or not.
 
     O(n log n) work.
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -81,6 +83,8 @@ _DEVICE_MEMORY = {
     10: "a ROCm device",
 }
 
+_IN_TWO_ARRAYS = "; if x and y are two arrays, take numpy.column_stack([x, y])"
+
 _INTERPOLATE = "call triangulate_device(...).locator().interpolate, or "
 # What takes arrays of pyopencl as they are.
 _DEVICE_CALLS = {
@@ -93,15 +97,10 @@ _DEVICE_CALLS = {
 # Rows of a part; a few arrays of so many doubles fit a processor's cache.
 _ROWS = 1 << 14
 
+# What has another singular than itself without an s at its end.
 _SINGULAR = {
-    "hidden": "hidden",
-    "values_per_point": "value per point",
-    "pieces": "piece",
-    "points": "point",
-    "triangles": "triangle",
-    "constraint_edges": "constraint edge",
-    "polygons": "polygon",
-    "hull_vertices": "hull vertex",
+    "values per point": "value per point",
+    "hull vertices": "hull vertex",
     "vertices": "vertex",
 }
 
@@ -144,18 +143,20 @@ def _of_masked(given: np.ma.MaskedArray[Any, Any], name: str) -> npt.NDArray[Any
 
 
 def _of_arrow(given: Any, name: str) -> npt.NDArray[Any]:
-    """The numbers of pyarrow: tables, columns, and columns of lists of one size, of which points have two each."""
-    if hasattr(given, "columns"):
-        return np.stack([np.asarray(column) for column in given.columns], axis=1)
+    """The numbers of pyarrow: tables, and columns of lists of one size, of which points have two each."""
+    if hasattr(given, "itercolumns"):
+        return np.stack([np.asarray(column) for column in given.itercolumns()], axis=1)
     if hasattr(given, "combine_chunks"):
         given = given.combine_chunks()
-    size = getattr(given.type, "list_size", None)
-    if size is None:
-        return np.asarray(given)
     # Also the null rows of a column have numbers.
     if given.null_count or given.flatten().null_count:
         raise UsageError(f"{name} have nulls: drop them before")
-    return np.asarray(given.flatten()).reshape(len(given), size)
+    return np.asarray(given.flatten()).reshape(len(given), given.type.list_size)
+
+
+def _is_arrow(given: Any) -> bool:
+    """Whether it is a table of pyarrow, or a column of lists of one size: other columns are arrays of NumPy."""
+    return hasattr(given, "itercolumns") or hasattr(getattr(given, "type", None), "list_size")
 
 
 def _of_dlpack(given: Any) -> npt.NDArray[Any]:
@@ -165,43 +166,99 @@ def _of_dlpack(given: Any) -> npt.NDArray[Any]:
     return array
 
 
+def is_on_device(given: object) -> bool:
+    """Whether it is in the memory of an OpenCL device: an array or a buffer of pyopencl, or of what extends it."""
+    return hasattr(given, "base_data") or hasattr(given, "int_ptr")
+
+
 def check_memory(given: Any, name: str) -> None:
     """UsageError for an array that is in a device's memory."""
-    if type(given).__module__.partition(".")[0] == "pyopencl":
+    if is_on_device(given):
         hint = _DEVICE_CALLS.get(name, "")
         raise UsageError(f"{name} are in the memory of an OpenCL device: {hint}take {name}.get()")
-    kind = int(given.__dlpack_device__()[0]) if hasattr(given, "__dlpack_device__") else 1
+    kind = 1
+    # Some columns of pyarrow are no arrays for DLPack, but are for NumPy.
+    with contextlib.suppress(AttributeError, TypeError, ValueError):
+        kind = int(given.__dlpack_device__()[0])
     if kind not in _HOST_MEMORY:
         memory = _DEVICE_MEMORY.get(kind, "a device")
         raise UsageError(f"{name} are in the memory of {memory}: copy them to the host before")
 
 
-def geometries_of(given: Any) -> Optional[npt.NDArray[np.object_]]:
-    """The geometries of Shapely that something consists of, such as a GeoSeries or a list; None if it has none."""
-    library = type(given).__module__.partition(".")[0]
-    if library == "geopandas":
-        return np.asarray(given.geometry.values, dtype=object)
-    if library == "shapely" and hasattr(given, "geom_type"):
-        alone = np.empty(1, object)
-        alone[0] = given
-        return alone
-    if isinstance(given, (list, tuple)) or (isinstance(given, np.ndarray) and given.dtype == object):
-        first = given[0] if len(given) else None
-        if type(first).__module__.partition(".")[0] == "shapely":
-            geometries = np.empty(len(given), object)
-            geometries[:] = given
-            return geometries
-    return None
+def column_of(given: Any) -> Any:
+    """The column of geometries, if it is a table that has one, as those of GeoPandas; everything else as it is."""
+    return getattr(given, "geometry", given) if hasattr(given, "columns") else given
+
+
+def geometries_in(given: Any) -> Optional[npt.NDArray[np.object_]]:
+    """What describes itself by ``__geo_interface__``: a geometry, or those of a list, an array, a column or a table.
+
+    None if there are none. Where one is missing, there is None.
+    """
+    column = column_of(given)
+    members: Any
+    if isinstance(column, (list, tuple)):
+        members = column
+    elif getattr(getattr(column, "dtype", None), "kind", "") == "O":
+        # The type of columns of geometries, too, which also describe themselves as one, but slowly.
+        members = np.array(column, object)
+    elif hasattr(column, "__geo_interface__"):
+        members = [column]
+    else:
+        return None
+    first = next((one for one in members if not _is_missing(one)), None)
+    # Columns of geometries have types, also if they are empty.
+    if not (hasattr(first, "__geo_interface__") or hasattr(column, "geom_type")):
+        return None
+    if not isinstance(members, np.ndarray):
+        objects = np.empty(len(members), object)
+        for i, one in enumerate(members):
+            objects[i] = one
+        members = objects
+    if members.ndim != 1:
+        return None
+    members[[_is_missing(one) for one in members]] = None
+    geometries: npt.NDArray[np.object_] = members
+    return geometries
+
+
+def _is_missing(one: object) -> bool:
+    """Whether there is no geometry: tables have None or NaN then."""
+    return one is None or (isinstance(one, float) and one != one)
+
+
+def are_shapely(geometries: npt.NDArray[np.object_]) -> bool:
+    """Whether all are geometries of Shapely, or missing. There are none before somebody has imported it."""
+    shapely = sys.modules.get("shapely")
+    return shapely is not None and bool(shapely.is_valid_input(geometries).all())
+
+
+def geometries_of(given: Any, name: str) -> Optional[npt.NDArray[np.object_]]:
+    """The same as `geometries_in`, as geometries of Shapely; those of other libraries are converted."""
+    geometries = geometries_in(given)
+    if geometries is None or are_shapely(geometries):
+        return geometries
+    shapely = optional("shapely", name)
+    for i in np.flatnonzero(~shapely.is_valid_input(geometries)):
+        if not hasattr(geometries[i], "__geo_interface__"):
+            raise UsageError(f"{name}[{i}] is no geometry, but {geometries[i]!r}")
+        described = geometries[i].__geo_interface__
+        parts = [part["geometry"] for part in described.get("features", ())]
+        if described["type"] == "FeatureCollection":
+            described = {"type": "GeometryCollection", "geometries": [part for part in parts if part]}
+        geometries[i] = shapely.geometry.shape(described)
+    return geometries
 
 
 def _of_geometries(geometries: npt.NDArray[np.object_], name: str) -> npt.NDArray[Any]:
-    """The coordinates of points, and of the members of a MultiPoint."""
+    """The coordinates of points, and of the members of a MultiPoint or of another collection."""
     shapely = optional("shapely", name)
-    types = shapely.get_type_id(geometries)
-    # 0: Point; 4: MultiPoint, which stands alone so that indices are those of its members.
-    alone = len(geometries) == 1 and types[0] == 4
-    wrong = np.flatnonzero((types != 0) | shapely.is_empty(geometries))
-    if len(wrong) and not alone:
+    # 4: MultiPoint; 7: GeometryCollection. One that stands alone is its members, and so are indices.
+    if len(geometries) == 1 and shapely.get_type_id(geometries[0]) in (4, 7):
+        geometries = shapely.get_parts(geometries)
+    # 0: Point
+    wrong = np.flatnonzero((shapely.get_type_id(geometries) != 0) | shapely.is_empty(geometries))
+    if len(wrong):
         first = geometries[int(wrong[0])]
         kind = "missing" if first is None else f"an empty {first.geom_type}"
         kind = kind if first is None or first.is_empty else f"a {first.geom_type}"
@@ -216,27 +273,57 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         return given
     if is_masked(given):
         return _of_masked(given, name)
-    geometries = geometries_of(given)
-    if geometries is not None:
-        return _of_geometries(geometries, name)
-    library = type(given).__module__.partition(".")[0]
+    if isinstance(given, (str, bytes, os.PathLike)):
+        raise UsageError(
+            f"{name} are numbers, not text or a path: {given!r}. "
+            "Read a file before, such as by numpy.loadtxt or numpy.load"
+        )
     if hasattr(given, "why_no_array"):
         raise UsageError(f"{name} {given.why_no_array}")
+    geometries = geometries_of(given, name)
+    if geometries is not None:
+        return _of_geometries(geometries, name)
     try:
-        if library == "pyarrow":
-            return _of_arrow(given, name)
-        check_memory(given, name)
-        if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
-            return _of_dlpack(given)
-        array = np.asarray(given)
-        if array.dtype.kind == "O" and library == "pandas":
-            # Columns that may have missing values; those become NaN, which is an error where it matters.
-            return np.asarray(given.to_numpy(dtype=np.float64, na_value=np.nan))  # type: ignore[union-attr]
-        return array
+        if _is_arrow(given):
+            array = _of_arrow(given, name)
+        else:
+            check_memory(given, name)
+            if hasattr(given, "__dlpack__") and not hasattr(given, "__array__"):
+                return _of_dlpack(given)
+            array = np.asarray(given)
+            if array.dtype.kind == "O" and hasattr(given, "to_numpy"):
+                # Columns that may have missing values; those become NaN, which is an error where it matters. Others
+                # than those of pandas do not take these arguments.
+                with contextlib.suppress(TypeError):
+                    array = np.asarray(given.to_numpy(dtype=np.float64, na_value=np.nan))
     except UsageError:
         raise
     except (ValueError, TypeError, RuntimeError, BufferError) as error:
+        _check_columns(given, name)
         raise UsageError(f"{name} are no array of numbers: {error}") from error
+    if array.dtype.kind not in "biuf":
+        _check_columns(given, name)
+    if array.ndim == 0 and array.dtype.kind == "O":
+        hint = f": take list({name})" if hasattr(given, "__next__") else ""
+        raise UsageError(f"{name} must be real numbers, not an object of {type(given).__name__}{hint}")
+    return array
+
+
+def _check_columns(given: Any, name: str) -> None:
+    """UsageError that names a column of a table that has no numbers, if it is a table with such a column."""
+    if not hasattr(given, "columns"):
+        return
+    columns = given.schema.names if _is_arrow(given) else list(given.columns)
+    for column in columns if len(set(columns)) == len(columns) else ():
+        try:
+            is_number = _as_array(given[column], name).dtype.kind in "biuf"
+        except UsageError:
+            is_number = False
+        if not is_number:
+            raise UsageError(
+                f"{name} have the column {column!r}, which has no numbers: "
+                "take the columns of numbers alone, such as table[['x', 'y']]"
+            )
 
 
 def as_any(given: ArrayLike, name: str) -> npt.NDArray[Any]:
@@ -277,14 +364,22 @@ def are_rows(given: object) -> TypeGuard[Doubles]:
     return given.shape[1] == 2 and flags.c_contiguous and flags.aligned
 
 
+def hint_for(shape: tuple[int, ...], name: str) -> str:
+    """What to take in place of coordinates of a wrong shape, if one can guess what they are."""
+    if len(shape) == 1:
+        return _IN_TWO_ARRAYS
+    return f"; if its rows are x and y, take {name}.T" if len(shape) == 2 and shape[0] == 2 else ""
+
+
 def check_points_shape(points: FloatArray) -> None:
     """UsageError unless the shape is (n, 2)."""
-    if points.ndim != 2:
-        raise UsageError(
-            f"points must have two dimensions, of the shape (n, 2), not {points.shape}"
-        )
-    if points.shape[1] != 2:
-        raise UsageError(f"points must be two-dimensional, but have {points.shape[1]} coordinates")
+    shape = points.shape
+    if points.ndim == 2 and shape[1] == 2:
+        return
+    wrong = f"must have two dimensions, of the shape (n, 2), not {shape}"
+    if points.ndim == 2:
+        wrong = f"must be two-dimensional, but have {shape[1]} coordinates"
+    raise UsageError(f"points {wrong}{hint_for(shape, 'points')}")
 
 
 def as_points(given: ArrayLike) -> FloatArray:
@@ -376,10 +471,11 @@ def names_of(**wanted: bool) -> set[str]:
 
 def summary(result: object, sets: int = 1, **counts: int) -> str:
     """The repr of a result: its class, and how many it has of what, such as ``<flaunay.Delaunay: 4 points>``."""
-    parts = [
-        f"{count} {name.replace('_', ' ')}" if count != 1 else f"1 {_SINGULAR[name]}"
-        for name, count in counts.items()
-    ]
+    parts = []
+    for name, count in counts.items():
+        several = name.replace("_", " ")
+        one = _SINGULAR.get(several, several[:-1] if several.endswith("s") else several)
+        parts.append(f"{count} {one if count == 1 else several}")
     if sets != 1:
         parts.append(f"{sets} sets")
     return f"<flaunay.{type(result).__name__}: {', '.join(parts)}>"

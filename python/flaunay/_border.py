@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +31,17 @@ class Border:
         self.seconds = triangles[self.triangles, (corners + 2) % 3]
         self._points = points
 
-    def nearest(self, queries: Doubles) -> tuple[Indices, Doubles, Doubles]:
-        """For each query the nearest edge, the part of it before the nearest place, and the distance."""
+    @property
+    def edges(self) -> npt.NDArray[np.int32]:
+        return np.stack([self.firsts, self.seconds], axis=1)
+
+    def nearest(
+        self, queries: Doubles, near: Optional[npt.NDArray[np.int32]] = None
+    ) -> tuple[Indices, Doubles, Doubles]:
+        """For each query the nearest edge, the part of it before the nearest place, and the distance.
+
+        near: the nearest point of each query, which are needed on one line.
+        """
         edges = np.empty(len(queries), np.intp)
         parts, distances = np.empty(len(queries)), np.empty(len(queries))
         for rows, candidates in self._candidates(queries):
@@ -53,6 +63,37 @@ class Border:
         step = max(1, _MOST_PAIRS // max(1, len(self.firsts)))
         for begin in range(0, len(queries), step):
             yield slice(begin, begin + step), np.arange(len(self.firsts))[None]
+
+
+class LineBorder(Border):
+    """Points on one line, which have no triangles: the edges between those that follow each other."""
+
+    def __init__(self, points: FloatArray, hull: npt.NDArray[np.int32]) -> None:
+        """hull: the points in their order."""
+        # A point alone is an edge from itself to itself.
+        self.firsts, self.seconds = (hull, hull) if len(hull) == 1 else (hull[:-1], hull[1:])
+        self.triangles = np.arange(len(self.firsts))
+        self._points, self._hull = points, hull
+
+    def nearest(
+        self, queries: Doubles, near: Optional[npt.NDArray[np.int32]] = None
+    ) -> tuple[Indices, Doubles, Doubles]:
+        place = np.empty(len(self._points), np.intp)
+        place[self._hull] = np.arange(len(self._hull))
+        at: Indices = place[near]
+        line = np.asarray(self._points[self._hull], np.float64)
+        away = queries - line[at]
+        # From the nearest point on to the next one on the side of the query, if there is one.
+        is_ahead = away @ (line[-1] - line[0]) > 0
+        edges = (at - ~is_ahead).clip(0, len(self.firsts) - 1)
+        is_first = self.firsts[edges] == near
+        along = line[(at + np.where(is_first, 1, -1)).clip(0, len(line) - 1)] - line[at]
+        with np.errstate(invalid="ignore"):
+            part = np.nan_to_num((away * along).sum(axis=1) / (along * along).sum(axis=1)).clip(
+                0, 1
+            )
+        distances = np.hypot(*(part[:, None] * along - away).T)
+        return edges, np.where(is_first, part, 1 - part), distances
 
 
 class ConvexBorder(Border):

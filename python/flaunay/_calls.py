@@ -321,12 +321,73 @@ class _Triangulation(Handle):
     _destroy = library.triangulation_destroy
 
 
+class _Aside:
+    """A call of the library on a thread of its own, which asks this one: `run` makes it, and answers.
+
+    So an exception of an answer, and one that a signal raises, as Ctrl-C does, is never in the library's way: Python
+    runs handlers of signals on the main thread anywhere, and what one raised as the library calls back would be lost.
+    """
+
+    def __init__(self) -> None:
+        self._is_begun = threading.Lock()
+        self._is_over = False
+        self._error: Optional[Exception] = None
+        # None: the call is over.
+        self._questions: queue.SimpleQueue[Optional[tuple[Any, ...]]] = queue.SimpleQueue()
+        self._answers: queue.SimpleQueue[bool] = queue.SimpleQueue()
+
+    def ask(self, *question: Any) -> bool:
+        """For the call: whether there was an answer. Without one, it is to end."""
+        self._questions.put(question)
+        return self._answers.get()
+
+    def _begins(self) -> bool:
+        """True for the first who asks."""
+        return self._is_begun.acquire(blocking=False)
+
+    def _work(self, call: Callable[[], int]) -> None:
+        if not self._begins():
+            return
+        try:
+            check(call())
+        except Exception as error:
+            self._error = error
+        finally:
+            self._is_over = True
+            self._questions.put(None)
+
+    def run(self, call: Callable[[], int], answer: Callable[..., object]) -> None:
+        """Makes a call that returns a status. Raises what an answer has raised, or else the call's error."""
+        raised: Optional[BaseException] = None
+        is_started = False
+        while not self._is_over:
+            # A signal can interrupt this anywhere.
+            try:
+                if not is_started:
+                    is_started = True
+                    _thread.start_new_thread(self._work, (call,))
+                while not self._is_over:
+                    question = self._questions.get()
+                    if question is not None:
+                        if raised is None:
+                            answer(*question)
+                        self._answers.put(raised is None)
+            except BaseException as error:
+                if self._begins():
+                    raise  # the thread has not, and will find that it need not
+                raised = error
+                self._answers.put(False)
+        if raised is not None:
+            raise raised
+        if self._error is not None:
+            raise self._error
+
+
 class _Refinement:
     """A refinement for one call. given: members of flaunay_refinement; there may be none."""
 
     def __init__(self, given: dict[str, Any]) -> None:
         self._given = given  # the arrays, which the struct refers to
-        self._error: Optional[BaseException] = None
         self._function = given.get("areas_at")
         members = self._members(given)
         mesh = members.pop("mesh", None)
@@ -334,7 +395,8 @@ class _Refinement:
             self._mesh = _declarations.GivenTriangles(**self._members(mesh))
             members["mesh"] = ctypes.pointer(self._mesh)
         if self._function is not None:
-            members["areas_at"] = _declarations.RefinementAreasAt(self._write_areas)
+            self._aside = _Aside()
+            members["areas_at"] = _declarations.RefinementAreasAt(self._ask_for_areas)
         self._struct = _declarations.Refinement(**members)
         self.pointer = ctypes.pointer(self._struct) if given else None
 
@@ -346,39 +408,37 @@ class _Refinement:
             for name, value in given.items()
         }
 
-    def _write_areas(self, places: int, count: int, areas: int, _: Any) -> None:
-        """Nothing passes on exceptions here, so one is kept, and areas that are no numbers end the call."""
-        if count == 0:
-            # Without places there is no memory either.
+    def _ask_for_areas(self, places: int, count: int, areas: int, _: Any) -> None:
+        """Areas that are no numbers end the call."""
+        # Without places there is no memory either.
+        if count and not self._aside.ask(places, count, areas):
+            np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))[...] = np.nan
+
+    def _write_areas(self, places: int, count: int, areas: int) -> None:
+        assert self._function is not None
+        there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
+        given = there.copy()
+        found = np.asarray(self._function(given), _FLOAT64)
+        if found.shape not in ((count,), ()):
+            raise UsageError(
+                f"areas_at must return areas of the shape ({count},), not {found.shape}"
+            )
+        if not (found >= 0).all():
+            first = int(np.flatnonzero(~(found >= 0))[0])
+            raise UsageError(
+                f"areas_at has returned {found.ravel()[first]} at {given[first].tolist()}; "
+                "areas are positive, or 0 for any"
+            )
+        np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))[...] = found
+
+    def call(self, triangulator: Triangulator, function: Any, *arguments: Any) -> None:
+        """Calls a function of the library when it is this thread's turn; aside, if it asks for areas."""
+        if self._function is None:
+            triangulator.call(function, *arguments)
             return
-        written: _Doubles = np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))
-        try:
-            assert self._function is not None
-            there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
-            given = there.copy()
-            found = np.asarray(self._function(given), _FLOAT64)
-            if found.shape not in ((count,), ()):
-                raise UsageError(
-                    f"areas_at must return areas of the shape ({count},), not {found.shape}"
-                )
-            if not (found >= 0).all():
-                first = int(np.flatnonzero(~(found >= 0))[0])
-                raise UsageError(
-                    f"areas_at has returned {found.ravel()[first]} at {given[first].tolist()}; "
-                    "areas are positive, or 0 for any"
-                )
-            written[...] = found
-        except BaseException as error:
-            self._error = error
-            written[...] = np.nan
-
-    def __enter__(self) -> _Refinement:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Raises what the caller's function has raised, instead of what the library says about it."""
-        if self._error is not None:
-            raise self._error from None
+        given = _as_arguments(arguments)
+        with triangulator.turn:
+            self._aside.run(lambda: int(function(*given)), self._write_areas)
 
 
 class _Constrained(Handle):
@@ -457,8 +517,12 @@ class _InTurns(DeviceHandle):
         super().__init__()
         self._triangulator = triangulator
 
+    @property
+    def turn(self) -> AbstractContextManager[Any]:
+        return self._triangulator.turn
+
     def _release(self) -> None:
-        with self._triangulator.turn:
+        with self.turn:
             super()._release()
 
 
@@ -526,14 +590,14 @@ def triangulate_constrained(
         counts[f"{name}_count"] = len(rows)
     addresses = {name: _address_or_none(array) for name, array in arrays.items()}
     result, options = _Constrained(), _options_for("blocks", parts)
-    with _Refinement(refinement) as refining:
-        constraints = _declarations.Constraints(
-            **addresses, **counts, **rules, refinement=refining.pointer
-        )
-        triangulator.call(
-            library.triangulate_constrained,
-            *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
-        )
+    refining = _Refinement(refinement)
+    constraints = _declarations.Constraints(
+        **addresses, **counts, **rules, refinement=refining.pointer
+    )
+    refining.call(
+        *(triangulator, library.triangulate_constrained),
+        *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
+    )
     has_attributes = counts["seed_count"] > 0 or "attributes" in refinement.get("mesh", {})
     asked_by = names_of(labels=bool(rules["labels"]), seeds=has_attributes)
     arrays = result.arrays(
@@ -562,23 +626,24 @@ def triangulate_polygons(
     inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
     points = _as_doubles(points)
     result, options = _Constrained(), _options_for("blocks", parts)
-    with _Refinement(refinement) as refining:
-        polygons = _declarations.Polygons(
-            coordinates=_address_of(points),
-            ring_offsets=_address_or_none(rings),
-            ring_count=ring_count,
-            polygon_offsets=_address_or_none(outer),
-            polygon_count=count,
-            part_offsets=_address_or_none(inner),
-            part_count=part_count,
-            has_outside=1,
-            has_fill_rule=1,
-            refinement=refining.pointer,
-            **rules,
-        )
-        triangulator.call(
-            library.triangulate_polygons, triangulator.pointer, polygons, options, result.place
-        )
+    refining = _Refinement(refinement)
+    polygons = _declarations.Polygons(
+        coordinates=_address_of(points),
+        ring_offsets=_address_or_none(rings),
+        ring_count=ring_count,
+        polygon_offsets=_address_or_none(outer),
+        polygon_count=count,
+        part_offsets=_address_or_none(inner),
+        part_count=part_count,
+        has_outside=1,
+        has_fill_rule=1,
+        refinement=refining.pointer,
+        **rules,
+    )
+    refining.call(
+        *(triangulator, library.triangulate_polygons),
+        *(triangulator.pointer, polygons, options, result.place),
+    )
     arrays = result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
     return {**arrays, "refinement": result.report() if refinement else None}
 
@@ -1036,59 +1101,6 @@ class _ChunkReport(Handle):
     _destroy = library.chunk_report_destroy
 
 
-class _ChunkCall:
-    """One call for points in chunks, to be made with options and the place of a report, and its outcome."""
-
-    def __init__(
-        self,
-        function: Callable[[_declarations.ChunkOptions, Any], int],
-        options: _declarations.ChunkOptions,
-        names: list[bytes],
-    ) -> None:
-        self._function = function
-        self._names = (ctypes.c_char_p * len(names))(*names)
-        self._options = options
-        options.devices = ctypes.addressof(self._names) if names else None
-        options.device_count = len(names)
-        options.progress = _declarations.ChunkOptionsProgress(self._progress)
-        self.report = _ChunkReport()
-        self.error: Optional[Exception] = None
-        self.is_over = False
-        self._is_begun = threading.Lock()
-        # None: the call is over.
-        self.stages: queue.SimpleQueue[Optional[tuple[str, int, float]]] = queue.SimpleQueue()
-        self.answers: queue.SimpleQueue[bool] = queue.SimpleQueue()
-
-    def _progress(self, stage: bytes, round: int, done: float, _: Any) -> int:
-        self.stages.put((text_of(stage), round, done))
-        return 0 if self.answers.get() else 1
-
-    def begins(self) -> bool:
-        """True for the first who asks."""
-        return self._is_begun.acquire(blocking=False)
-
-    def work(self) -> None:
-        """The call itself, to be made on a thread of its own."""
-        if not self.begins():
-            return
-        try:
-            check(self._function(self._options, self.report.place))
-        except Exception as error:
-            self.error = error
-        finally:
-            self.is_over = True
-            self.stages.put(None)
-
-    def follow(self, progress: Optional[Callable[[str, int, float], object]]) -> None:
-        """Hands the reports of the call on, until it is over."""
-        while not self.is_over:
-            stage = self.stages.get()
-            if stage is not None:
-                if progress is not None:
-                    progress(*stage)
-                self.answers.put(True)
-
-
 class _Contours(Handle):
     _destroy = library.contours_destroy
 
@@ -1115,36 +1127,28 @@ class Chunks:
     progress: Progress
 
     def run(self, function: Callable[[_declarations.ChunkOptions, Any], int]) -> dict[str, Any]:
-        """Makes a call of the library. Returns its statistics.
+        """Makes a call of the library. Returns its statistics."""
+        aside, report, progress = _Aside(), _ChunkReport(), self.progress
+        names = [_encoded(name) for name in self.devices]
+        devices = (ctypes.c_char_p * len(names))(*names)
 
-        The library works on a thread of its own, while this one waits for its reports. So an exception of `progress`,
-        and one that a signal raises, as Ctrl-C does, is never in the library's way: Python runs handlers of signals on
-        the main thread anywhere, and what one raised as the library calls back would be lost.
-        """
+        def go_on(stage: bytes, round: int, done: float, _: Any) -> int:
+            return 0 if aside.ask(text_of(stage), round, done) else 1
+
+        def follow(stage: str, round: int, done: float) -> None:
+            if progress is not None:
+                progress(stage, round, done)
+
         options = _declarations.ChunkOptions(
-            memory_bytes=self.memory, scratch=self.scratch, chunk_points=self.chunk_points
+            memory_bytes=self.memory,
+            scratch=self.scratch,
+            chunk_points=self.chunk_points,
+            devices=ctypes.addressof(devices) if names else None,
+            device_count=len(names),
+            progress=_declarations.ChunkOptionsProgress(go_on),
         )
-        call = _ChunkCall(function, options, [_encoded(name) for name in self.devices])
-        progress = self.progress
-        raised: Optional[BaseException] = None
-        is_started = False
-        while not call.is_over:
-            # A signal can interrupt this anywhere.
-            try:
-                if not is_started:
-                    is_started = True
-                    _thread.start_new_thread(call.work, ())
-                call.follow(progress)
-            except BaseException as error:
-                if call.begins():
-                    raise  # the thread has not, and will find that it need not
-                raised, progress = error, None
-                call.answers.put(False)
-        if raised is not None:
-            raise raised
-        if call.error is not None:
-            raise call.error
-        return _chunk_statistics_of(library.chunk_report_statistics(call.report.pointer)[0])
+        aside.run(lambda: function(options, report.place), follow)
+        return _chunk_statistics_of(library.chunk_report_statistics(report.pointer)[0])
 
 
 def _precision_of(numbers: FloatArray, name: str) -> int:

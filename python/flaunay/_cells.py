@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import operator
 import re
+import time
+from collections.abc import Iterator
 from typing import Any, Optional
 
 import numpy as np
@@ -17,6 +19,9 @@ from flaunay._optional import optional
 
 _Doubles = npt.NDArray[np.float64]
 
+# Of a call that relaxes points: Ctrl-C takes effect between such calls.
+_SECONDS = 0.1
+
 
 def corners_of(bounds: Any) -> _Doubles:
     """The corners of a box or polygon, counter-clockwise, without a last one that repeats the first."""
@@ -25,7 +30,7 @@ def corners_of(bounds: Any) -> _Doubles:
 
 def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
     """The corners, and whether they came clockwise."""
-    geometries = geometries_of(bounds)
+    geometries = geometries_of(bounds, "bounds")
     if geometries is None:
         given = bounds
     else:
@@ -61,11 +66,20 @@ def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
     return (corners[::-1], True) if area < 0 else (corners, False)
 
 
-def as_iterations(given: Any) -> int:
+def parts_of(given: Any) -> Iterator[int]:
+    """Iterations in numbers for calls that take about a tenth of a second each: Ctrl-C takes effect between calls."""
     iterations = operator.index(given)
     if iterations < 0:
         raise UsageError(f"iterations must not be negative: {iterations}")
-    return iterations
+    part = min(1, iterations)
+    while True:
+        begin = time.perf_counter()
+        yield part
+        iterations -= part
+        if iterations == 0:
+            return
+        is_quick = time.perf_counter() - begin < _SECONDS / 2
+        part = min(2 * part if is_quick else part, iterations)
 
 
 class ClippedVoronoi(Frozen):
@@ -234,6 +248,8 @@ def relax(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times = as_iterations(iterations)
-    given = np.asarray(as_points(points), np.float64)
-    return _calls.relax(_triangulators.of_device(device), given, corners_of(bounds), times)
+    relaxed, corners = np.asarray(as_points(points), np.float64), corners_of(bounds)
+    triangulator = _triangulators.of_device(device)
+    for part in parts_of(iterations):
+        relaxed = _calls.relax(triangulator, relaxed, corners, part)
+    return relaxed

@@ -21,7 +21,7 @@ from flaunay._arrays import (
     number_of,
     summary,
 )
-from flaunay._border import Border
+from flaunay._border import Border, LineBorder
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._export import ExportMethods
@@ -369,7 +369,16 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
 
     @cached_property
     def _border(self) -> Border:
+        if self.nsimplex == 0 and self._is_flat:
+            return LineBorder(self.points, self.hull)
         return Border(self.points, self.triangles, self._neighbors)
+
+    @property
+    def _is_flat(self) -> bool:
+        """Whether all points are on one line, exactly."""
+        inner = self.hull[1:-1, None]
+        ends = np.broadcast_to(self.hull[[0, -1]] if len(self.hull) else inner, (len(inner), 2))
+        return not _calls.turns(self.points, np.concatenate([ends, inner], axis=1)).any()
 
     def _near_hull(self, outside: Doubles, tol: float) -> Indices:
         raise UsageError("with constraints, find_simplex is exact: it takes no tol")
@@ -418,7 +427,7 @@ def rules_of(crossings: str, outside: str, fill_rule: str, labels: bool) -> dict
 
 def with_lines(points: ArrayLike, segments: npt.ArrayLike) -> tuple[ArrayLike, npt.ArrayLike]:
     """Lines and polygons of Shapely as segments between their corners, which become points after the others."""
-    geometries = geometries_of(segments)
+    geometries = geometries_of(segments, "segments")
     if geometries is None:
         return points, segments
     shapely = optional("shapely", "segments")

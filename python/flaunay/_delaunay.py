@@ -20,7 +20,7 @@ from flaunay._arrays import (
     frozen,
     summary,
 )
-from flaunay._border import Border, ConvexBorder
+from flaunay._border import Border, ConvexBorder, LineBorder
 from flaunay._dynamic import Changes, DynamicTriangulation, TriangleRows
 from flaunay._errors import InputError, UsageError
 from flaunay._export import ExportMethods
@@ -578,6 +578,8 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
 
     @cached_property
     def _border(self) -> Border:
+        if self.nsimplex == 0:
+            return LineBorder(self.points, self.hull)
         return ConvexBorder(self.points, self.simplices, self.neighbors, self.hull)
 
     def _near_hull(self, outside: Doubles, tol: float) -> Indices:

@@ -34,11 +34,6 @@ def import_pyopencl() -> Any:
     return pyopencl
 
 
-def is_on_device(given: object) -> bool:
-    """Whether it is an array of pyopencl."""
-    return type(given).__module__.partition(".")[0] == "pyopencl"
-
-
 def _handle(array: pyopencl.array.Array) -> int:
     # An empty array has no buffer.
     return 0 if array.base_data is None else int(array.base_data.int_ptr)

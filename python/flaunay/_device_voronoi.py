@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
-from flaunay._cells import ClippedVoronoi, as_iterations, corners_of
+from flaunay._cells import ClippedVoronoi, corners_of, parts_of
 from flaunay._device_arrays import DeviceCall, queue_for
 
 if TYPE_CHECKING:
@@ -125,9 +125,10 @@ def relax_device(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times, corners = as_iterations(iterations), corners_of(bounds)
-    call = DeviceCall(queue_for(points, queue, "points"), wait_for)
-    given = call.points(points, None, "points")
-    triangulator = _triangulators.of_queue(call.queue)
-    relaxed = (_calls.relax_device, triangulator, given, corners, times)
-    return call.array(points.shape, np.float64, *relaxed)
+    corners, queue = corners_of(bounds), queue_for(points, queue, "points")
+    for part in parts_of(iterations):
+        call = DeviceCall(queue, wait_for)
+        given = call.points(points, None, "points")
+        relax = (_calls.relax_device, _triangulators.of_queue(queue), given, corners, part)
+        points, wait_for = call.array(points.shape, np.float64, *relax), None
+    return points

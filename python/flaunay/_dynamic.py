@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+import re
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_integers, as_points, number_of, summary
+from flaunay._arrays import (
+    ArrayLike,
+    as_integers,
+    as_points,
+    is_on_device,
+    number_of,
+    summary,
+)
 from flaunay._constrained import as_segments
 from flaunay._declarations import CROSSINGS
-from flaunay._device_arrays import DeviceCall, is_on_device, queue_for, view
-from flaunay._errors import UsageError
+from flaunay._device_arrays import DeviceCall, queue_for, view
+from flaunay._errors import InputError, UsageError
 from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -115,6 +124,24 @@ def as_numbers(given: npt.ArrayLike) -> Indices:
     return kept
 
 
+def _place_beyond(points: Doubles) -> Doubles:
+    """A place beyond the box of points, NaN among them, and as near to it as coordinates of their size can be."""
+    there = points[~np.isnan(points[:, 0])]
+    if not len(there):
+        return np.zeros(2)
+    low, high = there.min(axis=0), there.max(axis=0)
+    step = max(np.abs(there).max() * 2.0**-52, 2.0**-1074) * np.eye(2)
+    with np.errstate(over="ignore"):
+        beyond = np.concatenate([high + step, low - step])
+    beyond = beyond[np.isfinite(beyond).all(axis=1)]
+    if not len(beyond):
+        raise TypeError(
+            "points as large as doubles can be, on all sides, cannot be copied: remove one of them"
+        )
+    place: Doubles = beyond[0]
+    return place
+
+
 class DynamicTriangulation:
     """A triangulation to which batches of points are inserted, removed and moved, each in one call.
 
@@ -125,6 +152,9 @@ class DynamicTriangulation:
     Points have numbers: those it is made from come first, then those inserted, in their order. A number
     stays the same as long as the point is there, and is not used again. Of points in one place, the one
     with the smallest number is in triangles.
+
+    Copies, also by pickling, have the same points, numbers and constraints, and change on their own; their rows
+    have other numbers.
 
     Parameters
     ----------
@@ -169,6 +199,9 @@ class DynamicTriangulation:
         rule = number_of(CROSSINGS, crossings, "crossings")
         pairs: Optional[Indices] = None
         self._queue: Optional[pyopencl.CommandQueue] = None
+        self._device = device
+        # Of a copy, the segment that each edge is of from which it was made.
+        self._segments: Optional[Indices] = None
         if is_on_device(points):
             if segments is not None or device is not None:
                 raise UsageError("segments and device are for points in host memory")
@@ -193,6 +226,30 @@ class DynamicTriangulation:
 
     def __repr__(self) -> str:
         return summary(self, points=self.point_count, triangles=self.triangle_count)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._queue is not None:
+            raise TypeError(
+                "a DynamicTriangulation in device memory cannot be copied or pickled: make another one of the "
+                "points of rows_on_device()"
+            )
+        with self._handle.turn:
+            state = self.points, *self.constraints(), self._device
+        return type(self).__new__, (type(self),), state
+
+    def __setstate__(self, state: tuple[Doubles, Indices, Indices, Optional[str]]) -> None:
+        """Makes it of points, NaN for those that were removed, and of edges of segments."""
+        points, edges, segments, device = state
+        removed = np.flatnonzero(np.isnan(points[:, 0]))
+        has_edges = len(edges) > 0
+        if len(removed):
+            # Places that are left at once must not equal others, nor lie on edges.
+            points = np.where(np.isnan(points), _place_beyond(points), points)
+        DynamicTriangulation.__init__(self, points, edges if has_edges else None, device=device)
+        if has_edges:
+            self._segments = segments
+        if len(removed):
+            self.remove(removed)
 
     def insert(self, points: Points) -> Changes:
         """Inserts points.
@@ -233,7 +290,8 @@ class DynamicTriangulation:
             For a number that no point has, one that is there twice, and a vertex of a constraint. Nothing
             is changed then.
         """
-        return Changes(**self._handle.remove(as_numbers(indices)))
+        with self._naming_segments():
+            return Changes(**self._handle.remove(as_numbers(indices)))
 
     def move(self, indices: npt.ArrayLike, points: ArrayLike) -> Changes:
         """Moves points, all at once.
@@ -257,7 +315,22 @@ class DynamicTriangulation:
         numbers, places = as_numbers(indices), np.asarray(as_points(points), np.float64)
         if len(numbers) != len(places):
             raise UsageError(f"{len(numbers)} points cannot be moved to {len(places)} places")
-        return Changes(**self._handle.move(numbers, places))
+        with self._naming_segments():
+            return Changes(**self._handle.move(numbers, places))
+
+    @contextlib.contextmanager
+    def _naming_segments(self) -> Iterator[None]:
+        """Errors with the numbers of the segments that were given, of which a copy has the edges."""
+        try:
+            yield
+        except InputError as error:
+            segments = self._segments
+            if segments is None:
+                raise
+            text = re.sub(
+                r"segment (\d+)", lambda match: f"segment {segments[int(match[1])]}", str(error)
+            )
+            raise InputError(text, error.code, error.call) from None
 
     @property
     def numbers(self) -> int:
@@ -333,4 +406,5 @@ class DynamicTriangulation:
         >>> sorted(tri.constraints().edges.tolist())
         [[3, 4], [4, 1]]
         """
-        return LivingConstraints(*self._handle.constraints())
+        edges, of = self._handle.constraints()
+        return LivingConstraints(edges, of if self._segments is None else self._segments[of])

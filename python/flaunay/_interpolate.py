@@ -19,7 +19,9 @@ from flaunay._arrays import (
     as_any,
     as_floats,
     check_memory,
+    check_points_shape,
     frozen,
+    hint_for,
     is_masked,
     summary,
 )
@@ -62,7 +64,8 @@ def _as_coordinates(given: Any, name: str, may_be_flat: bool = False) -> Doubles
     if may_be_flat and points.ndim == 1 and points.size % 2 == 0:
         points = points.reshape(-1, 2)
     if points.ndim == 0 or points.shape[-1] != 2:
-        raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}")
+        hint = hint_for(points.shape, name)
+        raise UsageError(f"{name} must have the shape (..., 2), not {points.shape}{hint}")
     return points
 
 
@@ -158,9 +161,17 @@ class _Interpolator(Fixed):
             raise UsageError(
                 "points must be an array or a flaunay.Delaunay, not another triangulation"
             )
-        coordinates = _as_coordinates(points, "points")
-        if coordinates.ndim != 2:
-            raise UsageError(f"points must have the shape (n, 2), not {coordinates.shape}")
+        coordinates = (
+            _as_coordinates(points, "points")
+            if isinstance(points, tuple)
+            else np.asarray(as_floats(points, "points"), np.float64)
+        )
+        if coordinates.ndim == 1 or coordinates.ndim == 2 and coordinates.shape[1] == 1:
+            raise UsageError(
+                f"points must have the shape (n, 2), not {coordinates.shape}: numpy.interp and SciPy "
+                "interpolate on a line; if x and y are two arrays, take the tuple (x, y)"
+            )
+        check_points_shape(coordinates)
         self._scale = _Scale(coordinates, rescale)
         self.points = self._keep(self._scale(coordinates))
 
@@ -324,9 +335,13 @@ class _Columns(_Interpolator):
         numbers, gradients, fill = table.values, table.gradients, table.options.fill
         found = tri._locator.locate(queries)
         outside = np.flatnonzero(found < 0)
-        if len(outside) and tri.nsimplex and (beyond.tol is not None or beyond.extrapolate):
+        if not tri.nsimplex and getattr(self, "_are_estimated", True):
+            gradients = None  # on one line there are none
+        is_extended = beyond.tol is not None or beyond.extrapolate is not None
+        if len(outside) and is_extended and len(tri._border.firsts):
             border = tri._border
-            edges, parts, distances = border.nearest(queries[outside])
+            at = None if tri.nsimplex else tri._locator.nearest(queries[outside])
+            edges, parts, distances = border.nearest(queries[outside], at)
             if beyond.extrapolate is None and beyond.tol is not None:
                 near = distances <= beyond.tol
                 outside, edges, parts = outside[near], edges[near], parts[near]
@@ -338,8 +353,10 @@ class _Columns(_Interpolator):
                 steps = queries[outside] - places
                 values += (slopes * steps[:, None]).sum(axis=-1)
             rows[outside] = values
-        if beyond.max_edge is not None and tri.nsimplex:
-            corners = np.asarray(self.points, np.float64)[tri.simplices[found]]
+        if beyond.max_edge is not None and (tri.nsimplex or len(tri._border.firsts)):
+            # On one line, edges are in the place of triangles.
+            shapes = tri.simplices if tri.nsimplex else tri._border.edges
+            corners = np.asarray(self.points, np.float64)[shapes[found]]
             sides = np.roll(corners, -1, axis=1) - corners
             longest = np.hypot(sides[..., 0], sides[..., 1]).max(axis=1)
             rows[(found >= 0) & (longest > beyond.max_edge)] = fill
@@ -383,6 +400,13 @@ class _Columns(_Interpolator):
             part = parts[:, None, None]
             between: Doubles = (1 - part) * gradients[ends[0]] + part * gradients[ends[1]]
             return between
+        if not self.tri.nsimplex:
+            begin, end = (np.asarray(self.points, np.float64)[vertices] for vertices in ends)
+            along = end - begin
+            with np.errstate(invalid="ignore"):
+                steps = np.nan_to_num(along / (along * along).sum(axis=1, keepdims=True))
+            along_line: Doubles = (numbers[ends[1]] - numbers[ends[0]])[:, :, None] * steps[:, None]
+            return along_line
         corners = self.tri.simplices[triangles]
         points = np.asarray(self.points, np.float64)[corners]
         first, second = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
@@ -450,7 +474,8 @@ class LinearInterpolator(_Columns):
     Notes
     -----
     Queries are located exactly, and at a point the result is exactly its value. A query that is not
-    finite is outside. Points on one line have no triangles, so that all queries are outside; SciPy
+    finite is outside. Points on one line have no triangles, so that all queries are outside, and the border is
+    the line between them: with `tol` or `extrapolate`, its values are linear from each point to the next. SciPy
     raises an exception for them.
 
     Examples
@@ -857,7 +882,7 @@ class NaturalNeighborInterpolator(_Columns):
         max_edge: Optional[float] = None,
         max_distance: Optional[float] = None,
     ) -> None:
-        if method not in _WEIGHTS:
+        if not isinstance(method, str) or method not in _WEIGHTS:
             raise UsageError(f"method must be 'sibson' or 'laplace', not {method!r}")
         self._method = method
         beyond = _Beyond(tol, extrapolate, max_edge, max_distance)
@@ -954,7 +979,7 @@ def griddata(
         "cubic": CloughTocherInterpolator,
         "natural": NaturalNeighborInterpolator,
     }
-    if method not in kinds:
+    if not isinstance(method, str) or method not in kinds:
         raise UsageError(
             f"method must be 'linear', 'nearest', 'cubic' or 'natural', not {method!r}"
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from typing import Any, Optional
+from typing import Any, NoReturn, Optional
 
 from flaunay._declarations import FUNCTIONS, STATUS
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
@@ -62,14 +62,21 @@ class Handle:
 
     # Kept here because modules are emptied before the last handles are destroyed.
     _destroy: Any
+    # Nothing, in an object that was never made.
+    pointer: ctypes.c_void_p = ctypes.c_void_p()
 
     def __init__(self) -> None:
-        self.pointer: ctypes.c_void_p = ctypes.c_void_p()
+        self.pointer = ctypes.c_void_p()
 
     @property
     def place(self) -> Any:
         """Where a function writes the new handle."""
         return ctypes.byref(self.pointer)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            f"{type(self).__name__} cannot be copied or pickled: what the library has made belongs to its process"
+        )
 
     def _release(self) -> None:
         self._destroy(self.pointer)

@@ -11,7 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._arrays import (
+    ArrayLike,
+    as_floats,
+    as_offsets,
+    as_points,
+    frozen,
+    hint_for,
+    summary,
+)
 from flaunay._cells import ClippedVoronoi
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
@@ -26,7 +34,8 @@ if TYPE_CHECKING:
 def _as_queries(given: ArrayLike) -> Doubles:
     queries = np.asarray(as_floats(given, "xi"), np.float64)
     if queries.ndim == 0 or queries.shape[-1] != 2:
-        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
+        hint = hint_for(queries.shape, "xi")
+        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}{hint}")
     return queries
 
 
@@ -216,10 +225,12 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, float]:
     """Two lengths; None is infinite."""
+    if not isinstance(period, (Sequence, np.ndarray)) or len(period) != 2:
+        raise UsageError(
+            f"period must be two lengths, in x and y, of which None is for no period; not {period!r}"
+        )
     given = [np.inf if length is None else length for length in period]
     lengths = np.asarray(as_floats(given, "period"), np.float64)
-    if lengths.shape != (2,):
-        raise UsageError(f"period must be two lengths, not of shape {lengths.shape}")
     return float(lengths[0]), float(lengths[1])
 
 
@@ -254,7 +265,8 @@ def to_places(
     """
     places = np.array(as_floats(points, "points"), np.float64, order="C")
     if places.ndim == 0 or places.shape[-1] != 2:
-        raise UsageError(f"points must have the shape (..., 2), not {places.shape}")
+        hint = hint_for(places.shape, "points")
+        raise UsageError(f"points must have the shape (..., 2), not {places.shape}{hint}")
     _calls.take_to_places(as_lengths(period), places)
     return places
 
@@ -311,9 +323,7 @@ def periodic(
     >>> flaunay.periodic(points, (1, None)).nsimplex
     1998
     """
-    given = np.asarray(as_floats(points, "points"), np.float64)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
+    given = np.asarray(as_points(points), np.float64)
     lengths = as_lengths(period)
     sets = None if offsets is None else as_offsets(offsets)
     return PeriodicDelaunay(frozen(given.copy()), lengths, sets, device)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import Frozen, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, frozen, summary
 from flaunay._cells import clip
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -102,11 +102,7 @@ def _boxes_that_meet(triangles: Doubles, least: Doubles, most: Doubles) -> list[
 
 def pieces(tri: Delaunay, region: Any) -> VoronoiPieces:
     """As `Voronoi.pieces` says, of the cells of a triangulation's points."""
-    geometries: Any = geometries_of(region)
-    if geometries is None:
-        is_alone = hasattr(region, "__geo_interface__") or isinstance(region, dict)
-        geometries = [region] if is_alone else region
-    mesh = polygons(geometries, map=True)
+    mesh = polygons(region, map=True)
     triangles = mesh.triangles[mesh.polygon_of >= 0]
     n = tri.npoints
     if len(triangles) == 0:

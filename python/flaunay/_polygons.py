@@ -12,10 +12,13 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import (
     ArrayLike,
+    are_shapely,
     as_floats,
     as_offsets,
     as_points,
+    column_of,
     frozen,
+    geometries_in,
     names_of,
     number_of,
     summary,
@@ -142,10 +145,6 @@ def _offsets_of(owners: npt.NDArray[np.intp], count: int) -> Offsets:
 # ---- Shapely
 
 
-def _is_shapely(given: object) -> bool:
-    return type(given).__module__.partition(".")[0] == "shapely"
-
-
 def _of_shapely(geometries: npt.NDArray[Any]) -> _Rings:
     """The rings of geometries, in one dimension; missing ones have none."""
     shapely = optional("shapely", "polygons")
@@ -259,8 +258,7 @@ def _summed(sizes: Sequence[int]) -> Offsets:
 
 def _rows_of(given: Any) -> list[Any]:
     """The polygons of a list, an array or a column of a table."""
-    # A table of geopandas has its polygons in one column, and a geometry has no length.
-    column = getattr(given, "geometry", given) if hasattr(given, "columns") else given
+    column = column_of(given)
     if isinstance(column, (list, tuple)):
         return list(column)
     if hasattr(column, "__array__") or hasattr(column, "__len__"):
@@ -274,19 +272,15 @@ def _rows_of(given: Any) -> list[Any]:
 
 
 def _rings_of(given: Any) -> _Rings:
-    if _is_shapely(given):
-        return _of_shapely(np.array([given], object))
+    geometries = geometries_in(given)
+    if geometries is not None and are_shapely(geometries):
+        return _of_shapely(geometries)
     # A table of geopandas describes itself, too, but slowly.
     described = None if hasattr(given, "__array__") else _geojson_of(given)
     if described is not None:
         several = _rows_of_geojson(described)
         return _of_lists([{"type": "MultiPolygon", "coordinates": parts} for parts in several])
-    rows = _rows_of(given)
-    if any(map(_is_shapely, rows)) and all(row is None or _is_shapely(row) for row in rows):
-        geometries = np.empty(len(rows), object)
-        geometries[:] = rows
-        return _of_shapely(geometries)
-    return _of_lists(rows)
+    return _of_lists(_rows_of(given))
 
 
 def _with_offsets(

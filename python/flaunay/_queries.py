@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, FloatArray, are_rows, as_floats, check_out
+from flaunay._arrays import ArrayLike, FloatArray, are_rows, as_floats, check_out, hint_for
 from flaunay._errors import InputError, UsageError
 
 Indices = npt.NDArray[np.int32]
@@ -31,7 +31,8 @@ def as_queries(xi: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
         return xi, xi.shape[:1]
     queries = as_floats(xi, "xi")
     if queries.ndim == 0 or queries.shape[-1] != 2:
-        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}")
+        hint = hint_for(queries.shape, "xi")
+        raise UsageError(f"xi must have the shape (..., 2), not {queries.shape}{hint}")
     return np.asarray(queries, np.float64).reshape(-1, 2), queries.shape[:-1]
 
 

@@ -52,9 +52,14 @@ def grid_of(
 
     Without bounds, those of the points, of which there are some.
     """
-    rows, columns = (operator.index(number) for number in shape)
+    try:
+        rows, columns = (operator.index(number) for number in shape)
+    except (TypeError, ValueError):
+        rows = columns = 0
     if min(rows, columns) < 1:
-        raise UsageError(f"shape must be numbers of rows and columns, not {tuple(shape)}")
+        raise UsageError(
+            f"shape must be numbers of rows and columns, such as (200, 300), not {shape!r}"
+        )
     if bounds is None:
         low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
         box = np.array([*low, *high], np.float64)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import Mesh, slices
+from flaunay._arrays import Mesh, hint_for, slices
 from flaunay._errors import UsageError
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ _LARGEST_CONDITION = 1 / (1000 * np.finfo(np.float64).eps)
 
 def check_options(furthest_site: bool, qhull_options: Optional[str]) -> bool:
     """UsageError for what flaunay cannot do. Returns whether every point must be a vertex."""
+    if np.ndim(furthest_site):
+        hint = hint_for(np.shape(furthest_site), "points")
+        raise UsageError(f"furthest_site must be False, and is an array{hint}")
     if furthest_site:
         raise UsageError(
             "furthest_site=True is not possible: the furthest-site diagram is that of the convex hull's "

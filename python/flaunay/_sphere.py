@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, hint_for, summary
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
@@ -21,7 +21,7 @@ def _as_points(given: ArrayLike, name: str) -> Doubles:
     if points.ndim == 0 or points.shape[-1] not in (2, 3):
         raise UsageError(
             f"{name} must be longitudes and latitudes, shape (..., 2), or x, y and z, "
-            f"shape (..., 3), not {points.shape}"
+            f"shape (..., 3), not {points.shape}{hint_for(points.shape, name)}"
         )
     return points
 

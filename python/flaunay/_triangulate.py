@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Optional, Union, overload
+from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,37 @@ if TYPE_CHECKING:
 
 Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
+
+
+class _Constraining(TypedDict, total=False):
+    """The keywords of `triangulate` with segments, but for those that refine."""
+
+    offsets: Optional[npt.ArrayLike]
+    hole_offsets: Optional[npt.ArrayLike]
+    segment_markers: Optional[npt.ArrayLike]
+    point_markers: Optional[npt.ArrayLike]
+    seeds: Optional[npt.ArrayLike]
+    seed_offsets: Optional[npt.ArrayLike]
+    outside: str
+    crossings: str
+    fill_rule: str
+    labels: bool
+    device: Optional[str]
+    neighbors: bool
+    halfedges: bool
+    areas: bool
+    mode: str
+    out: Out
+
+
+class _Meshing(_Constraining, Refining, total=False):
+    """All of these."""
+
+
+class _OfTriangulate(_Constraining, total=False):
+    """What `refine` takes as `triangulate` does."""
+
+    holes: Optional[npt.ArrayLike]
 
 
 def _attributes(out: object) -> dict[str, Any]:
@@ -81,24 +112,16 @@ def triangulate(
     points: ArrayLike,
     segments: npt.ArrayLike,
     holes: Optional[npt.ArrayLike] = None,
-    *,
-    offsets: Optional[npt.ArrayLike] = None,
-    hole_offsets: Optional[npt.ArrayLike] = None,
-    segment_markers: Optional[npt.ArrayLike] = None,
-    point_markers: Optional[npt.ArrayLike] = None,
-    seeds: Optional[npt.ArrayLike] = None,
-    seed_offsets: Optional[npt.ArrayLike] = None,
-    outside: str = "keep",
-    crossings: str = "error",
-    fill_rule: str = "nesting",
-    labels: bool = False,
-    device: Optional[str] = None,
-    neighbors: bool = True,
-    halfedges: bool = False,
-    areas: bool = False,
-    mode: str = "blocks",
-    out: Out = None,
-    **refining: Unpack[Refining],
+    **options: Unpack[_Meshing],
+) -> ConstrainedTriangulation: ...
+
+
+@overload
+def triangulate(
+    points: ArrayLike,
+    segments: None = None,
+    holes: Optional[npt.ArrayLike] = None,
+    **options: Unpack[_Meshing],
 ) -> ConstrainedTriangulation: ...
 
 
@@ -314,7 +337,7 @@ def refine(
     most_points: Optional[int] = None,
     most_rounds: Optional[int] = None,
     smoothing_steps: int = 0,
-    **others: Any,
+    **others: Unpack[_OfTriangulate],
 ) -> ConstrainedTriangulation:
     """Triangulates, and adds points until no triangle has a small angle or is too large.
 
@@ -381,21 +404,18 @@ def refine(
     >>> len(finer.triangles) > 2 * len(mesh.triangles)
     True
     """
-    places: Any = points
+    own: dict[str, Any] = {"points": points}
     if isinstance(points, (ConstrainedTriangulation, Delaunay)):
-        given = {"segments": segments, "triangles": triangles, **others}
-        given["triangle_attributes"] = triangle_attributes
-        others = _given_mesh(points)
-        others |= {name: value for name, value in given.items() if value is not None}
-        places, segments = others.pop("points"), others.pop("segments", None)
-        triangles = others.pop("triangles")
-        triangle_attributes = others.pop("triangle_attributes", None)
+        own = _given_mesh(points)
+    given: dict[str, Any] = {
+        "segments": segments,
+        "triangles": triangles,
+        "triangle_attributes": triangle_attributes,
+        **others,
+    }
     result: ConstrainedTriangulation = triangulate(
-        places,
-        np.empty((0, 2), np.int32) if segments is None else segments,
-        triangles=triangles,
+        **own | {name: value for name, value in given.items() if value is not None},
         triangle_areas=triangle_areas,
-        triangle_attributes=triangle_attributes,
         conforming=conforming,
         min_angle=min_angle,
         max_area=max_area,
@@ -407,6 +427,5 @@ def refine(
         most_points=most_points,
         most_rounds=most_rounds,
         smoothing_steps=smoothing_steps,
-        **others,
     )
     return result

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, summary
 from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._errors import UsageError
 from flaunay._surfaces import Doubles, Indices, OfPoints
@@ -162,9 +162,7 @@ def weighted(
     >>> tri.hidden.tolist(), tri.hidden_by.tolist()
     ([3], [0])
     """
-    given = np.asarray(as_floats(points, "points"), np.float64)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise UsageError(f"points must have the shape (n, 2), not {given.shape}")
+    given = np.asarray(as_points(points), np.float64)
     of_points = np.asarray(as_floats(weights, "weights"), np.float64)
     if of_points.shape != given.shape[:1]:
         raise UsageError(

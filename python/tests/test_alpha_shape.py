@@ -162,9 +162,21 @@ def test_auto_is_the_smallest_radius_that_covers_all_in_one_component(random):
                 expected = radius
                 break
         shape = flaunay.alpha_shape(tri)
-        assert shape.alpha == expected
+        # With a tolerance, within which there is no other radius here.
+        assert expected <= shape.alpha <= expected * (1 + 2e-6) + 1e-4
+        assert np.array_equal(shape.inside, tri.circumradii <= expected)
         assert len(shape.polygons()) == min(tri.nsimplex, 1)
         assert len(shape.isolated) == 0 or tri.nsimplex == 0
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("x, y, step", [(100.1, 10.7, 0.1), (5.1, 45.3, 0.05), (11.3, 47.1, 0.1)])
+def test_grids_of_rounded_coordinates_have_no_holes(x, y, step, dtype):
+    along = step * np.arange(40)
+    grid = np.stack(np.meshgrid(x + along, y + along), axis=-1).reshape(-1, 2)
+    shape = flaunay.alpha_shape(grid.astype(dtype))
+    assert shape.inside.all() and len(shape.rings()) == 1
+    assert len(np.unique(shape.delaunay.circumradii)) > 1
 
 
 def circle(radius, n):

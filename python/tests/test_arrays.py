@@ -150,8 +150,15 @@ def test_arrays_of_pyopencl(points):
         except cl.Error:
             pytest.skip("there is no OpenCL device")
         given = array.to_device(queue, points)
-        stack.enter_context(pytest.raises(flaunay.UsageError, match="call triangulate_device"))
-        flaunay.triangulate(given)
+
+        class Tagged(array.Array):
+            """As other packages extend these arrays."""
+
+        tagged = Tagged(queue, points.shape, points.dtype, data=given.data)
+        for one in given, tagged:
+            with pytest.raises(flaunay.UsageError, match="call triangulate_device"):
+                flaunay.triangulate(one)
+        assert flaunay.DynamicTriangulation(tagged).point_count == len(points)
 
 
 def test_tensors_of_torch(points):
@@ -179,8 +186,9 @@ def test_frames_of_pandas(points):
     assert same(table[["x", "y"]].astype("Float64"), points)
     tri = flaunay.Delaunay(table[["x", "y"]])
     assert np.array_equal(tri.interpolate(table.height, table[["x", "y"]]), table.height)
-    with pytest.raises(flaunay.UsageError):
-        flaunay.Delaunay(table[["x", "name"]])
+    for kind in "object", "string":
+        with pytest.raises(flaunay.UsageError, match="points have the column 'name', which has no numbers"):
+            flaunay.Delaunay(table.astype({"name": kind, "y": "Float64"}))
     missing = table[["x", "y"]].astype("Float64")
     missing.loc[4, "y"] = pandas.NA
     with pytest.raises(flaunay.InputError, match="point 4 is not finite"):
@@ -193,6 +201,8 @@ def test_frames_of_polars(points):
     assert same(frame.select("x", "y"), points)
     tri = flaunay.Delaunay(points)
     assert np.array_equal(tri.interpolate(frame["height"], points), points.sum(axis=1))
+    with pytest.raises(flaunay.UsageError, match="the column 'name', which has no numbers"):
+        flaunay.Delaunay(frame.with_columns(polars.lit("a").alias("name")))
     missing = polars.DataFrame({"x": [0.0, 1.0, None], "y": [0.0, 0.0, 1.0]})
     with pytest.raises(flaunay.InputError, match="point 2 is not finite"):
         flaunay.Delaunay(missing)
@@ -216,6 +226,16 @@ def test_tables_and_columns_of_arrow(points):
     tri = flaunay.Delaunay(points)
     for heights in table["height"], table["height"].combine_chunks():
         assert np.array_equal(tri.interpolate(heights, points), points.sum(axis=1))
+    with pytest.raises(flaunay.UsageError, match="the column 'name', which has no numbers"):
+        flaunay.Delaunay(arrow.table({"x": points[:, 0], "name": ["a"] * 50}))
+    # Columns that are no arrays for DLPack.
+    tri = flaunay.Delaunay([[0, 0], [1, 0], [0, 1]])
+    for kind in arrow.array, lambda numbers: arrow.chunked_array([numbers]):
+        for numbers in [True, False, True], [1, None, 0]:
+            assert tri.interpolate(kind(numbers), [[0, 0]]) == 1
+        for others in [True, None, False], ["a", "b", "c"]:
+            with pytest.raises(flaunay.UsageError, match="values must be real numbers, not object"):
+                tri.interpolate(kind(others), [[0, 0]])
     nulls = arrow.array([[0.0, 1.0], None, [1.0, 1.0]], arrow.list_(arrow.float64(), 2))
     with pytest.raises(flaunay.UsageError, match="points have nulls"):
         flaunay.Delaunay(nulls)

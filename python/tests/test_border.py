@@ -154,9 +154,56 @@ def test_griddata_takes_them():
     ).all()
 
 
-def test_without_triangles_there_is_no_border():
-    line = flaunay.LinearInterpolator([[0, 0], [1, 1]], [1, 2], tol=1, extrapolate="nearest", max_edge=3)
-    assert np.isnan(line([[0.5, 0.5], [np.nan, 0]])).all()
+ON_A_LINE = [
+    lambda *given, **beyond: flaunay.LinearInterpolator(*given, **beyond),
+    lambda *given, **beyond: flaunay.NaturalNeighborInterpolator(*given, **beyond),
+    lambda points, values, tol=None, **beyond: flaunay.CloughTocherInterpolator(
+        points, values, border_tol=tol, **beyond
+    ),
+    lambda points, *given, **beyond: flaunay.LinearInterpolator(
+        flaunay.triangulate(points, segments=[[0, 1]]), *given, **beyond
+    ),
+]
+
+
+@pytest.mark.parametrize("interpolator", ON_A_LINE)
+def test_values_on_one_line(interpolator):
+    # Not in their order, with a duplicate, and not on a line of rounded directions alone.
+    points = np.array([[3, 1], [0, 0], [9, 3], [3, 1], [6, 2.0]])
+    values = np.array([[1, 5], [4, 7], [2, 2], [99, 99], [0, 3.0]])
+    across = np.array([-1, 3]) / 10
+    assert np.isnan(interpolator(points, values)(points)).all()
+    for beyond in {"tol": 0}, {"extrapolate": "nearest"}, {"extrapolate": "linear"}:
+        found = interpolator(points, values, **beyond)(points)
+        assert np.array_equal(found, values[[0, 1, 2, 0, 4]])
+    queries = np.array([[1.5, 0.5], [7.5, 2.5], [12, 4], [-3, -1]])
+    want = [[2.5, 6], [1, 2.5], [2, 2], [4, 7]]
+    nearest = interpolator(points, values, extrapolate="nearest")
+    assert nearest([*queries, *(queries + across)]) == pytest.approx(np.concatenate([want, want]))
+    linear = interpolator(points, values, extrapolate="linear")
+    assert linear(queries + across) == pytest.approx(np.array([*want[:2], [4, 1], [7, 9]]))
+    near = interpolator(points, values, tol=0.4, max_edge=4)
+    assert near(queries[:2] + across) == pytest.approx(np.array(want[:2]))
+    assert np.isnan(near(queries + 2 * across)).all() and np.isnan(near([[np.nan, 0]])).all()
+    short = interpolator(points, values, extrapolate="nearest", max_edge=3)
+    assert np.isnan(short(queries)).all()
+
+
+@pytest.mark.parametrize("interpolator", ON_A_LINE[:3])
+def test_values_at_one_place(interpolator):
+    for extrapolate in "nearest", "linear":
+        found = interpolator([[2, 3], [2, 3]], [5, 6], extrapolate=extrapolate)([[2, 3], [7, 8]])
+        assert found.tolist() == [5, 5]
+    assert np.isnan(interpolator(np.empty((0, 2)), [], extrapolate="linear")([[1, 2]])).all()
+
+
+def test_gradients_that_are_given_count_on_a_line_too():
+    points, values, gradients = [[0, 0], [2, 0]], [0, 8], [[0, 1], [12, 2]]
+    cubic = flaunay.CloughTocherInterpolator(points, values, gradients=gradients, extrapolate="linear")
+    assert cubic([[1, 0], [3, 0], [1, 1], [2, 1]]) == pytest.approx([1, 20, 2.5, 10])
+    mesh = flaunay.triangulate([[0, 0], [4, 0], [0, 4]], [[0, 1], [1, 2], [2, 0]], [[1, 1]], outside="holes")
+    assert mesh.nsimplex == 0
+    assert np.isnan(flaunay.LinearInterpolator(mesh, [1, 2, 3], extrapolate="nearest")([[1, 1]])).all()
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,10 @@
 """Clipped cells and relaxation; shapely's answers where it is installed."""
 
+import os
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -100,6 +105,39 @@ def test_relaxation_step_by_step(points):
     assert (flaunay.relax(points, BOX, iterations=0) == points).all()
     with pytest.raises(flaunay.UsageError):
         flaunay.relax(points, BOX, iterations=-1)
+
+
+def interrupted(call, seconds):
+    """How long a call takes that Ctrl-C interrupts after so many seconds."""
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    begin = time.perf_counter()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        call()
+    timer.join()
+    return time.perf_counter() - begin
+
+
+def test_control_c_ends_relaxation(points):
+    assert interrupted(lambda: flaunay.relax(points, BOX, iterations=100_000, device="host"), 0.2) < 5
+    # What was interrupted has left nothing behind.
+    parts = flaunay.relax(points, BOX, iterations=300)
+    at = points
+    for _ in range(30):
+        at = flaunay.relax(at, BOX, iterations=10)
+    assert (parts == at).all()
+
+
+def test_control_c_ends_refinement_that_asks_for_areas():
+    """A signal comes while the library is at work, so that Python handles it as soon as it calls back."""
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+
+    def refine():
+        while True:
+            flaunay.refine(square, areas_at=lambda places: 2e-5)
+
+    for _ in range(5):
+        assert interrupted(refine, 0.1) < 5
 
 
 def test_shapely_takes_them(points):

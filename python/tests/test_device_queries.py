@@ -691,7 +691,8 @@ def test_relaxed_as_on_the_host(random, queue, dtype, iterations):
     relaxed = flaunay.relax_device(given, BOX, iterations)
     assert same(relaxed, flaunay.relax(points, BOX, iterations))
     assert same(given, points) and relaxed.queue is queue
-    assert relaxed.events[0] in given.events
+    # Later parts of many iterations do not read it.
+    assert given.events and (iterations > 1 or relaxed.events[0] in given.events)
     # And on from there.
     again = flaunay.relax_device(relaxed, BOX, 2)
     assert same(again, flaunay.relax(points, BOX, iterations + 2))

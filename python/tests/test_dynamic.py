@@ -207,6 +207,68 @@ def test_crossing_segments(points):
         flaunay.DynamicTriangulation(square, crossing, crossings="none")
 
 
+def all_of(tri):
+    return tri.points, tri.triangulation().representatives, *map(np.asarray, tri.constraints())
+
+
+COPIES = [copy.copy, copy.deepcopy, lambda tri: pickle.loads(pickle.dumps(tri))]
+
+
+@pytest.mark.parametrize("copied", COPIES)
+def test_copies_change_on_their_own(random, copied):
+    # The largest number and the first of two equal points are among those that are removed.
+    points = np.concatenate([[[4, 4], [0, 0], [8, 0], [8, 8], [0, 8]], random.integers(0, 9, (40, 2))])
+    segments = [[1, 2], [4, 2], [1, 3]]
+    tri = flaunay.DynamicTriangulation(points, segments, crossings="split", device="host")
+    tri.insert([[2, 0], [4, 4], [9, 9]])
+    free = [k for k in np.flatnonzero(~np.isin(np.arange(tri.numbers), tri.constraints().edges)) if k > 4]
+    tri.remove([free[3], free[7], tri.numbers - 1])
+    for one in copied(tri), copied(copied(tri)):
+        assert (one.numbers, one.point_count) == (tri.numbers, tri.point_count)
+        for found, want in zip(all_of(one)[:2], all_of(tri)):
+            assert np.array_equal(found, want, equal_nan=found.dtype.kind == "f")
+        assert as_set(one.triangulation().triangles) == as_set(tri.triangulation().triangles)
+        (edges, of), (own_edges, own_of) = tri.constraints(), one.constraints()
+        assert dict(zip(map(tuple, own_edges.tolist()), own_of)) == dict(zip(map(tuple, edges.tolist()), of))
+        with pytest.raises(flaunay.InputError, match=r"point 4 cannot be removed: it is on segment 1 \("):
+            one.remove([4])
+        with pytest.raises(flaunay.InputError, match=r"point 3 cannot be moved: it is on segment 2 \("):
+            one.move([3], [[7, 7]])
+        assert one.insert([[3, 5]]).first_point == tri.numbers
+        one.move([free[0]], [[1, 6]])
+        assert one.point_count == tri.point_count + 1
+    assert tri.points.shape == (tri.numbers, 2)
+
+
+def test_copies_of_few_points():
+    for points, removed in ([], []), ([[0, 0]], [0]), ([[0, 0], [1, 1]], [0]), ([[0, 0], [0, 0]], [0]):
+        tri = flaunay.DynamicTriangulation(np.reshape(points, (-1, 2)), device="host")
+        tri.remove(np.array(removed, int))
+        one = copy.copy(tri)
+        for found, want in zip(all_of(one), all_of(tri)):
+            assert np.array_equal(found, want, equal_nan=found.dtype.kind == "f")
+        assert one.insert([[5, 5]]).first_point == len(points)
+
+
+def test_copies_of_large_points():
+    far = np.finfo(np.float64).max
+    tri = flaunay.DynamicTriangulation([[far, 0], [0, far], [-far, 0], [0, 0]], device="host")
+    tri.remove([3])
+    assert np.array_equal(copy.copy(tri).points, tri.points, equal_nan=True)
+    tri.insert([[0, -far]])
+    with pytest.raises(TypeError, match="cannot be copied: remove one"):
+        copy.copy(tri)
+
+
+def test_handles_of_the_library_say_that_they_cannot_be_copied(capfd):
+    handle = flaunay._calls.PointTree(flaunay._triangulators.of_device("host"), np.zeros((1, 2)))
+    for copied in COPIES:
+        with pytest.raises(TypeError, match="PointTree cannot be copied or pickled"):
+            copied(handle)
+    type(handle).__new__(type(handle)).__del__()
+    assert capfd.readouterr().err == ""
+
+
 def test_points_in_device_memory(random):
     cl = pytest.importorskip("pyopencl")
     import pyopencl.array
@@ -227,6 +289,8 @@ def test_points_in_device_memory(random):
     on_device.event.wait()
     with pytest.raises(flaunay.UsageError, match="made of points in host memory"):
         flaunay.DynamicTriangulation(points).rows_on_device()
+    with pytest.raises(TypeError, match="cannot be copied or pickled: make another one"):
+        copy.copy(tri)
     with pytest.raises(flaunay.UsageError, match="for points in host memory"):
         flaunay.DynamicTriangulation(cl.array.to_device(queue, points), segments=[[0, 1]])
 

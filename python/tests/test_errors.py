@@ -1,6 +1,7 @@
 """What cannot be done is an exception that says what is wrong."""
 
 import os
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -60,6 +61,49 @@ def test_ragged_lists(call):
         flaunay.triangulate(FOUR, offsets=[[0], [1, 4]])
 
 
+@pytest.mark.parametrize("call", [*CALLS, flaunay.Voronoi, flaunay.alpha_shape, flaunay.refine])
+def test_coordinates_in_other_shapes(call):
+    x, y = FOUR.T
+    with pytest.raises(flaunay.UsageError, match=r"take numpy.column_stack\(\[x, y\]\)"):
+        call(x, y)
+    with pytest.raises(flaunay.UsageError, match="4 coordinates; if its rows are x and y, take points.T"):
+        call(FOUR.T)
+    for path in "points.csv", pathlib.Path("points.csv"), b"points.csv":
+        with pytest.raises(flaunay.UsageError, match="not text or a path: .*points.csv.* by numpy.loadtxt"):
+            call(path)
+
+
+TRI = flaunay.Delaunay(FOUR)
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    [
+        (lambda: flaunay.periodic(FOUR, 10), "period must be two lengths, in x and y, .* not 10"),
+        (lambda: flaunay.periodic(FOUR, "ab"), "period must be real numbers"),
+        (lambda: flaunay.to_places(FOUR, (1, 2, 3)), r"two lengths, .* not \(1, 2, 3\)"),
+        (lambda: flaunay.triangulate_chunks(FOUR, triangles=True, period=10), "two lengths"),
+        (lambda: flaunay.periodic(FOUR.T, (1, 1)), "take points.T"),
+        (lambda: flaunay.weighted(FOUR[:, 0], FOUR[:, 1]), "numpy.column_stack"),
+        (lambda: TRI.raster(np.zeros(4), 5), r"rows and columns, such as \(200, 300\), not 5"),
+        (lambda: TRI.raster(np.zeros(4), (5, 2.5)), r"rows and columns, .* not \(5, 2.5\)"),
+        (lambda: TRI.raster(np.zeros(4), (1, 2, 3)), r"rows and columns, .* not \(1, 2, 3\)"),
+        (lambda: flaunay.griddata(FOUR[:, 0], FOUR[:, 1], [1, 2, 3, 4], FOUR), "method must be 'linear'"),
+        (lambda: TRI.find_simplex(*FOUR.T), r"\(4,\); if x and y are two arrays, take numpy.column_stack"),
+        (lambda: TRI.nearest(np.zeros((2, 3))), r"not \(2, 3\); if its rows are x and y, take xi.T"),
+        (lambda: flaunay.spherical([1, 2, 3, 4]), "numpy.column_stack"),
+        (lambda: flaunay.Delaunay(map(list, FOUR)), r"not an object of map: take list\(points\)"),
+        (lambda: flaunay.griddata([1, 2, 3], [1, 2, 3], [1.5]), "numpy.interp and SciPy interpolate on a line"),
+        (lambda: flaunay.griddata([[1], [2]], [1, 2], [1.5]), "numpy.interp"),
+        (lambda: flaunay.LinearInterpolator(FOUR.T, [1, 2, 3, 4]), "take points.T"),
+        (lambda: flaunay.triangulate(FOUR, "lines.shp"), "segments are numbers, not text or a path"),
+    ],
+)
+def test_wrong_calls_get_the_sentence_that_helps(call, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        call()
+
+
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
@@ -89,7 +133,7 @@ def test_magnitudes_that_differ_too_much():
         ([0.0, 4.0], "integers"),
         ([[0, 4]], "one dimension"),
         (4, "one dimension"),
-        ("04", "integers"),
+        ("04", "not text"),
     ],
 )
 @pytest.mark.parametrize("mode", ["blocks", "flattened", "dwyer"])

@@ -18,10 +18,12 @@ def test_points_are_geometries():
     points = np.random.default_rng(0).random((20, 2))
     want = flaunay.Delaunay(points).simplices
     given = [shapely.MultiPoint(points), list(shapely.points(points)), shapely.points(points)]
-    geopandas = pytest.importorskip("geopandas") if _has_geopandas() else None
-    if geopandas:
+    given += [Collection([Described(point) for point in given[1]]), [Described(one) for one in given[1]]]
+    if _has_geopandas():
+        geopandas, pandas = pytest.importorskip("geopandas"), pytest.importorskip("pandas")
         series = geopandas.GeoSeries(shapely.points(points))
-        given += [series, series.to_frame("place").set_geometry("place")]
+        given += [series, series.to_frame("place").set_geometry("place"), series.values]
+        given += [geopandas.points_from_xy(*points.T), pandas.Series(list(series))]
     for geometries in given:
         assert np.array_equal(flaunay.Delaunay(geometries).simplices, want)
         assert np.array_equal(flaunay.triangulate(geometries).triangles, want)
@@ -29,6 +31,41 @@ def test_points_are_geometries():
         assert found == pytest.approx(points[:, 0])
     high = shapely.points(np.column_stack([points, np.arange(20)]))
     assert np.array_equal(flaunay.Delaunay(high).points, points)
+
+
+class Described:
+    """A geometry of another library, which says what it is."""
+
+    def __init__(self, geometry):
+        self.__geo_interface__ = geometry.__geo_interface__
+
+
+class Collection:
+    """A collection of another library."""
+
+    def __init__(self, geometries):
+        features = [{"type": "Feature", "geometry": one.__geo_interface__} for one in geometries]
+        self.__geo_interface__ = {"type": "FeatureCollection", "features": features}
+
+
+def test_columns_of_geopandas():
+    if not _has_geopandas():
+        pytest.skip("needs geopandas")
+    geopandas, pandas = pytest.importorskip("geopandas"), pytest.importorskip("pandas")
+    boxes = geopandas.GeoSeries([shapely.box(0, 0, 2, 2), shapely.box(2, 0, 4, 2)])
+    points, voronoi = [[0, 0], [4, 2], [1, 1]], flaunay.Voronoi([[1, 1], [3, 1]])
+    for column in boxes, boxes.values, boxes.to_frame("place").set_geometry("place"), pandas.Series(list(boxes)):
+        assert voronoi.pieces(column).areas.tolist() == [4, 4]
+        assert flaunay.polygons(column).polygon_areas.tolist() == [4, 4]
+        assert len(flaunay.triangulate(points, column, outside="holes").constraint_edges) == 7
+        assert voronoi.clipped(column[:1]).areas.tolist() == [4, 0]
+    with_gaps = [*boxes, None]
+    for column in geopandas.GeoSeries(with_gaps), pandas.Series(with_gaps), pandas.Series([*boxes, np.nan]):
+        assert flaunay.polygons(column).polygon_areas.tolist() == [4, 4, 0]
+    assert len(flaunay.triangulate(geopandas.GeoSeries([]).values).triangles) == 0
+    for missing in None, np.nan:
+        with pytest.raises(flaunay.UsageError, match=r"points\[1\] is missing"):
+            flaunay.Delaunay(pandas.Series([shapely.Point(0, 0), missing]))
 
 
 def _has_geopandas():
@@ -46,6 +83,7 @@ def _has_geopandas():
         ([shapely.Point(0, 0), shapely.Point()], r"points\[1\] is an empty Point"),
         ([shapely.Point(0, 0), None], r"points\[1\] is missing"),
         (COUNTRY, r"points\[0\] is a Polygon"),
+        ([shapely.Point(0, 0), 7], r"points\[1\] is no geometry, but 7"),
     ],
 )
 def test_geometries_that_are_no_points(given, message):

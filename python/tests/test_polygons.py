@@ -352,7 +352,7 @@ def test_a_border_that_crosses_itself_names_the_polygon():
         ([SQUARE, HOLE], r"geometries\[0\]\[0\] is no ring of points"),
         (np.array([SQUARE, HOLE]), r"geometries\[0\]\[0\] is no ring of points"),
         ([[SQUARE], 5], r"geometries\[1\] is no polygon, but a int"),
-        ([["abc"]], r"geometries\[0\]\[0\] must be real numbers"),
+        ([["abc"]], r"geometries\[0\]\[0\] are numbers, not text"),
         ([[SQUARE, [[1, 2, 3, 4]]]], r"geometries\[0\]\[1\] must be a ring.*\(1, 4\)"),
         ([[[[0, 0], [1]]]], r"geometries\[0\]\[0\] (are no array of|must be real) numbers"),
         ([POLYGONS[0], shapely.Point(0, 0)], r"geometries\[1\] is a Point"),

@@ -107,6 +107,8 @@ def test_contours_lie_at_their_heights(random):
         assert higher[np.hypot(*along.T) > 0.1].all()
     assert lines.closed.any() and not lines.closed.all()
     assert repr(lines) == f"<flaunay.Contours: {len(lines)} lines, {len(lines.points)} points>"
+    one = flaunay.Delaunay([[0, 0], [4, 0], [0, 4]]).contours([0, 4, 4], [1])
+    assert repr(one) == "<flaunay.Contours: 1 line, 2 points>"
     assert len(lines.to_geojson()["features"]) == len(lines)
     assert lines[-1][0] == 10
     with pytest.raises(IndexError):

@@ -47,6 +47,8 @@ def test_raster_is_that_of_the_triangulation(scan):
     point = flaunay.terrain(scan, resolution=2, pixel_is="point")
     assert point.bounds == (499999, 4499999, 500061, 4500041)
     assert repr(made) == "<flaunay.Terrain: 3000 points, 20 rows, 30 columns>"
+    small = flaunay.terrain([[0, 0, 5], [1, 0, 9], [0, 1, 5]], resolution=1)
+    assert repr(small) == "<flaunay.Terrain: 3 points, 1 row, 1 column>"
     assert set(made.contours(10).heights) == {10 * k for k in range(6, 15)}
 
 
