@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Checks that every file that names flaunay's version names the one of CMakeLists.txt; others read it from there.
+"""Checks that every file that names flaunay's version, or what depends on it, agrees with CMakeLists.txt.
+
+The others read it from there.
 
     versions.py SOURCE VERSION
 """
@@ -9,16 +11,28 @@ import re
 import sys
 
 source, version = pathlib.Path(sys.argv[1]), sys.argv[2]
-# A text in which the version is the only group.
-PLACES = {
-    "packaging/conda/recipe.yaml": r'version: "([^"]*)"',
-    "packaging/debian/changelog": r"flaunay \(([^)-]*)-\d+\)",
-    "packaging/vcpkg/ports/flaunay/vcpkg.json": r'"version": "([^"]*)"',
-}
-failed = False
-for place, pattern in PLACES.items():
+major, minor, patch = version.split(".")
+# What ends the name of the shared library: before 1.0.0, each minor version has another interface.
+interface = f"0.{minor}" if major == "0" else major
+# A text in which the only group is the version, or a part of it.
+PLACES = [
+    ("packaging/conda/recipe.yaml", r'version: "([^"]*)"', version),
+    ("packaging/debian/changelog", r"flaunay \(([^)-]*)-\d+\)", version),
+    ("packaging/debian/control", r"Package: libflaunay([0-9.]+)", interface),
+    ("packaging/debian/control", r"Depends: libflaunay([0-9.]+) ", interface),
+    ("packaging/vcpkg/ports/flaunay/vcpkg.json", r'"version": "([^"]*)"', version),
+    ("docs/packages.md", r"`libflaunay([0-9.]+)`", interface),
+    ("src/include/flaunay/version.h", r"FLAUNAY_VERSION_MAJOR (\d+)\n", major),
+    ("src/include/flaunay/version.h", r"FLAUNAY_VERSION_MINOR (\d+)\n", minor),
+    ("src/include/flaunay/version.h", r"FLAUNAY_VERSION_PATCH (\d+)\n", patch),
+    ("src/include/flaunay/version.h", r'FLAUNAY_VERSION "([^"]*)"', version),
+]
+failed = not (source / f"packaging/debian/libflaunay{interface}.install").exists()
+if failed:
+    print(f"packaging/debian has no libflaunay{interface}.install")
+for place, pattern, expected in PLACES:
     found = re.search(pattern, (source / place).read_text(encoding="utf-8"))
-    if found is None or found.group(1) != version:
-        print(f"{place} names {found and found.group(1)}, CMakeLists.txt {version}")
+    if found is None or found.group(1) != expected:
+        print(f"{place} names {found and found.group(1)}, but CMakeLists.txt {version}, so that this must be {expected}")
         failed = True
 sys.exit(failed)

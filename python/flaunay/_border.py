@@ -13,8 +13,22 @@ from flaunay._arrays import FloatArray
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
+# From a corner of a triangle to its next one, and to its previous one.
+_NEXT, _PREVIOUS = np.array([1, 1, -2]), np.array([2, -1, -1])
+
 # Of distances that are computed at a time.
 _MOST_PAIRS = 1 << 22
+
+
+def ends_opposite(
+    triangles: npt.NDArray[np.int32], corners: Indices
+) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+    """The first and the second ends of the edges opposite to corners, with their triangles on the left.
+
+    Corner k of triangle t has the number 3 t + k. In one dimension NumPy is quickest, above all for few triangles.
+    """
+    flat, columns = triangles.reshape(-1), corners % 3
+    return flat[corners + _NEXT[columns]], flat[corners + _PREVIOUS[columns]]
 
 
 class Border:
@@ -26,9 +40,9 @@ class Border:
         triangles: npt.NDArray[np.int32],
         neighbors: npt.NDArray[np.int32],
     ) -> None:
-        self.triangles, corners = np.nonzero(neighbors < 0)
-        self.firsts = triangles[self.triangles, (corners + 1) % 3]
-        self.seconds = triangles[self.triangles, (corners + 2) % 3]
+        corners = (neighbors.reshape(-1) < 0).nonzero()[0]
+        self.triangles = corners // 3
+        self.firsts, self.seconds = ends_opposite(triangles, corners)
         self._points = points
 
     @property

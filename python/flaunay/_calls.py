@@ -207,8 +207,9 @@ _NUMBERS_OF_DEVICE = _members(
 
 def _phases_of(statistics: Any) -> dict[str, float]:
     """The seconds of each phase by its name."""
-    phases = statistics.phases[: statistics.phase_count]
-    return {text_of(phase.name): phase.seconds for phase in phases}
+    phases = statistics.phases
+    rows = [phases[k] for k in range(statistics.phase_count)]
+    return {text_of(phase.name): phase.seconds for phase in rows}
 
 
 def _statistics_of(statistics: Any) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from flaunay._arrays import (
     number_of,
     summary,
 )
-from flaunay._border import Border, LineBorder
+from flaunay._border import Border, LineBorder, ends_opposite
 from flaunay._declarations import CROSSINGS, FILL_RULE, OUTSIDE
 from flaunay._errors import UsageError
 from flaunay._export import ExportMethods
@@ -230,15 +230,11 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
 
         In each row the smaller index first; the rows in increasing order. O(m log m) work.
         """
-        return self._edges_where(np.ones_like(self.constrained))
+        return rows_of_edges(sorted_edges(self.triangles, self.neighbors))
 
     def _edges_where(self, chosen: npt.NDArray[np.bool_]) -> Indices:
         """The edges opposite to such corners, each once, sorted, in each the smaller index first."""
-        first, second = (np.roll(self.triangles, -k, axis=1)[chosen] for k in (1, 2))
-        n = max(len(self.points), 1)
-        keys = np.unique(np.minimum(first, second).astype(np.int64) * n + np.maximum(first, second))
-        pairs: Indices = np.stack(np.divmod(keys, n), axis=1).astype(np.int32)
-        return pairs
+        return rows_of_edges(sorted_edges(self.triangles, self.neighbors, chosen))
 
     def edges_of(self, segment: int) -> Indices:
         """The edges of a segment, int32, shape (k, 2), from its lexicographically smaller end to the other one.
@@ -402,6 +398,36 @@ class _Searched:
         return self.points, self.representatives
 
 
+def edge_keys(first: Indices, second: Indices) -> npt.NDArray[np.int64]:
+    """A number for each edge by its ends, whatever its direction; they sort as rows with the smaller end first."""
+    keys: npt.NDArray[np.int64] = np.minimum(first, second).astype(np.int64) << 32
+    return keys | np.maximum(first, second)
+
+
+def rows_of_edges(keys: npt.NDArray[np.int64]) -> Indices:
+    """The ends of edges, the smaller one first."""
+    rows = np.empty((len(keys), 2), np.int32)
+    rows[:, 0], rows[:, 1] = keys >> 32, keys & 0xFFFFFFFF
+    return rows
+
+
+def sorted_edges(
+    triangles: Indices,
+    neighbors: Optional[Indices],
+    chosen: Optional[npt.NDArray[np.bool_]] = None,
+) -> npt.NDArray[np.int64]:
+    """The keys of the edges opposite to all corners, or to chosen ones, each once, in increasing order."""
+    if neighbors is None:
+        corners = np.arange(triangles.size) if chosen is None else chosen.reshape(-1).nonzero()[0]
+        return np.unique(edge_keys(*ends_opposite(triangles, corners)))
+    # Of the two triangles of an edge, the second one has it.
+    is_second = neighbors < np.arange(len(triangles), dtype=np.int32)[:, None]
+    corners = (is_second if chosen is None else chosen & is_second).reshape(-1).nonzero()[0]
+    keys = edge_keys(*ends_opposite(triangles, corners))
+    keys.sort()
+    return keys
+
+
 def neighbors_of(triangles: Indices) -> Indices:
     """The triangle opposite to each corner, or -1."""
     corners = triangles.astype(np.int64)
@@ -516,18 +542,18 @@ def arrays_of_constrained(
     points, segments = with_lines(points, segments)
     coordinates = np.asarray(as_points(points), np.float64)
     pairs = as_segments(segments, len(coordinates))
-    seeds = _as_places(given["seeds"], "seeds", 3)
-    rows = {"hole": _as_places(given["holes"], "holes", 2), "seed": seeds[:, :2]}
+    seeds = _as_places(given.get("seeds"), "seeds", 3)
+    rows = {"hole": _as_places(given.get("holes"), "holes", 2), "seed": seeds[:, :2]}
     places = {}
     for name, members in rows.items():
-        of_sets = given[f"{name}_offsets"]
+        of_sets = given.get(f"{name}_offsets")
         if of_sets is not None:
             of_sets = as_offsets(of_sets, f"{name}_offsets")
         elif offsets is not None and len(offsets) != 2 and len(members):
             raise UsageError(f"{name}s of several sets need {name}_offsets")
         places[name] = members, of_sets
     carried = {
-        name: _as_markers(given[name], name, count)
+        name: _as_markers(given.get(name), name, count)
         for name, count in {
             "segment_markers": len(pairs),
             "point_markers": len(coordinates),
@@ -538,7 +564,7 @@ def arrays_of_constrained(
     triangulator = _triangulators.of_device(device, "areas_at" in refinement)
     result = _calls.triangulate_constrained(
         *(triangulator, coordinates, offsets, pairs, places, carried),
-        *(rules, refinement, wanted | {"areas"}),
+        *(rules, refinement, wanted),
     )
     del result["polygons"]
     return with_points(result, coordinates)

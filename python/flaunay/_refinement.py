@@ -17,6 +17,10 @@ Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 
+# The names of excuses by their numbers.
+_EXCUSES = np.array([""] + sorted(EXCUSE, key=EXCUSE.__getitem__))
+
+
 class Refining(TypedDict, total=False):
     """The keywords of `refine` that say what a mesh is refined to."""
 
@@ -73,8 +77,8 @@ class RefinementReport:
     @staticmethod
     def of(report: Mapping[str, Any]) -> RefinementReport:
         """Of what the library says, in which excuses are numbers."""
-        names = np.array([""] + sorted(EXCUSE, key=EXCUSE.__getitem__))
-        return RefinementReport(**{**report, "excuses": frozen(names[report["excuses"]])})
+        excuses = frozen(_EXCUSES[report["excuses"]])
+        return RefinementReport(**{**report, "excuses": excuses})
 
 
 def _number(given: Any, name: str) -> float:

@@ -294,7 +294,7 @@ def triangulate(
         if mode != "blocks":
             raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
         result = arrays_of_constrained(
-            points, segments, sets, given, rules, refining, wanted, device
+            points, segments, sets, given, rules, refining, wanted | {"areas"}, device
         )
     if places:
         _write(result, places)

@@ -6,19 +6,28 @@ those of that package; which points are added, and the order of rows, differ.
 
 from __future__ import annotations
 
+import functools
 import re
 from collections import Counter
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Optional, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _triangulate
+from flaunay import _calls, _triangulate, _triangulators
 from flaunay._arrays import ArrayLike
-from flaunay._constrained import ConstrainedTriangulation
+from flaunay._border import Border, ends_opposite
+from flaunay._constrained import (
+    arrays_of_constrained,
+    edge_keys,
+    rows_of_edges,
+    rules_of,
+    sorted_edges,
+)
 from flaunay._errors import UsageError
 from flaunay._interpolate import LinearInterpolator
+from flaunay._refinement import Refining
 from flaunay._voronoi import Voronoi
 
 Array = npt.NDArray[Any]
@@ -43,16 +52,20 @@ _MEMBERS: dict[str, tuple[type, int, str]] = {
 }
 
 
+@functools.lru_cache(maxsize=256)
 def _parsed(opts: str) -> tuple[Counter[str], dict[str, float]]:
-    """How often there is each switch, and the numbers of those that have one; `a` without one is "areas"."""
+    """How often there is each switch, and the numbers of those that have one; `a` without one is "areas".
+
+    Programs repeat the same few switches. Nobody changes the result.
+    """
     letters: Counter[str] = Counter()
     numbers: dict[str, float] = {}
     for letter, number in re.findall(r"([^\s-])((?:(?<=[qaSo])[\d.]+)?)", opts):
         switch = letter + number
         # The second string has those that change no result here.
-        if letter not in "pqarAcDenYSOj" "XiFlsCQVIzgvNEPB" and switch != "o1":
+        if letter not in "pqarAcDenuYSOj" "XiFlsCQVIzgvNEPB" and switch not in ("o1", "o2"):
             raise UsageError(f"switch {switch!r} of {opts!r} is not supported")
-        letters["areas" if switch == "a" else letter] += 1
+        letters["areas" if switch == "a" else switch if letter == "o" else letter] += 1
         if number:
             try:
                 numbers[letter] = float(number)
@@ -88,123 +101,196 @@ def _members(tri: Mapping[str, npt.ArrayLike]) -> Members:
     return given
 
 
-def _keys(pairs: Array, n: int) -> Array:
-    """A number for each edge between n points, whatever its direction."""
-    keys: Array = np.sort(pairs, axis=1).astype(np.int64) @ [n, 1]
-    return keys
-
-
-def _segments_of(given: Members, letters: Counter[str], others: Array) -> tuple[Array, Array]:
-    """Those that p reads, and others, and their markers."""
-    read = given if letters["p"] else {}
-    segments = np.concatenate([read.get("segments", others[:0]), others])
-    markers = np.zeros(len(segments), np.intc)
-    own = read.get("segment_markers", markers[:0]).ravel()
-    markers[: len(own)] = own
-    return segments, markers
-
-
-def _of_drawing(given: Members, letters: Counter[str]) -> tuple[Array, Array, Options]:
-    """Segments, their markers and options for points and segments."""
-    options: Options = {}
-    has_hull = letters["c"] or not letters["p"]
-    others = convex_hull(given["vertices"]) if has_hull else np.empty((0, 2), np.intc)
+def _of_drawing(given: Members, letters: Counter[str]) -> Options:
+    """Options for points and segments. Without segments, the hull is the border."""
+    options: Options = {"outside": "hull" if letters["p"] or letters["c"] else "keep"}
     if letters["p"]:
         options["holes"] = None if letters["O"] else given.get("holes")
         if "regions" in given:
             options["seeds"] = given["regions"][:, :3]
             if letters["areas"]:
                 options["seed_areas"] = np.maximum(given["regions"][:, 3], 0)
-    return *_segments_of(given, letters, others), options
+    return options
 
 
-def _of_mesh(given: Members, letters: Counter[str]) -> tuple[Array, Array, Options, Array]:
-    """The same for triangles, and the different rows of their attributes, which are numbered."""
-    n = len(given["vertices"])
+def _of_mesh(given: Members, letters: Counter[str]) -> tuple[Options, Optional[Array]]:
+    """Options for triangles, whose border is kept, and the different rows of their attributes, if they have any."""
     triangles = given.get("triangles", np.empty((0, 3), np.intc))
-    if not len(triangles) or triangles.min() < 0 or triangles.max() >= n:
+    if not len(triangles) or triangles.min() < 0 or triangles.max() >= len(given["vertices"]):
         raise UsageError("switch 'r' needs triangles, and these must be of the vertices")
-    rows = given.get("triangle_attributes", np.zeros((len(triangles), 1)))
-    kinds, kind = np.unique(rows, axis=0, return_inverse=True)
-    kind = kind.ravel()
-    # Edges with one triangle of a kind.
-    ends = np.stack([np.roll(triangles, -k, axis=1) for k in (1, 2)], axis=2).reshape(-1, 2)
-    sides = np.stack([_keys(ends, n), np.repeat(kind, 3)], axis=1)
-    _, first, counts = np.unique(sides, axis=0, return_index=True, return_counts=True)
-    border = ends[first[counts == 1]]
-    options: Options = {"triangles": triangles, "triangle_attributes": kind}
+    options: Options = {"outside": "keep", "triangles": triangles}
     if letters["areas"] and "triangle_max_area" in given:
         options["triangle_areas"] = np.maximum(given["triangle_max_area"].ravel(), 0)
     if "triangle_attributes" not in given:
-        kinds = kinds[:, :0]
-    return *_segments_of(given, letters, border), options, kinds
+        return options, None
+    kinds, kind = np.unique(given["triangle_attributes"], axis=0, return_inverse=True)
+    options["triangle_attributes"] = kind.ravel()
+    return options, kinds
 
 
-def _refined(points: Array, segments: Array, markers: Array, options: Options) -> ConstrainedTriangulation:
-    # The border is of segments, also where it is the hull, whose parts are rounded.
-    outside = "keep" if "triangles" in options else "hull"
-    mesh = _triangulate.triangulate(
-        points, segments, segment_markers=markers, crossings="split", outside=outside, **options
+def _triangulated(given: Members, letters: Counter[str], options: Options) -> Members:
+    """The arrays of the triangulation. Those of segments are there if there is more to do than to join points."""
+    points = given["vertices"]
+    if options == {"outside": "keep"}:
+        triangulator = _triangulators.of_device(None)
+        mesh = _calls.triangulate(triangulator, points, None, "blocks", {"neighbors"})
+        return {**mesh, "points": points}
+    read = given if letters["p"] else {}
+    segments = read.get("segments", np.empty((0, 2), np.intc))
+    markers = read.get("segment_markers", np.zeros(len(segments), np.intc)).ravel()
+    if letters["c"] and not letters["r"]:
+        hull = convex_hull(points)
+        segments = np.concatenate([segments, hull])
+        markers = np.concatenate([markers, np.zeros(len(hull), np.intc)])
+    rules = rules_of("split", options.pop("outside"), "nesting", False)
+    others = {name: options.pop(name, None) for name in ("holes", "seeds")}
+    others["segment_markers"] = markers
+    refining = cast(Refining, options)
+    mesh = arrays_of_constrained(
+        points, segments, None, others, rules, refining, {"neighbors"}, None
     )
-    return mesh
+    return {**mesh, "segments": segments}
 
 
-def _attributes(points: Array, values: Array, segments: Array, owners: Array) -> Array:
-    """Those of all points, from those of the first ones. owners: the segment that each is on, or -1."""
-    count = len(values)
-    rest, start = points[count:], points[:count]
-    added = LinearInterpolator(start, values)(rest)
-    split = np.flatnonzero(owners[count:] >= 0)
-    a, b = segments[owners[count:][split]].T
-    from_a, from_b = (np.hypot(*(rest[split] - start[ends]).T)[:, None] for ends in (a, b))
-    added[split] = (from_b * values[a] + from_a * values[b]) / (from_a + from_b)
-    return np.concatenate([values, added])
-
-
-def _result(
-    mesh: ConstrainedTriangulation, segments: Array, given: Members, letters: Counter[str]
-) -> Members:
-    """The members for a mesh."""
-    assert mesh.edge_markers is not None
-    markers, owners = mesh.edge_markers, mesh.edge_segments
-    n, count, pairs = len(mesh.points), len(given["vertices"]), mesh.constraint_edges
-    all_keys, keys = _keys(mesh.edges, n), _keys(pairs, n)
-    # As in Triangle, the border and its vertices have the marker 1 unless they are given others.
-    assert mesh.neighbors is not None
-    on_border = np.isin(keys, _keys(mesh._edges_where(np.less(mesh.neighbors, 0)), n))
-    vertex_markers, vertex_owners = np.zeros(n, np.intc), np.full(n, -1)
-    vertex_markers[pairs[on_border]] = 1
+def _ends(mesh: Members, count: int) -> tuple[Array, Array, Array]:
+    """The points behind the first ones that are on edges between these, and both ends of each such edge."""
+    n, segments = len(mesh["points"]), mesh["segments"]
+    edges, segments_of_edges = mesh["constraint_edges"], mesh["edge_segments"]
+    owners = np.full(n, -1)
     # From the last segment to the first, which counts.
-    order = np.argsort(-owners, kind="stable")
-    vertex_owners[pairs[order]] = owners[order, None]
-    order = order[markers[order] != 0]
-    vertex_markers[pairs[order]] = markers[order, None]
-    own = given.get("vertex_markers", np.zeros(count, np.intc)).ravel()
-    vertex_markers[:count] = np.where(own != 0, own, vertex_markers[:count])
-    markers = np.where(on_border & (markers == 0), 1, markers)[:, None]
+    order = np.argsort(-segments_of_edges, kind="stable")
+    owners[edges[order]] = segments_of_edges[order, None]
+    split = np.flatnonzero(owners[count:] >= 0) + count
+    if len(edges):
+        # Behind the given segments are those of a mesh's border.
+        pieces = mesh["piece_edges"][mesh["piece_offsets"][len(segments) : -1]]
+        last = mesh["piece_edges"][mesh["piece_offsets"][len(segments) + 1 :] - 1]
+        border = np.stack([edges[pieces[:, 0], 0], edges[last[:, 1] - 1, 1]], axis=1)
+        return split, *np.concatenate([segments, border])[owners[split]].T
+    # Without segments, the hull, which begins with a given point.
+    hull = mesh["hull"]
+    is_given = hull < count
+    before = np.cumsum(is_given) - 1
+    corners = hull[is_given]
+    split = hull[~is_given]
+    return split, corners[before[~is_given]], np.roll(corners, -1)[before[~is_given]]
+
+
+def _attributes(mesh: Members, values: Array) -> Array:
+    """Those of all points, from those of the first ones."""
+    count, points = len(values), mesh["points"]
+    if len(points) == count:
+        return values
+    all_values = np.concatenate([values, LinearInterpolator(points[:count], values)(points[count:])])
+    split, a, b = _ends(mesh, count)
+    from_a, from_b = (np.hypot(*(points[split] - points[ends]).T)[:, None] for ends in (a, b))
+    all_values[split] = (from_b * values[a] + from_a * values[b]) / (from_a + from_b)
+    return all_values
+
+
+def _border(mesh: Members) -> tuple[Array, Array]:
+    """The ends of the edges that one triangle has. Without segments, the hull is the border."""
+    triangles, hull = mesh["triangles"], mesh["hull"]
+    if len(mesh.get("constraint_edges", ())):
+        border = Border(mesh["points"], triangles, mesh["neighbors"])
+        return border.firsts, border.seconds
+    hull = hull if len(triangles) else hull[:0]
+    return hull, np.concatenate([hull[1:], hull[:1]])
+
+
+def _are_in_mesh(mesh: Members, border: tuple[Array, Array]) -> tuple[Array, Array]:
+    """For each constraint edge whether triangles have it, and whether it is on the border."""
+    first, second = mesh["constraint_edges"].T
+    ahead = np.full(len(mesh["points"]), -1, np.intc)
+    ahead[border[0]] = border[1]
+    if (ahead[border[0]] == border[1]).all():
+        is_border = (ahead[first] == second) | (ahead[second] == first)
+    else:
+        # A vertex with several parts of the border.
+        is_border = np.isin(edge_keys(first, second), edge_keys(*border))
+    # Those inside are in two triangles.
+    inside = mesh["constrained"] & (mesh["neighbors"] >= 0)
+    if 2 * np.count_nonzero(is_border) + np.count_nonzero(inside) == 2 * len(first):
+        return np.full(len(first), True), is_border
+    keys = edge_keys(*ends_opposite(mesh["triangles"], inside.reshape(-1).nonzero()[0]))
+    return is_border | np.isin(edge_keys(first, second), keys), is_border
+
+
+def _result(mesh: Members, given: Members, letters: Counter[str]) -> Members:
+    """The members for the arrays of a triangulation."""
+    points, triangles, neighbors = mesh["points"], mesh["triangles"], mesh["neighbors"]
+    border = _border(mesh)
+    pairs = mesh.get("constraint_edges", np.empty((0, 2), np.intc))
+    markers = mesh.get("edge_markers", pairs[:, 0])
+    # As in Triangle, the border and its vertices have the marker 1 unless they are given others.
+    vertex_markers = np.zeros(len(points), np.intc)
+    vertex_markers[border[0]] = 1
+    marked = np.flatnonzero(markers)
+    if len(marked):
+        # From the last segment to the first, which counts.
+        order = marked[np.argsort(-mesh["edge_segments"][marked], kind="stable")]
+        vertex_markers[pairs[order]] = markers[order, None]
+    own = given.get("vertex_markers")
+    if own is not None:
+        first = vertex_markers[: len(own)]
+        np.copyto(first, own.ravel(), where=own.ravel() != 0)
     result: Members = {
-        "vertices": mesh.points,
+        "vertices": points,
         "vertex_markers": vertex_markers[:, None],
-        "triangles": mesh.triangles,
+        "triangles": triangles,
     }
     if "vertex_attributes" in given:
-        values = given["vertex_attributes"]
-        result["vertex_attributes"] = _attributes(mesh.points, values, segments, vertex_owners)
-    kept = np.isin(keys, all_keys)
-    if letters["p"] or letters["c"]:
-        result["segments"], result["segment_markers"] = pairs[kept], markers[kept]
+        result["vertex_attributes"] = _attributes(mesh, given["vertex_attributes"])
+    has_segments = letters["p"] or letters["c"]
+    if has_segments or (letters["e"] and len(marked)):
+        kept, on_border = _are_in_mesh(mesh, border)
+        pairs, markers = pairs[kept], markers[kept]
+        markers = np.where(on_border[kept] & (markers == 0), 1, markers)
+    if has_segments:
+        result["segments"], result["segment_markers"] = pairs, markers[:, None]
     if letters["p"]:
         result.update({name: given[name] for name in ("holes", "regions") if name in given})
     if letters["n"]:
-        result["neighbors"] = mesh.neighbors
-    if letters["e"]:
-        edge_markers = np.zeros((len(mesh.edges), 1), np.intc)
-        edge_markers[np.searchsorted(all_keys, keys[kept])] = markers[kept]
-        result["edges"], result["edge_markers"] = mesh.edges, edge_markers
+        result["neighbors"] = neighbors
+    if letters["e"] or letters["o2"]:
+        keys = sorted_edges(triangles, neighbors)
+        edge_markers = np.zeros((len(keys), 1), np.intc)
+        edge_markers[np.searchsorted(keys, edge_keys(*border))] = 1
+        if len(marked):
+            edge_markers[np.searchsorted(keys, edge_keys(*pairs.T))] = markers[:, None]
+        result["edges"], result["edge_markers"] = rows_of_edges(keys), edge_markers
     return result
 
 
-def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
+def _jettison(result: Members) -> None:
+    """Leaves out vertices of no triangle."""
+    used = np.unique(result["triangles"])
+    for name in result.keys() & {"vertices", "vertex_markers", "vertex_attributes"}:
+        result[name] = result[name][used]
+    for name in result.keys() & {"triangles", "segments", "edges"}:
+        result[name] = np.searchsorted(used, result[name]).astype(np.intc)
+
+
+def _add_midpoints(result: Members) -> None:
+    """Six nodes per triangle: the fourth to the sixth are the midpoints of the edges opposite to its corners."""
+    a, b = result["edges"].T
+    for name in result.keys() & {"vertices", "vertex_attributes"}:
+        values = result[name]
+        result[name] = np.concatenate([values, values[a] / 2 + values[b] / 2])
+    first, keys = len(result["vertex_markers"]), edge_keys(a, b)
+    result["vertex_markers"] = np.concatenate([result["vertex_markers"], result["edge_markers"]])
+    x, y, z = result["triangles"].T
+    nodes = [np.searchsorted(keys, edge_keys(*ends)) for ends in ((y, z), (z, x), (x, y))]
+    middles = np.stack(nodes, axis=1).astype(np.intc) + np.intc(first)
+    result["triangles"] = np.hstack([result["triangles"], middles])
+
+
+def triangulate(
+    tri: Mapping[str, npt.ArrayLike],
+    opts: str = "",
+    *,
+    areas_at: Optional[Callable[[Array], npt.ArrayLike]] = None,
+) -> Members:
     """Triangulates what a dictionary has, as ``triangle.triangulate`` does.
 
     Parameters
@@ -215,8 +301,12 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
         also ``triangles``, ``triangle_attributes`` and ``triangle_max_area``.
     opts : str
         Switches of Triangle: p, q (20 degrees, or a number up to 34), a (a number, or the areas of regions or
-        triangles), r, A, c, D, e, n, Y, YY, S, O, j. Those about how Triangle works and what it writes, X,
-        i, F, l, s, C, Q, V, I, z, g, v, N, E, P and B, change nothing.
+        triangles), r, A, c, D, e, n, u, Y, YY, S, O, j, o2. Those about how Triangle works and what it writes,
+        X, i, F, l, s, C, Q, V, I, z, g, v, N, E, P and B, change nothing.
+    areas_at : callable
+        For the switch u, what ``triunsuitable`` is in C: takes the centroids of triangles, an array of shape
+        (k, 2), and returns the areas that they may have, of shape (k,), or one for all; 0 for any. It is called
+        once a round, for all triangles that are new.
 
     Returns
     -------
@@ -226,12 +316,16 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
     Raises
     ------
     UsageError
-        A ValueError. For other switches, such as o2, u and w, and for members of other names or shapes.
+        A ValueError. For other switches, such as w, for members of other names or shapes, and for u without
+        `areas_at`, or the other way round.
     InputError, DeviceError
-        As `flaunay.triangulate`.
+        As `flaunay.triangulate`. What `areas_at` raises is raised.
 
     Notes
     -----
+    With o2, triangles have six nodes: after the corners the midpoints of the edges opposite to the first, the second
+    and the third corner, which are the last ``vertices``. Their markers are those of the edges.
+
     Attributes of vertices that are added are linear between the ends of their segment, or else in the
     Delaunay triangles of the given vertices. With r, triangles are made anew of all vertices, of segments (with
     p), of the border, and of edges between triangles of different attributes; the largest area of a triangle
@@ -246,31 +340,39 @@ def triangulate(tri: Mapping[str, npt.ArrayLike], opts: str = "") -> Members:
     ([[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]], ['triangles', 'vertex_markers', 'vertices'])
     """
     letters, numbers = _parsed(opts)
+    if (areas_at is not None) != (letters["u"] > 0):
+        raise UsageError("switch 'u' asks for the function areas_at, and only that switch does")
     given = _members(tri)
+    kinds = None
     if letters["r"]:
-        segments, markers, options, kinds = _of_mesh(given, letters)
+        options, kinds = _of_mesh(given, letters)
     else:
-        segments, markers, options = _of_drawing(given, letters)
-        kinds = None
-    options["min_angle"] = numbers.get("q", 20) if letters["q"] else 0
-    options["max_area"] = numbers.get("a", 0)
-    options["keep_edges"] = ("none", "border", "all")[min(letters["Y"], 2)]
+        options = _of_drawing(given, letters)
+    if letters["q"] and numbers.get("q") != 0:
+        options["min_angle"] = numbers.get("q", 20)
+    if "a" in numbers:
+        options["max_area"] = numbers["a"]
+    if areas_at is not None:
+        options["areas_at"] = areas_at
+    if letters["D"]:
+        options["conforming"] = True
+    if letters["Y"]:
+        options["keep_edges"] = "border" if letters["Y"] == 1 else "all"
     if letters["S"]:
         options["most_points"] = int(numbers.get("S", 0))
-    options["conforming"] = letters["D"] > 0
-    mesh = _refined(given["vertices"], segments, markers, options)
-    result = _result(mesh, segments, given, letters)
-    of_seeds = mesh.triangle_attributes
-    if of_seeds is not None and kinds is not None and kinds.size:
-        result["triangle_attributes"] = kinds[of_seeds.astype(np.intp)]
-    elif of_seeds is not None and kinds is None and letters["A"]:
-        result["triangle_attributes"] = of_seeds[:, None]
+    mesh = _triangulated(given, letters, options)
+    result = _result(mesh, given, letters)
+    attributes = mesh.get("triangle_attributes")
+    if attributes is not None and kinds is not None:
+        result["triangle_attributes"] = kinds[attributes.astype(np.intp)]
+    elif attributes is not None and letters["A"]:
+        result["triangle_attributes"] = attributes[:, None]
     if letters["j"]:
-        used = np.unique(mesh.triangles)
-        for name in result.keys() & {"vertices", "vertex_markers", "vertex_attributes"}:
-            result[name] = result[name][used]
-        for name in result.keys() & {"triangles", "segments", "edges"}:
-            result[name] = np.searchsorted(used, result[name]).astype(np.intc)
+        _jettison(result)
+    if letters["o2"]:
+        _add_midpoints(result)
+        if not letters["e"]:
+            del result["edges"], result["edge_markers"]
     return {name: np.array(rows) for name, rows in result.items()}
 
 

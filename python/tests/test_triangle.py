@@ -6,6 +6,7 @@ from conftest import areas, as_set, check_neighbors
 
 import flaunay
 import flaunay.triangle as tr
+from flaunay import _calls
 
 
 def ring(*sizes):
@@ -201,6 +202,75 @@ def test_limits_and_vertices_of_no_triangle():
     assert as_set(jettisoned["segments"]) < as_set(jettisoned["edges"])
 
 
+def test_six_nodes():
+    attributes = np.arange(8)[:, None] ** 2
+    for opts in ("po2", "pqejo2", "pqa0.1no2"):
+        mesh = tr.triangulate({**BOX, "vertex_attributes": attributes}, opts)
+        plain = tr.triangulate({**BOX, "vertex_attributes": attributes}, opts.replace("o2", "e"))
+        without = set() if "e" in opts else {"edges", "edge_markers"}
+        assert mesh.keys() == plain.keys() - without
+        assert np.array_equal(mesh["triangles"][:, :3], plain["triangles"])
+        n, corners, middles = len(plain["vertices"]), *np.hsplit(mesh["triangles"], 2)
+        # Triangle's order: opposite to the first corner, to the second, to the third.
+        for name in ("vertices", "vertex_attributes"):
+            values = mesh[name]
+            ends = [np.roll(values[corners], -k, axis=1) for k in (1, 2)]
+            assert np.array_equal(values[middles], ends[0] / 2 + ends[1] / 2)
+            assert np.array_equal(values[:n], plain[name])
+        # One for each edge, with its marker.
+        assert len(mesh["vertices"]) == n + len(plain["edges"])
+        assert np.array_equal(mesh["vertex_markers"][n:], plain["edge_markers"])
+
+
+def test_areas_by_place():
+    seen = []
+
+    def areas_at(places):
+        seen.append(len(places))
+        return np.where(places[:, 0] < 1, 0.01, 0)
+
+    mesh = tr.triangulate(BOX, "pqu", areas_at=areas_at)
+    x = mesh["vertices"][mesh["triangles"], 0].mean(axis=1)
+    assert sizes(mesh)[x < 1].max() <= 0.01 < sizes(mesh)[x > 1.5].max() and max(seen) > 8
+    with pytest.raises(ValueError, match="'u'.*areas_at"):
+        tr.triangulate(BOX, "pq", areas_at=areas_at)
+    with pytest.raises(ZeroDivisionError):
+        tr.triangulate(BOX, "pu", areas_at=lambda places: 1 / 0)
+
+
+def test_one_call_of_the_library_and_no_array_twice(monkeypatch):
+    calls = []
+    for name in ("triangulate", "triangulate_constrained"):
+        function = getattr(_calls.library, name)
+        monkeypatch.setattr(
+            _calls.library, name, lambda *given, of=function: calls.append(of) or of(*given)
+        )
+    random = {"vertices": np.random.default_rng(3).random((50, 2))}
+    for opts in ("", "en", "qe", "a0.1"):
+        calls.clear()
+        mesh = tr.triangulate(random, opts)
+        assert len(calls) == 1 and all(rows.base is None for rows in mesh.values())
+    calls.clear()
+    tr.triangulate(BOX, "pqen")
+    tr.triangulate(tr.triangulate(BOX, "p"), "rpa0.1")
+    assert len(calls) == 3
+
+
+def test_parts_of_the_border_that_meet():
+    bow = {
+        "vertices": [[0, 0], [1, 1], [0, 2], [2, 0], [2, 2], [5, 5], [6, 6]],
+        "segments": [[0, 1], [1, 2], [2, 0], [1, 3], [3, 4], [4, 1], [5, 6]],
+        "segment_markers": [4, 0, 2, 0, 0, 9, 8],
+    }
+    mesh = tr.triangulate(bow, "pe")
+    # The segment outside is none of the mesh, but marks its vertices.
+    marks = dict(zip(map(tuple, mesh["segments"].tolist()), mesh["segment_markers"].ravel()))
+    assert marks == {(0, 1): 4, (2, 1): 1, (0, 2): 2, (1, 3): 1, (3, 4): 1, (1, 4): 9}
+    assert mesh["vertex_markers"].ravel().tolist() == [4, 4, 2, 1, 9, 8, 8]
+    edges = dict(zip(map(tuple, mesh["edges"].tolist()), mesh["edge_markers"].ravel()))
+    assert edges == {tuple(sorted(ends)): mark for ends, mark in marks.items()}
+
+
 def test_switches_that_change_nothing():
     plain = tr.triangulate(BOX, "pq30")
     for opts in ("-p q30.0", "XiFlsCQVVIzgvo1pq30", "pq30NEPB"):
@@ -213,8 +283,8 @@ def test_switches_that_change_nothing():
 @pytest.mark.parametrize(
     ("opts", "message"),
     [
-        ("po2", "'o2'"),
-        ("pu", "'u'"),
+        ("po3", "'o3'"),
+        ("pu", "'u'.*areas_at"),
         ("pw", "'w'"),
         ("p3", "'3'"),
         ("pq35", "'q35'"),

@@ -10,6 +10,8 @@ set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 prefix="$WORK/prefix"
+# What programs ask for: before 1.0.0, a library of the same minor version.
+soname="libflaunay.so.$(sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/' <<<"$VERSION")"
 static="$WORK/static"
 has_c=false
 [[ ! -e $SOURCE/src/include/flaunay/flaunay.h ]] || has_c=true
@@ -42,9 +44,9 @@ uses_installed() {
   for program in $(consumers_of "$1"); do
     # Into variables first: grep -q would end the pipe, and with pipefail the test, before they are through.
     needed="$(readelf -d "$program")"
-    [[ $needed == *'[libflaunay.so.0]'* ]] || fail "$program does not ask for libflaunay.so.0"
+    [[ $needed == *"[$soname]"* ]] || fail "$program does not ask for $soname"
     loaded="$(ldd "$program" | grep libflaunay)"
-    [[ $loaded == *"=> $prefix/"*'/libflaunay.so.0 '* ]] || fail "$program loads another library: $loaded"
+    [[ $loaded == *"=> $prefix/"*"/$soname "* ]] || fail "$program loads another library: $loaded"
   done
 }
 
@@ -108,7 +110,7 @@ case "$1" in
     printed="$(mpirun --allow-run-as-root --oversubscribe -n 3 "$WORK/mpi/consumer_mpi")"
     [[ $printed == '9 points, 8 triangles, 8 hull vertices' ]] || fail "it printed $printed"
     loaded="$(ldd "$WORK/mpi/consumer_mpi" | grep libflaunay)"
-    [[ $loaded == *"=> $prefix/"*'/libflaunay_mpi.so.0 '* ]] || fail "it loads another library: $loaded"
+    [[ $loaded == *"=> $prefix/"*"/${soname/flaunay/flaunay_mpi} "* ]] || fail "it loads another library: $loaded"
     # The header alone, strictly.
     echo '#include <flaunay/mpi.hpp>' >"$WORK/mpi/header.cpp"
     read -ra flags <<<"$(pkg-config --cflags ompi-c)"

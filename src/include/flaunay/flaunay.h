@@ -17,10 +17,12 @@
 /// OpenCL handles that the caller passes (contexts, queues, events, buffers) must be alive when the call is
 /// made; the behaviour with a released handle is undefined.
 ///
-/// The binary interface is stable. Enumerators keep their values; struct members that hold one are int.
-/// Initialise structs that you pass with {0} ({} in C++), which sets every default. Later versions may use
-/// their reserved members; a library that does not know such a member reports an error if it is not 0.
-/// Structs that flaunay returns may become longer in later versions.
+/// The binary interface is stable for as long as the name that a program loads the library by, such as
+/// libflaunay.so.0.1, which changes with every minor version before 1.0.0 and with every major version from
+/// then on. flaunay/version.h has the version for the preprocessor. Enumerators keep their values; struct
+/// members that hold one are int. Initialise structs that you pass with {0} ({} in C++), which sets every
+/// default. Later versions may use their reserved members; a library that does not know such a member reports
+/// an error if it is not 0. Structs that flaunay returns may become longer in later versions.
 ///
 /// Two things are available in C++ only: partitions for other programs, and counted operations.
 #ifndef FLAUNAY_H
@@ -31,6 +33,7 @@
 
 #include "flaunay/export.h"
 #include "flaunay/opencl.h"
+#include "flaunay/version.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,4 +1,8 @@
 // flaunay: exact two-dimensional Delaunay triangulation on any OpenCL device.
+//
+// Programs contain the layout of the structs and classes here, so no version changes one without a new name
+// of the shared library: libflaunay.so.0.1 is that of all 0.1.x. With another name, programs must be compiled
+// again.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +16,7 @@
 
 #include "flaunay/export.h"
 #include "flaunay/opencl.h"
+#include "flaunay/version.h"
 
 /// Exact two-dimensional Delaunay triangulation on any OpenCL device. Functions that fail throw Error.
 namespace flaunay {
