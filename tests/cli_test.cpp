@@ -1946,8 +1946,8 @@ TEST_F(CommandConstraintsTest, MeshesInSpaceHaveTheHeightsOfTheInput) {
   const std::string plane = write("plane.geojson", R"({"type": "MultiLineString", "coordinates":
       [[[0,0,0],[4,0,4],[4,4],[0,4,8]], [[0,1,0],[4,3,6]], [[1,0,1],[1,4,9]]]})");
   outcome = run_well({"triangulate", plane, "--crossings", "split", "--max-area", "0.5", "-o", path("p.obj"),
-                      "--points", path("p.csv")});
-  const std::vector<double> points = read_text_points(path("p.csv"));
+                      "--points", path("p.txt")});
+  const std::vector<double> points = read_text_points(path("p.txt"));
   const std::vector<double> found = heights_of(contents(path("p.obj")));
   ASSERT_EQ(2 * found.size(), points.size());
   ASSERT_GT(found.size(), 20U);
