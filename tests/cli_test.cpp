@@ -1914,6 +1914,74 @@ TEST_F(CommandConstraintsTest, AMapHasItsPolygonsAndKnowsThem) {
   EXPECT_EQ(read_array(path("q.npy")).values, (std::vector<std::int32_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1}));
 }
 
+// The z of the points of a file .obj.
+std::vector<double> heights_of(const std::string& obj) {
+  std::vector<double> heights;
+  std::istringstream lines(obj);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("v ")) heights.push_back(std::stod(line.substr(line.rfind(' '))));
+  }
+  return heights;
+}
+
+TEST_F(CommandConstraintsTest, MeshesInSpaceHaveTheHeightsOfTheInput) {
+  const std::string text = write("a.csv", "id;e;n;h\n1;0;0;1,5\n2;2;0;2\n3;0;2;3\n");
+  Outcome outcome = run_well({"triangulate", text, "--columns", "e,n,h", "-o", path("a.obj")});
+  EXPECT_EQ(heights_of(contents(path("a.obj"))), (std::vector<double>{1.5, 2, 3}));
+  EXPECT_NE(outcome.out.find("third number"), std::string::npos) << outcome.out;
+  outcome = run_well({"triangulate", text, "--columns", "1,2,3", "-o", path("a.ele")});
+  EXPECT_NE(outcome.out.find("a.csv has heights, which"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run_well({"triangulate", text, "--columns", "e,n", "-o", path("a.ele")}).out.find("height"),
+            std::string::npos);
+  run_well({"verify", text, path("a.ele"), "--columns", "e,n"});
+
+  const std::vector<double> scan = [&] {
+    run_well({"triangulate", data("garden.las"), "-o", path("g.obj"), "--device", "host"});
+    return heights_of(contents(path("g.obj")));
+  }();
+  const auto [low, high] = std::minmax_element(scan.begin(), scan.end());
+  EXPECT_TRUE(1353 < *low && *low < 1356 && 1390 < *high && *high < 1405) << *low << " to " << *high;
+
+  // Heights of points that are added: on a segment those of its line, elsewhere of the triangles.
+  const std::string plane = write("plane.geojson", R"({"type": "MultiLineString", "coordinates":
+      [[[0,0,0],[4,0,4],[4,4],[0,4,8]], [[0,1,0],[4,3,6]], [[1,0,1],[1,4,9]]]})");
+  outcome = run_well({"triangulate", plane, "--crossings", "split", "--max-area", "0.5", "-o", path("p.obj"),
+                      "--points", path("p.txt")});
+  const std::vector<double> points = read_text_points(path("p.txt"));
+  const std::vector<double> found = heights_of(contents(path("p.obj")));
+  ASSERT_EQ(2 * found.size(), points.size());
+  ASSERT_GT(found.size(), 20U);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double x = points[2 * i], y = points[2 * i + 1];
+    if (x == 1 && y != 1.5) EXPECT_DOUBLE_EQ(found[i], 1 + 2 * y);
+    if (y == 1 + x / 2) EXPECT_NEAR(found[i], 1.5 * x, 1e-12) << "the line that comes first";
+    EXPECT_TRUE(found[i] >= 0 && found[i] <= 9) << found[i];
+  }
+}
+
+TEST_F(CommandConstraintsTest, TrianglesHaveThePropertiesOfTheirPolygons) {
+  const std::string polygons = R"({"type": "FeatureCollection", "features": [
+      {"type": "Feature", "properties": {"name": "A"}, "geometry":
+       {"type": "Polygon", "coordinates": [[[0,0],[4,0],[4,4],[0,4],[0,0]]]}},
+      {"type": "Feature", "properties": {"name": "B"}, "geometry":
+       {"type": "Polygon", "coordinates": [[[4,0],[8,0],[4,4],[4,0]]]}}]})";
+  const std::string map = write("map.geojson", polygons);
+  run_well({"triangulate", map, "-o", path("out.geojson")}, kNoPlatform);
+  const auto features = nlohmann::json::parse(contents(path("out.geojson")))["features"];
+  ASSERT_EQ(features.size(), 3U);
+  for (const auto& feature : features) {
+    const auto& properties = feature["properties"];
+    double most = 0;
+    for (const auto& corner : feature["geometry"]["coordinates"][0])
+      most = std::max(most, corner[0].get<double>());
+    EXPECT_EQ(properties["name"], most > 4 ? "B" : "A");
+    EXPECT_EQ(properties["polygon"], most > 4 ? 1 : 0);
+  }
+  const Outcome outcome =
+      run_well({"triangulate", map, "--hole", "1,1", "-o", path("out.geojson")}, kNoPlatform);
+  EXPECT_NE(outcome.out.find("no properties of polygons"), std::string::npos) << outcome.out;
+}
+
 TEST_F(CommandConstraintsTest, RingsMayHaveAnyDirection) {
   const auto square = [](int low, int high, bool is_clockwise) {
     using Corners = std::vector<std::vector<int>>;

@@ -66,6 +66,67 @@ def obj(path):
     return corners, np.array([row[1:] for row in rows if row[0] == "f"], int) - 1
 
 
+def check_choices(folder):
+    """Points of scans that do not count, text in columns, and maps in other places than the points."""
+    square = np.array([[0.0, 0, 1], [4, 0, 1], [0, 4, 1], [4, 4, 1]])
+    size, plain = ("--resolution", "1"), np.ones((4, 4))
+    # In this format the class has five bits, and then there are flags, of which the last one is withheld.
+    odd = np.array([[1.0, 1, 900], [2, 2, 800], [3, 3, -700], [3, 2, 3]])
+    scan, places = folder / "odd.las", np.concatenate([square, odd])
+    classes = np.array([2, 2, 2, 2, 0x82, 18, 7, 0x22], np.uint8)
+    las(scan, places, classes, np.ones((8, 2), int), offset=(0, 0, 0))
+    done = run(scan, *size, "-o", folder / "odd.npy")
+    assert "5 points, without 1 withheld ones, without 2 of noise, 4 x 4" in done.stdout, done.stdout
+    assert np.load(folder / "odd.npy").max() < 3
+    assert raster(folder, scan, *size, "--classes", "2,7,18").min() < -100
+    assert raster(folder, scan, *size, "--classes", "2").max() < 3
+    classes[:] = 0x82
+    las(scan, places, classes, np.ones((8, 2), int), offset=(0, 0, 0))
+    fails(3, "no points", "8 withheld", arguments=(scan, *size, "-o", folder / "odd.npy"))
+
+    text = folder / "decimal.xyz"
+    text.write_text("1,4 2,7 1,7\n1,5 2,5 1\n")
+    fails(3, "decimal.xyz", "line 1", "semicolons", arguments=(text, *size, "-o", folder / "odd.npy"))
+    text.write_text("nr;h;n;e\n1;1,0;0;0\n2;1,0;0;4\n3;1,0;4;0\n4;1,0;4;4,0\n")
+    assert same(raster(folder, text, *size, "--columns", "e,n,h"), plain)
+    assert same(raster(folder, text, *size, "--columns", "3,n,1"), plain)
+    fails(3, "'name'", "nr, h, n, e", arguments=(text, *size, "-o", folder / "odd.npy", "--columns", "e,n,name"))
+
+    far, huge, lines = folder / "far.geojson", folder / "huge.geojson", folder / "cross.geojson"
+    ring = [[11.5, 48.1], [11.6, 48.1], [11.6, 48.2], [11.5, 48.1]]
+    far.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
+    huge.write_text('{"type": "Polygon", "coordinates": [[[-1e308, -1e308], [1e308, -1e308], [1e308, 1e308]]]}')
+    np.save(folder / "square.npy", square)
+    square = folder / "square.npy"
+    for option in "--breaklines", "--flat", "--boundary":
+        arguments = (square, *size, "-o", folder / "odd.npy", option, far)
+        fails(3, option, "far.geojson", "same coordinate system", arguments=arguments)
+    fails(3, "huge.geojson", "2^509", arguments=(square, *size, "-o", folder / "odd.npy", "--boundary", huge))
+    line = {"type": "LineString", "coordinates": [[1, 1, 1], [2, 2, 1]]}
+    far.write_text(json.dumps({"crs": {"type": "name", "properties": {"name": "EPSG:25833"}}, **line}))
+    fails(3, "25833", "25832", arguments=(square, *size, "-o", folder / "odd.npy", "--breaklines", far, "--crs", "EPSG:25832"))
+    assert same(raster(folder, square, *size, "--breaklines", far, "--crs", "EPSG:25833"), plain)
+    fails(2, "--max-edge", arguments=(square, *size, "-o", folder / "odd.npy", "--max-edge", "0"))
+
+    # Breaklines that cross are cut at the height of the first one, in chunks, too, and lakes stay flat.
+    lines.write_text('{"type": "MultiLineString", "coordinates": [[[0, 2, 0], [4, 2, 8]], [[2, 0, 1], [2, 4, 9]]]}')
+    point = ("--resolution", "2", "--pixel-is", "point", "--breaklines", lines)
+    fails(3, "cross.geojson", "segments", arguments=(square, *point, "-o", folder / "odd.npy"))
+    cut = raster(folder, square, *point, "--crossings", "split")
+    assert cut.tolist() == [[1, 9, 1], [0, 4, 8], [1, 1, 1]]
+    assert same(raster(folder, square, *point, "--crossings", "split", "-o", folder / "cut.obj"), cut)
+    far.write_text('{"type": "Polygon", "coordinates": [[[1, 1, 3], [3, 1, 3], [3, 3, 3], [1, 3, 3], [1, 1, 3]]]}')
+    fine = ("--resolution", "0.5", "--crossings", "split", "--breaklines", lines, "--flat", far)
+    corners, _ = obj_of(folder, square, *fine)
+    on_shore = np.abs(corners[:, :2] - 2).max(axis=1) == 1
+    assert on_shore.sum() >= 8 and (corners[on_shore, 2] == 3).all(), corners
+
+
+def obj_of(folder, *arguments):
+    assert run(*arguments, "-o", folder / "of.obj").returncode == 0
+    return obj(folder / "of.obj")
+
+
 def check_garden(folder):
     """A real scan: a garden with two houses and a tree."""
     garden = Path(__file__).parent / "data" / "garden.las"
@@ -85,6 +146,7 @@ def same(a, b):
 
 
 def main(folder):
+    check_choices(folder)
     check_garden(folder)
     random = np.random.default_rng(4)
     n = 30000

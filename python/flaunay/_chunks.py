@@ -26,7 +26,7 @@ from flaunay._arrays import (
     number_of,
     summary,
 )
-from flaunay._errors import UsageError
+from flaunay._errors import InputError, UsageError
 from flaunay._periodic import as_lengths
 
 Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
@@ -314,17 +314,38 @@ def triangulate_chunks(
 
 @contextlib.contextmanager
 def all_or_none(paths: Sequence[Path]) -> Iterator[list[str]]:
-    """Names of temporary files, which take the place of files when all are written."""
-    with contextlib.ExitStack() as stack:
-        names = []
-        for path in paths:
-            folder = stack.enter_context(
-                tempfile.TemporaryDirectory(prefix=".flaunay-", dir=path.parent)
-            )
-            names.append(os.path.join(folder, path.name))
-        yield names
-        for name, path in zip(names, paths):
-            os.replace(name, path)
+    """Names of temporary files, which take the place of files when all are written.
+
+    Symbolic links are followed, and permissions are kept.
+    """
+    targets = [Path(os.path.realpath(path)) for path in paths]
+    for k, (path, target) in enumerate(zip(paths, targets)):
+        if target.exists() and not target.is_file():
+            raise UsageError(f"output {path} is no regular file")
+        if any(is_one_file(target, other) for other in targets[:k]):
+            raise UsageError(f"output {path}: two outputs have the same path")
+    try:
+        with contextlib.ExitStack() as stack:
+            names = []
+            for target in targets:
+                folder = stack.enter_context(
+                    tempfile.TemporaryDirectory(prefix=".flaunay-", dir=target.parent)
+                )
+                names.append(os.path.join(folder, target.name))
+            yield names
+            for name, target in zip(names, targets):
+                if target.exists():
+                    os.chmod(name, target.stat().st_mode & 0o7777)
+                os.replace(name, target)
+    except OSError as error:
+        raise InputError(f"outputs cannot be written: {error}") from error
+
+
+def is_one_file(path: Path, other: Path) -> bool:
+    """Whether two paths lead to one file, which need not be there."""
+    if path.exists() and other.exists():
+        return path.samefile(other)
+    return os.path.realpath(path) == os.path.realpath(other)
 
 
 def _new_pixels(path: str, shape: tuple[int, int]) -> npt.NDArray[np.float64]:

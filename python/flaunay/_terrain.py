@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import math
 import os
+import re
 import struct
 import tempfile
 import warnings
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -17,9 +20,9 @@ import numpy.typing as npt
 
 from flaunay import _calls, _declarations, _raster
 from flaunay._arrays import as_floats, summary
-from flaunay._chunks import all_or_none, chunks_of
+from flaunay._chunks import all_or_none, chunks_of, is_one_file
 from flaunay._delaunay import Delaunay
-from flaunay._errors import InputError, UsageError
+from flaunay._errors import Error, InputError, UsageError
 from flaunay._interpolate import (
     CloughTocherInterpolator,
     LinearInterpolator,
@@ -49,6 +52,8 @@ _METHODS: dict[str, Any] = {
 _PIXELS_AT_ONCE = 1 << 20
 # Points that are read at a time.
 _POINTS_AT_ONCE = 1 << 20
+# Classes of noise in .las files, which are left out unless they are asked for.
+_NOISE = (7, 18)
 # 32 GiB as float64.
 _MOST_PIXELS = 1 << 32
 # Of GeoTIFF, in .las files: the keys that have the numbers of EPSG, of projected and of other systems.
@@ -68,6 +73,7 @@ class _Las:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.left_out: Counter[str] = Counter()
         laspy = optional("laspy", _PURPOSE)
         try:
             with laspy.open(path) as file:
@@ -121,9 +127,15 @@ class _Las:
     def _chosen(
         self, points: Any, classes: Optional[frozenset[int]], returns: Optional[str]
     ) -> Doubles:
-        chosen = np.ones(len(points), bool)
-        if classes is not None:
-            chosen &= np.isin(np.asarray(points.classification), list(classes))
+        chosen = ~np.asarray(points.withheld, bool)
+        self.left_out["withheld"] += len(points) - int(chosen.sum())
+        of = np.asarray(points.classification)
+        if classes is None:
+            noise = chosen & np.isin(of, _NOISE)
+            self.left_out["noise"] += int(noise.sum())
+            chosen &= ~noise
+        else:
+            chosen &= np.isin(of, list(classes))
         if returns == "first":
             chosen &= np.asarray(points.return_number) == 1
         elif returns == "last":
@@ -149,14 +161,104 @@ def _decimal(integers: npt.NDArray[Any], scale: float, offset: float) -> Doubles
     return np.asarray(integers * scale + offset, np.float64)
 
 
+def _is_header(fields: list[str]) -> bool:
+    """Whether fields are names: some have letters, and none looks like a number, even a mistyped one."""
+
+    def is_number(field: str) -> bool:
+        try:
+            float(field)
+        except ValueError:
+            mistyped = re.fullmatch(r"[-+.0-9eEoO]*[0-9oO][-+.0-9eEoO]*", field)
+            return bool(mistyped or re.match(r"[\W_]*[0-9]", field))
+        return True
+
+    letters = any(re.search(r"[^\W\d_]", field) for field in fields)
+    return letters and not any(map(is_number, fields))
+
+
+def _text_rows(path: Path, columns: Optional[Sequence[Union[str, int]]]) -> Any:
+    """Three numbers of each line, separated by semicolons, commas or white space, as the command reads them."""
+
+    def fields_of(line: str) -> tuple[Optional[str], list[str]]:
+        bare = re.sub('"[^"]*"', "", line)
+        separator = ";" if ";" in bare else "," if "," in bare else None
+        split = next(csv.reader([line], delimiter=separator)) if separator else line.split()
+        return separator, [field.strip(' "') for field in split]
+
+    with open(path, encoding="utf-8-sig") as file:
+        contents = ((k, text.split("#")[0].strip()) for k, text in enumerate(file))
+        rows = ((k, text) for k, text in contents if text)
+        first, line = next(rows, (0, ""))
+        separator, fields = fields_of(line)
+        names = fields if _is_header(fields) else []
+        if names:
+            first, line = next(rows, (first + 1, ""))
+            separator, fields = fields_of(line)
+        if not line:
+            return np.empty((0, 3))
+        places = _places_of(columns, names, len(fields))
+        if separator == ";":
+            file.seek(0)
+            body = (text.split("#")[0] for _, text in zip(range(1 << 62), file))
+            found = [
+                [row[place] for place in places]
+                for k, row in enumerate(csv.reader(body, delimiter=";"))
+                if k >= first and any(map(str.strip, row))
+            ]
+            marks = "".join(map("".join, found))
+            if "," in marks and "." in marks:
+                raise ValueError("has numbers with decimal commas and others with decimal points")
+            return np.array([[float(text.replace(",", ".")) for text in row] for row in found])
+    try:
+        return np.loadtxt(
+            path,
+            delimiter=separator,
+            skiprows=first,
+            usecols=places,
+            ndmin=2,
+            encoding="utf-8-sig",
+            quotechar='"',
+        )
+    except ValueError as error:
+        if separator == "," and re.search(r"[^\s,]\s+[^\s,]", line):
+            hint = "; lines have commas and white space: if the commas are decimal ones, separate columns by semicolons"
+            raise ValueError(f"{error}{hint}") from error
+        raise
+
+
+def _places_of(
+    columns: Optional[Sequence[Union[str, int]]], names: list[str], count: int
+) -> list[int]:
+    """Which columns have x, y and z."""
+    if columns is None:
+        if count < 3:
+            raise ValueError(f"expected three numbers per line (x, y and z), found {count}")
+        return [0, 1, 2]
+    if isinstance(columns, str) or len(columns) != 3:
+        raise UsageError(f"columns must be three names or numbers, not {columns!r}")
+    places = []
+    for column in columns:
+        place = names.index(column) if isinstance(column, str) and column in names else column
+        if isinstance(place, str) or not 0 <= place < count:
+            raise ValueError(f"there is no column {column!r} among {names or count}")
+        places.append(place)
+    return places
+
+
 class _Table:
     """Points as text, .npy or an array."""
 
     crs = None
 
-    def __init__(self, given: Any, name: str) -> None:
-        if isinstance(given, Path):
-            given = self._of_file(given)
+    def __init__(
+        self, given: Any, name: str, columns: Optional[Sequence[Union[str, int]]] = None
+    ) -> None:
+        self.path = given if isinstance(given, Path) else None
+        self.left_out: Counter[str] = Counter()
+        if columns is not None and (self.path is None or self.path.suffix.lower() not in _TEXT):
+            raise UsageError(f"{name}: columns= are those of text ({', '.join(sorted(_TEXT))})")
+        if self.path is not None:
+            given = self._of_file(self.path, columns)
         self._points = as_floats(given, name)
         if self._points.ndim != 2 or self._points.shape[1] != 3:
             raise UsageError(f"{name} must be x, y and z of points, not {self._points.shape}")
@@ -166,15 +268,14 @@ class _Table:
             self.box = np.concatenate([xy.min(axis=0), xy.max(axis=0)]).astype(np.float64)
 
     @staticmethod
-    def _of_file(path: Path) -> Any:
+    def _of_file(path: Path, columns: Optional[Sequence[Union[str, int]]]) -> Any:
         try:
             if path.suffix.lower() == ".npy":
                 return np.load(path, mmap_mode="r")
-            with open(path) as file:
-                line = next((line for line in file if line.strip() and line[0] != "#"), "")
-            separator = "," if "," in line else None
-            return np.loadtxt(path, delimiter=separator, ndmin=2)[:, :3]
-        except (OSError, ValueError) as error:
+            return _text_rows(path, columns)
+        except UsageError:
+            raise
+        except (OSError, ValueError, IndexError) as error:
             raise InputError(f"{path}: {error}") from error
 
     def pieces(
@@ -186,26 +287,28 @@ class _Table:
             yield np.asarray(self._points[first : first + _POINTS_AT_ONCE], np.float64)
 
 
-def _sources(given: Any) -> list[Any]:
+def _sources(given: Any, columns: Optional[Sequence[Union[str, int]]]) -> list[Any]:
     if not isinstance(given, (str, os.PathLike)):
         if isinstance(given, (list, tuple)) and all(
             isinstance(p, (str, os.PathLike)) for p in given
         ):
-            return [one for path in given for one in _sources(path)]
-        return [_Table(given, "points")]
+            return [one for path in given for one in _sources(path, columns)]
+        return [_Table(given, "points", columns)]
     path = Path(given)
     if path.is_dir():
         files = sorted(p for p in path.iterdir() if p.suffix.lower() in _SUFFIXES)
         if not files:
             raise InputError(f"{path} has no files that end with {', '.join(_SUFFIXES)}")
-        return [one for file in files for one in _sources(file)]
+        return [one for file in files for one in _sources(file, columns)]
     if not path.exists():
         raise InputError(f"{path} does not exist")
     suffix = path.suffix.lower()
+    if suffix in _LAS and columns is not None:
+        raise UsageError(f"{path}: columns= are those of text ({', '.join(sorted(_TEXT))})")
     if suffix in _LAS:
         return [_Las(path)]
     if suffix in _TEXT or suffix == ".npy":
-        return [_Table(path, str(path))]
+        return [_Table(path, str(path), columns)]
     raise UsageError(f"{path} must end with {', '.join(_SUFFIXES)}")
 
 
@@ -264,12 +367,33 @@ def _geometries(given: Any, crs: Any, name: str) -> list[Any]:
             raise InputError(f"{name}: {given}: {error}") from error
         if crs is not None and meta["crs"]:
             own = optional("rasterio.crs", _PURPOSE).CRS.from_user_input(meta["crs"])
-            if own != crs:
+            if own != crs and not _has_no_crs(Path(given), shapely.total_bounds(shapely.from_wkb(found))):
                 raise InputError(f"{name}: {given} has the coordinate system {own}, not {crs}")
         return list(shapely.from_wkb(found))
     if hasattr(given, "geom_type"):
         return [given]
     return [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+
+
+def _has_no_crs(path: Path, box: Doubles) -> bool:
+    """Whether a file of GeoJSON only seems to have longitudes and latitudes, since it names no system."""
+    return path.suffix.lower() in (".geojson", ".json") and bool((np.abs(box) > 360).any())
+
+
+def _check_place(name: str, geometries: Sequence[Any], points: Doubles) -> None:
+    """Raises for geometries that lie where no points are, or so far away that no terrain reaches them."""
+    shapely = optional("shapely", _PURPOSE)
+    box = shapely.total_bounds(geometries)
+    if np.isnan(box).any():
+        return
+    if not (np.abs(box) < 2.0**509).all():
+        raise InputError(f"{name} reaches to {box.tolist()}; expected coordinates below 2^509")
+    low, high = points.min(axis=0), points.max(axis=0)
+    if (box[:2] > high).any() or (box[2:] < low).any():
+        raise InputError(
+            f"{name} reaches from {tuple(box[:2].tolist())} to {tuple(box[2:].tolist())}, but the points from "
+            f"{tuple(low.tolist())} to {tuple(high.tolist())}: both must have the same coordinate system"
+        )
 
 
 def _lines_of(geometries: Iterable[Any]) -> Iterator[Doubles]:
@@ -336,6 +460,8 @@ class Terrain:
         The size of a pixel.
     crs : rasterio.crs.CRS or None
         The system of the coordinates, if it is known.
+    left_out : dict
+        How many points of scans were left out: ``withheld`` ones, and those of ``noise``.
     """
 
     def __init__(self, mesh: Any, heights: Doubles, grid: _Grid, crs: Any, boundary: Any) -> None:
@@ -347,6 +473,7 @@ class Terrain:
         self._grid = grid
         self._boundary = boundary
         self._max_edge: Optional[float] = None
+        self.left_out: dict[str, int] = {"withheld": 0, "noise": 0}
         self.raster: Doubles = np.empty((grid.rows, grid.columns))
 
     def __repr__(self) -> str:
@@ -514,14 +641,41 @@ def _naming_breaklines() -> Iterator[None]:
         raise InputError(f"breaklines: {error}") from error
 
 
+def _split_crossings(
+    along: Doubles, segments: npt.NDArray[np.int32], device: Optional[str]
+) -> tuple[Doubles, npt.NDArray[np.int32]]:
+    """Cuts segments where they cross, at the height of the first one that is there."""
+    mesh = triangulate(along[:, :2], segments=segments, crossings="split", device=device)
+    first = np.full(len(mesh.points), len(segments))
+    np.minimum.at(first, mesh.constraint_edges, mesh.edge_segments[:, None])
+    added = np.arange(len(along), len(mesh.points))
+    ends = along[segments[first[added]]]
+    start, way = ends[:, 0], ends[:, 1] - ends[:, 0]
+    to = mesh.points[added] - start[:, :2]
+    dots = to[:, 0] * way[:, 0] + to[:, 1] * way[:, 1]
+    share = dots / (way[:, 0] * way[:, 0] + way[:, 1] * way[:, 1])
+    heights = start[:, 2] + share * way[:, 2]
+    along = np.concatenate([along, np.column_stack([mesh.points[added], heights])])
+    return along, mesh.constraint_edges
+
+
 def _with_lines(
-    points: Doubles, heights: Doubles, lines: list[Doubles], device: Optional[str]
+    points: Doubles,
+    heights: Doubles,
+    lines: list[Doubles],
+    shores: list[Doubles],
+    crossings: str,
+    device: Optional[str],
 ) -> tuple[Any, Doubles, int]:
     """The mesh with breaklines, whose points come first; heights of all points, and the number of those."""
-    along, segments = _joined(lines)
+    along, segments = _joined(lines + shores)
     missing = np.isnan(along[:, 2])
     if missing.any():
         along[missing, 2] = _heights_at(along[missing, :2], points, heights, device)
+    if crossings == "split":
+        # Lakes come first, since they stay flat.
+        segments = np.roll(segments, sum(len(shore) - 1 for shore in shores), axis=0)
+        along, segments = _split_crossings(along, segments, device)
     with _naming_breaklines():
         mesh = triangulate(
             np.concatenate([along[:, :2], points]), segments=segments, device=device, neighbors=True
@@ -588,10 +742,14 @@ def _map_in_chunks(
     max_edge: Optional[float],
     contours: Union[None, float, npt.ArrayLike],
     lines: list[Doubles],
+    crossings: str,
+    device: Optional[str],
     chunks: Any,
 ) -> Contours:
     """Writes the raster. Returns the contours, if there are to be some."""
     along, segments = _joined(lines)
+    if crossings == "split" and lines:
+        along, segments = _split_crossings(along, segments, device)
     levels = np.empty(0)
     if contours is not None:
         ends = [measured[:, 2].min(), measured[:, 2].max(), *along[:, 2]]
@@ -629,17 +787,23 @@ def _finished(
         )
         result.raster[outside] = np.nan
         lines = None if lines is None else result._clipped(lines)
+    if contours is not None and lines is None and any(p.suffix.lower() in _LINES for p in outputs):
+        lines = result.contours(contours)
     with all_or_none(outputs) as names:
-        for name in names:
-            suffix = Path(name).suffix.lower()
-            if suffix in _RASTERS:
-                result._write_raster(name, _RASTERS[suffix], nodata)
-            elif suffix in _MESHES:
-                result._write_mesh(name)
-            else:
-                assert contours is not None
-                lines = result.contours(contours) if lines is None else lines
-                result._write_lines(name, _LINES[suffix], lines)
+        for name, path in zip(names, outputs):
+            suffix = path.suffix.lower()
+            try:
+                if suffix in _RASTERS:
+                    result._write_raster(name, _RASTERS[suffix], nodata)
+                elif suffix in _MESHES:
+                    result._write_mesh(name)
+                else:
+                    assert lines is not None
+                    result._write_lines(name, _LINES[suffix], lines)
+            except (Error, ImportError):
+                raise
+            except Exception as error:  # of other packages, such as for a full disk
+                raise InputError(f"output {path} cannot be written: {error}") from error
     return result
 
 
@@ -649,10 +813,12 @@ def terrain(
     *,
     resolution: float,
     bounds: Optional[Sequence[float]] = None,
+    columns: Optional[Sequence[Union[str, int]]] = None,
     classes: Optional[Iterable[int]] = None,
     returns: Optional[str] = None,
     duplicates: str = "highest",
     breaklines: Any = None,
+    crossings: str = "error",
     boundary: Any = None,
     flat: Any = None,
     method: str = "linear",
@@ -680,15 +846,20 @@ def terrain(
         The size of a pixel.
     bounds : (xmin, ymin, xmax, ymax), optional
         What the raster covers at least; the box of the points by default.
+    columns : sequence of three str or int, optional
+        Of text, the columns with x, y and z: names of the header, or numbers from 0; the first ones by default.
     classes : iterable of int, optional
-        Of a scan, the classes of points that are used: 2 is ground, 9 water.
+        Of a scan, the classes of points that are used: 2 is ground, 9 water. By default all but noise, 7 and 18.
+        Points that are marked as withheld are never used.
     returns : {"first", "last"}, optional
         Of a scan, only these returns of each pulse.
     duplicates : {"highest", "lowest", "mean"}
         The height of a place that was measured several times.
     breaklines : path, geometries of Shapely or list of arrays, optional
         Lines that become edges of the triangulation, of shape (k, 3), or (k, 2) to take the heights of the
-        points around them. They must not cross.
+        points around them.
+    crossings : {"error", "split"}
+        Breaklines that cross are an error, or cut where they do, at the height of the first one.
     boundary : path or geometry of Shapely, optional
         Polygons, outside of which the map is empty.
     flat : path or geometries of Shapely, optional
@@ -725,8 +896,8 @@ def terrain(
     UsageError
         For arguments that make no sense, such as a resolution that makes too many pixels.
     InputError
-        For files that cannot be read, are truncated or have different coordinate systems, if no point
-        is left, and for breaklines that cross.
+        For files that cannot be read or written, are truncated or have different coordinate systems, if no
+        point is left, for breaklines that cross, and for breaklines, lakes and boundaries where no points are.
     ImportError
         Without a package that is needed; ``pip install flaunay[terrain]`` installs all.
 
@@ -747,6 +918,8 @@ def terrain(
     _check_one_of(duplicates, tuple(_declarations.DUPLICATES), "duplicates")
     _check_one_of(pixel_is, ("area", "point"), "pixel_is")
     _check_one_of(method, tuple(_METHODS), "method")
+    _check_one_of(crossings, ("error", "split"), "crossings")
+    _raster.as_length(max_edge, "max_edge")
     chosen = None if classes is None else frozenset(classes)
     outputs = _checked_outputs(output, contours)
     chunks = None
@@ -759,7 +932,12 @@ def terrain(
                 "memory= is for rasters and contours alone: not for flat lakes, other methods than the "
                 "linear one and files of triangles"
             )
-    sources = _sources(points)
+    sources = _sources(points, columns)
+    inputs = [*(source.path for source in sources), breaklines, boundary, flat]
+    for given in inputs:
+        for path in outputs:
+            if isinstance(given, (str, os.PathLike)) and is_one_file(Path(given), path):
+                raise UsageError(f"output {path} would overwrite the input")
     system = _common_crs(sources, crs)
     boxes = np.array([source.box for source in sources if source.box is not None])
     if bounds is not None:
@@ -770,20 +948,22 @@ def terrain(
         box = np.concatenate([boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)])
     else:
         raise InputError("there are no points")
+    maps: dict[str, Any] = {}
     is_point = pixel_is == "point"
     _Grid(box, resolution, is_point)
     area = None
     if boundary is not None:
         area = optional("shapely", _PURPOSE).union_all(_geometries(boundary, system, "boundary"))
+        maps["boundary"] = [area]
         optional("rasterio.features", _PURPOSE)
 
     lakes: list[Any] = []
     if flat is not None:
-        lakes = _polygons_of(_geometries(flat, system, "flat"))
+        lakes = maps["flat"] = _polygons_of(_geometries(flat, system, "flat"))
     lines_kept: list[Doubles] = []
     if breaklines is not None:
-        given = _geometries(breaklines, system, "breaklines")
-        lines_kept = [line for line in _lines_of(given) if len(line)]
+        maps["breaklines"] = _geometries(breaklines, system, "breaklines")
+        lines_kept = [line for line in _lines_of(maps["breaklines"]) if len(line)]
     if chunks is not None and any(np.isnan(line[:, 2]).any() for line in lines_kept):
         raise UsageError("memory=: breaklines must have heights at all their points")
 
@@ -795,6 +975,9 @@ def terrain(
         raise InputError(
             "no point is left" + ("" if chosen is None else f" of the classes {sorted(chosen)}")
         )
+    for name, geometries in maps.items():
+        _check_place(name, geometries, measured[:, :2])
+    left_out = sum((source.left_out for source in sources), Counter(withheld=0, noise=0))
     if bounds is None:
         # Those of the points that are left.
         box = np.concatenate([measured[:, :2].min(axis=0), measured[:, :2].max(axis=0)])
@@ -803,23 +986,26 @@ def terrain(
         result = Terrain(None, np.empty(0), grid, system, area)
         with _naming_breaklines():
             lines = _map_in_chunks(
-                result, measured, duplicates, max_edge, contours, lines_kept, chunks
+                *(result, measured, duplicates, max_edge, contours),
+                *(lines_kept, crossings, device, chunks),
             )
+        result.left_out.update(left_out)
         return _finished(result, outputs, contours, lines, nodata)
     places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
     mesh: Any
     fixed = 0
+    shores: list[Doubles] = []
     if lakes:
         shores, is_dry = _shores(lakes, places, heights, device)
-        lines_kept += shores
         places, heights = places[is_dry], heights[is_dry]
-    if lines_kept:
-        mesh, heights, fixed = _with_lines(places, heights, lines_kept, device)
+    if lines_kept or shores:
+        mesh, heights, fixed = _with_lines(places, heights, lines_kept, shores, crossings, device)
     else:
         mesh = Delaunay(places, device=device)
     _merge_heights(heights, mesh.representatives, fixed, duplicates)
     result = Terrain(mesh, heights, grid, system, area)
     result._max_edge = max_edge
+    result.left_out.update(left_out)
     if method == "linear":
         _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import warnings
 
 import numpy as np
@@ -128,6 +129,81 @@ def test_input_that_cannot_be_used(tmp_path):
         flaunay.terrain(tmp_path / "a.dat", resolution=1)
 
 
+def test_text_in_columns(scan, tmp_path):
+    expected = flaunay.terrain(scan, resolution=2).raster.tobytes()
+    path = tmp_path / "a.csv"
+    rows = [f'P {k};{z};"{y}";{x}' for k, (x, y, z) in enumerate(scan.tolist())]
+    text = "# survey\nname;h;n;e\n" + "\n".join(rows) + "\n"
+    for decimal in ".", ",":
+        path.write_text(text.replace(".", decimal))
+        for columns in ("e", "n", "h"), (3, "n", 1):
+            assert flaunay.terrain(path, resolution=2, columns=columns).raster.tobytes() == expected
+    np.savetxt(path, scan, fmt="%.2f", delimiter=", ", header="x, y, z", comments="")
+    assert flaunay.terrain(path, resolution=2).raster.tobytes() == expected
+    for line, message in (
+        ("1,4 2,7 1,7\n", "semicolons"),
+        ("1,4;2,7;1.5\n", "decimal"),
+        ("1 2\n", "three numbers"),
+        ("1 2 3\n4 5\n", "a.csv"),
+    ):
+        path.write_text(line)
+        with pytest.raises(flaunay.InputError, match=message):
+            flaunay.terrain(path, resolution=2)
+    path.write_text("a;b;c\n1;2;3\n")
+    with pytest.raises(flaunay.InputError, match="no column 'd'"):
+        flaunay.terrain(path, resolution=2, columns=("a", "b", "d"))
+    for columns in "abc", ("a", "b"):
+        with pytest.raises(flaunay.UsageError, match="columns"):
+            flaunay.terrain(path, resolution=2, columns=columns)
+    with pytest.raises(flaunay.UsageError, match="columns"):
+        flaunay.terrain(scan, resolution=2, columns=(0, 1, 2))
+
+
+# ---- Outputs
+
+
+def test_outputs_are_where_the_command_writes_them(scan, tmp_path):
+    pytest.importorskip("meshio")
+    (tmp_path / "there").mkdir()
+    there, link = tmp_path / "there" / "a.obj", tmp_path / "link.obj"
+    there.write_text("old")
+    there.chmod(0o640)
+    link.symlink_to(there)
+    flaunay.terrain(scan, link, resolution=2)
+    assert link.is_symlink() and there.read_text() != "old" and there.stat().st_mode & 0o777 == 0o640
+    for outputs in [link, there], [link, link]:
+        with pytest.raises(flaunay.UsageError, match="same path"):
+            flaunay.terrain(scan, outputs, resolution=2)
+    path = tmp_path / "points.xyz"
+    np.savetxt(path, scan, fmt="%.2f")
+    (tmp_path / "input.obj").symlink_to(path)
+    with pytest.raises(flaunay.UsageError, match="overwrite the input"):
+        flaunay.terrain(path, tmp_path / "input.obj", resolution=2)
+    with pytest.raises(flaunay.InputError, match="cannot be written"):
+        (tmp_path / "nowhere.obj").symlink_to(tmp_path / "nowhere" / "a.obj")
+        flaunay.terrain(scan, tmp_path / "nowhere.obj", resolution=2)
+    with pytest.raises(flaunay.UsageError, match="no regular file"):
+        (tmp_path / "null.obj").symlink_to(os.devnull)
+        flaunay.terrain(scan, tmp_path / "null.obj", resolution=2)
+
+
+@pytest.mark.parametrize("name", ["a.tif", "a.png", "a.gpkg", "a.geojson", "a.ply", "a.vtu"])
+def test_full_disks_are_errors_of_input(scan, tmp_path, name):
+    resource = pytest.importorskip("resource")
+    for package in "rasterio", "pyogrio", "meshio":
+        pytest.importorskip(package)
+    path = tmp_path / name
+    path.write_bytes(b"old")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, limits[1]))
+    try:
+        with pytest.raises(flaunay.InputError, match="cannot be written"):
+            flaunay.terrain(scan, path, resolution=0.2, contours=1)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert path.read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == [name]
+
+
 # ---- Laser scans
 
 
@@ -149,6 +225,21 @@ def test_classes_and_returns(scan, tmp_path):
     assert len(flaunay.terrain(path, resolution=2, returns="first").heights) == 3000
     with pytest.raises(flaunay.InputError, match=r"classes \[7\]"):
         flaunay.terrain(path, resolution=2, classes=[7])
+
+
+def test_withheld_points_and_noise_are_left_out(scan, tmp_path):
+    laspy = pytest.importorskip("laspy")
+    for version in "1.2", "1.4":
+        path = write_las(tmp_path / "a.las", scan, classes=np.arange(3000) % 20, version=version)
+        las = laspy.read(path)
+        las.withheld[:100] = 1
+        las.write(path)
+        made = flaunay.terrain(path, resolution=2)
+        noise = np.isin(np.arange(100, 3000) % 20, [7, 18]).sum()
+        assert made.left_out == {"withheld": 100, "noise": noise}
+        assert len(made.heights) == 2900 - noise
+        only = flaunay.terrain(path, resolution=2, classes=[7])
+        assert len(only.heights) == 145 and only.left_out == {"withheld": 100, "noise": 0}
 
 
 def test_coordinate_systems_are_compared(scan, tmp_path):
@@ -247,6 +338,33 @@ def test_breaklines_are_hard_edges(tmp_path):
     with pytest.raises(flaunay.InputError, match="none.gpkg"):
         pytest.importorskip("pyogrio")
         flaunay.terrain(points, resolution=1, breaklines=tmp_path / "none.gpkg")
+
+
+def test_breaklines_that_cross_are_cut():
+    pytest.importorskip("shapely")
+    points = [[0, 0, 1], [4, 0, 1], [0, 4, 1], [4, 4, 1]]
+    lines = [np.array([[0, 2, 0], [4, 2, 8.0]]), np.array([[2, 0, 1], [2, 4, 9.0]])]
+    options = {"resolution": 2, "pixel_is": "point", "breaklines": lines, "crossings": "split"}
+    for memory in None, "128M":
+        made = flaunay.terrain(points, memory=memory, **options)
+        assert made.raster.tolist() == [[1, 9, 1], [0, 4, 8], [1, 1, 1]]
+    assert flaunay.terrain(points, resolution=1, crossings="split").raster.max() == 1
+
+
+def test_maps_in_other_places_than_the_points(scan, tmp_path):
+    shapely = pytest.importorskip("shapely")
+    pytest.importorskip("rasterio")
+    munich = shapely.box(11.5, 48.1, 11.6, 48.2)
+    for name in "breaklines", "flat", "boundary":
+        with pytest.raises(flaunay.InputError, match=f"{name} reaches.*same coordinate system"):
+            flaunay.terrain(scan, resolution=2, **{name: munich})
+    with pytest.raises(flaunay.InputError, match="2\\^509"):
+        flaunay.terrain(scan, resolution=2, boundary=shapely.box(-1e308, -1e308, 1e308, 1e308))
+    pytest.importorskip("pyogrio")
+    area = tmp_path / "area.geojson"
+    area.write_text(shapely.to_geojson(shapely.box(500010, 4500010, 500050, 4500030)))
+    made = flaunay.terrain(scan, resolution=1, boundary=area, crs="EPSG:32633")
+    assert np.isfinite(made.raster).sum() == 40 * 20
 
 
 def test_breaklines_in_chunks(scan, tmp_path):

@@ -201,13 +201,55 @@ TEST_F(IoTest, TextSkipsNoLineOfMistypedNumbers) {
 TEST_F(IoTest, TextNumbersMayBeQuoted) {
   EXPECT_EQ(points_of("a.csv", "\"0\",\"0\"\n\"1.5\" , 2\r\n\" -3 \"\t\"+4e0\"\n"),
             (Values{0, 0, 1.5, 2, -3, 4}));
-  expect_bad_points("b.csv", "1,2\n\"3,4\"\n", {"line 2", "two numbers", "found 1"});
+  expect_bad_points("b.csv", "1,2\n\"3,4\"\n", {"line 2", "found 1", "semicolons"});
   expect_bad_points("c.csv", "1,2\n3,\"4\n", {"line 2, column 3", "'\"4'"});
   expect_bad_points("d.csv", "1,2\n3,\"4\"5\n", {"line 2, column 3", "'\"4\"5'"});
   expect_bad_points("e.csv", "1,2\n3,\"\"\n", {"line 2", "point 1", "nothing"});
   expect_bad_points("f.csv", "1,2\n3,\"\"\"4\"\"\"\n", {"line 2, column 4", "point 1"});
   // Only CSV has quotes.
   expect_bad_points("g.node", "1 2 0 0\n0 \"1\" 2\n", {"line 2, column 3", "'\"1\"'"});
+}
+
+TEST_F(IoTest, TextHasDecimalCommasWhereSemicolonsSeparate) {
+  EXPECT_EQ(points_of("a.csv", "x;y\n1,4;2,7\n-3 ; \"0,5\"\n"), (Values{1.4, 2.7, -3, 0.5}));
+  EXPECT_EQ(points_of("b.csv", "1.5;2\n3;4e1\n"), (Values{1.5, 2, 3, 40}));
+  for (const char* line : {"1,4 2,7 1,7", "1,4 2,7", "1,4\t2,7", "1,5 2", "1 2,5", "1 2 3,5", "1, 4 2, 7"}) {
+    expect_bad_points("c.xyz", std::string("1 2\n") + line + "\n",
+                      {"line 2", "commas and white space", "semicolons"});
+    expect_bad_points("d.csv", std::string(line) + "\n", {"line 1", "commas and white space", "semicolons"});
+  }
+  expect_bad_points("e.csv", "\"1,5\" \"2,5\"\n", {"line 1, column 2", "separate columns by semicolons"});
+  expect_bad_points("f.csv", "1,5;2\n3;4.5\n", {"line 2, column 3", "'4.5' has a decimal point"});
+  expect_bad_points("g.csv", "1.000,5;2\n", {"line 1, column 1", "one decimal comma"});
+  expect_bad_points("h.csv", "1;2\n3,4\n", {"line 2", "no semicolons"});
+  expect_bad_points("i.csv", "1,2\n3;4\n", {"line 2", "has semicolons"});
+}
+
+TEST_F(IoTest, TextMayHaveHeightsAndNamedColumns) {
+  const Points points = read_points(write("a.csv", "lon,lat,elevation\n1,2,3\n4,5,-6.5\n"));
+  EXPECT_EQ(points.coordinates, (Values{1, 2, 4, 5}));
+  EXPECT_EQ(points.heights, (Values{3, -6.5}));
+  const std::string table = write("b.csv", "name;z;lat;lon\nNew York, NY;3,5;2;1\n");
+  EXPECT_EQ(read_points(table, {"lon", "lat", "z"}).coordinates, (Values{1, 2}));
+  EXPECT_EQ(read_points(table, {"3", "lat", "1"}).heights, Values{3.5});
+  EXPECT_TRUE(read_points(table, {"3", "2"}).heights.empty());
+  EXPECT_EQ(read_points(write("c.txt", "7 1 2 8\n"), {"1", "2"}).coordinates, (Values{1, 2}));
+  const auto expect_bad_columns = [&](const Columns& columns, const std::vector<std::string>& parts) {
+    expect_error(ErrorKind::input, table + ": line 2", parts, [&] { read_points(table, columns); });
+  };
+  expect_bad_columns({"lon", "latitude"}, {"no column 'latitude'", "name, z, lat, lon"});
+  expect_bad_columns({"lon", "4"}, {"no column '4'"});
+  expect_bad_columns({"lon", "3"}, {"twice"});
+  expect_bad_columns({"name", "lat"}, {"'New York, NY'"});
+  expect_bad_points("d.csv", "1,2,3\n4,5\n", {"line 2", "three numbers", "found 2"});
+  expect_bad_points("e.csv", "1,2,3,4\n", {"line 1", "found 4", "--columns"});
+  for (const char* header : {"id,x,y", "lat,lon,z", ",X,Y", "northing,easting,height"})
+    expect_bad_points("f.csv", std::string(header) + "\n1,2,3\n", {"line 2", "--columns"});
+  expect_bad_points("g.csv", "x,y,name\n1,2,house\n", {"line 2, column 5", "a height of point 0", "'house'"});
+  write("h.bin", std::string(16, '\0'));
+  expect_error(ErrorKind::usage, path("h.bin"), {"--columns"}, [&] {
+    read_points(path("h.bin"), {"0", "1"});
+  });
 }
 
 TEST_F(IoTest, TextHoldsNoControlCharactersAndIsUtf8) {
@@ -446,7 +488,7 @@ TEST_F(IoTest, UnknownEndingsListTheKnown) {
          std::vector<std::function<void()>>{[&] { format_of(name, Use::read_points); },
                                             [&] { read_points(name); }, [&] { write_points(name, {}); }}) {
       expect_error(ErrorKind::usage, std::string(name) + ": ",
-                   {".npy, .node, .xy, .txt, .csv, .bin", "\"-\""}, action);
+                   {".npy, .node, .xy, ", ".txt, .csv, .bin", "\"-\""}, action);
     }
   }
   for (const char* name : {"-", "a.npy", "a.NODE", "b.c/a.xy", "a.Txt", "a.csv", ".bin"}) {

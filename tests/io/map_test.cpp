@@ -173,6 +173,30 @@ TEST_F(MapTest, GeoJsonHasAllTypes) {
   EXPECT_TRUE(map.has_others);
 }
 
+TEST_F(MapTest, GeoJsonHasHeightsPropertiesAndASystem) {
+  const std::string ring = "[[0,0,5],[1,0],[0,1,7],[0,0,5]]";
+  const auto feature = [](const std::string& geometry, const std::string& properties) {
+    return R"({"type": "Feature", "geometry": )" + geometry + R"(, "properties": )" + properties + "}";
+  };
+  const std::string polygon = geometry("Polygon", "[" + ring + "]");
+  const std::string both =
+      R"({"type": "GeometryCollection", "geometries": [)" + polygon + "," + polygon + "]}";
+  const Map map =
+      map_of("a.geojson", R"({"type": "FeatureCollection", "crs": {"type": "name", "properties":
+      {"name": "urn:ogc:def:crs:EPSG::25832"}}, "features": [)" +
+                              feature(both, R"({"b": [1, {"c": null}], "a": "\u00e4\""})") + "," +
+                              feature(polygon, "null") + "," + feature(polygon, R"({"d": 2})") + "]}");
+  EXPECT_EQ(map.crs, "EPSG:25832");
+  const std::string first = "\"a\":\"\xc3\xa4\\\"\",\"b\":[1,{\"c\":null}]";
+  EXPECT_EQ(map.properties, (std::vector<std::string>{first, first, "", "\"d\":2"}));
+  ASSERT_EQ(map.points.heights.size(), 12U);
+  EXPECT_EQ(map.points.heights[0], 5);
+  EXPECT_TRUE(std::isnan(map.points.heights[1]));
+  EXPECT_TRUE(map_of("b.geojson", geometry("LineString", "[[0,0],[1,1]]")).points.heights.empty());
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  expect_bad_map("c.geojson", feature(polygon, R"({"a": )" + deep + "}"), {"properties", "too deep"});
+}
+
 TEST_F(MapTest, RingsThatAreNotClosedAreMended) {
   const Map map = map_of("a.json", geometry("Polygon", "[[[0,0],[1,0],[0,1]]]"));
   EXPECT_EQ(map.points.size(), 3U);
@@ -419,6 +443,21 @@ TEST_F(ConstrainedMeshTest, LabelsAreInVtuAndGeoJson) {
   EXPECT_EQ(map.polygon_count(), 2U);
   EXPECT_EQ(map.points.coordinates, (Values{0, 0, 2, 0, 2, 2, 0, 0, 2, 2, 0, 2}));
   EXPECT_TRUE(map.notes.empty()) << "rings are closed";
+
+  // Of polygons, their numbers and properties; the triangles' own ones give way to these.
+  ConstrainedTriangulation owned = square();
+  owned.polygons = {1, -1};
+  Map names;
+  names.properties = {"\"name\":\"x\"", "\"depth\":7,\"name\":{\"a\":[1]}"};
+  Outputs outputs;
+  const Points spatial{{0, 0, 2, 0, 2, 2, 0, 2}, {}, {5, 6, 7, 8}};
+  write_mesh(outputs, path("a.geojson"), {spatial, owned, &owned, &names});
+  outputs.commit();
+  const auto named = nlohmann::json::parse(read(path("a.geojson")))["features"];
+  EXPECT_EQ(named[0]["properties"].dump(),
+            R"({"depth":7,"flaunay_depth":0,"name":{"a":[1]},"polygon":1,"region":0,"triangle":0})");
+  EXPECT_EQ(named[1]["properties"].dump(), R"({"flaunay_depth":1,"polygon":-1,"region":1,"triangle":1})");
+  EXPECT_EQ(named[0]["geometry"]["coordinates"][0][1].dump(), "[2,0,6]");
 
   ConstrainedTriangulation unlabelled = square();
   unlabelled.regions.clear(), unlabelled.depths.clear();

@@ -23,6 +23,7 @@ namespace {
 
 struct AssembleRequest {
   std::string input;
+  io::Columns columns;
   std::string folder;
   ResultPaths results;
   bool solve = false;
@@ -81,7 +82,7 @@ int assemble(const AssembleRequest& request) {
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  const io::Points points = io::read_points(request.input);
+  const io::Points points = io::read_points(request.input, request.columns);
   const research::Partition partition = reader.read(request.input, points);
   std::vector<std::vector<std::int32_t>> solutions(paths.size());
   std::vector<std::size_t> unsolved;
@@ -120,7 +121,7 @@ void add_assemble(CLI::App& app, Action& action) {
   auto request = std::make_shared<AssembleRequest>();
   CLI::App* command = app.add_subcommand(
       "assemble", "Join the solved regions of a partition to the triangulation of all points");
-  add_input(command, request->input);
+  add_input(command, request->input, request->columns);
   command->add_option("partition", request->folder, "The folder that flaunay partition wrote")->required();
   add_results(command, request->results);
   CLI::Option* solve =

@@ -142,7 +142,8 @@ int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const s
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  const std::unique_ptr<PointSource> points = io::open_point_stream(task.input, request.scratch);
+  const std::unique_ptr<PointSource> points =
+      io::open_point_stream(task.input, request.scratch, task.columns);
   facts.reading_seconds = stopwatch.restart();
 
   const io::IndexType type = index_type(task.index, points->size(), task.results);

@@ -9,6 +9,7 @@
 #include "app/command/chunks.hpp"
 #include "app/command/compiling.hpp"
 #include "app/command/errors.hpp"
+#include "app/command/heights.hpp"
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
@@ -75,10 +76,12 @@ std::vector<double> holes_of(const ConstraintRequest& request) {
   return holes;
 }
 
-io::Map read_input(const std::string& input, const ConstraintRequest& request) {
+io::Map read_input(const std::string& input, const io::Columns& columns, const ConstraintRequest& request,
+                   bool with_heights) {
+  io::check_columns(input, columns);
   if (io::is_map(input)) return io::read_map(input);
   io::Map map;
-  map.points = io::read_points(input);
+  map.points = io::read_points(input, columns, with_heights);
   map.has_others = true;
   if (!request.segments.empty()) map.segments = io::read_segments(request.segments, map.points.size());
   return map;
@@ -261,6 +264,16 @@ std::string empty_note(const ConstrainedTriangulation& mesh, const ConstraintReq
   return "note: no triangles: no part of the plane is inside; --outside keep keeps what is outside\n";
 }
 
+/// A line that says why triangles have no properties of polygons; empty if they have them, or there are none.
+std::string properties_note(const Task& task, const io::Map& map, const ConstrainedTriangulation& mesh) {
+  const auto is_empty = [](const std::string& properties) { return properties.empty(); };
+  const bool has_some = !std::all_of(map.properties.begin(), map.properties.end(), is_empty);
+  if (!has_some || !mesh.polygons.empty() || io::ending_of(task.results.mesh) != ".geojson") return "";
+  return "note: triangles have no properties of polygons: these are known of files of polygons alone, "
+         "without "
+         "--hole and --fill nesting\n";
+}
+
 /// A line that says which triangles are worse than asked for; empty if there are none.
 std::string refinement_note(const ConstrainedTriangulation& mesh, const std::vector<double>& points) {
   const std::vector<std::int32_t>& bad = mesh.refinement.bad_triangles;
@@ -374,8 +387,9 @@ void check_domain_options(const CLI::App& command, const std::string& input, Con
   request.chose_fill = command.count("--fill") > 0;
 }
 
-io::Map read_domain(const std::string& input, ConstraintRequest& request) {
-  io::Map map = read_input(input, request);
+io::Map read_domain(const std::string& input, const io::Columns& columns, ConstraintRequest& request,
+                    bool with_heights) {
+  io::Map map = read_input(input, columns, request, with_heights);
   choose_for(map, input, request);
   const std::vector<double> further_holes = holes_of(request);
   map.holes.insert(map.holes.end(), further_holes.begin(), further_holes.end());
@@ -448,7 +462,7 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Map map = read_domain(task.input, request);
+  io::Map map = read_domain(task.input, task.columns, request, !task.results.mesh.empty());
   check_carried(map, task.input, request);
   const auto triangulate = are_polygons(map, task, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
@@ -469,14 +483,14 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
       [&] { return triangulate(triangulator, map, request, options_of(task, request, progress)); });
   facts.constraints = facts_of(map, request, mesh);
   if (request.is_refined()) facts.refinement = mesh.refinement;
-  map.points.coordinates.insert(map.points.coordinates.end(), mesh.added_points.begin(),
-                                mesh.added_points.end());
-  map.points.markers = mesh.vertex_markers;
+  if (task.results.mesh.empty()) map.points.heights.clear();
+  add_points(triangulator, all_segments(map), mesh, map.points);
   write_results(task, request, map, mesh, facts, progress, outputs);
 
   if (!task.quiet) {
     std::string text = task.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
+    text += heights_note(task.input, task.results.mesh, map.points) + properties_note(task, map, mesh);
     print(text + empty_note(mesh, request) + refinement_note(mesh, map.points.coordinates) +
           host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
           summary(mesh.statistics, facts));

@@ -37,8 +37,10 @@ void add_domain_options(CLI::App* command, ConstraintRequest& request);
 /// Checks the options of add_domain_options for an input with segments. Throws Error(usage).
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request);
 
-/// Reads points, segments and holes, and decides what is outside unless the user has.
-io::Map read_domain(const std::string& input, ConstraintRequest& request);
+/// Reads points, segments and holes, and decides what is outside unless the user has. with_heights: as of
+/// read_points.
+io::Map read_domain(const std::string& input, const io::Columns& columns, ConstraintRequest& request,
+                    bool with_heights = false);
 /// The map's segments, and after them its lines.
 std::vector<std::int32_t> all_segments(const io::Map& map);
 /// The rings of the map's polygons, unless it has neither polygons nor lines, or the rule is nesting.

@@ -9,12 +9,26 @@
 
 namespace flaunay::cli {
 
-void add_input(CLI::App* command, std::string& path) {
+void add_columns(CLI::App* command, io::Columns& columns, const std::string& what) {
+  command
+      ->add_option(
+          "--columns", columns,
+          fmt::format("Of text, the columns with {}: names of the header, or numbers from 0; default: the "
+                      "first ones",
+                      what))
+      ->delimiter(',')
+      ->expected(2, 3)
+      ->allow_extra_args(false)
+      ->type_name("X,Y[,Z]");
+}
+
+void add_input(CLI::App* command, std::string& path, io::Columns& columns) {
   command
       ->add_option("input", path,
                    fmt::format("Points: {}, or - for text from standard input; of these, {} are maps",
                                io::endings_for(io::Use::read_points), io::endings_for(io::Use::read_map)))
       ->required();
+  add_columns(command, columns, "x, y and perhaps a height");
 }
 
 CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "flaunay/research.hpp"
 
 namespace flaunay::cli {
@@ -20,8 +21,10 @@ using research::Mode;
 /// With more levels there would be more regions than 32-bit indices.
 constexpr int kMostPartitionLevels = 30;
 
-/// The first positional argument: the file with the points.
-void add_input(CLI::App* command, std::string& path);
+/// The first positional argument, the file with the points, and --columns.
+void add_input(CLI::App* command, std::string& path, io::Columns& columns);
+/// --columns: which columns of text are read.
+void add_columns(CLI::App* command, io::Columns& columns, const std::string& what);
 
 /// An option that takes a path. An empty path, as from an unset shell variable, is an error and does not mean
 /// "none".

@@ -19,6 +19,7 @@ namespace {
 
 struct PartitionRequest {
   std::string input;
+  io::Columns columns;
   std::string folder;
   std::string picture;
   int levels = 0;
@@ -61,7 +62,7 @@ int partition(const PartitionRequest& request) {
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  const io::Points points = io::read_points(request.input);
+  const io::Points points = io::read_points(request.input, request.columns);
   facts.reading_seconds = stopwatch.seconds();
 
   const research::Partition result = compute(request, points, facts, progress);
@@ -85,7 +86,7 @@ void add_partition(CLI::App& app, Action& action) {
   auto request = std::make_shared<PartitionRequest>();
   CLI::App* command = app.add_subcommand(
       "partition", "Cut the triangulation of a file's points into regions for other programs to solve");
-  add_input(command, request->input);
+  add_input(command, request->input, request->columns);
   command->add_option("--levels", request->levels, "Number of levels; there are up to 2^levels regions")
       ->check(CLI::Range(0, kMostPartitionLevels))
       ->required();

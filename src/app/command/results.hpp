@@ -51,6 +51,7 @@ void add_array(CLI::App* command, const Array& array, std::string& path) {
 /// What every way to triangulate is asked for.
 struct Task {
   std::string input;
+  io::Columns columns;
   ResultPaths results;
   std::string device;
   std::string index = "auto";  ///< "auto", "32" or "64"

@@ -19,7 +19,7 @@ namespace {
 
 // On the sphere, and with a period also the others.
 const std::vector<std::string> kCommon = {"--triangles", "--neighbors", "--duplicates", "--stats",
-                                          "--device",    "--index",     "--quiet"};
+                                          "--device",    "--index",     "--columns",    "--quiet"};
 const std::vector<std::string> kPeriodic = {"--period", "--offsets",      "--points",
                                             "--memory", "--chunk-points", "--scratch"};
 
@@ -79,7 +79,7 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Points points = io::read_points(task.input);
+  io::Points points = io::read_points(task.input, task.columns);
   const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(task.index, n, task.results);

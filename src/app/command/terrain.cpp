@@ -47,6 +47,8 @@ struct TerrainRequest {
   Returns returns = Returns::all;
   Duplicates duplicates = Duplicates::highest;
   std::string breaklines, boundary, flat, crs;
+  Crossings crossings = Crossings::error;
+  io::Columns columns;
   std::vector<double> contours;
   RasterOptions raster;
   bool is_point = false;
@@ -100,6 +102,14 @@ io::ScanChoice choice_of(const TerrainRequest& request) {
   return choice;
 }
 
+// What was left out of the points, for messages; empty if nothing was.
+std::string left_out_text(const io::LeftOut& left_out) {
+  std::string text;
+  if (left_out.withheld > 0) text += fmt::format(", without {} withheld ones", left_out.withheld);
+  if (left_out.noise > 0) text += fmt::format(", without {} of noise", left_out.noise);
+  return text;
+}
+
 // The system of all points: what the user says, or else what the files have.
 std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
   if (!request.crs.empty()) return io::crs_text(request.crs, "--crs");
@@ -113,6 +123,30 @@ std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
                                   systems.front().path, system.path, systems.front().crs, system.crs)));
   }
   return systems.empty() ? "" : systems.front().crs;
+}
+
+// Throws Error(input) if a map lies where no points are, or names another system of coordinates.
+void check_place(const char* option, const std::string& path, const io::Map& map, const io::Box& points,
+                 const std::string& crs) {
+  if (path.empty() || map.points.size() == 0) return;
+  const auto fail_place = [&](const std::string& reason) {
+    throw Error(ErrorKind::input, io::printable(fmt::format("{}: {}: {}", option, path, reason)));
+  };
+  if (io::are_different_crs(map.crs, crs)) {
+    fail_place(fmt::format("has the coordinate system {}, but the points have {}: reproject one of them",
+                           map.crs, crs));
+  }
+  io::Box box = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (std::size_t i = 0; i < map.points.coordinates.size(); ++i) {
+    const double value = map.points.coordinates[i];
+    box[i % 2] = std::min(box[i % 2], value);
+    box[i % 2 + 2] = std::max(box[i % 2 + 2], value);
+  }
+  if (box[0] <= points[2] && points[0] <= box[2] && box[1] <= points[3] && points[1] <= box[3]) return;
+  fail_place(
+      fmt::format("reaches from ({}, {}) to ({}, {}), but the points from ({}, {}) to ({}, {}): both must "
+                  "have the same coordinate system",
+                  box[0], box[1], box[2], box[3], points[0], points[1], points[2], points[3]));
 }
 
 using Range = std::array<double, 2>;
@@ -151,24 +185,24 @@ int make_terrain(const TerrainRequest& request) {
     fail_usage("--contours: needs an output .geojson or .gpkg");
   OutputFiles outputs(inputs);
   for (const std::string& path : request.outputs) outputs.announce(path);
-  HardEdges edges(request.breaklines, request.flat);
+  HardEdges edges(request.breaklines, request.flat, request.crossings);
   const bool in_memory = !edges.has_heights() || !request.flat.empty() || !files.meshes.empty();
   if (in_memory && request.memory != 0) {
     fail_usage(
         "--memory: with --flat, a file of triangles or breaklines without heights, all points are in memory "
         "at once, about 200 bytes each");
   }
+  io::Map area;
   std::optional<Boundary> boundary;
   if (!request.boundary.empty()) {
-    const io::Map map = io::read_map(request.boundary);
-    if (map.polygon_count() == 0) io::fail(request.boundary, "has no polygon");
-    boundary.emplace(map);
+    area = io::read_map(request.boundary);
+    boundary.emplace(request.boundary, area);
   }
 
   Progress progress(!request.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Scan scan(scans, choice_of(request), request.scratch);
+  io::Scan scan(scans, choice_of(request), request.scratch, request.columns);
   const std::string crs = common_crs(request, scan);
   std::optional<io::Box> bounds;
   if (!request.bounds.empty()) {
@@ -189,12 +223,18 @@ int make_terrain(const TerrainRequest& request) {
   if (announced[0] <= announced[2]) grid_over(announced);
 
   const io::Box box = scan.survey([&](double done) { progress.update("reading", -1, done); });
+  const std::string left_out = left_out_text(scan.left_out());
   if (scan.size() == 0) {
     throw Error(ErrorKind::input,
-                request.classes.empty()
-                    ? "there are no points"
-                    : fmt::format("there are no points of the classes {}", fmt::join(request.classes, ", ")));
+                fmt::format("there are no points{}{}",
+                            request.classes.empty()
+                                ? ""
+                                : fmt::format(" of the classes {}", fmt::join(request.classes, ", ")),
+                            left_out));
   }
+  check_place("--breaklines", request.breaklines, edges.lines, box, crs);
+  check_place("--flat", request.flat, edges.lakes, box, crs);
+  check_place("--boundary", request.boundary, area, box, crs);
   const PixelGrid grid = grid_over(bounds ? *bounds : box);
   const std::uint64_t memory = request.memory != 0 ? request.memory : host::memory_left().bytes / 2;
   Pixels pixels(grid.count(), memory, request.scratch);
@@ -220,8 +260,12 @@ int make_terrain(const TerrainRequest& request) {
     chunks.scratch = request.scratch;
     if (!request.device.empty()) chunks.devices = {request.device};
     chunks.progress = [&](const std::string& stage, int, double done) { progress.update(stage, -1, done); };
-    heights = contour_heights(request.contours, with_heights(scan.heights(), edges.lines.heights));
+    heights = contour_heights(request.contours, with_heights(scan.heights(), edges.lines.points.heights));
     naming_files({{"segment", edges.path}}, [&] {
+      if (edges.crossings == Crossings::split) {
+        Triangulator triangulator(request.device);
+        edges.split(triangulator);
+      }
       rasterize_chunks(scan, request.duplicates, grid.pixels, request.raster, pixels.data(), heights,
                        contours, edges.view(), chunks);
     });
@@ -239,7 +283,7 @@ int make_terrain(const TerrainRequest& request) {
   outputs.commit();
   progress.finish();
   if (!request.quiet) {
-    print(fmt::format("{} points, {} x {} pixels, {:.3g} s\n", scan.size(), grid.pixels.columns,
+    print(fmt::format("{} points{}, {} x {} pixels, {:.3g} s\n", scan.size(), left_out, grid.pixels.columns,
                       grid.pixels.rows, stopwatch.seconds()));
   }
   return kSuccess;
@@ -284,8 +328,9 @@ void add_terrain(CLI::App& app, Action& action) {
       ->expected(4);
   constexpr int kMostClass = 255;
   command
-      ->add_option("--classes", request->classes,
-                   "Of a scan, the classes that are used: 2 is ground, 9 water")
+      ->add_option(
+          "--classes", request->classes,
+          "Of a scan, the classes that are used: 2 is ground, 9 water; default: all but noise, 7 and 18")
       ->delimiter(',')
       ->check(CLI::Range(0, kMostClass));
   add_named_choice(command, "--returns", request->returns, "Of a scan, only these returns of each pulse",
@@ -308,7 +353,12 @@ void add_terrain(CLI::App& app, Action& action) {
            "A map of polygons, such as lakes, that are held flat: at the height of the first point of their "
            "border, or else at the lowest height along it");
   command->add_option("--max-edge", request->raster.max_edge, "Triangles with a longer edge are left out")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::PositiveNumber);
+  add_named_choice(command, "--crossings", request->crossings,
+                   "Breaklines that cross: an error, or cut where they do, at the height of the first one",
+                   NamedChoices<Crossings>{{"error", Crossings::error}, {"split", Crossings::split}})
+      ->default_str("error");
+  add_columns(command, request->columns, "x, y and height");
   command->add_option("--crs", request->crs,
                       "The system of the coordinates, such as EPSG:25832, in place of that of the files");
   add_named_choice(command, "--pixel-is", request->is_point,

@@ -8,7 +8,16 @@
 
 namespace flaunay::cli {
 
-Boundary::Boundary(const io::Map& polygons) {
+Boundary::Boundary(const std::string& path, const io::Map& polygons) {
+  if (polygons.polygon_count() == 0) io::fail(path, "has no polygon");
+  // Of pixels and contours. Here differences and products of two coordinates are finite, too.
+  constexpr double kFarthest = 0x1p509;
+  for (std::size_t i = 0; i < polygons.points.size(); ++i) {
+    const double x = polygons.points.coordinates[2 * i], y = polygons.points.coordinates[2 * i + 1];
+    if (std::fabs(x) < kFarthest && std::fabs(y) < kFarthest) continue;
+    io::fail(path, "position {} is ({}, {}); expected coordinates below 2^509, as those of points must be", i,
+             x, y);
+  }
   double high = -std::numeric_limits<double>::infinity(), heights = 0;
   low_ = std::numeric_limits<double>::infinity();
   for (std::size_t polygon = 0; polygon < polygons.polygon_count(); ++polygon) {

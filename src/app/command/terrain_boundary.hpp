@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "app/files/map.hpp"
@@ -13,7 +14,9 @@ namespace flaunay::cli {
 /// Polygons, each with what is inside by the even-odd rule.
 class Boundary {
  public:
-  explicit Boundary(const io::Map& polygons);
+  /// Throws Error(input) that names the file for a map without polygons, and for places so far away that no
+  /// terrain reaches them.
+  Boundary(const std::string& path, const io::Map& polygons);
 
   /// Takes the values of pixels away whose centres no polygon has. Rows go down.
   void leave_out(const RasterGrid& grid, double* pixels) const;

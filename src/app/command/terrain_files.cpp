@@ -175,10 +175,9 @@ void write_surface(OutputFiles& outputs, const std::string& path, const TerrainM
     }
     if (is_kept) mesh.triangles.insert(mesh.triangles.end(), &corners[c], &corners[c] + 3);
   }
-  const io::Points points{terrain.coordinates};
+  const io::Points points{terrain.coordinates, {}, terrain.heights};
   io::MeshContents contents{points, mesh};
   if (!mesh.constraint_edges.empty()) contents.constrained = &mesh;
-  contents.heights = terrain.heights.data();
   io::write_mesh(outputs, path, contents);
 }
 

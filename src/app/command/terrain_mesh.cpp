@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/command/errors.hpp"
+#include "app/command/heights.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::cli {
@@ -15,53 +16,53 @@ namespace {
 
 // Lines between points with heights, NaN where there are none.
 struct HardLines {
-  std::vector<double> coordinates, heights;
+  io::Points points;
   std::vector<std::int32_t> segments;
 
   void add(const io::Map& map) {
-    const auto first = static_cast<std::int32_t>(coordinates.size() / 2);
-    coordinates.insert(coordinates.end(), map.points.coordinates.begin(), map.points.coordinates.end());
-    heights.insert(heights.end(), map.heights.begin(), map.heights.end());
-    heights.resize(coordinates.size() / 2, std::numeric_limits<double>::quiet_NaN());
+    const auto first = static_cast<std::int32_t>(points.size());
+    points.coordinates.insert(points.coordinates.end(), map.points.coordinates.begin(),
+                              map.points.coordinates.end());
+    points.heights.insert(points.heights.end(), map.points.heights.begin(), map.points.heights.end());
+    points.heights.resize(points.size(), std::numeric_limits<double>::quiet_NaN());
     for (const auto* of_map : {&map.segments, &map.lines}) {
       for (const std::int32_t end : *of_map) segments.push_back(first + end);
     }
   }
 };
 
-// The heights of places between points, and beyond them that of the nearest one.
-std::vector<double> heights_at(Triangulator& triangulator, const TerrainMesh& points,
-                               const std::vector<double>& places) {
-  const std::size_t n = points.heights.size(), m = places.size() / 2;
-  if (m == 0) return {};
-  const Triangulation mesh = triangulator.triangulate(points.coordinates.data(), n);
-  Locator locator(triangulator, points.coordinates.data(), n, mesh);
-  std::vector<double> heights = locator.interpolate(points.heights.data(), places.data(), m);
-  const std::vector<std::int32_t> nearest = locator.nearest(places.data(), m);
-  for (std::size_t k = 0; k < m; ++k) {
-    if (std::isnan(heights[k])) heights[k] = points.heights[static_cast<std::size_t>(nearest[k])];
-  }
-  return heights;
+// Cuts segments where they cross, with the height of the first one.
+void split_crossings(Triangulator& triangulator, io::Points& points, std::vector<std::int32_t>& segments) {
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  ConstrainedOptions options;
+  options.crossings = Crossings::split;
+  const ConstrainedTriangulation mesh =
+      triangulator.constrained(points.coordinates.data(), points.size(), constraints, options);
+  add_points(triangulator, segments, mesh, points);
+  segments = mesh.constraint_edges;
 }
 
 // Gives ends of lines without a height that of the points around them.
 void complete_heights(Triangulator& triangulator, const TerrainMesh& points, HardLines& lines) {
   std::vector<std::size_t> missing;
-  std::vector<double> places;
-  for (std::size_t i = 0; i < lines.heights.size(); ++i) {
-    if (!std::isnan(lines.heights[i])) continue;
+  std::vector<double> places, &heights = lines.points.heights;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    if (!std::isnan(heights[i])) continue;
     missing.push_back(i);
-    places.insert(places.end(), {lines.coordinates[2 * i], lines.coordinates[2 * i + 1]});
+    places.insert(places.end(), {lines.points.coordinates[2 * i], lines.points.coordinates[2 * i + 1]});
   }
-  const std::vector<double> found = heights_at(triangulator, points, places);
-  for (std::size_t k = 0; k < missing.size(); ++k) lines.heights[missing[k]] = found[k];
+  const std::vector<double> found = heights_at(triangulator, points.coordinates, points.heights, {}, places);
+  for (std::size_t k = 0; k < missing.size(); ++k) heights[missing[k]] = found[k];
 }
 
 // Gives the shores of lakes one height for each part of a polygon: that of the first point of its border, or
 // if it has none, since water lies no higher than its shore, the lowest height along its rings.
 void flatten(Triangulator& triangulator, const TerrainMesh& points, io::Map& lakes) {
-  lakes.heights.resize(lakes.points.size(), std::numeric_limits<double>::quiet_NaN());
-  const std::vector<double> around = heights_at(triangulator, points, lakes.points.coordinates);
+  lakes.points.heights.resize(lakes.points.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> around =
+      heights_at(triangulator, points.coordinates, points.heights, {}, lakes.points.coordinates);
   const auto point_of = [&](std::size_t segment) {
     return static_cast<std::size_t>(lakes.segments[2 * segment]);
   };
@@ -69,17 +70,17 @@ void flatten(Triangulator& triangulator, const TerrainMesh& points, io::Map& lak
     const std::size_t first = lakes.ring_offsets[lakes.part_offsets[part]];
     const std::size_t last = lakes.ring_offsets[lakes.part_offsets[part + 1]];
     if (first == last) continue;
-    double level = lakes.heights[point_of(first)];
+    double level = lakes.points.heights[point_of(first)];
     if (std::isnan(level)) {
       level = std::numeric_limits<double>::infinity();
       for (std::size_t s = first; s < last; ++s) level = std::min(level, around[point_of(s)]);
     }
-    for (std::size_t s = first; s < last; ++s) lakes.heights[point_of(s)] = level;
+    for (std::size_t s = first; s < last; ++s) lakes.points.heights[point_of(s)] = level;
   }
 }
 
 // Leaves the points that lie in no lake and on no shore.
-void leave_dry(Triangulator& triangulator, const io::Map& lakes, TerrainMesh& points) {
+void leave_dry(Triangulator& triangulator, const io::Map& lakes, Crossings crossings, TerrainMesh& points) {
   Constraints constraints;
   constraints.segments = lakes.segments.data();
   constraints.segment_count = lakes.segments.size() / 2;
@@ -88,6 +89,7 @@ void leave_dry(Triangulator& triangulator, const io::Map& lakes, TerrainMesh& po
   options.neighbors = true;
   options.outside = Outside::hull;
   options.fill_rule = FillRule::even_odd;
+  options.crossings = crossings;
   const ConstrainedTriangulation water =
       triangulator.constrained(lakes.points.coordinates.data(), lakes.points.size(), constraints, options);
   Locator locator(triangulator, lakes.points.coordinates.data(), lakes.points.size(), water);
@@ -123,8 +125,9 @@ void merge_heights(TerrainMesh& terrain, std::size_t fixed, Duplicates duplicate
 
 }  // namespace
 
-HardEdges::HardEdges(const std::string& breaklines, const std::string& flat)
-    : path(breaklines.empty() ? flat
+HardEdges::HardEdges(const std::string& breaklines, const std::string& flat, Crossings at_crossings)
+    : crossings(at_crossings),
+      path(breaklines.empty() ? flat
            : flat.empty()     ? breaklines
                               : breaklines + " and " + flat) {
   if (!breaklines.empty()) {
@@ -139,13 +142,19 @@ HardEdges::HardEdges(const std::string& breaklines, const std::string& flat)
   }
 }
 
+void HardEdges::split(Triangulator& triangulator) {
+  if (crossings == Crossings::split && !segments.empty())
+    split_crossings(triangulator, lines.points, segments);
+}
+
 bool HardEdges::has_heights() const {
-  return lines.heights.size() == lines.points.size() &&
-         std::none_of(lines.heights.begin(), lines.heights.end(), [](double z) { return std::isnan(z); });
+  const std::vector<double>& heights = lines.points.heights;
+  return heights.size() == lines.points.size() &&
+         std::none_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); });
 }
 
 Breaklines HardEdges::view() const {
-  return {lines.points.coordinates.data(), lines.heights.data(), lines.points.size(), segments.data(),
+  return {lines.points.coordinates.data(), lines.points.heights.data(), lines.points.size(), segments.data(),
           segments.size() / 2};
 }
 
@@ -174,14 +183,20 @@ TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, HardEdg
     lines.add(edges.lines);
     if (edges.lakes.polygon_count() > 0) {
       flatten(triangulator, terrain, edges.lakes);
-      leave_dry(triangulator, edges.lakes, terrain);
+      leave_dry(triangulator, edges.lakes, edges.crossings, terrain);
     }
     if (!terrain.heights.empty()) complete_heights(triangulator, terrain, lines);
+    const auto of_lines = static_cast<std::ptrdiff_t>(lines.segments.size());
     lines.add(edges.lakes);
-    fixed = lines.heights.size();
-    terrain.coordinates.insert(terrain.coordinates.begin(), lines.coordinates.begin(),
-                               lines.coordinates.end());
-    terrain.heights.insert(terrain.heights.begin(), lines.heights.begin(), lines.heights.end());
+    if (edges.crossings == Crossings::split) {
+      // Lakes come first, since they stay flat.
+      std::rotate(lines.segments.begin(), lines.segments.begin() + of_lines, lines.segments.end());
+      split_crossings(triangulator, lines.points, lines.segments);
+    }
+    const auto& [coordinates, markers, heights] = lines.points;
+    fixed = heights.size();
+    terrain.coordinates.insert(terrain.coordinates.begin(), coordinates.begin(), coordinates.end());
+    terrain.heights.insert(terrain.heights.begin(), heights.begin(), heights.end());
     Constraints constraints;
     constraints.segments = lines.segments.data();
     constraints.segment_count = lines.segments.size() / 2;

@@ -16,15 +16,19 @@ namespace flaunay::cli {
 /// Maps whose lines and rings become edges.
 struct HardEdges {
   /// Reads the files; empty: none. Throws Error(input) if one has no lines, or flat not only polygons.
-  HardEdges(const std::string& breaklines, const std::string& flat);
+  HardEdges(const std::string& breaklines, const std::string& flat, Crossings at_crossings);
 
   /// Whether all points of breaklines have heights.
   bool has_heights() const;
   Breaklines view() const;
 
+  /// With Crossings::split: cuts lines with heights where they cross, each at the height of the first one.
+  void split(Triangulator& triangulator);
+
   io::Map lines, lakes;
   std::vector<std::int32_t> segments;  ///< of the lines
   std::string path;                    ///< for messages
+  Crossings crossings;
 };
 
 struct TerrainMesh {

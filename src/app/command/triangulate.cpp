@@ -10,6 +10,7 @@
 #include "app/command/commands.hpp"
 #include "app/command/compiling.hpp"
 #include "app/command/constraints.hpp"
+#include "app/command/heights.hpp"
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
@@ -131,6 +132,7 @@ int triangulate(const TriangulateRequest& request) {
   if (request.weighted.is_weighted) return triangulate_weighted(request, request.weighted);
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
+  io::check_columns(request.input, request.columns);
   if (request.is_on_surface && !request.in_chunks)
     return triangulate_surface(request, request.surface, request.constraints.points);
   if (request.in_chunks) return triangulate_in_chunks(request, request.chunks, "");
@@ -151,7 +153,7 @@ int triangulate(const TriangulateRequest& request) {
   facts.opening_seconds = stopwatch.restart();
 
   progress.update("reading");
-  const io::Points points = io::read_points(request.input);
+  const io::Points points = io::read_points(request.input, request.columns, !request.results.mesh.empty());
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(request.index, points.size(), request.results);
 
@@ -175,8 +177,9 @@ int triangulate(const TriangulateRequest& request) {
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
-          degenerate_note(mesh.statistics) + host_note(facts.compiling_note) +
-          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
+          degenerate_note(mesh.statistics) + heights_note(request.input, request.results.mesh, points) +
+          host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
+          summary(mesh.statistics, facts));
   }
   return kSuccess;
 }
@@ -200,7 +203,7 @@ std::string mode_table() {
 void add_triangulate(CLI::App& app, Action& action) {
   auto request = std::make_shared<TriangulateRequest>();
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
-  add_input(command, request->input);
+  add_input(command, request->input, request->columns);
   add_results(command, request->results);
   add_choice<Mode>(command, "--mode", request->mode,
                    "How to divide and conquer (see below); the triangles do not depend on it", all_modes());

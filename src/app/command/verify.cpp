@@ -35,6 +35,7 @@ namespace {
 
 struct VerifyRequest {
   std::string points;
+  io::Columns columns;
   std::string triangles;
   std::string neighbors;
   std::uint64_t memory_bytes = 0;  // 0: as much as there is
@@ -85,7 +86,7 @@ struct Checked {
 };
 
 Checked verify_in_memory(const VerifyRequest& request, Progress& progress) {
-  const io::Points points = io::read_points(request.points);
+  const io::Points points = io::read_points(request.points, request.columns);
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
   std::vector<std::int32_t> neighbors;
   if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);
@@ -99,7 +100,7 @@ Checked verify_in_memory(const VerifyRequest& request, Progress& progress) {
 }
 
 Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Progress& progress) {
-  const auto points = io::open_point_stream(request.points, request.scratch);
+  const auto points = io::open_point_stream(request.points, request.scratch, request.columns);
   const auto triangles = io::open_npy_rows(request.triangles);
   const auto neighbors = request.neighbors.empty() ? nullptr : io::open_npy_rows(request.neighbors);
   const VerifySizes sizes = verify_sizes(memory, points->size(), triangles->size(), 0);
@@ -132,9 +133,9 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
   ConstraintRequest asked = request.constraints;
   io::Map map;
   if (request.has_constraints) {
-    map = read_domain(request.points, asked);
+    map = read_domain(request.points, request.columns, asked);
   } else {
-    map.points = io::read_points(request.points);
+    map.points = io::read_points(request.points, request.columns);
   }
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
   const std::vector<std::int32_t> segments =
@@ -175,6 +176,7 @@ Checked check(const VerifyRequest& request, Progress& progress) {
 
 int verify(const VerifyRequest& request) {
   io::format_of(request.points, io::Use::read_points);
+  io::check_columns(request.points, request.columns);
   Progress progress(!request.quiet);
   progress.update("reading");
   const auto [report, seconds, how] = check(request, progress);
@@ -230,6 +232,7 @@ void add_verify(CLI::App& app, Action& action) {
       ->add_option("triangles", request->triangles,
                    "The triangles: " + io::endings_for(io::Use::read_triangles))
       ->required();
+  add_columns(command, request->columns, "x and y");
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
   add_domain_options(command, request->constraints);
   add_path(command, "--constraint-edges", request->constraint_edges,

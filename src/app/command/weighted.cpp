@@ -26,7 +26,7 @@ bool asks_for_weighted(const CLI::App& command, const WeightedRequest& request) 
   }
   refuse_all_but(command, {"--weighted", "--hidden"},
                  {"--output", "--triangles", "--neighbors", "--halfedges", "--hull", "--duplicates",
-                  "--areas", "--stats", "--device", "--index", "--quiet"});
+                  "--areas", "--stats", "--device", "--index", "--columns", "--quiet"});
   if (asks_for_chunks(command, command.get_option("--device")->as<std::string>()))
     refuse(command, "--device", "weighted points need one device");
   return true;
@@ -43,7 +43,7 @@ int triangulate_weighted(const Task& task, const WeightedRequest& request) {
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Scan file({task.input}, {}, "");
+  io::Scan file({task.input}, {}, "", task.columns, "weight");
   file.survey([](double) {});
   const auto n = static_cast<std::size_t>(file.size());
   io::Points points;

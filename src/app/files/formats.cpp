@@ -6,8 +6,9 @@ namespace flaunay::io {
 namespace {
 
 /// In the order of messages.
-constexpr const Format* kFormats[] = {&kNpy,     &kNode, &kXy,  &kTxt, &kCsv, &kBin, &kLas, &kLaz, &kPoly,
-                                      &kGeoJson, &kJson, &kEle, &kOff, &kObj, &kPly, &kMsh, &kVtu, &kSvg};
+constexpr const Format* kFormats[] = {&kNpy, &kNode, &kXy,   &kXyz,     &kTxt,  &kCsv, &kBin,
+                                      &kLas, &kLaz,  &kPoly, &kGeoJson, &kJson, &kEle, &kOff,
+                                      &kObj, &kPly,  &kMsh,  &kVtu,     &kSvg};
 
 }  // namespace
 

@@ -26,7 +26,7 @@ struct Format {
   // map.
   /// Finds the records. Throws Error(input) that names the file if it is none of the format, or not complete.
   PointRecords (*records)(const std::string& path, InputFile& file) = nullptr;
-  std::unique_ptr<PointText> (*text)(const std::string& path) = nullptr;
+  std::unique_ptr<PointText> (*text)(const std::string& path, const Columns& columns) = nullptr;
   Map (*map)(const std::string& path) = nullptr;
   /// Throws an error that says why files of this format are not read.
   void (*refuse)(const std::string& path) = nullptr;
@@ -53,8 +53,11 @@ struct Format {
   } beside = {}, constraints_beside = {};
 };
 
-extern const Format kNpy, kNode, kXy, kTxt, kCsv, kBin, kLas, kLaz, kPoly, kGeoJson, kJson, kEle, kOff, kObj,
-    kPly, kMsh, kVtu, kSvg;
+extern const Format kNpy, kNode, kXy, kXyz, kTxt, kCsv, kBin, kLas, kLaz, kPoly, kGeoJson, kJson, kEle, kOff,
+    kObj, kPly, kMsh, kVtu, kSvg;
+
+/// Format::text of the formats that have columns.
+std::unique_ptr<PointText> column_text_of_points(const std::string& path, const Columns& columns);
 
 /// What a file may be for.
 struct Use {
@@ -68,7 +71,9 @@ struct Use {
   static bool read_triangles(const Format& format) { return format.triangles != nullptr; }
   static bool write_points(const Format& format) { return format.write_points != nullptr; }
   static bool write_mesh(const Format& format) { return format.write_mesh != nullptr; }
-  static bool write_surface(const Format& format) { return write_mesh(format) && format.is_spatial; }
+  /// Of a terrain, for which .geojson has contours.
+  static bool write_surface(const Format& format) { return has_heights(format) && !read_map(format); }
+  static bool has_heights(const Format& format) { return write_mesh(format) && format.is_spatial; }
 };
 
 /// The format of a path. Throws Error(usage) that lists the endings if there is none for this use. "-" is

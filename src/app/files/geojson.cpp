@@ -1,5 +1,6 @@
 // GeoJSON (RFC 7946).
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -71,6 +72,9 @@ class GeoJsonReader {
   Map read() {
     const Json document = parse_json(path_, read_file(path_, "GeoJSON"));
     read_object(document, Place());
+    read_crs(document);
+    std::vector<double>& heights = map_.points.heights;
+    if (std::all_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); })) heights = {};
     if (unclosed_ > 0) {
       map_.notes.push_back(
           fmt::format("{}: {} not closed: the last position should be the first one again", path_,
@@ -121,7 +125,6 @@ class GeoJsonReader {
   }
 
   void read_object(const Json& object, const Place& at) {
-    constexpr std::size_t kDeepest = 100;
     if (at.depth() > kDeepest) fail(path_, "has collections inside of collections, too deep to be meant");
     if (!object.is_object()) fail_at(at, "is {}; expected a GeoJSON object", shown(object));
     const Json& type = member(object, "type", at);
@@ -131,11 +134,52 @@ class GeoJsonReader {
     } else if (type == "Feature") {
       const Json& geometry = member(object, "geometry", at);
       if (!geometry.is_null()) read_object(geometry, Place(at, "geometry"));
+      take_properties(object, at);
     } else if (type == "GeometryCollection") {
       for_each(array(object, "geometries", at), Place(at, "geometries"), read_this);
     } else {
       read_geometry(type, object, at);
     }
+  }
+
+  // Gives the polygons that have none yet the properties of their feature.
+  void take_properties(const Json& feature, const Place& at) {
+    const std::size_t first = map_.properties.size();
+    map_.properties.resize(map_.polygon_count());
+    const auto properties = feature.find("properties");
+    if (first == map_.polygon_count() || properties == feature.end() || !properties->is_object()) return;
+    check_depth(*properties, Place(at, "properties"));
+    const std::string text = properties->dump();
+    std::fill(map_.properties.begin() + static_cast<std::ptrdiff_t>(first), map_.properties.end(),
+              text.substr(1, text.size() - 2));
+  }
+
+  // Level by level, since the serializer recurses.
+  void check_depth(const Json& value, const Place& at) const {
+    std::vector<const Json*> level = {&value}, next;
+    for (std::size_t depth = 0; !level.empty(); ++depth, level.swap(next)) {
+      if (depth > kDeepest) fail_at(at, "has values inside of values, too deep to be meant");
+      next.clear();
+      for (const Json* outer : level) {
+        for (const Json& inner : *outer) {
+          if (inner.is_structured()) next.push_back(&inner);
+        }
+      }
+    }
+  }
+
+  // The member of the standard of 2008 that programs still write: {"properties": {"name": ...}}.
+  void read_crs(const Json& document) {
+    const auto member_of = [](const Json& object, const char* key) -> const Json& {
+      static const Json kNone;
+      const auto found = object.find(key);
+      return object.is_object() && found != object.end() ? *found : kNone;
+    };
+    const Json& name = member_of(member_of(member_of(document, "crs"), "properties"), "name");
+    if (!name.is_string()) return;
+    map_.crs = name.get<std::string>();
+    constexpr std::string_view kEpsg = "urn:ogc:def:crs:EPSG:";
+    if (map_.crs.rfind(kEpsg, 0) == 0) map_.crs = "EPSG:" + map_.crs.substr(map_.crs.rfind(':') + 1);
   }
 
   void read_geometry(const Json& type, const Json& object, const Place& at) {
@@ -168,7 +212,8 @@ class GeoJsonReader {
     }
     for (int axis = 0; axis < 2; ++axis) map_.points.coordinates.push_back(value[axis].get<double>());
     const bool has_height = value.size() > 2 && value[2].is_number();
-    map_.heights.push_back(has_height ? value[2].get<double>() : std::numeric_limits<double>::quiet_NaN());
+    map_.points.heights.push_back(has_height ? value[2].get<double>()
+                                             : std::numeric_limits<double>::quiet_NaN());
   }
   /// Returns the index of the first point.
   std::size_t read_positions(const Json& values, const Place& at) {
@@ -201,7 +246,7 @@ class GeoJsonReader {
                            coordinates[2 * first + 1] == coordinates[2 * end - 1];
     if (is_closed) {
       coordinates.resize(2 * --end);
-      map_.heights.resize(end);
+      map_.points.heights.resize(end);
     } else {
       ++unclosed_;
     }
@@ -220,6 +265,8 @@ class GeoJsonReader {
     segments.push_back(static_cast<std::int32_t>(to));
   }
 
+  static constexpr std::size_t kDeepest = 100;
+
   const std::string& path_;
   Map map_;
   std::size_t unclosed_ = 0;  // rings
@@ -227,20 +274,38 @@ class GeoJsonReader {
 
 Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
 
-/// A feature per triangle, with its corners as a ring.
+/// A feature per triangle, with its corners as a ring. It has the properties of its polygon, and its own
+/// ones, which have a longer name if a polygon has such a property.
 void write_geojson(OutputFile& file, const MeshContents& contents) {
   const ConstrainedTriangulation& constraints = contents.constraints();
+  static const std::vector<std::string> kNone;
+  const std::vector<std::string>& properties =
+      contents.map == nullptr || constraints.polygons.empty() ? kNone : contents.map->properties;
+  const auto name_of = [&](const std::string& name) {
+    const std::string key = fmt::format("\"{}\":", name);
+    const auto has_it = [&](const std::string& text) { return text.find(key) != std::string::npos; };
+    return std::any_of(properties.begin(), properties.end(), has_it) ? fmt::format("\"flaunay_{}\":", name)
+                                                                     : key;
+  };
+  const std::string triangle = name_of("triangle"), region = name_of("region"), depth = name_of("depth"),
+                    polygon = name_of("polygon");
   file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
-    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{\"triangle\":{}", t == 0 ? "" : ",", t);
+    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{{}{}", t == 0 ? "" : ",", triangle, t);
     if (contents.has_labels()) {
-      file.print(",\"region\":{},\"depth\":{}", constraints.regions[t], constraints.depths[t]);
+      file.print(",{}{},{}{}", region, constraints.regions[t], depth, constraints.depths[t]);
     }
+    if (!constraints.polygons.empty()) file.print(",{}{}", polygon, constraints.polygons[t]);
+    const auto owner =
+        constraints.polygons.empty() ? properties.size() : static_cast<std::size_t>(constraints.polygons[t]);
+    if (owner < properties.size() && !properties[owner].empty()) file.print(",{}", properties[owner]);
     file.print("}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[");
     for (std::size_t k = 0; k < 4; ++k) {
       const auto corner = static_cast<std::size_t>(contents.corners(t)[k % 3]);
-      file.print("{}[{},{}]", k == 0 ? "" : ",", contents.points.coordinates[2 * corner],
+      file.print("{}[{},{}", k == 0 ? "" : ",", contents.points.coordinates[2 * corner],
                  contents.points.coordinates[2 * corner + 1]);
+      if (!contents.points.heights.empty()) file.print(",{}", contents.height(corner));
+      file.print("]");
     }
     file.print("]]}}}}");
   }
@@ -249,8 +314,11 @@ void write_geojson(OutputFile& file, const MeshContents& contents) {
 
 }  // namespace
 
-const Format kGeoJson = {
-    .ending = ".geojson", .map = read_geojson, .write_mesh = write_geojson, .has_labels = true};
+const Format kGeoJson = {.ending = ".geojson",
+                         .map = read_geojson,
+                         .write_mesh = write_geojson,
+                         .has_labels = true,
+                         .is_spatial = true};
 const Format kJson = {.ending = ".json", .map = read_geojson};
 
 }  // namespace flaunay::io

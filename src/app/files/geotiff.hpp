@@ -19,6 +19,8 @@ void require_gdal(const std::string& path);
 std::string crs_text(const std::string& crs, const std::string& what);
 /// Whether both are one system; without GDAL, whether they are one text.
 bool is_same_crs(const std::string& a, const std::string& b);
+/// Whether coordinates are surely of two systems, heights aside: false if one of the texts says nothing.
+bool are_different_crs(const std::string& a, const std::string& b);
 /// The number of EPSG; 0 if it has none or is not known.
 int epsg_code(const std::string& crs);
 

@@ -62,6 +62,7 @@ namespace {
   X(OSRNewSpatialReference)       \
   X(OSRSetAxisMappingStrategy)    \
   X(OSRSetFromUserInput)          \
+  X(OSRStripVertical)             \
   X(VSIFree)                      \
   X(VSIGetMemFileBuffer)          \
   X(VSIUnlink)
@@ -207,6 +208,15 @@ bool is_same_crs(const std::string& a, const std::string& b) {
   if (a == b) return true;
   const System first = read_crs(a), second = read_crs(b);
   return first && second && gdal().OSRIsSame(first.get(), second.get()) != 0;
+}
+
+bool are_different_crs(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return false;
+  const System first = read_crs(a), second = read_crs(b);
+  if (!first || !second) return false;
+  gdal().OSRStripVertical(first.get());
+  gdal().OSRStripVertical(second.get());
+  return gdal().OSRIsSame(first.get(), second.get()) == 0;
 }
 
 int epsg_code(const std::string& crs) {

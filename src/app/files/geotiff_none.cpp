@@ -20,6 +20,10 @@ int epsg_code(const std::string& crs) {
   return crs.rfind(kPrefix, 0) == 0 ? std::atoi(crs.c_str() + kPrefix.size()) : 0;
 }
 
+bool are_different_crs(const std::string& a, const std::string& b) {
+  return epsg_code(a) != 0 && epsg_code(b) != 0 && epsg_code(a) != epsg_code(b);
+}
+
 void write_geotiff(const std::string&, const std::string& name, const GeoRaster&) { require_gdal(name); }
 
 std::string png_of(const std::string& name, const std::uint8_t*, std::size_t, std::size_t) {

@@ -121,6 +121,9 @@ PointRecords las_points(const std::string& path, InputFile& file) {
   return {header.size, header.begin, header.record_bytes,
           [header](const char* records, std::size_t count, double* coordinates) {
             header.decode<2>(records, count, coordinates);
+          },
+          [header](const char* records, std::size_t count, double* heights) {
+            header.decode<1, 2>(records, count, heights);
           }};
 }
 

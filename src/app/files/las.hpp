@@ -47,17 +47,19 @@ struct LasHeader {
   std::array<double, 4> box{};  ///< least x and y, largest x and y
   std::string crs;              ///< WKT or "EPSG:n"; empty if the file does not say
 
-  /// Writes x, y and z of each record; with two columns, x and y alone.
-  template <std::size_t columns>
+  /// Writes the coordinates of each record on some axes: of x, y and z, `columns` from `first` on.
+  template <std::size_t columns, std::size_t first = 0>
   void decode(const char* records, std::size_t count, double* coordinates) const {
     for (std::size_t i = 0; i < count; ++i, records += record_bytes) {
       std::int32_t stored[columns];  // every point format begins with X, Y and Z
-      std::memcpy(stored, records, sizeof stored);
+      std::memcpy(stored, records + first * sizeof stored[0], sizeof stored);
       for (std::size_t axis = 0; axis < columns; ++axis) {
-        coordinates[columns * i + axis] = axes[axis](stored[axis]);
+        coordinates[columns * i + axis] = axes[first + axis](stored[axis]);
       }
     }
   }
+  /// Whether the point counts as deleted.
+  bool is_withheld(const char* record) const { return (record[15] & (format < 6 ? 0x80 : 4)) != 0; }
   int class_of(const char* record) const {
     constexpr int kMostOfOldFormats = 31;
     return format < 6 ? record[15] & kMostOfOldFormats : static_cast<unsigned char>(record[16]);

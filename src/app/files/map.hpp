@@ -20,8 +20,6 @@ struct PolyRegion {
 /// Points with segments between them, and what the file says about the inside.
 struct Map {
   Points points;
-  /// Of GeoJSON: the third coordinate of each point, or NaN.
-  std::vector<double> heights = {};
   /// 2 points per segment, in the order of the file: of rings, if there are polygons.
   std::vector<std::int32_t> segments;
   /// Further segments: those of lines beside polygons, which bound nothing.
@@ -33,6 +31,10 @@ struct Map {
   /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
   /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
   std::vector<std::size_t> ring_offsets = {0}, part_offsets = {0}, polygon_offsets = {0};
+  /// Of GeoJSON, per polygon: the properties of its feature, as the members of a JSON object without its
+  /// braces; empty if there are none.
+  std::vector<std::string> properties = {};
+  std::string crs = {};            ///< of GeoJSON that names one: "EPSG:n", or else the name
   bool has_others = false;         ///< lines or points besides polygons
   std::vector<std::string> notes;  ///< what was left out or mended, a sentence each
 
@@ -45,8 +47,8 @@ bool is_map(const std::string& path);
 /// Reads a map from path, by its ending (any case):
 ///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
 ///                    vertices, those of the .node file beside it
-///   .geojson .json   GeoJSON (RFC 7946): any object; coordinates after the third are ignored, and rings
-///                    that are not closed are read as closed
+///   .geojson .json   GeoJSON (RFC 7946): any object; the third coordinate is a height, those after it are
+///                    ignored, and rings that are not closed are read as closed
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.
 Map read_map(const std::string& path);

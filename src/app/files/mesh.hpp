@@ -20,10 +20,9 @@ struct MeshContents {
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
   FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
-  const double* heights = nullptr;                        ///< of the points in space; null: 0
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
-  double height(std::size_t point) const { return heights != nullptr ? heights[point] : 0; }
+  double height(std::size_t point) const { return points.heights.empty() ? 0 : points.heights[point]; }
   const std::int32_t* corners(std::size_t triangle) const { return &mesh.triangles[3 * triangle]; }
   /// The mesh, or one that has nothing if there are no constraints.
   const ConstrainedTriangulation& constraints() const;
@@ -32,14 +31,15 @@ struct MeshContents {
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
 /// (binary little-endian), .vtu, .obj, .msh (Gmsh 2.2), .npy (int32, m x 3), .geojson (a polygon per
-/// triangle), .svg (a picture). Points that splitting added follow those of the input. Constraints are
-/// written as far as the format can have them:
+/// triangle), .svg (a picture). Points that splitting added follow those of the input. Heights, which must be
+/// known of all points, are in .off, .ply, .vtu, .obj, .msh and .geojson. Constraints are written as far as
+/// the format can have them:
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
 ///                    edges, whose markers are those of their segments or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions
 ///   .obj .ply        the constraint edges, as lines and edges
 ///   .msh             the constraint edges, and markers, attributes or polygons, and regions as its groups
-///   .vtu .geojson    region and depth of each triangle
+///   .vtu .geojson    region and depth of each triangle; .geojson also its polygon, and its properties
 ///   .svg             the constraint edges, and the inside in other colours than the outside
 /// Throws Error(input) naming path and the system's reason if it cannot be written.
 void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents);

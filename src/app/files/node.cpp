@@ -101,16 +101,14 @@ namespace {
 class NodeText : public PointText {
  public:
   NodeText(const std::string& path, std::vector<std::int32_t>* indices, std::vector<std::int32_t>* markers)
-      : path_(path), vertices_(indices, markers) {}
+      : path_(path), lines_(path, Lines::Separator::blanks), vertices_(indices, markers) {}
 
-  void parse(std::string_view text, std::vector<double>& coordinates) override {
-    Lines lines(path_, text, Lines::Separator::blanks, lines_);
-    if (!vertices_.has_header() && lines.next()) vertices_.read_header(lines);
-    if (vertices_.has_header()) {
-      coordinates.reserve(coordinates.size() + 2 * std::min(vertices_.left(), lines.lines_left()));
-      while (lines.next()) vertices_.read_vertex(lines, coordinates);
-    }
-    lines_ = lines.number();
+  void parse(std::string_view text, std::vector<double>& coordinates, std::vector<double>*) override {
+    lines_.go_on(text);
+    if (!vertices_.has_header() && lines_.next()) vertices_.read_header(lines_);
+    if (!vertices_.has_header()) return;
+    coordinates.reserve(coordinates.size() + 2 * std::min(vertices_.left(), lines_.lines_left()));
+    while (lines_.next()) vertices_.read_vertex(lines_, coordinates);
   }
 
   void finish() override { vertices_.check_complete(path_); }
@@ -119,11 +117,11 @@ class NodeText : public PointText {
 
  private:
   std::string path_;
+  Lines lines_;
   NodeVertices vertices_;
-  std::size_t lines_ = 0;  // read before
 };
 
-std::unique_ptr<PointText> node_text(const std::string& path) {
+std::unique_ptr<PointText> node_text(const std::string& path, const Columns&) {
   return std::make_unique<NodeText>(path, nullptr, nullptr);
 }
 
@@ -160,7 +158,7 @@ NodeFile read_node(const std::string& path, bool with_indices) {
   const std::string text = read_file(path, kNode.content);
   NodeFile file;
   NodeText parser(path, with_indices ? &file.indices : nullptr, &file.points.markers);
-  parser.parse(text, file.points.coordinates);
+  parser.parse(text, file.points.coordinates, nullptr);
   parser.finish();
   file.base = parser.base();
   return file;

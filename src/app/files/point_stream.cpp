@@ -45,9 +45,10 @@ class RecordFile : public PointSource {
 /// Points that were read from a text.
 class TextFile : public PointSource {
  public:
-  TextFile(const std::string& path, const Format& format, const std::string& scratch) : file_(scratch) {
+  TextFile(const std::string& path, const Format& format, const Columns& columns, const std::string& scratch)
+      : file_(scratch) {
     LinePieces pieces(path, format.content);
-    const std::unique_ptr<PointText> parser = format.text(path);
+    const std::unique_ptr<PointText> parser = format.text(path, columns);
     std::vector<double> coordinates;
     bool is_first = true;
     for (std::string_view lines; pieces.next(lines); is_first = false) {
@@ -89,10 +90,12 @@ class ReadPoints : public PointSource {
 
 }  // namespace
 
-std::unique_ptr<PointSource> open_point_stream(const std::string& path, const std::string& scratch) {
+std::unique_ptr<PointSource> open_point_stream(const std::string& path, const std::string& scratch,
+                                               const Columns& columns) {
   const Format& format = format_of(path, Use::read_points);
+  check_columns(path, columns);
   if (format.map != nullptr) return std::make_unique<ReadPoints>(path);
-  if (format.text != nullptr) return std::make_unique<TextFile>(path, format, scratch);
+  if (format.text != nullptr) return std::make_unique<TextFile>(path, format, columns, scratch);
   return std::make_unique<RecordFile>(path, format);
 }
 

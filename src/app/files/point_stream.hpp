@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/files/points.hpp"
 #include "flaunay/chunks.hpp"
 
 namespace flaunay::io {
@@ -13,7 +14,8 @@ namespace flaunay::io {
 /// in `scratch` (empty: TMPDIR, or /tmp), 16 bytes per point; maps are kept in memory. Throws what
 /// read_points throws, but for points of the binary formats that are not finite; reading throws Error(input)
 /// if the file became shorter.
-std::unique_ptr<PointSource> open_point_stream(const std::string& path, const std::string& scratch);
+std::unique_ptr<PointSource> open_point_stream(const std::string& path, const std::string& scratch,
+                                               const Columns& columns = {});
 
 /// About how many points read_points would read: exact but for text, where the beginning of the file tells
 /// how long lines are. 0: not known, because the file is a pipe or a map. Throws Error(input) for a file that

@@ -22,16 +22,16 @@ void check_finite(const std::string& path, const Points& points) {
   }
 }
 
-Points read_text(const std::string& path, const Format& format) {
+Points read_text(const std::string& path, const Format& format, const Columns& columns) {
   const std::string text = read_file(path, format.content);
   Points points;
-  const std::unique_ptr<PointText> parser = format.text(path);
-  parser->parse(text, points.coordinates);
+  const std::unique_ptr<PointText> parser = format.text(path, columns);
+  parser->parse(text, points.coordinates, &points.heights);
   parser->finish();
   return points;
 }
 
-Points read_records(const std::string& path, const Format& format) {
+Points read_records(const std::string& path, const Format& format, bool with_heights) {
   InputFile file(path, format.content);
   file.first(1);  // an error if there is none
   const PointRecords records = format.records(path, file);
@@ -40,6 +40,10 @@ Points read_records(const std::string& path, const Format& format) {
   system::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
   points.coordinates.resize(2 * records.size);
   records.read(file, 0, records.size, points.coordinates.data());
+  if (with_heights && records.decode_heights != nullptr) {
+    points.heights.resize(records.size);
+    records.decode_pieces(file, 0, records.size, records.decode_heights, 1, points.heights.data());
+  }
   check_finite(path, points);
   return points;
 }
@@ -81,19 +85,32 @@ void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t
 void PointRecords::read(const InputFile& file, std::uint64_t first, std::size_t count,
                         double* coordinates) const {
   if (decode == nullptr) return file.read_at(begin + first * bytes, count * bytes, coordinates);
+  decode_pieces(file, first, count, decode, 2, coordinates);
+}
+
+void PointRecords::decode_pieces(const InputFile& file, std::uint64_t first, std::size_t count,
+                                 const Decode& decode_some, std::size_t columns, double* numbers) const {
   constexpr std::size_t kPiece = std::size_t{1} << 15;
   std::vector<char> records(std::min(count, kPiece) * bytes);
   for (std::size_t done = 0; done < count; done += kPiece) {
     const std::size_t piece = std::min(count - done, kPiece);
     file.read_at(begin + (first + done) * bytes, piece * bytes, records.data());
-    decode(records.data(), piece, coordinates + 2 * done);
+    decode_some(records.data(), piece, numbers + columns * done);
   }
 }
 
-Points read_points(const std::string& path) {
+void check_columns(const std::string& path, const Columns& columns) {
+  if (columns.empty() || format_of(path, Use::read_points).text == column_text_of_points) return;
+  throw Error(ErrorKind::usage,
+              printable(fmt::format("{}: has no columns; --columns goes with text (.csv, .txt, .xy, .xyz)",
+                                    shown_path(path))));
+}
+
+Points read_points(const std::string& path, const Columns& columns, bool with_heights) {
   const Format& format = format_of(path, Use::read_points);
+  check_columns(path, columns);
   if (format.map != nullptr) return format.map(path).points;
-  return format.text != nullptr ? read_text(path, format) : read_records(path, format);
+  return format.text != nullptr ? read_text(path, format, columns) : read_records(path, format, with_heights);
 }
 
 PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n, bool has_markers)

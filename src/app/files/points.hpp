@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ namespace flaunay::io {
 struct Points {
   std::vector<double> coordinates;
   std::vector<std::int32_t> markers = {};  ///< of the vertices of .poly files that have some
+  std::vector<double> heights = {};        ///< of points in space: NaN for one that has none; empty: all 0
   std::size_t size() const { return coordinates.size() / 2; }
 };
 
@@ -25,11 +27,15 @@ struct PointRecords {
   std::uint64_t size = 0;   ///< how many
   std::uint64_t begin = 0;  ///< of the first one, in bytes
   std::size_t bytes = 2 * sizeof(double);
-  /// Converts records; empty if they are x and y as doubles.
-  std::function<void(const char* records, std::size_t count, double* coordinates)> decode = nullptr;
+  using Decode = std::function<void(const char* records, std::size_t count, double* numbers)>;
+  Decode decode = nullptr;          ///< to coordinates; empty if they are x and y as doubles
+  Decode decode_heights = nullptr;  ///< empty if there are none
 
   /// Reads points [first, first + count) of the file.
   void read(const InputFile& file, std::uint64_t first, std::size_t count, double* coordinates) const;
+  /// Converts points [first, first + count) to `columns` numbers each.
+  void decode_pieces(const InputFile& file, std::uint64_t first, std::size_t count, const Decode& decode_some,
+                     std::size_t columns, double* numbers) const;
 };
 
 /// Reads the points of a text that comes in pieces of whole lines. Throws Error(input) that names the line
@@ -37,26 +43,40 @@ struct PointRecords {
 class PointText {
  public:
   virtual ~PointText() = default;
-  /// Appends the points of the next lines.
-  virtual void parse(std::string_view lines, std::vector<double>& coordinates) = 0;
+  /// Appends the points of the next lines. heights: where those go, if there are some; null for none.
+  virtual void parse(std::string_view lines, std::vector<double>& coordinates,
+                     std::vector<double>* heights = nullptr) = 0;
   /// After the last piece: checks that nothing is missing.
   virtual void finish() {}
 };
 
+/// Which columns of a text have x, y and, if there are three, a further number: names of the header, or
+/// numbers from 0. Empty: the first columns.
+using Columns = std::vector<std::string>;
+
+/// The columns of a text of numbers. third: what a further number is ("a height"), if each line must have
+/// one; otherwise lines may have two or three numbers.
+std::unique_ptr<PointText> column_text(const std::string& path, const Columns& columns,
+                                       std::string_view third = "");
+
 /// Reads points from path, by its ending (any case):
 ///   .npy             NumPy array, n x 2, C order, little-endian float64 or float32 (format versions 1 to 3)
 ///   .node            Triangle's format: comments, attributes, boundary markers, first index 0 or 1
-///   .xy .txt .csv    UTF-8: two numbers per line, which may be quoted, separated by comma or white space;
-///                    '#' comments, blank lines, and one optional header line
+///   .xy .xyz .txt .csv   UTF-8: two numbers per line, and perhaps a height, which may be quoted, separated
+///   by
+///                    commas, semicolons or white space; '#' comments, blank lines, an optional header line
 ///   .bin             raw little-endian float64 pairs
-///   .las             LAS 1.0 to 1.4, uncompressed: x and y of each point record
+///   .las             LAS 1.0 to 1.4, uncompressed: x, y and height of each point record
 ///   .poly .geojson .json   the points of a map, see read_map
 ///   "-"              text from standard input
 /// Zero points are valid only where the format says so (an .npy of shape (0, 2), a .node of 0 points, or a
 /// text file with only comments or a header); a file of zero bytes is an error.
 /// Throws Error(input) that names the file and the place: line and column for text, byte or index for binary;
-/// NaN and infinity are errors that name the index of the point.
-Points read_points(const std::string& path);
+/// NaN and infinity are errors that name the index of the point. with_heights: whether heights of binary
+/// files are read, too. Throws Error(usage) for columns of a file that has none.
+Points read_points(const std::string& path, const Columns& columns = {}, bool with_heights = false);
+/// Throws Error(usage) unless there are no columns, or path is a text that has columns.
+void check_columns(const std::string& path, const Columns& columns);
 
 /// Writes points as pairs of doubles, for Format::write_points.
 void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t* markers,

@@ -12,7 +12,6 @@
 #include "app/files/las.hpp"
 #include "app/files/line_pieces.hpp"
 #include "app/files/npy.hpp"
-#include "app/files/text.hpp"
 #include "files/file.hpp"
 #include "files/scratch.hpp"
 
@@ -41,41 +40,17 @@ void widen(Box& box, const Box& other) {
   }
 }
 
-/// Appends the points of lines: x, y and z.
-class TripleText {
- public:
-  explicit TripleText(const std::string& path) : path_(path) {}
-
-  void parse(std::string_view text, std::vector<double>& triples) {
-    Lines lines(path_, text, Lines::Separator::blanks_or_comma, lines_);
-    bool more = lines.next();
-    if (more && std::exchange(is_first_, false) && is_header(lines)) more = lines.next();
-    for (; more; more = lines.next(), ++point_) {
-      for (int axis = 0; axis < 3; ++axis) {
-        std::string_view field;
-        if (!lines.field(field))
-          lines.fail_line("expected three numbers (x, y and z), found {}", lines.count_fields());
-        triples.push_back(lines.coordinate(field, point_));
-      }
-    }
-    lines_ = lines.number();
-  }
-
- private:
-  const std::string& path_;
-  std::size_t lines_ = 0, point_ = 0;
-  bool is_first_ = true;
-};
-
 }  // namespace
 
 /// The points of a file.
 class Scan::Part {
  public:
-  Part(std::string path, const ScanChoice& choice, const std::string& scratch)
+  Part(std::string path, const ScanChoice& choice, const std::string& scratch, const Columns& columns,
+       std::string_view third)
       : path_(std::move(path)), ending_(ending_of(path_)) {
+    check_columns(path_, columns);
     if (is_text(ending_)) {
-      read_text(scratch);
+      read_text(scratch, columns, third);
     } else if (ending_ == ".las") {
       InputFile file(path_, "an uncompressed LAS file");
       file.first(1);  // an error if there is none
@@ -84,7 +59,7 @@ class Scan::Part {
       record_bytes_ = las_->record_bytes;
       begin_ = las_->begin;
       if (size_ > 0) box_ = las_->box;
-      is_filtered_ = !choice.takes_all();
+      is_filtered_ = true;
       return;
     } else if (ending_ == ".npy") {
       InputFile file(path_, "a NumPy array of shape (n, 3)");
@@ -113,6 +88,7 @@ class Scan::Part {
   double highest() const { return highest_; }
   std::string crs() const { return las_ ? las_->crs : ""; }
   std::uint64_t records() const { return size_; }
+  const LeftOut& left_out() const { return left_out_; }
   void close() { file_.reset(); }
 
   /// Finds which points are chosen, which are numbered from `first` on. Returns the number of the one after
@@ -121,6 +97,7 @@ class Scan::Part {
                        const std::function<void(std::uint64_t records)>& done) {
     first_ = first;
     box_ = nothing();
+    seen_ = {};
     std::uint64_t chosen = 0;
     std::vector<double> triples;
     for (std::uint64_t at = 0; at < size_; at += kCountedBlock) {
@@ -133,6 +110,8 @@ class Scan::Part {
       check_finite(triples, at);
     }
     count_ = chosen;
+    is_filtered_ = count_ < size_;
+    left_out_ = seen_;
     return first_ + count_;
   }
 
@@ -160,14 +139,18 @@ class Scan::Part {
   }
 
  private:
-  void read_text(const std::string& scratch) {
+  void read_text(const std::string& scratch, const Columns& columns, std::string_view third) {
     scratch_ = std::make_unique<ScratchFile>(scratch);
     LinePieces pieces(path_, "three numbers a line");
-    TripleText parser(path_);
-    std::vector<double> triples;
+    const std::unique_ptr<PointText> parser = column_text(path_, columns, third);
+    std::vector<double> places, thirds, triples;
     for (std::string_view lines; pieces.next(lines);) {
+      places.clear();
+      thirds.clear();
       triples.clear();
-      parser.parse(lines, triples);
+      parser->parse(lines, places, &thirds);
+      for (std::size_t i = 0; i < thirds.size(); ++i)
+        triples.insert(triples.end(), {places[2 * i], places[2 * i + 1], thirds[i]});
       scratch_->append(triples.data(), triples.size() * sizeof(double));
       size_ += triples.size() / 3;
     }
@@ -201,19 +184,31 @@ class Scan::Part {
 
   // Moves the chosen records to the front. Returns how many they are.
   std::size_t keep_chosen(std::size_t count, const ScanChoice& choice) {
-    using Returns = ScanChoice::Returns;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const char* const record = records_.data() + i * record_bytes_;
-      const int number = las_->return_number(record);
-      const bool is_chosen =
-          (choice.classes.none() || choice.classes[static_cast<std::size_t>(las_->class_of(record))]) &&
-          (choice.returns == Returns::all ||
-           number == (choice.returns == Returns::first ? 1 : las_->returns(record)));
-      if (!is_chosen) continue;
-      std::memmove(records_.data() + kept++ * record_bytes_, record, record_bytes_);
+      if (!is_chosen(record, choice)) continue;
+      if (kept < i) std::memmove(records_.data() + kept * record_bytes_, record, record_bytes_);
+      ++kept;
     }
     return kept;
+  }
+
+  bool is_chosen(const char* record, const ScanChoice& choice) {
+    using Returns = ScanChoice::Returns;
+    constexpr int kLowNoise = 7, kHighNoise = 18;
+    const int number = las_->return_number(record), class_of = las_->class_of(record);
+    if (las_->is_withheld(record)) {
+      ++seen_.withheld;
+      return false;
+    }
+    if (choice.classes.none() && (class_of == kLowNoise || class_of == kHighNoise)) {
+      ++seen_.noise;
+      return false;
+    }
+    return (choice.classes.none() || choice.classes[static_cast<std::size_t>(class_of)]) &&
+           (choice.returns == Returns::all ||
+            number == (choice.returns == Returns::first ? 1 : las_->returns(record)));
   }
 
   void check_finite(const std::vector<double>& triples, std::uint64_t first) {
@@ -242,15 +237,18 @@ class Scan::Part {
   Box box_ = nothing();
   double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -lowest_;
   bool is_filtered_ = false;
+  LeftOut seen_, left_out_;  // in all passes and in the survey
   std::uint64_t first_ = 0, count_ = 0;
   std::vector<std::uint64_t> chosen_before_;  // by block
   std::unique_ptr<InputFile> file_;
   std::vector<char> records_;
 };
 
-Scan::Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch)
+Scan::Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch,
+           const Columns& columns, std::string_view third)
     : choice_(choice) {
-  for (const std::string& path : paths) parts_.push_back(std::make_unique<Part>(path, choice, scratch));
+  for (const std::string& path : paths)
+    parts_.push_back(std::make_unique<Part>(path, choice, scratch, columns, third));
 }
 
 Scan::~Scan() = default;
@@ -259,6 +257,15 @@ Box Scan::announced_box() const {
   Box box = nothing();
   for (const auto& part : parts_) widen(box, part->box());
   return box;
+}
+
+LeftOut Scan::left_out() const {
+  LeftOut sum;
+  for (const auto& part : parts_) {
+    sum.withheld += part->left_out().withheld;
+    sum.noise += part->left_out().noise;
+  }
+  return sum;
 }
 
 std::array<double, 2> Scan::heights() const {

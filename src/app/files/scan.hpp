@@ -8,33 +8,43 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/files/points.hpp"
 #include "flaunay/terrain.hpp"
 
 namespace flaunay::io {
 
-/// Which points of .las files are used.
+/// Which points of .las files are used: none of those that are marked as withheld.
 struct ScanChoice {
   enum class Returns { all, first, last };
 
-  std::bitset<256> classes;  ///< none: all
+  std::bitset<256> classes;  ///< none: all but noise
   Returns returns = Returns::all;
 
   bool takes_all() const { return classes.none() && returns == Returns::all; }
+};
+
+/// Points of .las files that are not used, whatever their classes, and by default.
+struct LeftOut {
+  std::uint64_t withheld = 0, noise = 0;
 };
 
 /// Least x and y, largest x and y.
 using Box = std::array<double, 4>;
 
 /// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv
-/// (x, y and z, and what follows them is ignored). Files are opened as they are read, one at a time.
+/// (x, y and z, and what follows them is ignored, or the columns that are named). Files are opened as they
+/// are read, one at a time.
 class Scan : public ValuedPoints {
  public:
   /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
   /// file without a name in `scratch`. Throws Error(usage) for other endings, and for a choice if there is a
   /// file that is no .las file; Error(input) for files that cannot be read or are truncated.
-  Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch);
+  /// third: what text has beside x and y. Throws Error(usage) for columns if there is a file that is no text.
+  Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch,
+       const Columns& columns = {}, std::string_view third = "height");
   ~Scan() override;
 
   /// What the headers of .las files say, and for other files what is known. Low is above high if there is
@@ -51,6 +61,8 @@ class Scan : public ValuedPoints {
   /// is done.
   Box survey(const std::function<void(double done)>& progress);
 
+  /// After survey.
+  LeftOut left_out() const;
   /// The lowest and the highest value, after survey.
   std::array<double, 2> heights() const;
 

@@ -103,6 +103,47 @@ void check_text(const std::string& name, std::string_view text, std::size_t line
   }
 }
 
+char Lines::find_separator() const {
+  // A quote without its end is an ordinary character.
+  const bool has_quotes = has_quotes_ && std::count(line_begin_, line_end_, '"') % 2 == 0;
+  for (const char wanted : {';', ','}) {
+    if (!(wanted == ';' ? has_semicolons_ : has_commas_)) continue;
+    const char* c = find(line_begin_, line_end_, wanted);
+    while (has_quotes && c != line_end_ && std::count(line_begin_, c, '"') % 2 != 0)
+      c = find(c + 1, line_end_, wanted);
+    if (c != line_end_) return wanted;
+  }
+  return ' ';
+}
+
+ParsedNumber Lines::parse_decimal(std::string_view text, double& value) {
+  const std::size_t comma = text.find(',');
+  const bool has_comma = comma != std::string_view::npos,
+             has_point = text.find('.') != std::string_view::npos;
+  if (has_comma && has_point) return ParsedNumber::unreadable;
+  std::string changed(text);
+  if (has_comma) changed[comma] = '.';
+  const ParsedNumber parsed = parse_number(changed, value);
+  if (parsed == ParsedNumber::unreadable) return parsed;
+  has_decimal_commas_ = has_decimal_commas_ || has_comma;
+  has_decimal_points_ = has_decimal_points_ || has_point;
+  if (has_decimal_commas_ && has_decimal_points_) {
+    fail_field(text, "{} has a decimal {}, but a number before it has a decimal {}", quoted(text),
+               has_comma ? "comma" : "point", has_comma ? "point" : "comma");
+  }
+  return parsed;
+}
+
+std::string_view Lines::hint_about(std::string_view text, std::string_view otherwise) const {
+  if (separator_ == ',' && std::any_of(text.begin(), text.end(), is_blank)) {
+    return "; this line has commas and white space: if the commas are decimal ones, separate columns by "
+           "semicolons, and otherwise by either commas or white space";
+  }
+  if (!any_ || text.find(',') == std::string_view::npos) return otherwise;
+  return separator_ == ';' ? "; expected one decimal comma or one decimal point"
+                           : "; if the comma is a decimal one, separate columns by semicolons";
+}
+
 bool is_header(Lines& lines) {
   bool numbers = false, letters = false;
   std::string_view field;

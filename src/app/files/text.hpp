@@ -69,21 +69,31 @@ inline ParsedNumber parse_number(std::string_view field, double& value) {
 void check_text(const std::string& name, std::string_view text, std::size_t lines_before = 0);
 
 /// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
-/// fields. With Separator::blanks_or_comma, fields may be in double quotes.
+/// fields. With Separator::any, semicolons separate the fields of a line that has some, or else commas if it
+/// has some, or else white space; fields may be in double quotes; and where semicolons separate fields,
+/// numbers may have decimal commas.
 class Lines {
  public:
-  enum class Separator { blanks, blanks_or_comma };
+  enum class Separator { blanks, any };
 
-  /// name: the beginning of messages. The text must outlive this object; if it is a later piece of a file,
-  /// `lines_before` are before it. Throws what check_text throws.
-  Lines(std::string name, std::string_view text, Separator separator, std::size_t lines_before = 0)
-      : name_(std::move(name)), commas_(separator == Separator::blanks_or_comma), number_(lines_before) {
+  /// name: the beginning of messages. The text must outlive this object. Throws what check_text throws.
+  Lines(std::string name, std::string_view text, Separator separator) : Lines(std::move(name), separator) {
+    go_on(text);
+  }
+  /// For a text that comes in pieces of whole lines.
+  Lines(std::string name, Separator separator) : name_(std::move(name)), any_(separator == Separator::any) {}
+  /// The next piece. Throws what check_text throws.
+  void go_on(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    const bool is_marked = lines_before == 0 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark;
+    const bool is_marked = number_ == 0 && text.substr(0, kByteOrderMark.size()) == kByteOrderMark;
     if (is_marked) text.remove_prefix(kByteOrderMark.size());
-    check_text(name_, text, lines_before);
+    check_text(name_, text, number_);
     next_line_ = text.data();
     text_end_ = text.data() + text.size();
+    const auto has = [&](char c) { return any_ && find(next_line_, text_end_, c) != text_end_; };
+    has_semicolons_ = has(';');
+    has_commas_ = has(',');
+    has_quotes_ = has('"');
   }
 
   /// Goes to the next line with content; false at the end.
@@ -95,6 +105,7 @@ class Lines {
       next_line_ = line_end_ == text_end_ ? text_end_ : line_end_ + 1;
       line_end_ = find(line_begin_, line_end_, '#');
       while (line_end_ != line_begin_ && is_blank(line_end_[-1])) --line_end_;
+      separator_ = has_semicolons_ || has_commas_ ? find_separator() : ' ';
       rewind();
       if (cursor_ != line_end_) return true;
     }
@@ -110,21 +121,23 @@ class Lines {
   /// The next field of the line; false if there is none. Two commas in a row have an empty field between
   /// them.
   bool field(std::string_view& result) {
+    const bool is_after_separator = separator_ != ' ' && fields_taken_ > 0 && cursor_ != line_end_;
+    if (is_after_separator) ++cursor_;
     skip_blanks();
-    bool comma = false;
-    if (commas_ && fields_taken_ > 0 && cursor_ != line_end_ && *cursor_ == ',') {
-      comma = true;
-      ++cursor_;
-      skip_blanks();
-    }
-    if (cursor_ == line_end_ && !comma) return false;
+    if (cursor_ == line_end_ && !is_after_separator) return false;
     ++fields_taken_;
     if (quoted_field(result)) return true;
-    const char* begin = cursor_;
-    while (cursor_ != line_end_ && !is_separator(*cursor_)) ++cursor_;
-    result = std::string_view(begin, static_cast<std::size_t>(cursor_ - begin));
+    const char* const begin = cursor_;
+    if (separator_ == ' ') {
+      while (cursor_ != line_end_ && !is_blank(*cursor_)) ++cursor_;
+    } else {
+      cursor_ = find(begin, line_end_, separator_);
+    }
+    result = trimmed(begin, cursor_);
     return true;
   }
+  /// What separates the fields of this line: ' ' for white space, ',' or ';'.
+  char separator() const { return separator_; }
   std::size_t fields_taken() const { return fields_taken_; }
   /// The number of fields of the whole line. Goes back to the first one.
   std::size_t count_fields() {
@@ -155,24 +168,27 @@ class Lines {
   }
 
   /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
-  /// finite. hint: the end of the message if the field is no number.
-  double coordinate(std::string_view text, std::size_t point, std::string_view hint = "") const {
+  /// finite. hint: the end of the message if the field is no number. what: in place of "coordinate".
+  double coordinate(std::string_view text, std::size_t point, std::string_view hint = "",
+                    std::string_view what = "coordinate") {
     double value = 0;
-    const ParsedNumber parsed = parse_number(text, value);
+    const ParsedNumber parsed = separator_ == ';' ? parse_decimal(text, value) : parse_number(text, value);
     if (parsed == ParsedNumber::unreadable) {
-      fail_field(text, "expected a number (a coordinate of point {}), found {}{}", point, quoted_number(text),
-                 hint);
+      fail_field(text, "expected a number (a {} of point {}), found {}{}", what, point, quoted_number(text),
+                 hint_about(text, hint));
     }
     if (parsed == ParsedNumber::infinite) {
-      fail_field(text,
-                 "point {} has coordinate {}, beyond the largest double: infinity; expected finite numbers",
-                 point, quoted(text));
+      fail_field(text, "point {} has {} {}, beyond the largest double: infinity; expected finite numbers",
+                 point, what, quoted(text));
     }
     if (!std::isfinite(value)) {
-      fail_field(text, "point {} has coordinate {}; expected finite numbers", point, quoted(text));
+      fail_field(text, "point {} has {} {}; expected finite numbers", point, what, quoted(text));
     }
     return value;
   }
+
+  /// The end of a message about a field that is no number, if its commas may be decimal ones.
+  std::string_view hint_about(std::string_view text, std::string_view otherwise) const;
 
   const std::string& name() const { return name_; }
   /// The number of the line, in the file; after the last one, how many lines there are.
@@ -202,19 +218,29 @@ class Lines {
         begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
     return found ? static_cast<const char*>(found) : end;
   }
-  bool is_separator(char c) const { return is_blank(c) || (commas_ && c == ','); }
+  /// The separator of the line at hand. Defined in text.cpp, as are the next ones.
+  char find_separator() const;
+  /// A number with a decimal comma or a decimal point, of which a text has either.
+  ParsedNumber parse_decimal(std::string_view text, double& value);
+
+  static std::string_view trimmed(const char* begin, const char* end) {
+    while (begin != end && is_blank(*begin)) ++begin;
+    while (begin != end && is_blank(end[-1])) --end;
+    return std::string_view(begin, static_cast<std::size_t>(end - begin));
+  }
   /// Takes a field in double quotes, in which "" stands for a quote, as in CSV. False if there is none here;
   /// a quote without its end is an ordinary character.
   bool quoted_field(std::string_view& result) {
-    if (!commas_ || cursor_ == line_end_ || *cursor_ != '"') return false;
-    const char* begin = cursor_ + 1;
+    if (!any_ || cursor_ == line_end_ || *cursor_ != '"') return false;
+    const char* const begin = cursor_ + 1;
     const char* end = find(begin, line_end_, '"');
     while (line_end_ - end > 1 && end[1] == '"') end = find(end + 2, line_end_, '"');
-    if (end == line_end_ || (end + 1 != line_end_ && !is_separator(end[1]))) return false;
-    cursor_ = end + 1;
-    while (begin != end && is_blank(*begin)) ++begin;
-    while (begin != end && is_blank(end[-1])) --end;
-    result = std::string_view(begin, static_cast<std::size_t>(end - begin));
+    if (end == line_end_) return false;
+    const char* after = end + 1;
+    while (separator_ != ' ' && after != line_end_ && is_blank(*after)) ++after;
+    if (after != line_end_ && !(separator_ == ' ' ? is_blank(*after) : *after == separator_)) return false;
+    cursor_ = after;
+    result = trimmed(begin, end);
     return true;
   }
   void skip_blanks() {
@@ -222,10 +248,13 @@ class Lines {
   }
 
   std::string name_;
-  bool commas_;
-  std::size_t number_;
-  const char* next_line_;
-  const char* text_end_;
+  bool any_;              // whether there may be other separators than white space
+  char separator_ = ' ';  // of the line
+  bool has_semicolons_ = false, has_commas_ = false, has_quotes_ = false;  // the text
+  bool has_decimal_points_ = false, has_decimal_commas_ = false;  // numbers, where semicolons separate fields
+  std::size_t number_ = 0;
+  const char* next_line_ = nullptr;
+  const char* text_end_ = nullptr;
   const char* line_begin_ = nullptr;
   const char* line_end_ = nullptr;
   const char* cursor_ = nullptr;

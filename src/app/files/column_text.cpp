@@ -1,0 +1,196 @@
+// Text with numbers in columns: points, perhaps with heights or weights, or the ends of segments.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <memory>
+#include <string_view>
+
+#include "app/files/formats.hpp"
+#include "app/files/text.hpp"
+
+namespace flaunay::io {
+namespace {
+
+std::string lower(std::string_view name) {
+  std::string result(name);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+class ColumnText : public PointText {
+ public:
+  ColumnText(const std::string& path, const Columns& columns, std::string_view third)
+      : lines_(shown_path(path), Lines::Separator::any), columns_(columns), third_(third) {}
+
+  void parse(std::string_view text, std::vector<double>& coordinates, std::vector<double>* heights) override {
+    lines_.go_on(text);
+    bool more = lines_.next();
+    if (more && is_first_) {
+      is_first_ = false;
+      hint_ = "; if this line is a header, begin it with '#'";
+      if (is_header(lines_)) {
+        for (std::string_view name; lines_.field(name);) names_.emplace_back(name);
+        more = lines_.next();
+        hint_ = "";
+      }
+    }
+    if (more && point_ == 0) begin_rows();
+    if (more) coordinates.reserve(coordinates.size() + 2 * lines_.lines_left());
+    for (; more; more = lines_.next(), ++point_) {
+      if ((lines_.separator() == ';') != has_semicolons_) {
+        lines_.fail_line("has {}semicolons between columns, but the lines before have {}",
+                         has_semicolons_ ? "no " : "", has_semicolons_ ? "some" : "none");
+      }
+      std::array<std::string_view, 3> found;
+      std::string_view field;
+      for (const int axis : axes_) {
+        if (!lines_.field(field)) fail_count();
+        if (axis >= 0) found[static_cast<std::size_t>(axis)] = field;
+      }
+      if (is_whole_line_ && lines_.field(field)) fail_count();
+      coordinates.push_back(lines_.coordinate(found[0], point_, hint_));
+      coordinates.push_back(lines_.coordinate(found[1], point_, hint_));
+      if (heights != nullptr && numbers_ == 3)
+        heights->push_back(lines_.coordinate(found[2], point_, hint_, third_.empty() ? "height" : third_));
+      hint_ = "";
+    }
+  }
+
+ private:
+  // At the first line of numbers: finds which columns are read.
+  void begin_rows() {
+    has_semicolons_ = lines_.separator() == ';';
+    const std::size_t count = lines_.count_fields();
+    if (!columns_.empty()) return choose_columns(count);
+    numbers_ = third_.empty() && count == 2 ? 2 : 3;
+    is_whole_line_ = third_.empty();
+    if (count < numbers_ || (is_whole_line_ && count > numbers_)) {
+      numbers_ = third_.empty() ? 2 : 3;
+      fail_count();
+    }
+    if (names_.size() == count) check_names();
+    axes_ = {0, 1, 2};
+    axes_.resize(numbers_);
+  }
+
+  void choose_columns(std::size_t count) {
+    numbers_ = columns_.size();
+    if (numbers_ < 3 && !third_.empty())
+      lines_.fail_line("expected three columns (x, y and a {}), but --columns has {}", third_, numbers_);
+    for (std::size_t axis = 0; axis < numbers_; ++axis) {
+      const std::string& wanted = columns_[axis];
+      auto at = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), wanted) - names_.begin());
+      if (at == names_.size()) {
+        const char* const end = wanted.data() + wanted.size();
+        const auto [stop, error] = std::from_chars(wanted.data(), end, at);
+        if (error != std::errc() || stop != end || at >= count) {
+          lines_.fail_line("there is no column '{}': {}", wanted,
+                           names_.empty()
+                               ? fmt::format("this line has columns 0 to {}, without names", count - 1)
+                               : fmt::format("the columns are {}", fmt::join(names_, ", ")));
+        }
+      }
+      if (at >= axes_.size()) axes_.resize(at + 1, -1);
+      if (axes_[at] >= 0) lines_.fail_line("--columns names column '{}' twice", wanted);
+      axes_[at] = static_cast<int>(axis);
+    }
+  }
+
+  // A header that has x or y in another column than the first or the second one.
+  void check_names() const {
+    static const std::vector<std::string> kNames[] = {
+        {"x", "lon", "long", "lng", "longitude", "easting", "east", "e"},
+        {"y", "lat", "latitude", "northing", "north", "n"}};
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const auto& known = kNames[axis];
+        if (k == axis || std::find(known.begin(), known.end(), lower(names_[k])) == known.end()) continue;
+        lines_.fail_line(
+            "the columns are {}, but the first two are read as x and y; say by --columns which these are",
+            fmt::join(names_, ", "));
+      }
+    }
+  }
+
+  [[noreturn]] void fail_count() {
+    const std::size_t found = lines_.count_fields();
+    std::string_view hint;
+    for (std::string_view field; hint.empty() && lines_.field(field);) hint = lines_.hint_about(field, "");
+    if (!hint.empty()) lines_.fail_line("found {} columns{}", found, hint);
+    if (!columns_.empty()) lines_.fail_line("expected {} columns, found {}", axes_.size(), found);
+    const bool may_choose = found > 3 && third_.empty() && point_ == 0;
+    lines_.fail_line("expected {}, found {}{}",
+                     numbers_ == 2 ? "two numbers (x and y)" : "three numbers (x, y and z)", found,
+                     may_choose ? "; --columns says which of more than three columns they are" : "");
+  }
+
+  Lines lines_;
+  Columns columns_;
+  std::string third_;
+  std::vector<std::string> names_;  // of the header
+  std::vector<int> axes_;           // of each column up to the last one that is read: 0 to 2, or -1
+  std::size_t numbers_ = 2;         // that are read, per line
+  bool is_whole_line_ = false;      // whether there must be no further columns
+  bool has_semicolons_ = false;
+  std::size_t point_ = 0;  // the index of the next point
+  bool is_first_ = true;   // whether the next line with content is the first one
+  std::string_view hint_;  // how messages about the first line of points end
+};
+
+std::vector<std::int32_t> read_text_segments(const std::string& path, std::size_t points) {
+  const std::string text = read_file(path, "two indices a line");
+  Lines lines(path, text, Lines::Separator::any);
+  bool more = lines.next();
+  if (more && is_header(lines)) more = lines.next();
+  std::vector<std::int32_t> segments;
+  for (; more; more = lines.next()) {
+    const std::size_t fields = lines.count_fields();
+    if (fields != 2) lines.fail_line("expected two indices (the ends of a segment), found {}", fields);
+    for (int end = 0; end < 2; ++end) {
+      segments.push_back(checked_index(lines, "index", lines.integer("the index of a point"), 0,
+                                       static_cast<long long>(points)));
+    }
+  }
+  return segments;
+}
+
+// Every reader skips this line. With it, a file of no points can be read back.
+template <char separator>
+void begin_text(OutputFile& file, std::uint64_t, bool) {
+  file.print("{}", separator == ',' ? "x,y\n" : "# x y\n");
+}
+
+template <char separator>
+void write_text(OutputFile& file, const double* coordinates, const std::int32_t*, std::uint64_t,
+                std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    file.print("{}{}{}\n", coordinates[2 * i], separator, coordinates[2 * i + 1]);
+  }
+}
+
+template <char separator>
+constexpr Format text_format(std::string_view ending, bool has_segments) {
+  return {.ending = ending,
+          .content = "numbers in columns",
+          .text = column_text_of_points,
+          .segments = has_segments ? read_text_segments : nullptr,
+          .begin_points = begin_text<separator>,
+          .write_points = write_text<separator>,
+          .least_bytes = 4};
+}
+
+}  // namespace
+
+std::unique_ptr<PointText> column_text(const std::string& path, const Columns& columns,
+                                       std::string_view third) {
+  return std::make_unique<ColumnText>(path, columns, third);
+}
+std::unique_ptr<PointText> column_text_of_points(const std::string& path, const Columns& columns) {
+  return column_text(path, columns);
+}
+
+const Format kXy = text_format<' '>(".xy", false);
+const Format kXyz = {.ending = ".xyz", .content = "x, y and height per line", .text = column_text_of_points};
+const Format kTxt = text_format<' '>(".txt", true);
+const Format kCsv = text_format<','>(".csv", true);
+}  // namespace flaunay::io
