@@ -2848,6 +2848,22 @@ static void test_dynamic_constraints(void) {
   CHECK(fails(flaunay_dynamic_move(dynamic, &first, beside, 1), input, "point 1 cannot be moved"));
   CHECK(flaunay_dynamic_changes(dynamic)->first_point == 4);
   flaunay_dynamic_destroy(dynamic);
+
+  // Without its apex, everything is on a line.
+  const double line[] = {0, 0, 1, 0, 2, 0, 1, 5};
+  const int32_t ends[] = {0, 2}, apex = 3;
+  const flaunay_constraints along = {.segments = ends, .segment_count = 1};
+  dynamic = make_dynamic(line, 4, &along, NULL);
+  REQUIRE(flaunay_dynamic_remove(dynamic, &apex, 1) == FLAUNAY_SUCCESS);
+  CHECK(flaunay_dynamic_triangle_count(dynamic) == 0);
+  for (int is_back = 0; is_back < 2; ++is_back) {
+    edges = flaunay_dynamic_constraints(dynamic);
+    REQUIRE(edges != NULL && edges->edge_count == 2);
+    CHECK(edges->edges[0] == 0 && edges->edges[1] == 1 && edges->edges[2] == 1 && edges->edges[3] == 2);
+    CHECK(fails(flaunay_dynamic_remove(dynamic, &first, 1), input, "point 1 cannot be removed"));
+    REQUIRE(flaunay_dynamic_insert(dynamic, line + 6, 1) == FLAUNAY_SUCCESS);
+  }
+  flaunay_dynamic_destroy(dynamic);
 }
 
 static void test_dynamic_from_device(void) {

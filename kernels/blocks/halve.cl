@@ -356,8 +356,8 @@ static inline int sort_tiny_block(int count, global const coordinate2* points, g
 // axis_of for all of a few points, which are in the order along x.
 static inline int axis_of_tiny(int count, global const coordinate2* points) {
   const int low = count / 4, high = count - 1 - count / 4;
-  return point_of_rank(high, count, points, 1).y - point_of_rank(low, count, points, 1).y >
-         points[high].x - points[low].x;
+  return rounded_difference(point_of_rank(high, count, points, 1).y, point_of_rank(low, count, points, 1).y) >
+         rounded_difference(points[high].x, points[low].x);
 }
 
 // n blocks, of which those of at most TINY_BLOCK points become what halve_blocks would make of them.

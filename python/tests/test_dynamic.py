@@ -196,6 +196,25 @@ def test_segments(random):
     assert tri.point_count == 26 and tri.points[5].tolist() == [3, 1]
 
 
+def test_segments_stay():
+    line = [[i, 0] for i in range(20)] + [[3, 5]]
+    tri = flaunay.DynamicTriangulation(line, segments=[[0, 19]])
+    expected = [[i, i + 1] for i in range(19)]
+    for change in (
+        lambda: tri.move([20], [[50, 0]]),
+        lambda: tri.move([20], [[3, 5]]),
+        lambda: tri.remove([20]),
+        lambda: tri.insert(np.stack([np.arange(30), 3 + np.arange(30) % 4], axis=1)),
+    ):
+        change()
+        assert tri.constraints().edges.tolist() == expected
+        with pytest.raises(flaunay.InputError, match="on segment 0"):
+            tri.remove([7])
+    tri = flaunay.DynamicTriangulation([[0, 0], [0, 0], [1, 0], [0, 1]], segments=[[2, 3]])
+    tri.move([0], [[1, 0]])
+    assert tri.constraints().edges.tolist() == [[3, 0]]
+
+
 def test_crossing_segments(points):
     square = np.array([[0, 0], [8, 0], [8, 8], [0, 8.0]])
     crossing = [[0, 2], [1, 3]]

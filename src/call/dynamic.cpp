@@ -77,44 +77,41 @@ Ids hull_of(const std::vector<kernel::mesh_row>& rows, const std::vector<double>
   return hull;
 }
 
-// The edges of constraints in the rows of a mesh, each once.
-LivingConstraints constraints_in(const std::vector<kernel::mesh_row>& rows,
-                                 const std::vector<double>& coordinates) {
-  LivingConstraints found;
+// The edges of constraints: per pair of ends the smallest index of a segment that has it.
+using Edges = std::unordered_map<std::uint64_t, std::int32_t>;
+
+std::uint64_t edge_between(std::int32_t a, std::int32_t b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+}
+std::int32_t smaller_end(std::uint64_t edge) { return static_cast<std::int32_t>(edge >> 32); }
+std::int32_t larger_end(std::uint64_t edge) { return static_cast<std::int32_t>(edge & 0xffffffff); }
+
+// Sorted by the numbers of their ends.
+LivingConstraints listed(const Edges& edges, const std::vector<double>& coordinates) {
+  std::vector<std::pair<std::uint64_t, std::int32_t>> sorted(edges.begin(), edges.end());
+  std::sort(sorted.begin(), sorted.end());
   const auto place = [&](std::int32_t v) {
     const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
     return std::pair(p[0], p[1]);
   };
-  for (std::size_t t = 0; t < rows.size(); ++t) {
-    if (!is_triangle(rows[t])) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto beyond = static_cast<std::size_t>(rows[t].neighbor[k]);
-      if (rows[t].edge[k] < 0 || (beyond < t && is_triangle(rows[beyond]))) continue;
-      std::int32_t a = rows[t].corner[(k + 1) % 3], b = rows[t].corner[(k + 2) % 3];
-      if (place(b) < place(a)) std::swap(a, b);
-      found.edges.insert(found.edges.end(), {a, b});
-      found.segments.push_back(rows[t].edge[k]);
-    }
+  LivingConstraints list;
+  for (const auto& [edge, segment] : sorted) {
+    std::int32_t a = smaller_end(edge), b = larger_end(edge);
+    if (place(b) < place(a)) std::swap(a, b);
+    list.edges.insert(list.edges.end(), {a, b});
+    list.segments.push_back(segment);
   }
-  return found;
+  return list;
 }
 
 // Per corner of a triangulation the segment of the edge opposite, or -1.
-Ids segments_of_corners(const ConstrainedTriangulation& mesh) {
-  const auto key = [](std::int32_t a, std::int32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-  };
-  std::unordered_map<std::uint64_t, std::int32_t> segments(mesh.edge_segments.size());
-  for (std::size_t e = 0; e < mesh.edge_segments.size(); ++e) {
-    segments.emplace(key(mesh.constraint_edges[2 * e], mesh.constraint_edges[2 * e + 1]),
-                     mesh.edge_segments[e]);
-  }
+Ids segments_of_corners(const ConstrainedTriangulation& mesh, const Edges& edges) {
   Ids of_corners(mesh.triangles.size(), -1);
   for (std::size_t c = 0; c < of_corners.size(); ++c) {
     if (mesh.constrained[c] == 0) continue;
     const std::size_t first = c - c % 3;
     of_corners[c] =
-        segments.at(key(mesh.triangles[first + (c + 1) % 3], mesh.triangles[first + (c + 2) % 3]));
+        edges.at(edge_between(mesh.triangles[first + (c + 1) % 3], mesh.triangles[first + (c + 2) % 3]));
   }
   return of_corners;
 }
@@ -136,13 +133,20 @@ struct DynamicTriangulation::Implementation {
     mesh.emplace(engine->runtime);
   }
 
+  Options plain_options() const {
+    Options plain = options;
+    plain.neighbors = true;
+    plain.halfedges = plain.areas = plain.profile = false;
+    return plain;
+  }
+
   void make(const double* coordinates, std::size_t n) {
     choose_engine();
     check_count(0, n);
     geometry::check_coordinates(coordinates, n);
     points.check_coordinates(coordinates, nullptr, n);
     points.append(coordinates, n);
-    triangulate_anew({});
+    triangulate_anew();
   }
 
   void make(const double* coordinates, std::size_t n, const Constraints& constraints,
@@ -153,83 +157,95 @@ struct DynamicTriangulation::Implementation {
     geometry::check_coordinates(coordinates, n);
     points.check_coordinates(coordinates, nullptr, n);
     ConstrainedOptions all = wanted;
-    all.neighbors = true;
-    const ConstrainedTriangulation made = call::constrain_and_leave(*owner, coordinates, {0, n}, constraints,
-                                                                    all, call::request_of(all, false));
+    static_cast<Options&>(all) = plain_options();
+    ConstrainedTriangulation fresh = call::constrain_and_leave(*owner, coordinates, {0, n}, constraints, all,
+                                                               call::request_of(all, false));
     points.append(coordinates, n);
-    const std::size_t added = made.added_points.size() / 2;
-    points.check_coordinates(made.added_points.data(), nullptr, added);
-    points.append(made.added_points.data(), added);
+    const std::size_t added = fresh.added_points.size() / 2;
+    points.check_coordinates(fresh.added_points.data(), nullptr, added);
+    points.append(fresh.added_points.data(), added);
     is_constrained = true;
-    triangulate_anew({made.constraint_edges, made.edge_segments});
+    adopt(points.living(), std::move(fresh));
   }
 
-  // Triangulates all points, with these edges. Returns the corners of rows, all of which have triangles.
-  Ids triangulate_anew(const LivingConstraints& edges) {
-    const updates::Living living = points.living();
+  // Triangulates all points. If it throws, nothing has changed.
+  void triangulate_anew() {
+    updates::Living living = points.living();
     const std::size_t n = points.count();
-    const double* const coordinates = living.coordinates.data();
-    Options plain = options;
-    plain.neighbors = true;
-    plain.halfedges = plain.areas = plain.profile = false;
-    ConstrainedTriangulation made;
-    Ids of_corners;
-    if (edges.segments.empty()) {
-      static_cast<Triangulation&>(made) = call::triangulate(
-          *owner, {living.are_all ? points.coordinates().data() : coordinates, nullptr, n}, {0, n}, plain);
+    const double* const coordinates =
+        living.are_all ? points.coordinates().data() : living.coordinates.data();
+    ConstrainedOptions all;
+    static_cast<Options&>(all) = plain_options();
+    ConstrainedTriangulation fresh;
+    if (edges.empty()) {
+      static_cast<Triangulation&>(fresh) = call::triangulate(*owner, {coordinates, nullptr, n}, {0, n}, all);
     } else {
-      Ids segments = edges.edges;
+      LivingConstraints old = listed(edges, points.coordinates());
       if (!living.are_all) {
-        for (std::int32_t& v : segments) v = living.places[v];
+        for (std::int32_t& v : old.edges) v = living.places[v];
       }
       Constraints constraints;
-      constraints.segments = segments.data();
-      constraints.segment_count = segments.size() / 2;
-      ConstrainedOptions all;
-      static_cast<Options&>(all) = plain;
-      made = call::constrain_and_leave(*owner, living.are_all ? points.coordinates().data() : coordinates,
-                                       {0, n}, constraints, all, call::request_of(all, false));
-      for (std::int32_t& edge : made.edge_segments) edge = edges.segments[edge];
-      of_corners = segments_of_corners(made);
+      constraints.segments = old.edges.data();
+      constraints.segment_count = old.segments.size();
+      fresh = call::constrain_and_leave(*owner, coordinates, {0, n}, constraints, all,
+                                        call::request_of(all, false));
+      for (std::int32_t& edge : fresh.edge_segments) edge = old.segments[edge];
     }
+    adopt(living, std::move(fresh));
+  }
+
+  // Takes a triangulation of all points as what there is, until a batch changes it. If this throws, nothing
+  // has changed.
+  void adopt(const updates::Living& living, ConstrainedTriangulation fresh) {
     if (!living.are_all) {
-      for (Ids* vertices : {&made.triangles, &made.hull, &made.constraint_edges}) {
+      for (Ids* vertices : {&fresh.triangles, &fresh.hull, &fresh.constraint_edges}) {
         for (std::int32_t& v : *vertices) v = living.numbers[v];
       }
     }
-    points.set_representatives(living, made.representatives);
-    on_constraint.assign(points.numbers(), 0);
-    for (const std::int32_t v : made.constraint_edges) on_constraint[v] = 1;
-    flat_hull = made.triangles.empty() ? made.hull : Ids();
-    flat_edges = {};
-    if (made.triangles.empty()) flat_edges = {made.constraint_edges, made.edge_segments};
-    const call::Frame frame(*engine);
-    mesh->load(points.coordinates(), points.shift(), made, of_corners);
-    return std::move(made.triangles);
+    Edges fresh_edges(fresh.edge_segments.size());
+    for (std::size_t e = 0; e < fresh.edge_segments.size(); ++e) {
+      fresh_edges.emplace(edge_between(fresh.constraint_edges[2 * e], fresh.constraint_edges[2 * e + 1]),
+                          fresh.edge_segments[e]);
+    }
+    std::vector<std::uint8_t> are_ends(is_constrained ? points.numbers() : 0, 0);
+    for (const std::int32_t v : fresh.constraint_edges) are_ends[v] = 1;
+    points.set_representatives(living, fresh.representatives);
+    // From here on nothing throws.
+    edges.swap(fresh_edges);
+    on_constraint.swap(are_ends);
+    made = std::move(fresh);
+    triangle_count = made.triangles.size() / 3;
+    row_count = triangle_count == 0 ? 0 : triangle_count + made.hull.size();
+    is_loaded = is_lost = false;
   }
 
-  LivingConstraints edges_now() {
-    if (!is_constrained) return {};
-    if (mesh->triangles() == 0) return flat_edges;
-    const call::Frame frame(*engine);
-    return constraints_in(mesh->read_rows(), points.coordinates());
+  // Brings what was triangulated anew to the memory of the engine, where batches change it.
+  void load() {
+    mesh->load(points.coordinates(), points.shift(), made,
+               edges.empty() ? Ids() : segments_of_corners(made, edges));
+    made = {};
+    is_loaded = true;
+  }
+
+  // After an error in the middle of a batch, points and constraints are as they were before, but rows are
+  // not.
+  void recover() {
+    if (is_lost) triangulate_anew();
   }
 
   // What a batch is to do with the mesh. Points leave their old places before others come.
   struct Batch {
     Ids removed, moved, inserted;
-    bool is_large = false;
   };
 
   // Changes the mesh, of points that are where they are to be. Returns whether it could.
-  bool change(Batch batch, Changes& changes) {
+  bool change(Batch batch, std::vector<updates::SplitEdge>& splits, Changes& changes) {
     if (!mesh->remove(batch.removed)) return false;
     const std::size_t most = share(tuning_of(engine->runtime).removed_percent, mesh->triangles() / 2);
     std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), most);
     if (!out) return false;
     batch.inserted.insert(batch.inserted.end(), out->begin(), out->end());
-    Ids split;
-    auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), split);
+    auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), splits);
     // Points with smaller numbers take the places of others.
     Ids leaving, coming;
     for (const auto& [v, other] : found) {
@@ -246,44 +262,103 @@ struct DynamicTriangulation::Implementation {
       Changes so_far;
       mesh->end_batch(so_far);  // counts the triangles, of which some must be left
       if (is_constrained || !mesh->remove(leaving)) return false;
-      mesh->insert(coming, points.coordinates(), split);
-    }
-    if (is_constrained) {
-      on_constraint.resize(points.numbers(), 0);
-      for (const std::int32_t v : split) on_constraint[v] = 1;
+      mesh->insert(coming, points.coordinates(), splits);
     }
     mesh->end_batch(changes);
     mesh->update_hints(points.coordinates(), [&](std::size_t n) { return points.sample(n); });
     return true;
   }
 
+  // Edges of constraints after these splits, of which some are of parts that others have made.
+  void split_edges(const std::vector<updates::SplitEdge>& splits) {
+    if (!is_constrained) return;
+    std::unordered_map<std::uint64_t, std::int32_t> vertex_on;
+    for (const auto& [from, to, vertex] : splits) vertex_on.emplace(edge_between(from, to), vertex);
+    Edges parts;
+    std::vector<std::uint64_t> gone, waiting;
+    for (const auto& [from, to, vertex] : splits) {
+      const auto whole = edges.find(edge_between(from, to));
+      if (whole == edges.end()) continue;
+      gone.push_back(whole->first);
+      waiting.push_back(whole->first);
+      while (!waiting.empty()) {
+        const std::uint64_t edge = waiting.back();
+        waiting.pop_back();
+        if (const auto at = vertex_on.find(edge); at != vertex_on.end()) {
+          for (const std::int32_t end : {smaller_end(edge), larger_end(edge)}) {
+            waiting.push_back(edge_between(end, at->second));
+          }
+        } else {
+          parts.emplace(edge, whole->second);
+        }
+      }
+    }
+    on_constraint.resize(points.numbers(), 0);
+    edges.reserve(edges.size() + parts.size());
+    // From here on nothing throws.
+    for (const auto& split : splits) on_constraint[split.vertex] = 1;
+    for (const std::uint64_t edge : gone) edges.erase(edge);
+    edges.merge(parts);
+  }
+
   static std::size_t share(std::size_t percent, std::size_t n) { return n * percent / 100; }
 
-  void update(Batch batch, Changes& changes) {
-    bool is_done = false;
-    {
+  Ids old_triangles() {
+    if (is_loaded) {
       const call::Frame frame(*engine);
-      mesh->begin_batch();
-      if (!mesh->must_be_loaded() && mesh->shift() == points.shift() && !batch.is_large) {
-        is_done = change(std::move(batch), changes);
-      }
-      if (!is_done) changes.removed = mesh->old_triangles();
+      return mesh->old_triangles();
     }
-    if (is_done) return;
-    changes.made_corners = triangulate_anew(edges_now());
-    changes.made.resize(mesh->triangles());
+    Ids all(triangle_count);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
+  // Changes the mesh, or triangulates all points with their constraints anew. prepare() changes the points.
+  template <typename Prepare>
+  void update(bool is_large, const Prepare& prepare, Changes& changes) {
+    const bool may_change = !is_large && !is_lost && triangle_count > 0 &&
+                            !(is_loaded && (mesh->must_be_loaded() || mesh->shift() != points.shift()));
+    if (may_change) {
+      const call::Frame frame(*engine);
+      if (!is_loaded) load();
+      mesh->begin_batch();
+      std::vector<updates::SplitEdge> splits;
+      if (change(prepare(), splits, changes)) {
+        split_edges(splits);
+        triangle_count = mesh->triangles();
+        row_count = mesh->rows();
+        return;
+      }
+    } else {
+      if (is_loaded && !is_lost) mesh->begin_batch();
+      prepare();
+    }
+    changes.removed = old_triangles();
+    triangulate_anew();
+    changes.made_corners = made.triangles;
+    changes.made.resize(triangle_count);
     std::iota(changes.made.begin(), changes.made.end(), 0);
     changes.is_anew = true;
   }
 
-  // A batch of m points.
+  // A batch. If it throws, points and constraints are what they were before. located: the points whose
+  // representatives are told.
   template <typename Prepare>
-  Changes run(std::size_t m, const Prepare& prepare) {
+  Changes run(bool is_large, Ids located, const Prepare& prepare) {
     const double begin = host::now();
     Changes changes;
     changes.first_point = points.numbers();
-    if (m == 0) return changes;
-    update(prepare(), changes);
+    points.begin_batch();
+    try {
+      update(is_large, prepare, changes);
+    } catch (...) {
+      points.roll_back();
+      is_lost = true;
+      row_count = triangle_count == 0 ? 0 : 2 * points.places() - 2;  // by Euler's formula, with ghosts
+      throw;
+    }
+    for (std::int32_t& v : located) v = points.representative(v);
+    changes.representatives = std::move(located);
     changes.seconds = host::now() - begin;
     return changes;
   }
@@ -311,29 +386,23 @@ struct DynamicTriangulation::Implementation {
   Changes insert(const double* coordinates, std::size_t m) {
     check_count(points.numbers(), m);
     geometry::check_coordinates(coordinates, m);
-    Changes changes = run(m, [&] {
-      points.check_coordinates(coordinates, nullptr, m);
-      Batch batch;
-      batch.is_large = m > share(tuning_of(engine->runtime).inserted_percent, points.count());
-      const std::size_t first = points.numbers();
+    if (m == 0) return nothing();
+    points.check_coordinates(coordinates, nullptr, m);
+    Ids numbers(m);
+    std::iota(numbers.begin(), numbers.end(), static_cast<std::int32_t>(points.numbers()));
+    const bool is_large = m > share(tuning_of(engine->runtime).inserted_percent, points.count());
+    return run(is_large, numbers, [&] {
       points.append(coordinates, m);
-      batch.inserted.resize(m);
-      std::iota(batch.inserted.begin(), batch.inserted.end(), static_cast<std::int32_t>(first));
-      return batch;
+      return Batch{{}, {}, numbers};
     });
-    changes.representatives.reserve(m);
-    for (std::size_t i = 0; i < m; ++i) {
-      changes.representatives.push_back(
-          points.representative(static_cast<std::int32_t>(changes.first_point + i)));
-    }
-    return changes;
   }
 
   Changes remove(const std::int32_t* numbers, std::size_t m) {
     check_numbers(numbers, m, "removed");
-    return run(m, [&] {
+    if (m == 0) return nothing();
+    const bool is_large = m > share(tuning_of(engine->runtime).removed_percent, points.count());
+    return run(is_large, {}, [&] {
       Batch batch;
-      batch.is_large = m > share(tuning_of(engine->runtime).removed_percent, points.count());
       for (const std::size_t i : order_of_leaving(numbers, m)) {
         leave(numbers[i], batch);
         points.remove(numbers[i]);
@@ -345,8 +414,9 @@ struct DynamicTriangulation::Implementation {
   Changes move(const std::int32_t* numbers, const double* coordinates, std::size_t m) {
     check_numbers(numbers, m, "moved");
     geometry::check_coordinates(coordinates, m);
-    Changes changes = run(m, [&] {
-      points.check_coordinates(coordinates, numbers, m);
+    if (m == 0) return nothing();
+    points.check_coordinates(coordinates, numbers, m);
+    return run(false, Ids(numbers, numbers + m), [&] {
       Batch batch;
       Ids coming;
       for (const std::size_t i : order_of_leaving(numbers, m)) {
@@ -362,8 +432,11 @@ struct DynamicTriangulation::Implementation {
       batch.inserted.insert(batch.inserted.end(), coming.begin(), coming.end());
       return batch;
     });
-    changes.representatives.reserve(m);
-    for (std::size_t i = 0; i < m; ++i) changes.representatives.push_back(points.representative(numbers[i]));
+  }
+
+  Changes nothing() const {
+    Changes changes;
+    changes.first_point = points.numbers();
     return changes;
   }
 
@@ -383,12 +456,11 @@ struct DynamicTriangulation::Implementation {
     for (std::size_t i = 0; i < m; ++i) {
       const std::int32_t v = numbers[i];
       if (on_constraint[v] == 0) continue;
-      const LivingConstraints edges = edges_now();
-      const auto at = static_cast<std::size_t>(std::find(edges.edges.begin(), edges.edges.end(), v) -
-                                               edges.edges.begin());
-      throw Error(ErrorKind::input, fmt::format("point {} cannot be {}: it is on segment {} ({} to {})", v,
-                                                what, edges.segments[at / 2],
-                                                edges.edges[at & ~std::size_t{1}], edges.edges[at | 1]));
+      const auto [ends, segments] = listed(edges, points.coordinates());
+      const auto at = static_cast<std::size_t>(std::find(ends.begin(), ends.end(), v) - ends.begin());
+      throw Error(ErrorKind::input,
+                  fmt::format("point {} cannot be {}: it is on segment {} ({} to {})", v, what,
+                              segments[at / 2], ends[at & ~std::size_t{1}], ends[at | 1]));
     }
   }
 
@@ -396,12 +468,15 @@ struct DynamicTriangulation::Implementation {
   Options options;
   call::Engine* engine = nullptr;
   updates::Points points;
-  std::optional<updates::Mesh> mesh;
   bool is_constrained = false;
-  std::vector<std::uint8_t> on_constraint;  // per number, if there are constraints
-  // If all points are on one line: as in Triangulation::hull, and the edges of constraints.
-  Ids flat_hull;
-  LivingConstraints flat_edges;
+  Edges edges;
+  std::vector<std::uint8_t> on_constraint;  // per number: whether it is a vertex of edges
+  // The triangles: until a batch changes them, those that all points were triangulated to, with a row for
+  // each edge of the hull behind them; then those of the mesh. None if an error has come in between.
+  ConstrainedTriangulation made;
+  std::optional<updates::Mesh> mesh;
+  bool is_loaded = false, is_lost = false;
+  std::size_t triangle_count = 0, row_count = 0;
 };
 
 DynamicTriangulation::DynamicTriangulation(Triangulator& triangulator, const double* coordinates,
@@ -451,10 +526,8 @@ Changes DynamicTriangulation::move(const std::int32_t* points, const double* coo
 
 std::size_t DynamicTriangulation::numbers() const noexcept { return implementation_->points.numbers(); }
 std::size_t DynamicTriangulation::point_count() const noexcept { return implementation_->points.count(); }
-std::size_t DynamicTriangulation::triangle_count() const noexcept {
-  return implementation_->mesh->triangles();
-}
-std::size_t DynamicTriangulation::row_count() const noexcept { return implementation_->mesh->rows(); }
+std::size_t DynamicTriangulation::triangle_count() const noexcept { return implementation_->triangle_count; }
+std::size_t DynamicTriangulation::row_count() const noexcept { return implementation_->row_count; }
 bool DynamicTriangulation::has_point(std::size_t number) const noexcept {
   return number < numbers() && implementation_->points.is_alive(static_cast<std::int32_t>(number));
 }
@@ -467,7 +540,13 @@ TriangleRows DynamicTriangulation::rows() {
   Implementation& self = *implementation_;
   return self.take_turn([&] {
     TriangleRows result;
-    if (self.mesh->rows() == 0) return result;
+    self.recover();
+    if (!self.is_loaded) {
+      result = {self.made.triangles, self.made.neighbors};
+      result.triangles.resize(3 * self.row_count, -1);
+      result.neighbors.resize(3 * self.row_count, -1);
+      return result;
+    }
     const call::Frame frame(*self.engine);
     const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
     result.triangles.assign(3 * rows.size(), -1);
@@ -509,8 +588,11 @@ Triangulation DynamicTriangulation::triangulation() {
   Implementation& self = *implementation_;
   return self.take_turn([&] {
     Triangulation result;
-    if (self.mesh->triangles() == 0) {
-      result.hull = self.flat_hull;
+    self.recover();
+    if (!self.is_loaded) {
+      result.triangles = self.made.triangles;
+      result.neighbors = self.made.neighbors;
+      result.hull = self.made.hull;
     } else {
       const call::Frame frame(*self.engine);
       const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
@@ -554,7 +636,8 @@ Triangulation DynamicTriangulation::triangulation() {
 }
 
 LivingConstraints DynamicTriangulation::constraints() {
-  return implementation_->take_turn([&] { return implementation_->edges_now(); });
+  return implementation_->take_turn(
+      [&] { return listed(implementation_->edges, implementation_->points.coordinates()); });
 }
 
 }  // namespace flaunay

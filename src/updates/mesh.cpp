@@ -129,7 +129,6 @@ void Mesh::load(const std::vector<double>& coordinates, int shift, const Triangu
   rows_ = 0;
   batch_ = 0;
   hints_ = {};
-  if (triangles == 0) return;
   const std::size_t hull = triangulation.hull.size();
   vertices_ = 0;
   reserve_vertices(coordinates.size() / 2);
@@ -216,6 +215,7 @@ void Mesh::begin_batch() {
   ++batch_;
   touched_count_ = 0;
   triangles_at_begin_ = triangles_;
+  rows_at_begin_ = rows_;
 }
 
 void Mesh::end_batch(Changes& changes) {
@@ -241,12 +241,12 @@ void Mesh::end_batch(Changes& changes) {
 }
 
 Ids Mesh::old_triangles() {
-  if (rows_ == 0) return {};
   Arena& arena = runtime_.arena();
   Arena::Scope scope(arena);
-  const auto flags = arena.allocate<cl_uchar>(rows_);
-  runtime_.map(rows_, kernels::find_old_triangles{.batch = batch_, .rows = row_array_, .flags = flags});
-  const auto [at, count] = host::pack_positions(runtime_, flags, rows_, 1);
+  const auto flags = arena.allocate<cl_uchar>(rows_at_begin_);
+  runtime_.map(rows_at_begin_,
+               kernels::find_old_triangles{.batch = batch_, .rows = row_array_, .flags = flags});
+  const auto [at, count] = host::pack_positions(runtime_, flags, rows_at_begin_, 1);
   Ids old(count);
   runtime_.read(at, 0, count, old.data());
   return old;
@@ -284,7 +284,8 @@ Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates
   return vertices;
 }
 
-std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& coordinates, Ids& split) {
+std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& coordinates,
+                                      std::vector<SplitEdge>& splits) {
   std::vector<Found> found, doubled;
   vertices = in_order_of_place(std::move(vertices), coordinates, doubled);
   const std::size_t count = vertices.size();
@@ -379,7 +380,7 @@ std::vector<Mesh::Found> Mesh::insert(Ids vertices, const std::vector<double>& c
         found.push_back({of.vertex, of.found});
         free_rows_.insert(free_rows_.end(), of.spare, of.spare + 2);
       } else if (of.edge >= 0) {
-        split.push_back(of.vertex);
+        splits.push_back({of.from, of.to, of.vertex});
       }
     }
   }

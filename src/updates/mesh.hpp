@@ -17,19 +17,24 @@ namespace flaunay::updates {
 using Ids = std::vector<std::int32_t>;
 using host::Buffer;
 
+/// An edge of a constraint that was split at a vertex.
+struct SplitEdge {
+  std::int32_t from, to, vertex;
+};
+
 /// Rows are triangles and, beyond the hull, ghosts; some are free. Vertices have the numbers of points. There
 /// is at least one triangle, or nothing at all.
 class Mesh {
  public:
   explicit Mesh(host::Runtime& runtime) : runtime_(runtime) {}
 
-  /// Replaces the mesh by a triangulation with neighbours. coordinates: per number. shift: they are
-  /// multiplied by 2^shift. edges: per corner, the segment of the edge opposite, or -1; empty if there are no
-  /// constraints.
+  /// Replaces the mesh by a triangulation with neighbours, of at least one triangle. coordinates: per number.
+  /// shift: they are multiplied by 2^shift. edges: per corner, the segment of the edge opposite, or -1; empty
+  /// if there are no constraints.
   void load(const std::vector<double>& coordinates, int shift, const Triangulation& triangulation,
             const Ids& edges);
-  /// Whether it must be loaded before the next batch: it is empty, or batches can no longer be counted.
-  bool must_be_loaded() const { return triangles_ == 0 || batch_ >= kMostBatches; }
+  /// Whether it must be loaded before the next batch, because batches can no longer be counted.
+  bool must_be_loaded() const { return batch_ >= kMostBatches; }
   int shift() const { return shift_; }
   std::size_t rows() const { return rows_; }
   std::size_t triangles() const { return triangles_; }
@@ -38,7 +43,7 @@ class Mesh {
   void begin_batch();
   /// Tells what has changed since.
   void end_batch(Changes& changes);
-  /// The rows that held triangles when the batch began.
+  /// The rows that held triangles when the batch began, also if it has ended by an error.
   Ids old_triangles();
 
   /// Chooses vertices of the mesh where walks begin, if there are many more than when this was done last.
@@ -54,9 +59,9 @@ class Mesh {
     std::int32_t vertex, other;
   };
   /// Puts vertices in. coordinates: per number. Returns those in whose place there is one already, and then
-  /// those for which another one of these is tried, the smallest; writes to `split` the vertices that split
-  /// constraints.
-  std::vector<Found> insert(Ids vertices, const std::vector<double>& coordinates, Ids& split);
+  /// those for which another one of these is tried, the smallest; adds to `splits` those of constraints.
+  std::vector<Found> insert(Ids vertices, const std::vector<double>& coordinates,
+                            std::vector<SplitEdge>& splits);
   /// Takes vertices out. Returns whether it could: not if one has too many triangles around it, or if no
   /// triangle is left. The mesh must be loaded again then.
   bool remove(const Ids& vertices);
@@ -104,7 +109,7 @@ class Mesh {
   host::Runtime& runtime_;
   int shift_ = 0;
   std::size_t rows_ = 0, row_room_ = 0, vertices_ = 0, vertex_room_ = 0, triangles_ = 0,
-              triangles_at_begin_ = 0;
+              triangles_at_begin_ = 0, rows_at_begin_ = 0;
   bool has_edges_ = false;
   Buffer<kernel::mesh_row> row_array_{};
   Buffer<cl_double2> points_{};

@@ -7,18 +7,44 @@
 
 namespace flaunay::updates {
 
+void Points::begin_batch() {
+  before_.clear();
+  numbers_before_ = numbers();
+  count_before_ = count_;
+}
+
+void Points::keep(std::int32_t v) {
+  const auto i = static_cast<std::size_t>(v);
+  before_.push_back({coordinates_[2 * i], coordinates_[2 * i + 1], v, representatives_[i]});
+}
+
+void Points::roll_back() noexcept {
+  for (auto before = before_.rbegin(); before != before_.rend(); ++before) {
+    const auto i = static_cast<std::size_t>(before->number);
+    coordinates_[2 * i] = before->x;
+    coordinates_[2 * i + 1] = before->y;
+    representatives_[i] = before->representative;
+  }
+  coordinates_.resize(2 * numbers_before_);
+  representatives_.resize(numbers_before_);
+  marks_.resize(numbers_before_);
+  count_ = count_before_;
+  others_.clear();
+}
+
 void Points::append(const double* coordinates, std::size_t n) {
+  marks_.resize(representatives_.size() + n, 0);
   coordinates_.insert(coordinates_.end(), coordinates, coordinates + 2 * n);
   for (std::size_t i = 0; i < n; ++i) {
     representatives_.push_back(static_cast<std::int32_t>(representatives_.size()));
   }
-  marks_.resize(representatives_.size(), 0);
   count_ += n;
 }
 
 std::int32_t Points::leave(std::int32_t v) {
   const std::int32_t representative = this->representative(v);
   const auto group = others_.find(representative);
+  keep(v);
   representatives_[static_cast<std::size_t>(v)] = v;
   if (group == others_.end()) return -1;
   std::set<std::int32_t> others = std::move(group->second);
@@ -29,21 +55,25 @@ std::int32_t Points::leave(std::int32_t v) {
     return -1;
   }
   const std::int32_t next = *others.begin();
+  for (const std::int32_t other : others) {
+    keep(other);
+    representatives_[static_cast<std::size_t>(other)] = next;
+  }
   others.erase(others.begin());
-  representatives_[static_cast<std::size_t>(next)] = next;
-  for (const std::int32_t other : others) representatives_[static_cast<std::size_t>(other)] = next;
   if (!others.empty()) others_[next] = std::move(others);
   return next;
 }
 
 void Points::remove(std::int32_t v) {
   const auto i = static_cast<std::size_t>(v);
+  keep(v);
   representatives_[i] = -1;
   coordinates_[2 * i] = coordinates_[2 * i + 1] = std::numeric_limits<double>::quiet_NaN();
   --count_;
 }
 
 void Points::move(std::int32_t v, const double* coordinates) {
+  keep(v);
   std::copy(coordinates, coordinates + 2, &coordinates_[2 * static_cast<std::size_t>(v)]);
 }
 
@@ -54,7 +84,10 @@ void Points::join(std::int32_t v, std::int32_t representative) {
     others_.erase(own);
   }
   joining.insert(v);
-  for (const std::int32_t other : joining) representatives_[static_cast<std::size_t>(other)] = representative;
+  for (const std::int32_t other : joining) {
+    keep(other);
+    representatives_[static_cast<std::size_t>(other)] = representative;
+  }
   others_[representative].merge(joining);
 }
 
@@ -131,16 +164,27 @@ Living Points::living() const {
 }
 
 void Points::set_representatives(const Living& living, const std::vector<std::int32_t>& representatives) {
-  others_.clear();
+  const auto number = [&](std::size_t i) {
+    return living.are_all ? static_cast<std::int32_t>(i) : living.numbers[i];
+  };
+  std::unordered_map<std::int32_t, std::set<std::int32_t>> others;
   for (std::size_t i = 0; i < representatives.size(); ++i) {
-    auto v = static_cast<std::int32_t>(i), by = representatives[i];
-    if (!living.are_all) {
-      v = living.numbers[i];
-      by = living.numbers[static_cast<std::size_t>(by)];
-    }
-    representatives_[static_cast<std::size_t>(v)] = by;
-    if (by != v) others_[by].insert(v);
+    const auto by = static_cast<std::size_t>(representatives[i]);
+    if (by != i) others[number(by)].insert(number(i));
   }
+  others_.swap(others);
+  for (std::size_t i = 0; i < representatives.size(); ++i) {
+    representatives_[static_cast<std::size_t>(number(i))] =
+        number(static_cast<std::size_t>(representatives[i]));
+  }
+}
+
+std::size_t Points::places() const noexcept {
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < representatives_.size(); ++v) {
+    count += static_cast<std::size_t>(representatives_[v]) == v;
+  }
+  return count;
 }
 
 }  // namespace flaunay::updates

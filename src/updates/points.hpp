@@ -21,6 +21,10 @@ struct Living {
 
 class Points {
  public:
+  /// Begins a batch of changes: append() and what follows it, and set_representatives() at the end.
+  void begin_batch();
+  /// Undoes the batch. Until representatives are set again, it is not known which points share places.
+  void roll_back() noexcept;
   /// Adds n points, which are checked already. They represent themselves until it is known whether others do.
   void append(const double* coordinates, std::size_t n);
   /// Whether a point represents itself and no other.
@@ -47,11 +51,13 @@ class Points {
   bool is_marked(std::int32_t v) const { return marks_[static_cast<std::size_t>(v)] == batch_; }
 
   Living living() const;
-  /// representatives: per living point, which living point represents it.
+  /// representatives: per living point, which living point represents it. If it throws, nothing has changed.
   void set_representatives(const Living& living, const std::vector<std::int32_t>& representatives);
 
   std::size_t numbers() const { return representatives_.size(); }
   std::size_t count() const { return count_; }
+  /// The number of points that represent themselves. O(numbers).
+  std::size_t places() const noexcept;
   int shift() const { return geometry::scaling_for(magnitudes_).shift; }
   bool is_alive(std::int32_t v) const { return representatives_[static_cast<std::size_t>(v)] >= 0; }
   std::int32_t representative(std::int32_t v) const { return representatives_[static_cast<std::size_t>(v)]; }
@@ -62,6 +68,15 @@ class Points {
   const std::vector<double>& coordinates() const { return coordinates_; }
 
  private:
+  // A point before a batch has changed it.
+  struct Before {
+    double x, y;
+    std::int32_t number, representative;
+  };
+  void keep(std::int32_t v);
+
+  std::vector<Before> before_;
+  std::size_t numbers_before_ = 0, count_before_ = 0;
   std::vector<double> coordinates_;
   geometry::Magnitudes magnitudes_;  // of all points that there are, and maybe of others
   std::vector<std::int32_t> representatives_;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <memory>
 #include <new>
 #include <string>
@@ -16,12 +17,14 @@
 #include "app/verify/verify.hpp"
 #include "flaunay/chunks.hpp"
 #include "flaunay/constrained.hpp"
+#include "flaunay/dynamic.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/updates/mirror.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -151,6 +154,92 @@ TEST_F(SmallAllocations, OfPolygons) {
   options.map = true;
   options.crossings = Crossings::split;
   attack<Triangulator>(kHost, [&](Triangulator& host) { return of(host.polygons(polygons, options)); });
+}
+
+// A batch that fails has changed nothing but rows, and the next one tells which ones are gone.
+TEST_F(SmallAllocations, OfTriangulationsThatChange) {
+  Triangulator host("host");
+  // A point for the first number's place, one beside it, two on a constraint, and many.
+  Coordinates points = {0, 0, 0, 0, 9, 0, 4, 7, 3, 0, 8, 8, 5, 5}, many = make_fixture("grid", 50, 5);
+  for (double& x : many) x *= 9;
+  const Coordinates grid = make_fixture("grid", 60, 6);
+  for (const double x : grid) points.push_back(10 * x);
+  const std::vector<std::int32_t> segments = {1, 2, 0, 3};
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = 2;
+  using Batch = std::function<Changes(DynamicTriangulation&)>;
+  const std::vector<Batch> batches = {
+      [](auto& mesh) {
+        const Coordinates some = {1, 0, 2, 3, 1.5, 0, 8, 8};
+        return mesh.insert(some.data(), 4);
+      },
+      [&](auto& mesh) { return mesh.insert(many.data(), 50); },
+      [](auto& mesh) {
+        const std::int32_t numbers[] = {1, 5, 30};
+        return mesh.remove(numbers, 3);
+      },
+      [](auto& mesh) {
+        const std::int32_t numbers[] = {5, 6, 31};
+        const double places[] = {5, 5, 9, 0, 8, 1};
+        return mesh.move(numbers, places, 3);
+      },
+  };
+  const auto triangles_of = [](DynamicTriangulation& mesh) { return set_of(mesh.rows().triangles); };
+  const auto state_of = [&](DynamicTriangulation& mesh) -> std::uint64_t {
+    const LivingConstraints edges = mesh.constraints();
+    std::vector<std::int32_t> corners;
+    for (const Corners& row : triangles_of(mesh)) corners.insert(corners.end(), row.begin(), row.end());
+    const Triangulation whole = mesh.triangulation();
+    return Fingerprint() << corners << whole.representatives << whole.hull << edges.edges << edges.segments;
+  };
+  std::size_t errors = 0;
+  for (const Batch& batch : batches) {
+    for (const bool is_loaded : {false, true}) {
+      const auto make = [&] {
+        DynamicTriangulation mesh(host, points.data(), points.size() / 2, constraints);
+        const double inside[] = {6.25, 3.5};
+        if (is_loaded) mesh.insert(inside, 1);
+        return mesh;
+      };
+      DynamicTriangulation untouched = make(), done = make();
+      batch(done);
+      const std::uint64_t before = state_of(untouched), after = state_of(done);
+      bool is_over = false;
+      for (std::size_t first = 0; !is_over; first += 1 + first / 8) {
+        SCOPED_TRACE(first);
+        DynamicTriangulation mesh = make();
+        std::map<std::int32_t, Corners> rows = rows_of(mesh.rows());
+        bool has_failed = false;
+        {
+          const FailingAllocations failures(first, Failing::one);
+          try {
+            batch(mesh);
+          } catch (const std::bad_alloc&) {
+            has_failed = true;
+          }
+          is_over = !failures.reached();
+        }
+        if (has_failed) {
+          ++errors;
+          if (first % 2 == 0) {
+            ASSERT_EQ(state_of(mesh), before);
+            ASSERT_EQ(mesh.rows().triangles.size(), 3 * mesh.row_count());
+            ASSERT_EQ(mesh.triangle_count(), rows.size());
+            rows = rows_of(mesh.rows());
+          }
+          const Changes changes = batch(mesh);
+          for (const std::int32_t row : changes.removed) ASSERT_EQ(rows.erase(row), 1);
+          for (std::size_t i = 0; i < changes.made.size(); ++i) {
+            ASSERT_TRUE(rows.emplace(changes.made[i], rotated(&changes.made_corners[3 * i])).second);
+          }
+          ASSERT_EQ(rows_of(mesh.rows()), rows);
+        }
+        ASSERT_EQ(state_of(mesh), after);
+      }
+    }
+  }
+  EXPECT_GT(errors, 100u);
 }
 
 TEST_F(SmallAllocations, OfDiagramsAndQueries) {

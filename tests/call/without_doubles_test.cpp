@@ -128,6 +128,30 @@ TEST(WithoutDoubles, EverySpanInHostMemory) {
   }
 }
 
+// Doubles round the extents of these sets, by which they are cut.
+TEST(WithoutDoubles, ExtentsThatDoublesRound) {
+  Triangulator& with_lanes = triangulator_with("gpu,fixed_point=1");
+  Coordinates points = {-1,         1,         0x1.08p56, -0x1.cp56, -0x1.cp56, -0x1.08p56,
+                        -0x1.08p56, -0x1.cp56, -0x1.cp56, 0x1.08p56, -1,        0};
+  Offsets offsets{0, 6};
+  FixtureRandom random(56);
+  const double large[] = {0x1p56, 0x1.08p56, 0x1.cp56};
+  for (int set = 0; set < 300; ++set) {
+    for (std::int64_t i = random.integer(5, 12); i > 0; --i) {
+      for (int k = 0; k < 2; ++k) {
+        points.push_back(random.integer(0, 1) * static_cast<double>(random.integer(-2, 2)) +
+                         (random.integer(0, 2) == 0 ? 0 : static_cast<double>(random.integer(-1, 1))) *
+                             large[random.integer(0, 2)]);
+      }
+    }
+    offsets.push_back(points.size() / 2);
+  }
+  for (const Offsets& sets : {Offsets{0, 6}, offsets}) {
+    expect_same(with_lanes.triangulate(points.data(), sets, all_options()),
+                on_host().triangulate(points.data(), sets, all_options()));
+  }
+}
+
 // Where neither doubles nor fixed point suffice, the error is the same, too.
 TEST(WithoutDoubles, ErrorsAreThoseOfTheHost) {
   Coordinates too_wide = spanning(53), infinite = spanning(100);

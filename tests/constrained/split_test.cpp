@@ -602,6 +602,15 @@ TEST(SmallSplit, AllMagnitudes) {
       if (HasFailure()) return;
     }
   }
+  // Numbers of few bits, where the distance of doubles is not that of their magnitudes.
+  expect_split(scaled({4, 4, 5, 0, 3, 7, 3, 6}, 0x1p-1074), {2, 1, 3, 0, 0, 2});
+  for (int round = 0; round < 400; ++round) {
+    SCOPED_TRACE(round);
+    const Coordinates points =
+        scaled(random_integer_points(6, 3 + round % 7, static_cast<std::uint64_t>(round)), 0x1p-1074);
+    expect_split(points, random_segments(random, 6, 4));
+    if (HasFailure()) return;
+  }
   // Points of very different magnitudes, and crossings much nearer to zero than they are.
   for (int round = 0; round < 40; ++round) {
     SCOPED_TRACE(round);

@@ -34,6 +34,15 @@ inline std::set<Corners> set_of(const std::vector<std::int32_t>& triangles) {
   return all;
 }
 
+/// The rows that have triangles.
+inline std::map<std::int32_t, Corners> rows_of(const TriangleRows& rows) {
+  std::map<std::int32_t, Corners> living;
+  for (std::size_t t = 0; t < rows.triangles.size(); t += 3) {
+    if (rows.triangles[t] >= 0) living[static_cast<std::int32_t>(t / 3)] = rotated(&rows.triangles[t]);
+  }
+  return living;
+}
+
 class Mirror {
  public:
   using Point = std::array<double, 2>;
@@ -42,12 +51,18 @@ class Mirror {
       : reference_(reference), mesh(by, coordinates.data(), coordinates.size() / 2) {
     begin(coordinates);
   }
+  /// Segments that cross are split if the options say so; the pieces are then known from the first result.
   Mirror(Triangulator& by, Triangulator& reference, const std::vector<double>& coordinates,
-         const std::vector<std::int32_t>& segments)
+         const std::vector<std::int32_t>& segments, const ConstrainedOptions& options = {})
       : reference_(reference),
-        mesh(by, coordinates.data(), coordinates.size() / 2, constraints_of(segments)),
-        segments_(segments) {
-    begin(coordinates);
+        mesh(by, coordinates.data(), coordinates.size() / 2, constraints_of(segments), options) {
+    const ConstrainedTriangulation first =
+        reference.constrained(coordinates.data(), coordinates.size() / 2, constraints_of(segments), options);
+    std::vector<double> all = coordinates;
+    all.insert(all.end(), first.added_points.begin(), first.added_points.end());
+    begin(all);
+    for (const std::int32_t v : first.constraint_edges) ends_.push_back(points.at(v));
+    segments_ = first.edge_segments;
   }
 
   Changes insert(const std::vector<double>& coordinates) {
@@ -86,6 +101,20 @@ class Mirror {
     return changes;
   }
 
+  /// After a batch that has failed: nothing has changed but rows.
+  void read_rows() { rows_ = rows_of(mesh.rows()); }
+
+  /// Of these points, those that can be removed and moved.
+  std::vector<std::int32_t> without_ends(const std::vector<std::int32_t>& numbers) {
+    const LivingConstraints edges = mesh.constraints();
+    const std::set<std::int32_t> ends(edges.edges.begin(), edges.edges.end());
+    std::vector<std::int32_t> free;
+    for (const std::int32_t v : numbers) {
+      if (ends.count(v) == 0) free.push_back(v);
+    }
+    return free;
+  }
+
   /// Whether all is as it should be. Only meant for small inputs.
   void check() {
     EXPECT_EQ(mesh.point_count(), points.size());
@@ -109,14 +138,21 @@ class Mirror {
         EXPECT_EQ((Point{known[i], known[i + 1]}), at->second);
       }
     }
+    // Constraints are where they were at first, whoever is there now.
+    std::map<Point, std::int32_t> first_there;
+    for (const auto& [v, p] : points) first_there.emplace(p, places[v]);
+    std::vector<std::int32_t> segments;
+    for (const Point& end : ends_) {
+      ASSERT_EQ(first_there.count(end), 1);
+      segments.push_back(first_there.at(end));
+    }
     ConstrainedTriangulation expected;
-    if (segments_.empty()) {
+    if (segments.empty()) {
       static_cast<Triangulation&>(expected) = reference_.triangulate(coordinates.data(), numbers.size());
     } else {
-      std::vector<std::int32_t> segments = segments_;
-      for (std::int32_t& v : segments) v = places[v];
       expected = reference_.constrained(coordinates.data(), numbers.size(), constraints_of(segments));
     }
+    for (std::int32_t& edge : expected.edge_segments) edge = segments_[edge];
     const auto renumber = [&](std::vector<std::int32_t>& all) {
       for (std::int32_t& v : all) v = numbers[v];
     };
@@ -143,11 +179,7 @@ class Mirror {
     const TriangleRows rows = mesh.rows();
     EXPECT_EQ(rows.triangles.size(), 3 * mesh.row_count());
     check_neighbors(rows.triangles, rows.neighbors);
-    std::map<std::int32_t, Corners> living;
-    for (std::size_t t = 0; t < rows.triangles.size(); t += 3) {
-      if (rows.triangles[t] >= 0) living[static_cast<std::int32_t>(t / 3)] = rotated(&rows.triangles[t]);
-    }
-    EXPECT_EQ(living, rows_);
+    EXPECT_EQ(rows_of(rows), rows_);
 
     const LivingConstraints edges = mesh.constraints();
     std::map<std::array<std::int32_t, 2>, std::int32_t> found_edges, expected_edges;
@@ -181,10 +213,7 @@ class Mirror {
     for (std::size_t i = 0; i < coordinates.size(); i += 2) {
       points[static_cast<std::int32_t>(i / 2)] = {coordinates[i] + 0.0, coordinates[i + 1] + 0.0};
     }
-    const TriangleRows rows = mesh.rows();
-    for (std::size_t t = 0; t < rows.triangles.size(); t += 3) {
-      if (rows.triangles[t] >= 0) rows_[static_cast<std::int32_t>(t / 3)] = rotated(&rows.triangles[t]);
-    }
+    rows_ = rows_of(mesh.rows());
   }
 
   std::int32_t first_at(std::int32_t v) const {
@@ -225,6 +254,8 @@ class Mirror {
     }
   }
 
+  // Per edge of a constraint that there was at first, its ends and its segment.
+  std::vector<Point> ends_;
   std::vector<std::int32_t> segments_;
   std::map<std::int32_t, Corners> rows_;
 };

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -172,6 +174,94 @@ TEST(SmallUpdates, PointsSplitConstraints) {
   mirror.check();
 }
 
+// Whatever way a batch takes: constraints are the same as before, and their vertices stay.
+TEST(SmallUpdates, ConstraintsStay) {
+  for (Triangulator* const by : {&triangulator(), &changing()}) {
+    // Twenty points on a line, and one that is not, which leaves them and comes back.
+    std::vector<double> line;
+    for (int i = 0; i < 20; ++i) line.insert(line.end(), {static_cast<double>(i), 0});
+    line.insert(line.end(), {3, 5});
+    Mirror mirror(*by, reference(), line, {0, 19});
+    const auto check = [&] {
+      mirror.check();
+      EXPECT_GE(mirror.mesh.constraints().segments.size(), 19u);
+      for (const std::int32_t v : {0, 7, 19}) EXPECT_THROW(mirror.mesh.remove(&v, 1), Error);
+    };
+    mirror.remove({20});
+    check();
+    mirror.insert({3, -5, 6.5, 0});
+    check();
+    mirror.move({21}, {50, 0});
+    check();
+    mirror.insert({7.5, 0, -4, 0});
+    check();
+    mirror.move({21}, {3, 5});
+    check();
+    // Another scale; more points than are inserted or removed one by one; a point with too many triangles.
+    mirror.insert({0x1p400, 1});
+    check();
+    mirror.remove({25});
+    std::vector<double> circle = {1e6, 1e6};
+    for (int i = 0; i < 60; ++i) circle.insert(circle.end(), {1e6 + std::cos(i), 1e6 + std::sin(i)});
+    mirror.insert(circle);
+    check();
+    mirror.remove({26});
+    check();
+    std::vector<std::int32_t> all(60);
+    std::iota(all.begin(), all.end(), 27);
+    mirror.remove(all);
+    check();
+    if (HasFailure()) return;
+  }
+  // A point with a smaller number comes to the end of a constraint.
+  Mirror mirror(triangulator(), reference(), {0, 0, 0, 0, 1, 0, 0, 1}, {2, 3});
+  mirror.move({0}, {1, 0});
+  mirror.check();
+  EXPECT_EQ(mirror.mesh.constraints().edges, (std::vector<std::int32_t>{3, 0}));
+  mirror.remove({2});
+  mirror.check();
+}
+
+// A callback ends a batch that triangulates anew: nothing has changed.
+TEST(SmallUpdates, ErrorsInTheMiddle) {
+  for (const bool is_flat : {false, true}) {
+    SCOPED_TRACE(is_flat);
+    ConstrainedOptions options;
+    bool is_armed = false;
+    options.progress = [&](const std::string&, int, double) {
+      if (is_armed) throw std::runtime_error("enough");
+    };
+    std::vector<double> coordinates = {0, 0, 8, 0, 4, 0, 6, 0, 4, 0};
+    if (!is_flat) coordinates.insert(coordinates.end(), {0, 8, 3, 5, 3, 5});
+    Mirror mirror(triangulator(), reference(), coordinates, {0, 1}, options);
+    std::vector<double> more;
+    for (int i = 0; i < 40; ++i) more.insert(more.end(), {i % 7 + 0.5, static_cast<double>(i % 5)});
+    for (int mends = 0; mends < 2; ++mends) {
+      for (const bool reads_before : {false, true}) {
+        const std::vector<std::int32_t> free = mirror.without_ends(numbers_of(mirror));
+        for (const bool removes : {false, true}) {
+          is_armed = true;
+          if (removes) {
+            EXPECT_THROW(mirror.mesh.remove(free.data(), free.size()), std::runtime_error);
+          } else {
+            EXPECT_THROW(mirror.mesh.insert(more.data(), more.size() / 2), std::runtime_error);
+          }
+          is_armed = false;
+          if (!reads_before) continue;
+          mirror.read_rows();
+          mirror.check();
+        }
+        mirror.insert({4.25, 2, 5, 0});
+        mirror.check();
+      }
+      // Some of which only change the mesh.
+      mirror.insert(more);
+      mirror.insert({2.25, 1});
+      mirror.check();
+    }
+  }
+}
+
 TEST(Updates, RandomConstraints) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);
@@ -189,18 +279,12 @@ TEST(Updates, RandomConstraints) {
     Mirror mirror(changing(), reference(), coordinates, segments);
     for (int batch = 0; batch < 12; ++batch) {
       SCOPED_TRACE("batch " + std::to_string(batch));
-      std::set<std::int32_t> fixed;
-      const LivingConstraints edges = mirror.mesh.constraints();
-      fixed.insert(edges.edges.begin(), edges.edges.end());
       if (batch % 3 == 0) {
         std::vector<double> more;
         for (int i = 0; i < 20; ++i) more.push_back(static_cast<double>(random.integer(-35, 35)));
         mirror.insert(more);
       } else {
-        std::vector<std::int32_t> numbers;
-        for (const std::int32_t v : some_of(mirror, 12, random)) {
-          if (fixed.count(v) == 0) numbers.push_back(v);
-        }
+        const std::vector<std::int32_t> numbers = mirror.without_ends(some_of(mirror, 12, random));
         if (batch % 3 == 1) {
           mirror.remove(numbers);
         } else {

@@ -37,7 +37,7 @@ struct Vertices {
 };
 
 /// Scaled coordinates are below the first of these. The second is half the distance of the largest ones:
-/// rounding moves no place by more than that, in each coordinate.
+/// rounding moves no place by more than that, in each coordinate, unless the unit of Vertices is larger.
 constexpr double kLargest = 0x1p250;
 constexpr double kHalfSpacing = 0x1p-54 * kLargest;
 static_assert(kernel::LARGEST_EXPONENT == 249);

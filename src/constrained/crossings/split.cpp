@@ -176,7 +176,9 @@ class SetSplitter {
   void lead_through(CrossingPlaces& crossings, const SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
-    if ((are_apart && points_are_apart()) || !parts_cross()) return;
+    // Both look at what rounding moves by kHalfSpacing at most. Subnormal numbers are farther apart.
+    const bool is_moved_little = vertices_.unit <= 2 * kHalfSpacing;
+    if ((is_moved_little && are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;
     chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit, limits.pieces);
   }

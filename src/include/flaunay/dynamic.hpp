@@ -38,7 +38,8 @@ struct TriangleRows {
   std::vector<std::int32_t> neighbors;
 };
 
-/// The edges that segments are made of now.
+/// The edges that segments are made of now, in ascending order of the smaller numbers of their points, and of
+/// the larger ones.
 struct LivingConstraints {
   std::vector<std::int32_t> edges;     ///< 2 points per edge, the lexicographically smaller one first
   std::vector<std::int32_t> segments;  ///< one per edge: the smallest index of a segment that has it
@@ -56,9 +57,10 @@ struct LivingConstraints {
 ///
 /// Bad input throws an error, which names it, and changes nothing: Error(input) for a coordinate that is not
 /// finite, coordinates whose magnitudes differ too much from those of the other points, a number that no
-/// point has, and one that is there twice. If a call fails for another reason, such as lack of memory, the
-/// triangulation can only be destroyed or assigned to. It shares device and memory with its triangulator,
-/// which it may outlive: calls of either during another one throw Error(usage).
+/// point has, and one that is there twice. If a call fails for another reason, such as lack of memory or a
+/// progress callback that throws, points, triangles and constraints are what they were before, but triangles
+/// may be in other rows, which rows() tells. It shares device and memory with its triangulator, which it may
+/// outlive: calls of either during another one throw Error(usage).
 class FLAUNAY_API DynamicTriangulation {
  public:
   /// Triangulates n points, which may be none, like Triangulator::triangulate. The options hold for
@@ -106,7 +108,7 @@ class FLAUNAY_API DynamicTriangulation {
   /// The result of a call on all points, with these numbers: triangles in the order of their rows, which have
   /// the smallest number first. Representatives of points that were removed are -1. O(rows).
   Triangulation triangulation();
-  /// The edges that segments are made of; empty if there are no constraints. O(rows).
+  /// The edges that segments are made of; empty if there are no constraints.
   LivingConstraints constraints();
 
  private:

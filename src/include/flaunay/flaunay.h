@@ -645,7 +645,8 @@ typedef struct flaunay_changes {
   double seconds;               ///< how long the call took
 } flaunay_changes;
 
-/// The edges that segments of a flaunay_dynamic are made of. Arrays are NULL if they are empty.
+/// The edges that segments of a flaunay_dynamic are made of, in ascending order of the smaller numbers of
+/// their points, and of the larger ones. Arrays are NULL if they are empty.
 typedef struct flaunay_living_constraints {
   size_t edge_count;        ///< number of edges
   const int32_t* edges;     ///< 2 points per edge, the lexicographically smaller one first
@@ -969,7 +970,9 @@ FLAUNAY_API void flaunay_dynamic_destroy(flaunay_dynamic* dynamic);
 /// Inserts m points, x0 y0 x1 y1 ... One that lies on a constraint splits it. The errors of this and the next
 /// functions are those of flaunay_triangulate, and: FLAUNAY_ERROR_INPUT for a number that no point has, one
 /// that is there twice, and a vertex of a constraint that is to be removed or moved; the message names it.
-/// Such an error changes nothing. After another one, the handle can only be destroyed.
+/// Such an error changes nothing. After another one, such as FLAUNAY_ERROR_MEMORY, points, triangles and
+/// constraints are what they were before, but triangles may be in other rows, which flaunay_dynamic_rows
+/// tells.
 FLAUNAY_API flaunay_status flaunay_dynamic_insert(flaunay_dynamic* dynamic, const double* coordinates,
                                                   size_t m);
 /// flaunay_dynamic_insert for points of one set in device memory.
@@ -1003,7 +1006,7 @@ FLAUNAY_API flaunay_status flaunay_dynamic_rows(flaunay_dynamic* dynamic, int32_
 /// have the smallest number first. Representatives of points that were removed are -1. O(rows).
 FLAUNAY_API flaunay_status flaunay_dynamic_triangulation(flaunay_dynamic* dynamic,
                                                          flaunay_triangulation** result);
-/// The edges that segments are made of now; NULL after an error. Valid until this is called again. O(rows).
+/// The edges that segments are made of now; NULL after an error. Valid until this is called again.
 FLAUNAY_API const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* dynamic);
 
 /// The rows and points of a flaunay_dynamic in device memory, as bits, with their types and their sizes in
