@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "flaunay/constrained.hpp"
 #include "geometry/expect.hpp"
 #include "geometry/predicates.hpp"
 
