@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import Frozen, as_floats, as_points, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, as_count, as_floats, as_points, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
@@ -68,9 +68,7 @@ def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
 
 def parts_of(given: Any) -> Iterator[int]:
     """Iterations in numbers for calls that take about a tenth of a second each: Ctrl-C takes effect between calls."""
-    iterations = operator.index(given)
-    if iterations < 0:
-        raise UsageError(f"iterations must not be negative: {iterations}")
+    iterations = as_count(given, "iterations")
     part = min(1, iterations)
     while True:
         begin = time.perf_counter()
