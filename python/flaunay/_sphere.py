@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from functools import cached_property
 from typing import Any, Optional
 
@@ -44,11 +45,14 @@ class SphericalVoronoi:
         within an angle r, by that divided by the square of r.
     """
 
-    def __init__(self, vertices: Doubles, cell_offsets: Indices, cells: Indices, areas: Doubles) -> None:
+    def __init__(
+        self, vertices: Doubles, cell_offsets: Indices, cells: Indices, areas: Doubles, tri: SphericalDelaunay
+    ) -> None:
         self.vertices = vertices
         self.cell_offsets = cell_offsets
         self.cells = cells
         self.areas = areas
+        self._tri = tri
 
     def __repr__(self) -> str:
         return summary(self, points=len(self.areas), vertices=len(self.vertices))
@@ -58,6 +62,40 @@ class SphericalVoronoi:
         """For each point the vertices of its cell, counter-clockwise, as lists."""
         ends = self.cell_offsets.tolist()
         return [self.cells[first:last].tolist() for first, last in zip(ends, ends[1:])]
+
+    def polygon(self, i: int) -> Doubles:
+        """The corners of cell i as unit vectors, counter-clockwise as seen from outside, shape (k, 3), to be drawn.
+
+        Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells of
+        points on one great circle, such as the equator, are lunes from pole to pole, which two corners could not say.
+        Empty for a cell without corners. IndexError for one that does not exist; negative numbers count from the end.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> cells = flaunay.spherical([[0, 0], [90, 0], [180, 0], [270, 0]]).voronoi
+        >>> len(cells.polygon(0))
+        4
+        """
+        n, i = len(self.areas), operator.index(i)
+        if not -n <= i < n:
+            raise IndexError(f"cell {i} of {n}")
+        i %= n
+        triangles = self.cells[self.cell_offsets[i] : self.cell_offsets[i + 1]]
+        corners, xyz = self._tri.simplices[triangles], self._tri.xyz
+        polygon: list[Doubles] = []
+        # The side to the next triangle is between the point and the corner before it.
+        before = corners[np.arange(len(corners)), (np.argmax(corners == i, axis=1) + 2) % 3]
+        for t, following, other in zip(triangles, np.roll(triangles, -1), before):
+            begin, end = self.vertices[t], self.vertices[following]
+            if np.abs(end - begin).max() <= 2.0**-50:
+                continue
+            polygon.append(begin)
+            if begin @ end < -0.5:
+                low, high, start = (i, other, begin) if i < other else (other, i, end)
+                middle = np.cross(start, xyz[high] - xyz[low])
+                polygon.append(middle / np.linalg.norm(middle))
+        return np.array(polygon).reshape(-1, 3)
 
 
 class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
@@ -118,7 +156,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         4
         """
         arrays = self._handle.voronoi(self._triangulator)
-        return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()})
+        return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
     def verify(self) -> None:
         """Checks exactly that this is the canonical triangulation of its points.

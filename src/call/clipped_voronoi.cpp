@@ -36,13 +36,17 @@ void compute(call::Frame& call, const Points& points, const Mesh& triangulation,
                                         call.out<cl_double>(result.areas, n, "areas"),
                                         call.out<cl_double>(result.centroids, 2 * n, "centroids")};
   mesh.coordinates = call.points(points);
-  voronoi::compute_clipped(call.runtime, mesh, polygon, buffers, [&](std::size_t vertices) {
-    set_count(vertices);
-    const auto buffer = call.out<cl_double>(result.vertices, 2 * vertices, "vertices");
+  host::Buffer<cl_double> vertices;
+  std::size_t count = 0;
+  voronoi::compute_clipped(call.runtime, mesh, polygon, buffers, [&](std::size_t found) {
+    count = found;
+    vertices = call.out<cl_double>(result.vertices, 2 * count, "vertices");
     call.check_distinct();
-    return buffer;
+    return vertices;
   });
+  count = voronoi::mend_clipped(call.runtime, mesh, polygon, buffers.offsets, vertices, count);
   call.end();
+  set_count(count);
 }
 
 }  // namespace
@@ -55,7 +59,7 @@ ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::siz
     ClippedVoronoi result;
     call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
     compute(call, call::HostPoints{coordinates, nullptr, n}, triangulation, polygon, result,
-            [](std::size_t) {});
+            [&result](std::size_t vertices) { result.vertices.resize(2 * vertices); });
     return result;
   });
 }

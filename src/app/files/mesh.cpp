@@ -104,23 +104,21 @@ void write_spatial_points(OutputFile& file, const MeshContents& contents) {
   }
 }
 
+/// The constraint edges are comments: meshio and others refuse any element but vertices and faces.
 void write_ply(OutputFile& file, const MeshContents& contents) {
   const std::vector<std::int32_t>& edges = contents.constraints().constraint_edges;
+  file.print("ply\nformat binary_little_endian 1.0\ncomment flaunay\n");
+  for (std::size_t e = 0; e < edges.size(); e += 2)
+    file.print("comment edge {} {}\n", edges[e], edges[e + 1]);
   file.print(
-      "ply\nformat binary_little_endian 1.0\ncomment flaunay\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
-      "element face {}\nproperty list uchar int vertex_indices\n",
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
       contents.points.size(), contents.triangle_count());
-  if (contents.constrained != nullptr) {
-    file.print("element edge {}\nproperty int vertex1\nproperty int vertex2\n", edges.size() / 2);
-  }
-  file.print("end_header\n");
   write_spatial_points(file, contents);
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
     file.write_value(std::uint8_t{3});
     file.write(contents.corners(t), 3 * sizeof(std::int32_t));
   }
-  file.write(edges.data(), edges.size() * sizeof edges[0]);
 }
 
 void write_vtu(OutputFile& file, const MeshContents& contents) {

@@ -37,7 +37,7 @@ struct MeshContents {
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
 ///                    edges, whose markers are those of their segments or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions
-///   .obj .ply        the constraint edges, as lines and edges
+///   .obj .ply        the constraint edges, as lines, and as comments of the header
 ///   .msh             the constraint edges, and markers, attributes or polygons, and regions as its groups
 ///   .vtu .geojson    region and depth of each triangle; .geojson also its polygon, and its properties
 ///   .svg             the constraint edges, and the inside in other colours than the outside

@@ -1,10 +1,15 @@
 #include "derived/periodic/cells.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "arithmetic/exact_arithmetic.h"
+#include "derived/periodic/torus.hpp"
+#include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/moments.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/for_each.hpp"
@@ -83,6 +88,23 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
   std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
   cells.vertices.resize(2 * mesh.triangles.size());
   const Corners corners(mesh);
+  // Within the period and rounded to its units, so that images are exact and cells have the same corners.
+  // From the first corner by place, whatever the order of the points.
+  const Pair<double> period = {mesh.period.x, mesh.period.y};
+  const kernel::periodic_axes axes = axes_of(period);
+  std::vector<Point> centres(mesh.triangles.size() / 3);
+  for_each(runtime, centres.size(), [&](std::size_t t) {
+    auto lowest = static_cast<std::int32_t>(3 * t);
+    for (const std::int32_t c : {lowest + 1, lowest + 2}) {
+      if (kernel::comes_before(corners.place(corners.point(c)), corners.place(corners.point(lowest))))
+        lowest = c;
+    }
+    const Point p = corners.place(corners.point(lowest)), q = corners.centre(lowest);
+    centres[t] = {kernel::place_of(p.x + q.x, axes.x), kernel::place_of(p.y + q.y, axes.y)};
+  });
+  const auto image_near = [](double x, double place, double length) {
+    return place + length * std::round((x - place) / length);
+  };
   // In the order of corners, those of a cell are near each other in memory.
   for_each(runtime, mesh.triangles.size(), [&](std::size_t at) {
     const auto begin = static_cast<std::int32_t>(at);
@@ -94,8 +116,9 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
     for (std::int32_t i = cells.offsets[index(v)]; i < cells.offsets[index(v) + 1] && c >= 0; ++i) {
       const Point q = corners.centre(c);
       polygon.push_back(q);
-      cells.vertices[2 * index(i)] = p.x + q.x;
-      cells.vertices[2 * index(i) + 1] = p.y + q.y;
+      const Point place = centres[index(c / 3)];
+      cells.vertices[2 * index(i)] = image_near(p.x + q.x, place.x, period[0]);
+      cells.vertices[2 * index(i) + 1] = image_near(p.y + q.y, place.y, period[1]);
       c = corners.next(c);
     }
     expect(c == begin, "the arrays are not those of a triangulation on a torus or a cylinder");
@@ -104,6 +127,10 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
     cells.centroids[2 * index(v)] = p.x + moments.centroid.x;
     cells.centroids[2 * index(v) + 1] = p.y + moments.centroid.y;
   });
+  voronoi::Cells rounded{std::move(cells.offsets), std::move(cells.vertices)};
+  voronoi::mend(runtime, mesh.places.data(), {}, period, rounded);
+  cells.offsets = std::move(rounded.offsets);
+  cells.vertices = std::move(rounded.vertices);
   return cells;
 }
 

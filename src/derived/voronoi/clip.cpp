@@ -4,9 +4,12 @@
 #include <vector>
 
 #include "arithmetic/records.h"
+#include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/voronoi.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/voronoi/clip.cl.hpp"
+#include "launchers/voronoi/mend.cl.hpp"
+#include "points/download.hpp"
 #include "points/inspect.hpp"
 #include "predicates/bounds.h"
 #include "voronoi/codes.h"
@@ -181,6 +184,24 @@ void compute_clipped(host::Runtime& runtime, const DeviceMesh& input, const Clip
                                           .vertices = vertices,
                                           .areas = result.areas,
                                           .centroids = result.centroids});
+}
+
+std::size_t mend_clipped(host::Runtime& runtime, const DeviceMesh& mesh, const ClipPolygon& polygon,
+                         const Buffer<cl_int>& offsets, const Buffer<cl_double>& vertices,
+                         std::size_t count) {
+  const std::size_t n = mesh.points();
+  const auto mark = [&](const Buffer<cl_uint>& doubtful) {
+    runtime.map(
+        n, kernels::mark_doubtful{
+               .input = mesh.coordinates, .offsets = offsets, .vertices = vertices, .doubtful = doubtful});
+  };
+  if (n == 0 || !is_any_doubtful(runtime, n, mark)) return count;
+  Cells cells{download(runtime, offsets, n + 1), download(runtime, vertices, 2 * count)};
+  const std::vector<double> sites = download(runtime, mesh.coordinates, 2 * n);
+  mend(runtime, sites.data(), polygon.corners, kNoPeriod, cells);
+  runtime.write(offsets, 0, n + 1, cells.offsets.data());
+  runtime.write(vertices, 0, cells.vertices.size(), cells.vertices.data());
+  return cells.vertices.size() / 2;
 }
 
 void move_to_centroids(host::Runtime& runtime, std::size_t n, const ClippedBuffers& cells,

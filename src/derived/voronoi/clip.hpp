@@ -27,6 +27,13 @@ using ProvideVertices = std::function<host::Buffer<cl_double>(std::size_t vertic
 void compute_clipped(host::Runtime& runtime, const points::DeviceMesh& mesh, const ClipPolygon& polygon,
                      const ClippedBuffers& result, const ProvideVertices& provide);
 
+/// Mends the polygons of cells (derived/voronoi/mend.hpp), which have so many vertices: offsets and vertices
+/// are written again if some had to be, on the host. Returns how many vertices are left. Waits once, or until
+/// all is mended.
+std::size_t mend_clipped(host::Runtime& runtime, const points::DeviceMesh& mesh, const ClipPolygon& polygon,
+                         const host::Buffer<cl_int>& offsets, const host::Buffer<cl_double>& vertices,
+                         std::size_t count);
+
 /// Enqueues moving each of n points that has a cell to its centroid.
 void move_to_centroids(host::Runtime& runtime, std::size_t n, const ClippedBuffers& cells,
                        const host::Buffer<cl_double>& points);

@@ -1,13 +1,18 @@
 #include "derived/weighted/cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
+#include "arithmetic/exact_arithmetic.h"
+#include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/moments.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
+#include "predicates/nearness.h"
 
 namespace flaunay::weighted {
 namespace {
@@ -29,26 +34,40 @@ class Stars {
   /// The vertices, near ones one after the other.
   const Ids& vertices() const { return vertices_; }
 
-  template <typename Visit>
-  void for_each_neighbor(std::int32_t v, const Visit& visit) const {
+  /// A neighbour, and the triangle between it and the next one, counter-clockwise; -1 if there is none.
+  struct Spoke {
+    std::int32_t neighbor, triangle;
+  };
+  /// The neighbours of a vertex, counter-clockwise.
+  void collect(std::int32_t v, std::vector<Spoke>& ring) const {
+    ring.clear();
     const std::int32_t first = triangle_at_[static_cast<std::size_t>(v)];
     if (mesh_.triangles.empty()) {
       const auto k = static_cast<std::size_t>(first);
-      if (k > 0) visit(mesh_.hull[k - 1]);
-      if (k + 1 < mesh_.hull.size()) visit(mesh_.hull[k + 1]);
+      if (k > 0) ring.push_back({mesh_.hull[k - 1], -1});
+      if (k + 1 < mesh_.hull.size()) ring.push_back({mesh_.hull[k + 1], -1});
       return;
     }
     // Counter-clockwise, and on the border from there on clockwise to the other end. The limit is for arrays
     // that are no triangulation's.
-    for (const int step : {1, 2}) {
-      std::int32_t t = first;
-      for (std::size_t count = 0; t >= 0 && count < mesh_.triangles.size(); ++count) {
-        const int k = corner_of(t, v);
-        visit(corner(t, k + 3 - step));
-        t = mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>((k + step) % 3)];
-        if (t == first) return;
-      }
+    std::int32_t t = first;
+    for (std::size_t count = 0; t >= 0 && count < mesh_.triangles.size(); ++count) {
+      const int k = corner_of(t, v);
+      ring.push_back({corner(t, k + 1), t});
+      const std::int32_t next = neighbor(t, k + 1);
+      if (next == first) return;
+      if (next < 0) ring.push_back({corner(t, k + 2), -1});
+      t = next;
     }
+    const auto ahead = static_cast<std::ptrdiff_t>(ring.size());
+    t = neighbor(first, corner_of(first, v) + 2);
+    for (std::size_t count = 0; t >= 0 && count < mesh_.triangles.size(); ++count) {
+      const int k = corner_of(t, v);
+      ring.push_back({corner(t, k + 1), t});
+      t = neighbor(t, k + 2);
+    }
+    std::reverse(ring.begin() + ahead, ring.end());
+    std::rotate(ring.begin(), ring.begin() + ahead, ring.end());
   }
 
  private:
@@ -61,6 +80,9 @@ class Stars {
   std::int32_t corner(std::int32_t t, int k) const {
     return mesh_.triangles[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
   }
+  std::int32_t neighbor(std::int32_t t, int k) const {
+    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
+  }
   int corner_of(std::int32_t t, std::int32_t v) const {
     return corner(t, 0) == v ? 0 : corner(t, 1) == v ? 1 : 2;
   }
@@ -69,23 +91,145 @@ class Stars {
   Ids triangle_at_, vertices_;
 };
 
+// A corner of a cell, seen from its point, and what is right of the side from there to the next corner: the
+// place of a neighbour in the ring, or ~k for an edge of the polygon that cells are clipped to.
+struct Corner {
+  Point at;
+  int side;
+};
+
 // Cuts from a convex polygon what is right of a line: the places p at which constant < 2 d p.
-void clip(std::vector<Point>& polygon, Point d, double constant, std::vector<Point>& spare) {
-  const auto inside = [&](Point p) { return constant - 2 * (d.x * p.x + d.y * p.y); };
+void clip(std::vector<Corner>& polygon, Point d, double constant, int side, std::vector<Corner>& spare) {
+  const auto inside = [&](const Corner& c) { return constant - 2 * (d.x * c.at.x + d.y * c.at.y); };
   spare.clear();
-  Point p = polygon.back();
-  double at_p = inside(p);
-  for (const Point q : polygon) {
+  double at_p = inside(polygon[0]);
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Corner p = polygon[k], q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
     const double at_q = inside(q);
+    if (at_p >= 0) spare.push_back({p.at, at_p == 0 && at_q < 0 ? side : p.side});
     if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) {
       const double share = at_p / (at_p - at_q);
-      spare.push_back({p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)});
+      spare.push_back({{p.at.x + share * (q.at.x - p.at.x), p.at.y + share * (q.at.y - p.at.y)},
+                       at_p > 0 ? side : p.side});
     }
-    if (at_q >= 0) spare.push_back(q);
-    p = q;
     at_p = at_q;
   }
   polygon.swap(spare);
+}
+
+// Where rounded corners are, the same for all cells that have them.
+class Places {
+ public:
+  Places(host::Runtime& runtime, const double* points, const double* weights, const Triangulation& mesh,
+         const std::vector<double>& clip)
+      : points_(points), weights_(weights), clip_(clip), centres_(mesh.triangles.size() / 3) {
+    geometry::for_each(runtime, centres_.size(),
+                       [&](std::size_t t) { centres_[t] = centre(&mesh.triangles[3 * t]); });
+  }
+
+  Point centre(std::int32_t triangle) const { return centres_[static_cast<std::size_t>(triangle)]; }
+  Point clip_corner(int k) const {
+    const std::size_t at = 2 * static_cast<std::size_t>(k) % clip_.size();
+    return {clip_[at], clip_[at + 1]};
+  }
+  // Where the border between the cells of two points crosses an edge of the polygon, or the corner next to
+  // that.
+  Point crossing(std::int32_t i, std::int32_t j, int edge) const {
+    const Point v = clip_corner(edge), w = clip_corner(edge + 1);
+    const double at_v = difference(i, j, v), at_w = difference(i, j, w);
+    if (at_v == 0 || at_w == 0 || (at_v > 0) == (at_w > 0)) return std::fabs(at_v) <= std::fabs(at_w) ? v : w;
+    const double share = std::fabs(at_v) / (std::fabs(at_v) + std::fabs(at_w));
+    const auto between = [&](double a, double b) {
+      return share < 0.5 ? a + share * (b - a) : b + (1 - share) * (a - b);
+    };
+    const Point at = {between(v.x, w.x), between(v.y, w.y)};
+    return {std::clamp(at.x, std::min(v.x, w.x), std::max(v.x, w.x)),
+            std::clamp(at.y, std::min(v.y, w.y), std::max(v.y, w.y))};
+  }
+
+ private:
+  Point point(std::int32_t i) const {
+    return {points_[2 * static_cast<std::size_t>(i)], points_[2 * static_cast<std::size_t>(i) + 1]};
+  }
+  double weight(std::int32_t i) const { return weights_[static_cast<std::size_t>(i)]; }
+
+  // The power of a place with respect to i without that to j, exact until it is rounded.
+  double difference(std::int32_t i, std::int32_t j, Point at) const {
+    using kernel::two_sum;
+    const Point a = point(i), b = point(j);
+    kernel::expansion sum;
+    kernel::nearness_expansion(two_sum(a.x, -b.x), two_sum(a.y, -b.y), two_sum(a.x, -at.x),
+                               two_sum(a.y, -at.y), two_sum(b.x, -at.x), two_sum(b.y, -at.y), &sum);
+    const kernel::double2 weights = two_sum(weight(j), -weight(i));
+    kernel::expansion_add(&sum, weights.y);
+    kernel::expansion_add(&sum, weights.x);
+    kernel::expansion_compress(&sum);
+    return kernel::expansion_value(&sum);
+  }
+
+  // Where the powers to three points are equal, by determinants that are exact until they are rounded, as
+  // seen from the first corner.
+  Point centre(const std::int32_t* corners) const {
+    std::array<std::int32_t, 3> of = {corners[0], corners[1], corners[2]};
+    while (kernel::comes_before(point(of[1]), point(of[0])) ||
+           kernel::comes_before(point(of[2]), point(of[0])))
+      std::rotate(of.begin(), of.begin() + 1, of.end());
+    const Point a = point(of[0]), b = point(of[1]), c = point(of[2]);
+    using kernel::double2;
+    using kernel::two_sum;
+    const double2 bx = two_sum(b.x, -a.x), by = two_sum(b.y, -a.y), cx = two_sum(c.x, -a.x),
+                  cy = two_sum(c.y, -a.y);
+    const double2 b_weight = two_sum(weight(of[0]), -weight(of[1])),
+                  c_weight = two_sum(weight(of[0]), -weight(of[2]));
+    kernel::expansion sum;
+    kernel::expansion_cross(bx, by, cx, cy, &sum);
+    kernel::expansion_compress(&sum);
+    const double twice = 2 * kernel::expansion_value(&sum);
+    // sum += f (|g|^2 + weight).
+    const auto add_lifted = [&](double2 f, double2 gx, double2 gy, double2 lighter) {
+      const double2 x[2] = {gx, gx}, y[2] = {gy, gy};
+      kernel::expansion_add_products(&sum, f, x, 2);
+      kernel::expansion_add_products(&sum, f, y, 2);
+      kernel::expansion_add_products(&sum, f, &lighter, 1);
+    };
+    const auto negated = [](double2 f) { return double2{-f.x, -f.y}; };
+    const auto quotient = [&](double2 f, double2 g) {
+      sum.size = 0;
+      add_lifted(f, bx, by, b_weight);
+      add_lifted(g, cx, cy, c_weight);
+      return kernel::expansion_value(&sum) / twice;
+    };
+    return {a.x + quotient(cy, negated(by)), a.y + quotient(negated(cx), bx)};
+  }
+
+  const double *points_, *weights_;
+  const std::vector<double>& clip_;
+  std::vector<Point> centres_;
+};
+
+// The places of a cell's corners, as x and y.
+void append_places(const Places& places, std::int32_t vertex, const std::vector<Stars::Spoke>& ring,
+                   const std::vector<Corner>& polygon, std::vector<double>& to) {
+  const auto add = [&](Point p) { to.insert(to.end(), {p.x, p.y}); };
+  const auto spoke = [&](int side) { return ring[static_cast<std::size_t>(side)]; };
+  int before = polygon.back().side;
+  for (const Corner& corner : polygon) {
+    const int behind = corner.side;
+    if (before >= 0 && behind >= 0) {
+      // Sides between them may have been too short to be seen.
+      for (auto k = static_cast<std::size_t>(before); k != static_cast<std::size_t>(behind);
+           k = k + 1 < ring.size() ? k + 1 : 0) {
+        if (ring[k].triangle >= 0) add(places.centre(ring[k].triangle));
+      }
+    } else if (before >= 0) {
+      add(places.crossing(vertex, spoke(before).neighbor, ~behind));
+    } else if (behind >= 0) {
+      add(places.crossing(vertex, spoke(behind).neighbor, ~before));
+    } else {
+      add(places.clip_corner(~behind));
+    }
+    before = behind;
+  }
 }
 
 }  // namespace
@@ -118,47 +262,56 @@ Visible visible_points(const double* points, const std::vector<std::size_t>& off
 ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
                           const WeightedTriangulation& mesh, const std::vector<double>& corners) {
   const Stars stars(n, mesh);
+  const Places places(runtime, points, weights, mesh, corners);
   const Ids& vertices = stars.vertices();
   ClippedVoronoi cells;
   cells.areas.resize(n);
   cells.centroids.assign(2 * n, NAN);
-  cells.offsets.assign(n + 1, 0);
+  voronoi::Cells rounded{std::vector<std::int32_t>(n + 1, 0), {}};
   std::vector<std::vector<double>> corners_of_runs(geometry::runs_of(vertices.size()));
   geometry::for_each_run(&runtime, vertices.size(), [&](std::size_t r, std::size_t begin, std::size_t end) {
-    std::vector<Point> polygon, spare;
+    std::vector<Corner> polygon, spare;
+    std::vector<Point> seen;
+    std::vector<Stars::Spoke> ring;
     for (std::size_t v = begin; v < end; ++v) {
       const auto i = static_cast<std::size_t>(vertices[v]);
       const Point p = {points[2 * i], points[2 * i + 1]};
       // As seen from the point, so that what is far away from the origin has as many digits.
       polygon.clear();
       for (std::size_t k = 0; k < corners.size(); k += 2)
-        polygon.push_back({corners[k] - p.x, corners[k + 1] - p.y});
-      stars.for_each_neighbor(vertices[v], [&](std::int32_t neighbor) {
-        const auto j = static_cast<std::size_t>(neighbor);
+        polygon.push_back({{corners[k] - p.x, corners[k + 1] - p.y}, ~static_cast<int>(k / 2)});
+      stars.collect(vertices[v], ring);
+      for (std::size_t k = 0; k < ring.size() && !polygon.empty(); ++k) {
+        const auto j = static_cast<std::size_t>(ring[k].neighbor);
         const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
-        if (!polygon.empty()) clip(polygon, d, d.x * d.x + d.y * d.y - (weights[j] - weights[i]), spare);
-      });
-      const Moments moments = moments_of(polygon);
+        clip(polygon, d, d.x * d.x + d.y * d.y - (weights[j] - weights[i]), static_cast<int>(k), spare);
+      }
+      seen.clear();
+      for (const Corner& corner : polygon) seen.push_back(corner.at);
+      const Moments moments = moments_of(seen);
       if (moments.area == 0) continue;
       cells.areas[i] = moments.area;
       cells.centroids[2 * i] = p.x + moments.centroid.x;
       cells.centroids[2 * i + 1] = p.y + moments.centroid.y;
-      cells.offsets[i + 1] = static_cast<std::int32_t>(polygon.size());
-      for (const Point& q : polygon)
-        corners_of_runs[r].insert(corners_of_runs[r].end(), {p.x + q.x, p.y + q.y});
+      const std::size_t size = corners_of_runs[r].size();
+      append_places(places, vertices[v], ring, polygon, corners_of_runs[r]);
+      rounded.offsets[i + 1] = static_cast<std::int32_t>((corners_of_runs[r].size() - size) / 2);
     }
   });
-  std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
-  cells.vertices.resize(2 * static_cast<std::size_t>(cells.offsets.back()));
+  std::partial_sum(rounded.offsets.begin(), rounded.offsets.end(), rounded.offsets.begin());
+  rounded.vertices.resize(2 * static_cast<std::size_t>(rounded.offsets.back()));
   geometry::for_each_run(&runtime, vertices.size(), [&](std::size_t r, std::size_t begin, std::size_t end) {
     auto from = corners_of_runs[r].cbegin();
     for (std::size_t v = begin; v < end; ++v) {
       const auto i = static_cast<std::size_t>(vertices[v]);
-      const std::ptrdiff_t first = 2 * cells.offsets[i], count = 2 * cells.offsets[i + 1] - first;
-      std::copy_n(from, count, cells.vertices.begin() + first);
+      const std::ptrdiff_t first = 2 * rounded.offsets[i], count = 2 * rounded.offsets[i + 1] - first;
+      std::copy_n(from, count, rounded.vertices.begin() + first);
       from += count;
     }
   });
+  voronoi::mend(runtime, points, corners, voronoi::kNoPeriod, rounded);
+  cells.offsets = std::move(rounded.offsets);
+  cells.vertices = std::move(rounded.vertices);
   return cells;
 }
 
