@@ -141,7 +141,8 @@ static inline double squared_distance(double2 a, double2 b) { return squared_len
 
 // New coordinates near 0 are rounded so that predicates are exact. coarse: see refinement_rules.
 static inline double rounded_to(double x, double coarse) {
-  return fabs(x) < coarse ? (x + 3.0 * coarse) - 3.0 * coarse : x;
+  const double away = x < 0.0 ? -coarse : coarse;
+  return fabs(x) < coarse ? (x + away) - away : x;
 }
 
 // The largest power of two that is not above x.
@@ -203,6 +204,29 @@ static inline split_place place_of_split(int a, int b, int edge, GLOBAL const do
   split.point = VECTOR(double2, rounded_to(origin.x + part * (goal.x - origin.x), coarse),
                        rounded_to(origin.y + part * (goal.y - origin.y), coarse));
   return split;
+}
+
+// Whether a vertex around the cavity of p, or around one side of it, is nearer to p than this distance, squared.
+static inline int is_near_vertex(const seen_mesh* mesh, int start, int end, double2 p, double distance) {
+  cavity_tour tour;
+  start_tour(&tour, start, end);
+  for (int next = next_in_tour(&tour, mesh, p); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
+    if (next >= 0 && (squared_distance(p, point_at(mesh, next_halfedge(next))) < distance ||
+                      squared_distance(p, point_at(mesh, previous_halfedge(next))) < distance))
+      return 1;
+  }
+  return 0;
+}
+
+// The same of a point that splits the constraint opposite to a corner.
+static inline int is_split_near_vertex(const seen_mesh* mesh, int corner, double2 p, double distance) {
+  const int beyond = neighbor_at(mesh, corner);
+  for (int side = 0; side < (beyond < 0 ? 1 : 2); ++side) {
+    const int from = side ? corner_facing(mesh, beyond, row_of(corner)) : corner;
+    // Otherwise it will not be split.
+    if (is_in_circle(mesh, row_of(from), p) && is_near_vertex(mesh, next_halfedge(from), from, p, distance)) return 1;
+  }
+  return 0;
 }
 
 // Whether a point is strictly left of the two sides of a row that are not opposite to the corner, and in its circle. If

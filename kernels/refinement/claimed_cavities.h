@@ -11,10 +11,10 @@
 BEGIN_SHARED
 
 // Tours a cavity, or one side of it, claims its rows, and lists them as far as there is room. Returns the number of its
-// sides, and adds to that of rows.
-static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, uint claim,
+// sides, or 0 if a vertex at one is nearer to p than a distance, squared, and adds to the number of rows.
+static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, double distance, uint claim,
                              GLOBAL volatile uint* claims, GLOBAL int* cavity, int room, int* count) {
-  int sides = 0;
+  int sides = 0, is_near = 0;
   cavity_tour tour;
   start_tour(&tour, start, end);
   for (int next = ~row_of(end); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
@@ -24,9 +24,10 @@ static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 
       ++*count;
     } else {
       ++sides;
+      is_near |= distance > 0.0 && squared_distance(p, point_at(mesh, next_halfedge(next))) < distance;
     }
   }
-  return sides;
+  return is_near ? 0 : sides;
 }
 
 // What was found of a cavity so far.

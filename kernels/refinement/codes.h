@@ -32,6 +32,7 @@ INTEGER_CONSTANT(PROPOSAL_SPLITS, 20);   // the constraints that its point encro
 INTEGER_CONSTANT(POINT_WAITS, 0);
 INTEGER_CONSTANT(POINT_INSERTED, 1);
 INTEGER_CONSTANT(POINT_DROPPED, 2);  // there is a point in its place, or its constraint cannot be split there
+INTEGER_CONSTANT(POINT_REFUSED, 3);  // for its constraint, others of the same round are too near
 
 // How a proposal must not be beaten: where its triangle is, and beside it; or in all of its cavity and around that.
 INTEGER_CONSTANT(RULE_NEIGHBORS, 0);

@@ -192,7 +192,7 @@ static inline int is_as_listed(const seen_mesh* mesh, const insertion* of, globa
 
 // n elements of the list. first: the claim of rank 0. cavities: lists, see propose.cl, which are kept up. sizes: of
 // each point the number of triangles around it.
-kernel void claim_points(int n, int step, int is_first, uint first, int listed, global const int* restrict list,
+kernel void claim_points(int n, refinement_rules rules, int step, int is_first, uint first, int listed, global const int* restrict list,
                          global int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
                          global insertion* restrict insertions, global uint* restrict sizes,
                          global uchar* restrict states) {
@@ -216,7 +216,8 @@ kernel void claim_points(int n, int step, int is_first, uint first, int listed, 
     const uint claim = first + of.rank;
     uint size = 0;
     global int* const cavity = cavities + listed * max(0, of.known);
-    if (states[list[i]] != POINT_WAITS) {
+    int state = states[list[i]];
+    if (state != POINT_WAITS) {
       // It was left out from the beginning.
     } else if (of.known >= 0 && of.count <= listed && (is_first || is_as_listed(&mesh, &of, cavity))) {
       for (int k = 0; k < of.count; ++k) atomic_min(&claims[cavity[k]], claim);
@@ -226,13 +227,17 @@ kernel void claim_points(int n, int step, int is_first, uint first, int listed, 
       of.count = 0;
       if (of.from >= 0) {
         of.corner = find_constraint(&mesh, of.corner, of.from, of.to);
-        if (of.corner >= 0 && can_split_at(&mesh, of.corner, p)) {
+        const int can_split = of.corner >= 0 && can_split_at(&mesh, of.corner, p);
+        if (can_split && why_not_split(&mesh, of.corner, places, ends, rules) != EXCUSED_NOT) {
+          state = POINT_REFUSED;
+        } else if (can_split) {
           const int beyond = neighbor_at(&mesh, of.corner);
-          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims, cavity, 0, &of.count);
+          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, 0.0, claim, claims, cavity, 0,
+                                  &of.count);
           of.count = (int)size - 1;
           if (beyond >= 0) {
             const int other = corner_facing(&mesh, beyond, row_of(of.corner));
-            size += (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims, cavity, 0, &of.count);
+            size += (uint)claim_tour(&mesh, next_halfedge(other), other, p, 0.0, claim, claims, cavity, 0, &of.count);
             of.count = (int)size - 2;
           }
         }
@@ -241,12 +246,13 @@ kernel void claim_points(int n, int step, int is_first, uint first, int listed, 
         if (!is_in_row(&mesh, row, p)) row = find_in_star(&mesh, row, p);
         of.corner = 3 * row;
         if (!is_vertex(&mesh, row, p))
-          size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims, cavity, listed, &of.count);
+          size = (uint)claim_tour(&mesh, of.corner, of.corner, p, rules.min_edge, claim, claims, cavity, listed,
+                                  &of.count);
         // Of a long tour, which meets rows twice, there is no list that could be used again.
         of.seen = of.count == (int)size - 2 ? step : 0;
         of.count = (int)size - 2;
       }
-      if (size == 0) states[list[i]] = POINT_DROPPED;
+      if (size == 0) states[list[i]] = (uchar)(state == POINT_WAITS ? POINT_DROPPED : state);
       insertions[list[i]] = of;
     }
     sizes[i] = size;

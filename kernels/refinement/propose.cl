@@ -123,7 +123,7 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
       if (found < 0) {
         made.hit = ~found;
         made.splits = 1;
-        outcome = why_not_split(&mesh, made.hit, rules);
+        outcome = why_not_split(&mesh, made.hit, places, ends, rules);
         if (outcome == EXCUSED_NOT) outcome = PROPOSAL_OPEN;
         // The point of a flat triangle may be rounded out of its circle; then its cavity would not be a tree.
         if (outcome == PROPOSAL_OPEN && !is_in_circle(&mesh, row, p)) outcome = EXCUSED_FROZEN;
@@ -144,8 +144,10 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
           ++made.count;
         } else {
           ++sides;
+          if (squared_distance(p, point_at(&mesh, next_halfedge(next))) < rules.min_edge)
+            refused = min(refused, (int)EXCUSED_MIN_EDGE);
           if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, p, rules)) {
-            const int reason = why_not_split(&mesh, next, rules);
+            const int reason = why_not_split(&mesh, next, places, ends, rules);
             if (reason == EXCUSED_NOT) {
               ++made.splits;
             } else {
@@ -224,18 +226,13 @@ static inline void claim_split(const seen_mesh* mesh, int corner, double2 p, uin
 }
 
 // Whether there is a constraint opposite to a corner that a proposal's point encroaches and that may be split.
-static inline int is_to_split(const seen_mesh* mesh, int corner, double2 p, refinement_rules rules) {
+static inline int is_to_split(const seen_mesh* mesh, int corner, double2 p, global const edge_place* places,
+                              global const int* ends, refinement_rules rules) {
   return edge_at(mesh, corner) >= 0 && encroaches(mesh, corner, p, rules) &&
-         why_not_split(mesh, corner, rules) == EXCUSED_NOT;
+         why_not_split(mesh, corner, places, ends, rules) == EXCUSED_NOT;
 }
 
 static inline double2 place_of(const proposal* made) { return VECTOR(double2, made->x, made->y); }
-
-static inline split_place place_of_constraint(const seen_mesh* mesh, int corner, global const edge_place* places,
-                                              global const int* ends, refinement_rules rules) {
-  return place_of_split(vertex_at(mesh, next_halfedge(corner)), vertex_at(mesh, previous_halfedge(corner)),
-                        edge_at(mesh, corner) & EDGE_NUMBER, mesh->points, places, ends, rules.vertices, rules.coarse);
-}
 
 // n constraints by their corners; those that are less than 0 are none.
 kernel void claim_splits(int n, refinement_rules rules, uint claim, global const int* restrict corners, REFINED_MESH(),
@@ -303,7 +300,7 @@ kernel void claim_cavities(int n, refinement_rules rules, uint first, int listed
            next = next_in_tour(&tour, &mesh, place_of(&made))) {
         if (next < 0) {
           atomic_min(&claims[~next], claim);
-        } else if (made.hit < 0 && is_to_split(&mesh, next, place_of(&made), rules)) {
+        } else if (made.hit < 0 && is_to_split(&mesh, next, place_of(&made), places, ends, rules)) {
           claim_split(&mesh, next, place_of_constraint(&mesh, next, places, ends, rules).point, claim, claims);
         }
       }
@@ -400,7 +397,7 @@ kernel void list_wanted(int n, refinement_rules rules, int first, global const p
       start_tour(&tour, made.start, made.start);
       for (int next = next_in_tour(&tour, &mesh, place_of(&made)); next != NO_MORE;
            next = next_in_tour(&tour, &mesh, place_of(&made))) {
-        if (next >= 0 && is_to_split(&mesh, next, place_of(&made), rules)) corners[to++] = next;
+        if (next >= 0 && is_to_split(&mesh, next, place_of(&made), places, ends, rules)) corners[to++] = next;
       }
     }
   }

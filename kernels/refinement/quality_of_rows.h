@@ -101,27 +101,43 @@ static inline uint64 key_of(const ordered_triangle* triangle, int is_large) {
 }
 static inline int is_key_of_large(uint64 key) { return (int)(key >> 63 == 0); }
 
-// Whether a corner is nearer to the line opposite to it, of this squared length, than points may be to each other. Such
-// triangles are between constraints that are straight but for rounding, and splits would go on to make more of them.
-static inline int is_flat_above(const seen_mesh* mesh, int corner, double length, refinement_rules rules) {
+static inline split_place place_of_constraint(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
+                                              GLOBAL const int* ends, refinement_rules rules) {
+  return place_of_split(vertex_at(mesh, next_halfedge(corner)), vertex_at(mesh, previous_halfedge(corner)),
+                        edge_at(mesh, corner) & EDGE_NUMBER, mesh->points, places, ends, rules.vertices, rules.coarse);
+}
+
+// How far a corner is from the line opposite to it, squared, times that line's squared length.
+static inline double scaled_height(const seen_mesh* mesh, int corner) {
   const double2 from = point_at(mesh, next_halfedge(corner));
   const double2 u = point_at(mesh, previous_halfedge(corner)) - from, v = point_at(mesh, corner) - from;
   const double cross = u.x * v.y - u.y * v.x;
-  return cross * cross < rules.min_edge * length;
+  return cross * cross;
 }
 
-// Of a constraint or a part of one, opposite to a corner: whether it may be split, EXCUSED_NOT, or why not.
-static inline int why_not_split(const seen_mesh* mesh, int corner, refinement_rules rules) {
+// What sees a constraint is far from it above this multiple of the smallest edge, squared. If the constraint is longer
+// than six smallest edges, the circles beside it then reach so far around the point that splits it, between a third and
+// two thirds of its length, that all vertices are farther than 1.03 smallest edges from that.
+#define FAR_CORNER 1.5
+
+// Of a constraint or a part of one, opposite to a corner: whether it may be split, EXCUSED_NOT, or why not. Where a
+// corner is nearer to it than points may be to each other, the triangle is between constraints that are straight but
+// for rounding, and splits would go on to make more of them.
+static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
+                                GLOBAL const int* ends, refinement_rules rules) {
   const int edge = edge_at(mesh, corner);
   if (edge & EDGE_KEPT) return EXCUSED_KEPT;
   if (edge & EDGE_FROZEN) return EXCUSED_FROZEN;
   const double length =
       squared_distance(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)));
   if (length < 4.0 * rules.min_edge) return EXCUSED_MIN_EDGE;
-  if (is_flat_above(mesh, corner, length, rules)) return EXCUSED_FROZEN;
   const int beyond = neighbor_at(mesh, corner);
-  return beyond >= 0 && is_flat_above(mesh, corner_facing(mesh, beyond, row_of(corner)), length, rules) ? EXCUSED_FROZEN
-                                                                                                        : EXCUSED_NOT;
+  double height = scaled_height(mesh, corner);
+  if (beyond >= 0) height = fmin(height, scaled_height(mesh, corner_facing(mesh, beyond, row_of(corner))));
+  if (height < rules.min_edge * length) return EXCUSED_FROZEN;
+  if (length >= rules.long_edge && height >= FAR_CORNER * rules.min_edge * length) return EXCUSED_NOT;
+  const double2 p = place_of_constraint(mesh, corner, places, ends, rules).point;
+  return is_split_near_vertex(mesh, corner, p, rules.min_edge) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 
 // With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.

@@ -30,10 +30,11 @@ typedef struct {
   double squared_cosine;                 // of the angle under which a point encroaches an edge; 0: conforming
   double area;                           // the largest, or 0
   double min_edge;                       // squared
-  double coarse;                         // new coordinates below it are rounded to its last binary place
+  double long_edge;                      // six times that, squared; infinite if rounding could matter
+  double coarse;                         // new coordinates below it are multiples of its last binary place
   int area_kind, rule, waits, vertices;  // vertices: those of the input
 } refinement_rules;
-ASSERT_SIZE(refinement_rules, 64);
+ASSERT_SIZE(refinement_rules, 72);
 
 // A point that is to mend a triangle. start: the corner at which a tour of its cavity begins. hit: the corner opposite
 // to the constraint that is in the way, or -1. count: rows in the cavity; splits: constraints that it encroaches.

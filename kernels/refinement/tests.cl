@@ -3,7 +3,8 @@
 // load_rows: the rows of the mesh, from the arrays of the host. test_rows, over those that the last round has made:
 // whether triangles are bad, with their keys, and which of their constraints they encroach. find_unchanged, over the
 // list of bad triangles: which are as they were. make_again: those that are tried once more. append_made: makes the
-// next list. write_centroids: places at which the host asks for areas. report_rows: why triangles are bad in the end.
+// next list. find_parents: the triangles of the mesh at first whose areas count, by centroids. write_centroids: places
+// at which the host asks for areas. report_rows: why triangles are bad in the end.
 
 #include "refinement/arguments.h"
 #include "refinement/quality_of_rows.h"
@@ -69,7 +70,7 @@ kernel void test_rows(int n, refinement_rules rules, global const int2* restrict
       for (int k = 0; k < 3; ++k) {
         const int corner = 3 * row + k;
         if (rows[row].edge[k] >= 0 && is_encroached_from_a_side(&mesh, corner, rules) &&
-            why_not_split(&mesh, corner, rules) == EXCUSED_NOT)
+            why_not_split(&mesh, corner, places, ends, rules) == EXCUSED_NOT)
           splits |= 1 << k;
       }
     }
@@ -108,19 +109,56 @@ kernel void gather_elements(int n, global const int* restrict positions, global 
   if (i < n) list[i] = from[positions[i]];
 }
 
+static inline double2 centroid_of(const seen_mesh* mesh, int row) {
+  const ordered_triangle triangle = ordered(mesh, row);
+  const double2* const p = triangle.point;
+  return VECTOR(double2, (p[0].x + p[1].x + p[2].x) / 3.0, (p[0].y + p[1].y + p[2].y) / 3.0);
+}
+
+// Whether p is beyond the side opposite to a corner. On the line, a point counts as a little to the right, and less
+// above, so that it is in one triangle only.
+static inline int is_beyond(const seen_mesh* mesh, int corner, double2 p) {
+  const double2 from = point_at(mesh, next_halfedge(corner)), to = point_at(mesh, previous_halfedge(corner));
+  const int side = orient_sign(from, to, p, ORIENT_BOUND);
+  return side < 0 || (side == 0 && (to.y > from.y || (to.y == from.y && to.x < from.x)));
+}
+
+// The triangle with p in it, by a walk that begins at a row and crosses no constraint. Which sides it tries first does
+// not depend on numbers.
+static inline int walk_within(const seen_mesh* mesh, int row, double2 p) {
+  for (;;) {
+    const ordered_triangle triangle = ordered(mesh, row);
+    int next = -1;
+    for (int k = 0; k < 3 && next < 0; ++k) {
+      const int corner = triangle.corner[k];
+      if (edge_at(mesh, corner) < 0 && is_beyond(mesh, corner, p)) next = neighbor_at(mesh, corner);
+    }
+    if (next < 0) return row;
+    row = next;
+  }
+}
+
+// n elements of made: their parents are the triangles of the mesh at first with their centroids in them. given: the
+// rows of that mesh.
+kernel void find_parents(int n, refinement_rules rules, global const int2* restrict made,
+                         global const mesh_row* restrict given, global const double2* restrict points,
+                         global mesh_row* restrict rows) {
+  const int i = get_global_id(0);
+  if (i < n && is_as_made(made[i], rows)) {
+    const seen_mesh mesh = {rows, points}, before = {given, points};
+    const double2 p = centroid_of(&mesh, made[i].x);
+    const double2 place = VECTOR(double2, rounded_to(p.x, rules.coarse), rounded_to(p.y, rules.coarse));
+    rows[made[i].x].parent = walk_within(&before, rows[made[i].x].parent, place);
+  }
+}
+
 // n elements of made; x and y of those that are no rows any more are not a number.
 kernel void write_centroids(int n, global const int2* restrict made, REFINED_MESH(),
                             global double2* restrict centroids) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
-    double2 sum = VECTOR(double2, NAN, NAN);
-    if (is_as_made(made[i], rows)) {
-      const ordered_triangle triangle = ordered(&mesh, made[i].x);
-      const double2* const p = triangle.point;
-      sum = VECTOR(double2, (p[0].x + p[1].x + p[2].x) / 3.0, (p[0].y + p[1].y + p[2].y) / 3.0);
-    }
-    centroids[i] = sum;
+    centroids[i] = is_as_made(made[i], rows) ? centroid_of(&mesh, made[i].x) : VECTOR(double2, NAN, NAN);
   }
 }
 
@@ -136,10 +174,11 @@ kernel void set_areas(int n, int has_parents, global const int2* restrict made, 
 }
 
 // Why constraints of a row that an angle opposite to them encroaches were not split; EXCUSED_NOT without such.
-static inline int why_encroaching(const seen_mesh* mesh, int row, refinement_rules rules) {
+static inline int why_encroaching(const seen_mesh* mesh, int row, global const edge_place* places,
+                                  global const int* ends, refinement_rules rules) {
   for (int corner = 3 * row; corner < 3 * row + 3; ++corner) {
     if (edge_at(mesh, corner) < 0 || !encroaches(mesh, corner, point_at(mesh, corner), rules)) continue;
-    const int reason = why_not_split(mesh, corner, rules);
+    const int reason = why_not_split(mesh, corner, places, ends, rules);
     return reason == EXCUSED_NOT ? EXCUSED_LIMIT : reason;
   }
   return EXCUSED_NOT;
@@ -163,7 +202,8 @@ kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global co
         excuse = excuse_of(&mesh, &triangle, places, rules.vertices);
         if (excuse == EXCUSED_NOT) excuse = reason;
       }
-      if (excuse == EXCUSED_NOT && rules.squared_cosine == 0.0) excuse = why_encroaching(&mesh, row, rules);
+      if (excuse == EXCUSED_NOT && rules.squared_cosine == 0.0)
+        excuse = why_encroaching(&mesh, row, places, ends, rules);
     }
     excuses[row] = (uchar)excuse;
   }

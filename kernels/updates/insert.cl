@@ -105,10 +105,10 @@ kernel void claim_around(int n, uint first, global const int* restrict list, LIV
       states[list[i]] = POINT_DROPPED;
     } else if (of.edge >= 0) {
       const int row = row_of(of.corner), other = corner_facing(&mesh, neighbor_at(&mesh, of.corner), row);
-      size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims, 0, 0, &count) +
-             (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims, 0, 0, &count);
+      size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, 0.0, claim, claims, 0, 0, &count) +
+             (uint)claim_tour(&mesh, next_halfedge(other), other, p, 0.0, claim, claims, 0, 0, &count);
     } else {
-      size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims, 0, 0, &count);
+      size = (uint)claim_tour(&mesh, of.corner, of.corner, p, 0.0, claim, claims, 0, 0, &count);
     }
     of.count = (int)size - 2;
     placed[list[i]] = of;

@@ -12,6 +12,7 @@
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/refine.hpp"
+#include "geometry/magnitudes.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -134,8 +135,13 @@ double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t 
   return expected;
 }
 
-void measure_angles(const std::vector<double>& coordinates, const Ids& triangles, bool with_mean,
+void measure_angles(std::vector<double> coordinates, const Ids& triangles, bool with_mean,
                     RefinementReport& report) {
+  const int shift =
+      geometry::scaling_for(geometry::inspect(coordinates.data(), 0, coordinates.size() / 2)).shift;
+  if (shift != 0) {
+    for (double& x : coordinates) x = std::ldexp(x, shift);
+  }
   constrained::Angles angles(with_mean);
   for (std::size_t t = 0; t < triangles.size(); t += 3) angles.add(coordinates.data(), &triangles[t]);
   report.smallest_angle = angles.smallest();
@@ -550,7 +556,7 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   renumber_regions(result.regions);
   std::vector<double> all(coordinates, coordinates + 2 * n);
   all.insert(all.end(), result.added_points.begin(), result.added_points.end());
-  measure_angles(all, result.triangles, wanted.smoothing_steps > 0, result.refinement);
+  measure_angles(std::move(all), result.triangles, wanted.smoothing_steps > 0, result.refinement);
   result.refinement.smallest_angle_before = refined.before_smoothing.smallest();
   result.refinement.mean_angle_before = refined.before_smoothing.mean();
   result.statistics.points += result.refinement.added_points;

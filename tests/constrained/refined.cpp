@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -14,6 +15,7 @@
 
 #include "app/verify/exact.hpp"
 #include "constrained/refinement/bounds.hpp"
+#include "geometry/magnitudes.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/reference.hpp"
 
@@ -26,11 +28,12 @@ using Index = std::int32_t;
 
 /// Of lengths along segments, which are compared without being exact.
 constexpr double kLengthSlack = 1e-6;
-/// Vertices on a segment may be off it by this part of the largest coordinate.
-constexpr double kOff = 4 * 0x1p-53;
-/// Triangles whose heights are below this part of the largest coordinate are near to what rounding can tell
-/// apart.
-constexpr double kCoarse = 0x1p-40;
+/// Vertices on a segment may be off it by this part of the largest coordinate, and by some of the smallest
+/// double.
+constexpr double kOff = 4 * 0x1p-53, kSmallestOff = 4;
+/// Triangles whose heights are below this part of the largest coordinate, or so many of the smallest double,
+/// are near to what rounding can tell apart.
+constexpr double kCoarse = 0x1p-40, kSmallestCoarse = 0x1p13;
 
 std::size_t after(std::size_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
 
@@ -43,15 +46,22 @@ class Check {
         bounds_(constrained::quality_bounds(wanted.min_angle)) {
     points_.assign(mesh.coordinates, mesh.coordinates + 2 * mesh.points);
     points_.insert(points_.end(), refined.added.begin(), refined.added.end());
+    // Scaled, so that products of lengths are doubles.
+    scale_ = geometry::scaling_for(geometry::inspect(mesh.coordinates, 0, mesh.points)).shift;
+    for (double& x : points_) x = std::ldexp(x, scale_);
     double low[2] = {0, 0}, high[2] = {0, 0};
     for (std::size_t i = 0; i < 2 * mesh.points; ++i) {
-      const double value = mesh.coordinates[i];
+      const double value = points_[i];
       largest_ = std::max(largest_, std::fabs(value));
       low[i % 2] = i < 2 ? value : std::min(low[i % 2], value);
       high[i % 2] = i < 2 ? value : std::max(high[i % 2], value);
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
-    min_edge_ = wanted.min_edge >= 0 ? wanted.min_edge : 0x1p-40 * extent_;
+    min_edge_ = wanted.min_edge >= 0 ? std::ldexp(wanted.min_edge, scale_)
+                                     : std::max(0x1p-40 * extent_, 0x1p-45 * largest_);
+    const double smallest = std::ldexp(std::numeric_limits<double>::denorm_min(), scale_);
+    off_ = std::max(kOff * largest_, kSmallestOff * smallest);
+    coarse_ = std::max(kCoarse * largest_, kSmallestCoarse * smallest);
   }
 
   std::string run() {
@@ -59,6 +69,7 @@ class Check {
     if (!is_wanted() && !refined_.added.empty()) wrong("points were added that nobody asked for");
     if (problem_.empty()) check_triangles();
     if (problem_.empty()) check_chains();
+    if (problem_.empty()) check_lengths();
     if (problem_.empty()) check_parents();
     if (problem_.empty()) check_quality();
     if (problem_.empty()) check_encroachment();
@@ -210,8 +221,17 @@ class Check {
     using Exact = long double;
     const Exact ux = Exact{b[0]} - a[0], uy = Exact{b[1]} - a[1], vx = Exact{p[0]} - a[0],
                 vy = Exact{p[1]} - a[1];
-    if (std::fabs(ux * vy - uy * vx) / std::hypot(ux, uy) > kOff * largest_)
+    if (std::fabs(ux * vy - uy * vx) / std::hypot(ux, uy) > off_)
       wrong("point " + place(v) + " is not on edge " + std::to_string(e));
+  }
+
+  // No point is put nearer to another one than the smallest edge. The nearest one that it sees is a neighbour.
+  void check_lengths() {
+    for (std::size_t c = 0; c < refined_.triangles.size(); ++c) {
+      const Index u = refined_.triangles[c], v = refined_.triangles[after(c)];
+      if (static_cast<std::size_t>(std::max(u, v)) >= mesh_.points && length(u, v) < min_edge_ * (1 - 0x1p-48))
+        return wrong("points " + place(u) + " and " + place(v) + " are nearer than the smallest edge");
+    }
   }
 
   void check_parents() {
@@ -230,6 +250,19 @@ class Check {
         if (before[beside] != before[parent])
           return wrong("the parent of triangle " + std::to_string(t) + " is in another region");
       }
+      if (mesh_.largest_areas.empty()) continue;
+      // If areas differ within a region, the parent has the centroid in it, which is rounded.
+      const auto own = 3 * static_cast<std::size_t>(refined_.parents[t]);
+      for (std::size_t c = own; c < own + 3; ++c) {
+        const Index beyond = mesh_.neighbors[c];
+        if (mesh_.edges[c] >= 0 || mesh_.largest_areas[c / 3] == mesh_.largest_areas[beyond]) continue;
+        const double *a = at(mesh_.triangles[after(c)]), *b = at(mesh_.triangles[after(after(c))]);
+        const double x = (corner(3 * t)[0] + corner(3 * t + 1)[0] + corner(3 * t + 2)[0]) / 3 - a[0],
+                     y = (corner(3 * t)[1] + corner(3 * t + 1)[1] + corner(3 * t + 2)[1]) / 3 - a[1];
+        const double ux = b[0] - a[0], uy = b[1] - a[1];
+        if ((ux * y - uy * x) / std::hypot(ux, uy) < -off_)
+          return wrong("the centroid of triangle " + std::to_string(t) + " is not in its parent");
+      }
     }
   }
 
@@ -237,6 +270,10 @@ class Check {
     const double of_parent = mesh_.largest_areas.empty() ? 0 : mesh_.largest_areas[refined_.parents[t]];
     if (of_parent > 0 && wanted_.max_area > 0) return std::min(of_parent, wanted_.max_area);
     return of_parent > 0 ? of_parent : wanted_.max_area;
+  }
+  /// As coordinates are scaled. An area that is too small for that is one, too.
+  double scaled_area(double area) const {
+    return area > 0 ? std::max(std::ldexp(area, 2 * scale_), std::numeric_limits<double>::min()) : 0;
   }
 
   /// The corners whose opposite edges are shortest, or would be if their lengths were rounded.
@@ -290,15 +327,16 @@ class Check {
       if (wanted_.areas_at) {
         double middle[2];
         for (int k = 0; k < 2; ++k)
-          middle[k] = (corner(3 * t)[k] + corner(3 * t + 1)[k] + corner(3 * t + 2)[k]) / 3;
+          middle[k] =
+              std::ldexp((corner(3 * t)[k] + corner(3 * t + 1)[k] + corner(3 * t + 2)[k]) / 3, -scale_);
         wanted_.areas_at(middle, 1, &by_place);
-        if (!std::isfinite(by_place)) by_place = 0;
+        by_place = std::isfinite(by_place) ? scaled_area(by_place) : 0;
       }
       // The place is rounded, so the area that it may have is too: between places as far apart as the extent,
       // areas differ by no more than this times the smallest one.
       constexpr double kRange = 100;
-      const double slack = 1 + 1e-3 + kRange * kOff * largest_ / extent_;
-      const bool is_large = is_larger(t, largest_area(t)) || is_larger(t, by_place * slack);
+      const double slack = 1 + 1e-3 + kRange * off_ / extent_;
+      const bool is_large = is_larger(t, scaled_area(largest_area(t))) || is_larger(t, by_place * slack);
       const bool may_be_large = is_large || is_larger(t, by_place / slack);
       const bool has_small_angle = is_thin(t);
       const std::string name = "triangle " + std::to_string(t) + " at " + place(refined_.triangles[3 * t]);
@@ -390,7 +428,7 @@ class Check {
             const auto other = 2 * static_cast<std::size_t>(f);
             if (mesh_.edge_ends[other] != apex && mesh_.edge_ends[other + 1] != apex) continue;
             const double first = length(apex, p), second = length(apex, q);
-            const double most = 1e-3 * (1 + kLengthSlack) * first + 2 * kOff * largest_;
+            const double most = 1e-3 * (1 + kLengthSlack) * first + 2 * off_;
             if (std::fabs(first - second) <= most && is_apex(apex)) return true;
           }
         }
@@ -407,7 +445,27 @@ class Check {
       shortest = std::min(shortest, length(rows[c], rows[after(c)]));
     // Where coordinates are coarse, points would be put on others.
     if (shortest <= 4 * min_edge_ || is_coarse(t)) return true;
-    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack);
+    return shortest_piece() <= 2 * min_edge_ * (1 + kLengthSlack) || has_crowded_piece();
+  }
+
+  /// Whether a point that splits a piece of an edge may be nearer to a vertex than the smallest edge: it is
+  /// between a third and two thirds of the piece.
+  bool is_crowded(std::size_t c) const {
+    if (min_edge_ == 0) return false;
+    const double *a = corner(after(c)), *b = corner(after(after(c)));
+    const double ux = b[0] - a[0], uy = b[1] - a[1], square = ux * ux + uy * uy;
+    for (std::size_t v = 0; v < points_.size() / 2; ++v) {
+      const double *p = at(static_cast<Index>(v)), x = p[0] - a[0], y = p[1] - a[1];
+      const double part = std::clamp((x * ux + y * uy) / square, 1.0 / 3, 2.0 / 3);
+      if (std::hypot(x - part * ux, y - part * uy) <= min_edge_ * (1 + kLengthSlack) + off_) return true;
+    }
+    return false;
+  }
+  bool has_crowded_piece() const {
+    for (std::size_t c = 0; c < refined_.edges.size(); ++c) {
+      if (refined_.edges[c] >= 0 && is_crowded(c)) return true;
+    }
+    return false;
   }
 
   /// Whether a corner is nearer to the piece of an edge opposite to it than points may be to each other.
@@ -452,7 +510,7 @@ class Check {
     const double longest =
         std::max({length(rows[3 * t], rows[3 * t + 1]), length(rows[3 * t + 1], rows[3 * t + 2]),
                   length(rows[3 * t + 2], rows[3 * t])});
-    return static_cast<double>(cross) / longest <= kCoarse * largest_;
+    return static_cast<double>(cross) / longest <= coarse_;
   }
   /// Whether rounding may not allow to split a piece of an edge, opposite to a corner: a triangle there is
   /// coarse, or was so; or its circle reaches beyond the piece no farther than points are rounded.
@@ -463,11 +521,11 @@ class Check {
         if (is_coarse(k / 3)) is_at_coarse_[refined_.triangles[k]] = true;
     }
     const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];
-    if (is_at_coarse_[u] || is_at_coarse_[v] || reach(c) <= kOff * largest_) return true;
+    if (is_at_coarse_[u] || is_at_coarse_[v] || reach(c) <= off_) return true;
     if (refined_.neighbors[c] < 0) return false;
     auto opposite = 3 * static_cast<std::size_t>(refined_.neighbors[c]);
     while (refined_.triangles[opposite] == u || refined_.triangles[opposite] == v) ++opposite;
-    return reach(opposite) <= kOff * largest_;
+    return reach(opposite) <= off_;
   }
   /// How far a triangle's circle reaches beyond the side opposite to a corner: half the side, times the
   /// tangent of half the angle there.
@@ -495,7 +553,7 @@ class Check {
       const Index u = refined_.triangles[after(c)], v = refined_.triangles[after(after(c))];
       if (length(u, v) <= 2 * min_edge_ * (1 + kLengthSlack) || is_piece_coarse(c) || is_piece_flat(c))
         continue;
-      if (sees_flat(c))
+      if (sees_flat(c) && !is_crowded(c))
         return wrong("the piece of edge " + std::to_string(refined_.edges[c]) + " from " + place(u) + " to " +
                      place(v) + " is encroached by " + place(refined_.triangles[c]));
     }
@@ -505,7 +563,8 @@ class Check {
   const RefinedMesh& refined_;
   const Refinement& wanted_;
   Coordinates points_;
-  double largest_ = 0, extent_ = 0, min_edge_ = 0, shortest_piece_ = -1;
+  int scale_ = 0;  // the power of two by which the points are multiplied, and lengths with them
+  double largest_ = 0, extent_ = 0, min_edge_ = 0, off_ = 0, coarse_ = 0, shortest_piece_ = -1;
   const constrained::QualityBounds bounds_;
   ExactPredicates exact_;
   std::vector<std::uint8_t> sides_;         // per edge

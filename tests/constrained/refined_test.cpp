@@ -734,6 +734,36 @@ TEST(SmallRefined, Limits) {
   expect_quality(domain, few, 30, [](std::size_t) { return 0.01; });
 }
 
+// Touching rectangles in metres of a map: between two sides is a sliver as wide as doubles there are apart.
+TEST(SmallRefined, SmallestEdgeFarFromTheOrigin) {
+  Domain touching;
+  close_ring(touching,
+             {500678.1709357662, 5000469.351808475, 500657.8201839499, 5000484.798189634, 500647.46619000135,
+              5000471.156705653, 500667.81694181764, 5000455.710324494},
+             1);
+  close_ring(touching,
+             {500651.46880684304, 5000476.430190822, 500642.27627582557, 5000483.407394376,
+              500639.24653724267, 5000479.415685423, 500648.43906826014, 5000472.438481869},
+             11);
+  ConstrainedOptions options = refined_to(30, 0);
+  options.crossings = Crossings::split;
+  options.refinement.most_points = 1000;
+  EXPECT_LT(refine(triangulator(), one(touching), options).refinement.added_points, 100U);
+}
+
+// Also where squares of lengths are no doubles.
+TEST(SmallRefined, AnglesOfAnyScale) {
+  for (const int power : {-1074, -600, -514, 0, 512, 1021}) {
+    Domain square;
+    close_ring(square, {0, 0, 3, 1, 2, 4, -1, 3}, 1);
+    for (double& value : square.points) value = std::ldexp(value, power);
+    const RefinementReport report = refine(triangulator(), one(square), refined_to(20, 0)).refinement;
+    EXPECT_EQ(report.added_points, 0U) << power;
+    EXPECT_NEAR(report.smallest_angle, 45, 1e-12) << power;
+    EXPECT_NEAR(report.largest_angle, 90, 1e-12) << power;
+  }
+}
+
 TEST(SmallRefined, WrongRequestsAreNamed) {
   const Domain domain = one(plate(0));
   const auto error_of = [&](const std::function<void(Refinement&)>& change) -> std::string {

@@ -206,6 +206,63 @@ TEST(SmallRefinement, CoordinatesOfAnyMagnitude) {
   }
 }
 
+/// Times 2^power, which may round.
+DomainToRefine scaled(DomainToRefine domain, int power) {
+  for (Coordinates* const places : {&domain.points, &domain.holes}) {
+    for (double& x : *places) x = std::ldexp(x, power);
+  }
+  return domain;
+}
+
+// In units that are a power of two apart, results are the same as far as doubles have the binary places.
+TEST(SmallRefinement, UnitsDoNotMatter) {
+  const auto& all = nasty_domains();
+  const std::size_t step = all.size() / static_cast<std::size_t>(repeated(static_cast<int>(all.size())));
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    SCOPED_TRACE(all[i].name);
+    const DomainToRefine domain = all[i].make(16, 9);
+    MeshToRefine mesh = mesh_to_refine(domain);
+    Refinement wanted = angle_of(i % 4 == 0 ? 0 : 25);
+    if (i % 4 == 0) wanted.max_area = 0.5;
+    if (i % 3 == 0) wanted.min_edge = 0.125;
+    wanted.conforming = i % 5 == 0;
+    wanted.smoothing_steps = i % 7 == 0;
+    const RefinedMesh expected = constrained::refine(native_runtime(), mesh, wanted);
+    for (const int power : {-820, -386, -1, 2, 512, 960}) {
+      SCOPED_TRACE(power);
+      if (wanted.max_area > 0 && std::abs(power) > 500) continue;  // there is no such area
+      const DomainToRefine other = scaled(domain, power);
+      mesh.coordinates = other.points.data();
+      Refinement demand = wanted;
+      demand.max_area = std::ldexp(wanted.max_area, 2 * power);
+      if (wanted.min_edge > 0) demand.min_edge = std::ldexp(wanted.min_edge, power);
+      RefinedMesh found = constrained::refine(native_runtime(), mesh, demand);
+      EXPECT_EQ(what_is_wrong(mesh, found, demand), "");
+      for (double& x : found.added) x = std::ldexp(x, -power);
+      expect_same(found, expected);
+    }
+    if (HasFailure()) return;
+  }
+}
+
+// Where there are few doubles, or the lowest bit of the input has none below it.
+TEST(SmallRefinement, ScalesFromTheSmallestDoubleToTheLargest) {
+  for (const int power : {-1073, -1070, -1060, -1040, -386, -220, -205, 510, 1021}) {
+    SCOPED_TRACE(power);
+    DomainToRefine domain;
+    domain.points = {-1.5, 2, 1, -1.5, 2, -1, 1.5, 2};
+    domain.chain(0, true);
+    domain = scaled(domain, power);
+    Refinement wanted = angle_of(25);
+    wanted.conforming = true;
+    wanted.max_area = std::ldexp(0.3, 2 * power);
+    const RefinedMesh refined = expect_right(mesh_to_refine(domain), wanted);
+    // Otherwise no area is as small, or all are.
+    EXPECT_TRUE(std::abs(power) > 510 || refined.report.bad_triangles.empty());
+    if (!tests_native()) return;
+  }
+}
+
 TEST(SmallRefinement, NothingIsWanted) {
   const DomainToRefine domain = nasty_detail::polygon(30, 2);
   const MeshToRefine mesh = mesh_to_refine(domain);
@@ -245,6 +302,13 @@ TEST(SmallRefinement, Areas) {
   for (const std::int32_t region : regions) mesh.largest_areas.push_back(region == 0 ? 1 : 0);
   const RefinedMesh by_region = expect_right(mesh, wanted);
   EXPECT_GT(by_region.triangles.size(), mesh.triangles.size());
+
+  // Of a triangle alone: what is beside it is as it was but for a few that are needed.
+  for (const bool is_limited : {true, false}) {
+    mesh.largest_areas.assign(mesh.triangles.size() / 3, is_limited ? 0 : 2);
+    mesh.largest_areas[mesh.largest_areas.size() / 2] = is_limited ? 2 : 0;
+    expect_right(mesh, wanted);
+  }
 
   // All at once, and where rounds end early.
   wanted.max_area = 3;
@@ -324,6 +388,33 @@ TEST(SmallRefinement, SmallestEdge) {
   EXPECT_LT(refined.added_edges.size(), 1000);
   EXPECT_EQ(excused_for(refined, Excuse::min_edge), refined.report.excuses.size());
   EXPECT_GT(refined.report.excuses.size(), 0);
+}
+
+// Points of one round that are near to each other: on two segments, at an apex, and any others.
+TEST(SmallRefinement, SmallestEdgeWithinARound) {
+  DomainToRefine domain;
+  domain.points = {0.25, 0, 0, -1, -0.25, 0};
+  Refinement wanted = angle_of(20);
+  wanted.max_area = 0.002;
+  wanted.min_edge = 0.25;
+  expect_right(mesh_to_refine(domain), wanted);
+  // As near as doubles are.
+  domain.points = {1.6213730109551478e+37, 2.1954370617152846e+37, 1.6213730109550668e+37,
+                   2.195437061715312e+37,  1.621373010955045e+37,  2.195437061715323e+37};
+  wanted = angle_of(30);
+  wanted.min_edge = 6.45253392423892e+21;
+  expect_right(mesh_to_refine(domain), wanted);
+  const auto& all = nasty_domains();
+  for (std::size_t i = 0; i < all.size() && tests_native(); ++i) {
+    SCOPED_TRACE(all[i].name);
+    domain = all[i].make(12, 4);
+    const MeshToRefine mesh = mesh_to_refine(domain);
+    wanted.min_angle = 30;
+    wanted.max_area = 0;
+    wanted.smoothing_steps = i % 2;
+    for (wanted.min_edge = 2; wanted.min_edge > 1e-2; wanted.min_edge /= 9) expect_right(mesh, wanted);
+    if (HasFailure()) return;
+  }
 }
 
 // An edge that rounding did not allow to split beside a flat triangle, which others replace later.

@@ -283,7 +283,7 @@ std::string refinement_note(const ConstrainedTriangulation& mesh, const std::vec
     const auto v = static_cast<std::size_t>(mesh.triangles[3 * static_cast<std::size_t>(bad[0]) + k]);
     for (std::size_t axis = 0; axis < 2; ++axis) place[axis] += points[2 * v + axis] / 3;
   }
-  return fmt::format("note: worse than asked for: {}; the first one is triangle {} at ({:.6g}, {:.6g})\n",
+  return fmt::format("note: worse than asked for: {}; the first one is triangle {} at ({}, {})\n",
                      excuses_text(mesh.refinement), bad[0], place[0], place[1]);
 }
 
@@ -362,7 +362,8 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
       ->default_str("none");
   command
       ->add_option("--min-edge", refinement.min_edge,
-                   "Put no two points nearer to each other; default: 2^-40 of the extent")
+                   "Put no two points nearer to each other; default: 2^-40 of the extent, or 2^-45 of the largest "
+                   "coordinate if that is more")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   command->add_option("--most-points", refinement.most_points, "Add no more points")->type_name("N");

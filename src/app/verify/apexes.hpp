@@ -79,11 +79,15 @@ class Apexes {
     const double of_p = distance(apex, p), of_q = distance(apex, q);
     return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q);
   }
+  /// Lengths are scaled, so that their squares are doubles.
   bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) const {
-    const double ax = point(a)[0] - point(v)[0], ay = point(a)[1] - point(v)[1];
-    const double bx = point(b)[0] - point(v)[0], by = point(b)[1] - point(v)[1];
-    const double off = std::fabs(ax * by - ay * bx) / distance(a, b);
-    return ax * bx + ay * by < 0 && off <= kRoundedOff * largest_;
+    const int scale = largest_ > 0 ? -std::ilogb(largest_) : 0;
+    const auto along = [&](std::int32_t to, std::size_t axis) {
+      return std::ldexp(point(to)[axis] - point(v)[axis], scale);
+    };
+    const double ax = along(a, 0), ay = along(a, 1), bx = along(b, 0), by = along(b, 1);
+    const double off = std::fabs(ax * by - ay * bx) / std::hypot(bx - ax, by - ay);
+    return ax * bx + ay * by < 0 && off <= kRoundedOff * std::ldexp(largest_, scale);
   }
   void join_at(std::int32_t v) {
     for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {

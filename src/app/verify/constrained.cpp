@@ -772,7 +772,10 @@ class ConstrainedChecker : public Checker {
   /// At the corner opposite to a half-edge, in degrees.
   double angle_at(std::size_t h) const {
     const double *a = point(origin(h)), *b = point(target(h)), *c = point(corners_[h]);
-    const double ux = a[0] - c[0], uy = a[1] - c[1], vx = b[0] - c[0], vy = b[1] - c[1];
+    double ux = a[0] - c[0], uy = a[1] - c[1], vx = b[0] - c[0], vy = b[1] - c[1];
+    // Lengths near 1, whose products are doubles.
+    for (double* const x : {&ux, &uy}) *x = std::ldexp(*x, -std::ilogb(std::hypot(a[0] - c[0], a[1] - c[1])));
+    for (double* const x : {&vx, &vy}) *x = std::ldexp(*x, -std::ilogb(std::hypot(b[0] - c[0], b[1] - c[1])));
     return std::atan2(ux * vy - uy * vx, ux * vx + uy * vy) * 180 / std::acos(-1.0);
   }
 

@@ -51,8 +51,9 @@ constexpr double kWaitsUpTo = 30, kRingAbove = 32;
 constexpr std::size_t kMostWithoutWaiting = 4000;
 // Smoothing makes no smaller angles, whatever is asked for.
 constexpr double kSmoothedAngle = 20;
-// Of the larger side of the bounding box: the smallest edge unless the caller has one.
-constexpr int kMinEdgeExponent = -40;
+// The smallest edge unless the caller has one: 2^-40 of the larger side of the bounding box, or 2^-45 of the
+// largest coordinate if that is more, so that it is at least 128 units in the last place of any coordinate.
+constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -45;
 // New coordinates have no binary places below that of the largest coordinate by so many.
 constexpr int kBinaryPlaces = 200;
 // The rows of cavities with at most so many are kept in lists. On average there are four, but in empty
@@ -109,7 +110,7 @@ class Rounds {
       smooth_once();
       mend(true);
     }
-    if (is_at_limit()) ask_for_areas();
+    if (is_at_limit()) find_areas();
     return result();
   }
 
@@ -152,14 +153,19 @@ class Rounds {
   // -------------------------------------------------------------------------------------------------------
   // Before and after
 
+  // The largest coordinate is brought to about 1, whatever it is, so that results for the same points in other
+  // units that are a power of two apart are the same; only the lowest bit of points that span more binary
+  // places than there are below 1 decides first.
   void scale() {
     const geometry::Magnitudes magnitudes = geometry::inspect(mesh_.coordinates, 0, mesh_.points);
-    shift_ = geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes).shift;
+    geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes);  // throws if there is none
+    if (geometry::bits_of(magnitudes) > 0)
+      shift_ = std::max(-magnitudes.largest, kernel::LOWEST_EXPONENT - magnitudes.lowest);
     // The last binary place that new coordinates have, scaled: exact in predicates, and a double when scaled
     // back.
     const int lowest = std::max({magnitudes.largest + shift_ - kBinaryPlaces, int{kernel::LOWEST_EXPONENT},
                                  shift_ + std::numeric_limits<double>::min_exponent - kernel::DOUBLE_BITS});
-    rules_.coarse = std::ldexp(1.0, lowest + kernel::DOUBLE_BITS - 2);
+    rules_.coarse = std::ldexp(1.0, lowest + kernel::DOUBLE_BITS - 1);
     order_vertices();
     points_.resize(mesh_.points);
     double low[2] = {0, 0}, high[2] = {0, 0};
@@ -169,10 +175,17 @@ class Rounds {
         at[k] = std::ldexp(mesh_.coordinates[2 * i + k], shift_) + 0.0;
         low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
         high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
+        largest_ = std::max(largest_, std::fabs(at[k]));
       }
       points_[place_of_[i]] = {at[0], at[1]};
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
+  }
+
+  // An area that is too small to be scaled is still one: no triangle is as small.
+  double scaled_area(double area) const {
+    const double scaled = std::ldexp(area, 2 * shift_);
+    return area > 0 ? std::max(scaled, std::numeric_limits<double>::min()) : scaled;
   }
 
   // Vertices are numbered as triangles need them, which are in the order of places in the plane, more or
@@ -199,10 +212,12 @@ class Rounds {
     rules_.squared_sine = bounds.squared_sine;
     rules_.off_centre = bounds.off_centre;
     rules_.squared_cosine = wanted_.conforming ? 0 : bounds.squared_cosine;
-    rules_.area = std::ldexp(wanted_.max_area, 2 * shift_);
-    const double min_edge =
-        wanted_.min_edge >= 0 ? std::ldexp(wanted_.min_edge, shift_) : std::ldexp(extent_, kMinEdgeExponent);
+    rules_.area = scaled_area(wanted_.max_area);
+    const double coarse = std::ldexp(largest_, kMinEdgeOfLargest);
+    const double min_edge = wanted_.min_edge >= 0 ? std::ldexp(wanted_.min_edge, shift_)
+                                                  : std::max(std::ldexp(extent_, kMinEdgeOfExtent), coarse);
     rules_.min_edge = min_edge * min_edge;
+    rules_.long_edge = min_edge >= coarse ? 36 * rules_.min_edge : HUGE_VAL;
     rules_.area_kind = wanted_.areas_at               ? kernel::AREAS_BY_ROW
                        : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
                                                       : kernel::AREAS_NONE;
@@ -291,11 +306,23 @@ class Rounds {
     runtime_.write(arrays_.places, 0, places.size(), places.data());
     if (!mesh_.largest_areas.empty()) {
       std::vector<double> areas = mesh_.largest_areas;
-      for (double& area : areas) area = std::ldexp(area, 2 * shift_);
+      for (double& area : areas) area = scaled_area(area);
       parent_areas_ = runtime_.upload(arena_, std::move(areas));
+      if (areas_differ_within_regions()) {
+        given_ = arena_.allocate<mesh_row>(rows_);
+        runtime_.copy(arrays_.rows, 0, given_, 0, rows_);
+      }
     } else {
       parent_areas_ = arena_.allocate<cl_double>(1);  // nobody reads it
     }
+  }
+
+  bool areas_differ_within_regions() const {
+    for (std::size_t c = 0; c < mesh_.edges.size(); ++c) {
+      if (mesh_.edges[c] < 0 && mesh_.largest_areas[c / 3] != mesh_.largest_areas[mesh_.neighbors[c]])
+        return true;
+    }
+    return false;
   }
 
   template <typename T>
@@ -406,8 +433,15 @@ class Rounds {
     return found;
   }
 
-  // Asks for the areas of rows that were made.
-  void ask_for_areas() {
+  // Finds the areas of rows that were made: those of parents, and what the caller's function says.
+  void find_areas() {
+    if (given_.size() > 0) {
+      runtime_.map_in_small_groups(made_count_, kernels::find_parents{.rules = rules_,
+                                                                      .made = made_,
+                                                                      .given = given_,
+                                                                      .points = arrays_.points,
+                                                                      .rows = arrays_.rows});
+    }
     if (!wanted_.areas_at) return;
     Arena::Scope scope(arena_);
     const auto centroids = arena_.allocate<cl_double2>(made_count_);
@@ -426,7 +460,7 @@ class Rounds {
     wanted_.areas_at(places.data(), of.size(), areas.data());
     check_areas(areas.data(), areas.size(), "areas");
     std::vector<double> given(made_count_);
-    for (std::size_t i = 0; i < of.size(); ++i) given[of[i]] = std::ldexp(areas[i], 2 * shift_);
+    for (std::size_t i = 0; i < of.size(); ++i) given[of[i]] = scaled_area(areas[i]);
     runtime_.map(made_count_, kernels::set_areas{.has_parents = mesh_.largest_areas.empty() ? 0 : 1,
                                                  .made = made_,
                                                  .rows = arrays_.rows,
@@ -453,7 +487,7 @@ class Rounds {
 
   // Returns false if there is nothing left to do.
   bool make_round() {
-    ask_for_areas();
+    find_areas();
     const Encroached encroached = test();
     may_propose_ |= encroached.count == 0;
     Proposals proposals;
@@ -659,7 +693,8 @@ class Rounds {
       const auto sizes = arena_.allocate<cl_uint>(waiting + 1);
       const auto waits = arena_.allocate<cl_uchar>(waiting);
       const cl_uint first = take_claims(ranks);
-      runtime_.map_in_small_groups(waiting, kernels::claim_points{.step = step_,
+      runtime_.map_in_small_groups(waiting, kernels::claim_points{.rules = rules_,
+                                                                  .step = step_,
                                                                   .is_first = waiting == count,
                                                                   .first = first,
                                                                   .listed = proposals.listed,
@@ -838,13 +873,14 @@ class Rounds {
   const MeshToRefine& mesh_;
   const Refinement& wanted_;
   int shift_ = 0;
-  double extent_ = 0;
+  double extent_ = 0, largest_ = 0;  // scaled: the larger side of the bounding box, the largest coordinate
   kernel::refinement_rules rules_{};
   std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
   std::vector<double2> points_;         // scaled, by these numbers
   Arrays arrays_;
   Buffer<cl_int> ends_{};
   Buffer<cl_double> parent_areas_{};
+  Buffer<mesh_row> given_{};  // the rows at first, if triangles of one region have different areas
   Buffer<cl_int2> made_{};  // what the last round has made: rows and their first vertices
   std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
               added_ = 0, tried_ = 0;

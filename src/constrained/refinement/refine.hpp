@@ -25,7 +25,7 @@ struct MeshToRefine {
   std::vector<std::int32_t> edge_ends;   ///< 2 points per edge that must stay, in any order
   std::vector<std::uint8_t> kept_edges;  ///< one per edge: 1 if it must not be split; empty if all may be
   std::vector<double>
-      largest_areas;  ///< one per triangle: the area that it and its parts may have, 0 for any; or empty
+      largest_areas;  ///< one per triangle: the area of those with their centroid in it, 0 for any; or empty
 };
 
 /// A refined triangulation: canonical, of the points before and those added.
@@ -37,7 +37,8 @@ struct RefinedMesh {
   std::vector<std::int32_t> triangles;  ///< as in MeshToRefine; rows begin with their smallest index
   std::vector<std::int32_t> neighbors;  ///< as in MeshToRefine
   std::vector<std::int32_t> edges;      ///< as in MeshToRefine: of pieces of an edge, that edge
-  std::vector<std::int32_t> parents;    ///< one per triangle: a triangle of MeshToRefine in the same region
+  std::vector<std::int32_t> parents;    ///< one per triangle: a triangle of MeshToRefine in the same region;
+                                        ///< if areas differ in it, the one with the centroid
   RefinementReport report;              ///< without angles; triangles in it are those of this mesh
   Angles before_smoothing{true};        ///< of the triangles that smoothing began with
 };

@@ -482,8 +482,8 @@ typedef struct flaunay_mesh {
 typedef struct flaunay_given_triangles {
   const int32_t* triangles;  ///< 3 points of the same set per triangle, in any direction
   size_t count;              ///< number of triangles
-  /// NULL, or one per triangle: the area that triangles with their centroid in it may have, 0 for any, and
-  /// those that they are refined to.
+  /// NULL, or one per triangle: the area that triangles of the result with their centroid in it may have, 0
+  /// for any.
   const double* areas;
   /// NULL, or one per triangle: become triangle_attributes, in the place of those of seeds.
   const double* attributes;
@@ -503,7 +503,9 @@ typedef struct flaunay_refinement {
   void* areas_data;              ///< passed to areas_at unchanged
   int kept;                      ///< a flaunay_kept_edges
   const uint8_t* kept_segments;  ///< NULL, or one per segment: 1 if it must not be split
-  int has_min_edge;              ///< other than 0: `min_edge` counts; 0: 2^-40 of the bounding box
+  /// Other than 0: `min_edge` counts. 0: 2^-40 of the larger side of the bounding box, or 2^-45 of the largest
+  /// coordinate if that is more.
+  int has_min_edge;
   double min_edge;               ///< no two points are put nearer to each other
   int has_most_points;           ///< other than 0: `most_points` counts; 0: there is no limit
   size_t most_points;            ///< no more points are added to a set

@@ -26,8 +26,8 @@ using AreasAt = std::function<void(const double* places, std::size_t count, doub
 struct GivenTriangles {
   const std::int32_t* triangles = nullptr;  ///< 3 points of the same set per triangle, in any direction
   std::size_t count = 0;                    ///< number of triangles; 0: no such mesh
-  /// One per triangle, or null: the area that triangles with their centroid in it may have, 0 for any, and
-  /// those that they are refined to.
+  /// One per triangle, or null: the area that triangles of the result with their centroid in it may have, 0
+  /// for any.
   const double* areas = nullptr;
   /// One per triangle, or null: become ConstrainedTriangulation::triangle_attributes, in the place of those
   /// of seeds.
@@ -51,7 +51,7 @@ struct Refinement {
   KeptEdges kept = KeptEdges::none;             ///< which constraints must not be split
   const std::uint8_t* kept_segments = nullptr;  ///< one per segment: 1 if it must not be split, or null
   /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
-  /// bounding box.
+  /// bounding box, or 2^-45 times the largest coordinate if that is more.
   double min_edge = -1;
   std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set
   std::size_t most_rounds = 10000;                         ///< no more rounds are made
