@@ -196,7 +196,7 @@ class Mender {
 
   bool is_in_doubt(std::size_t i) const {
     const std::int32_t first = cells_.offsets[i], end = cells_.offsets[i + 1];
-    return !kernel::is_plain_polygon(site(i), first, end, nullptr, cells_.vertices.data());
+    return !kernel::is_plain_polygon(site(i), first, end, cells_.vertices.data());
   }
 
   std::vector<Point> polygon_of(std::size_t i) const {
@@ -355,11 +355,11 @@ void mend(host::Runtime& runtime, const double* sites, const std::vector<double>
 
 void mend_centres(host::Runtime& runtime, const std::vector<double>& sites,
                   const std::vector<std::int32_t>& offsets, const std::vector<std::int32_t>& corners,
-                  std::vector<double>& centres) {
+                  const std::vector<std::uint8_t>& unbounded, std::vector<double>& centres) {
   Cells cells{{0}, {}};
   for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
     const auto first = corners.begin() + offsets[i], end = corners.begin() + offsets[i + 1];
-    for (auto c = first; end - first > 2 && c < end; ++c) {
+    for (auto c = first; unbounded[i] == 0 && c < end; ++c) {
       const auto at = centres.begin() + 2 * static_cast<std::ptrdiff_t>(*c);
       cells.vertices.insert(cells.vertices.end(), at, at + 2);
     }

@@ -33,14 +33,12 @@ constexpr std::array<double, 2> kNoPeriod = {HUGE_VAL, HUGE_VAL};
 void mend(host::Runtime& runtime, const double* sites, const std::vector<double>& fixed,
           const std::array<double, 2>& period, Cells& cells);
 
-/// As mend, of cells whose corners are numbers of centres: these are moved. Cells with fewer than three
-/// corners do not count.
+/// As mend, of cells whose corners are numbers of centres: these are moved. Unbounded cells do not count.
 void mend_centres(host::Runtime& runtime, const std::vector<double>& sites,
                   const std::vector<std::int32_t>& offsets, const std::vector<std::int32_t>& corners,
-                  std::vector<double>& centres);
+                  const std::vector<std::uint8_t>& unbounded, std::vector<double>& centres);
 
-/// Whether one of n cells may have to be mended. mark: launches a kernel of voronoi/mend.cl, which marks
-/// these. Waits.
+/// Whether one of n cells or triangles is in doubt. mark: launches a kernel of voronoi/mend.cl. Waits.
 template <typename Mark>
 bool is_any_doubtful(host::Runtime& runtime, std::size_t n, const Mark& mark) {
   host::Arena::Scope scope(runtime.arena());

@@ -55,18 +55,19 @@ void write_cells(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& 
 void mend_duals(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& result) {
   const std::size_t n = mesh.points(), triangles = mesh.triangle_count();
   const auto mark = [&](const Buffer<cl_uint>& doubtful) {
-    runtime.map(n, kernels::mark_doubtful_duals{.input = mesh.coordinates,
-                                                .offsets = result.cell_offsets,
-                                                .cells = result.cells,
-                                                .centres = result.circumcentres,
-                                                .doubtful = doubtful});
+    runtime.map(triangles, kernels::mark_doubtful_duals{.points = n,
+                                                        .input = mesh.coordinates,
+                                                        .triangles = mesh.triangles,
+                                                        .neighbors = mesh.neighbors,
+                                                        .centres = result.circumcentres,
+                                                        .doubtful = doubtful});
   };
-  if (n == 0 || !is_any_doubtful(runtime, n, mark)) return;
+  if (triangles == 0 || !is_any_doubtful(runtime, triangles, mark)) return;
   const std::vector<double> sites = download(runtime, mesh.coordinates, 2 * n);
   std::vector<double> centres = download(runtime, result.circumcentres, 2 * triangles);
   const std::vector<cl_int> offsets = download(runtime, result.cell_offsets, n + 1),
                             corners = download(runtime, result.cells, 3 * triangles);
-  mend_centres(runtime, sites, offsets, corners, centres);
+  mend_centres(runtime, sites, offsets, corners, download(runtime, result.unbounded, n), centres);
   runtime.write(result.circumcentres, 0, 2 * triangles, centres.data());
 }
 
@@ -76,10 +77,10 @@ void compute(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& resu
   Arena::Scope scope(runtime.arena());
   write_circumcentres(runtime, mesh, result.circumcentres);
   write_cells(runtime, mesh, result);
-  mend_duals(runtime, mesh, result);
   runtime.fill(result.unbounded, mesh.points(), cl_uchar{0});
   runtime.map(mesh.hull_offsets.back(),
               kernels::mark_hull{.points = mesh.points(), .hull = mesh.hull, .unbounded = result.unbounded});
+  mend_duals(runtime, mesh, result);
 }
 
 }  // namespace flaunay::voronoi

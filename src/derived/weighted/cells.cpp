@@ -91,30 +91,40 @@ class Stars {
   Ids triangle_at_, vertices_;
 };
 
-// A corner of a cell, seen from its point, and what is right of the side from there to the next corner: the
-// place of a neighbour in the ring, or ~k for an edge of the polygon that cells are clipped to.
-struct Corner {
-  Point at;
-  int side;
+// A convex polygon, seen from a cell's point. sides: what is right of the side from each corner to the next
+// one, the place of a neighbour in the ring, or ~k for an edge of the polygon that cells are clipped to.
+struct Polygon {
+  std::vector<Point> corners;
+  std::vector<int> sides;
 };
 
-// Cuts from a convex polygon what is right of a line: the places p at which constant < 2 d p.
-void clip(std::vector<Corner>& polygon, Point d, double constant, int side, std::vector<Corner>& spare) {
-  const auto inside = [&](const Corner& c) { return constant - 2 * (d.x * c.at.x + d.y * c.at.y); };
-  spare.clear();
-  double at_p = inside(polygon[0]);
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Corner p = polygon[k], q = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+// Cuts from a polygon what is right of a line: the places p at which constant < 2 d p.
+void clip(Polygon& polygon, Point d, double constant, int side, Polygon& spare) {
+  const auto inside = [&](Point p) { return constant - 2 * (d.x * p.x + d.y * p.y); };
+  const std::size_t size = polygon.corners.size();
+  spare.corners.resize(2 * size);
+  spare.sides.resize(2 * size);
+  std::size_t to = 0;
+  const auto add = [&](Point p, int of) {
+    spare.corners[to] = p;
+    spare.sides[to++] = of;
+  };
+  Point p = polygon.corners[0];
+  double at_p = inside(p);
+  for (std::size_t k = 0; k < size; ++k) {
+    const Point q = polygon.corners[k + 1 < size ? k + 1 : 0];
     const double at_q = inside(q);
-    if (at_p >= 0) spare.push_back({p.at, at_p == 0 && at_q < 0 ? side : p.side});
+    if (at_p >= 0) add(p, at_p == 0 && at_q < 0 ? side : polygon.sides[k]);
     if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) {
       const double share = at_p / (at_p - at_q);
-      spare.push_back({{p.at.x + share * (q.at.x - p.at.x), p.at.y + share * (q.at.y - p.at.y)},
-                       at_p > 0 ? side : p.side});
+      add({p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)}, at_p > 0 ? side : polygon.sides[k]);
     }
+    p = q;
     at_p = at_q;
   }
-  polygon.swap(spare);
+  spare.corners.resize(to);
+  spare.sides.resize(to);
+  std::swap(polygon, spare);
 }
 
 // Where rounded corners are, the same for all cells that have them.
@@ -175,6 +185,20 @@ class Places {
            kernel::comes_before(point(of[2]), point(of[0])))
       std::rotate(of.begin(), of.begin() + 1, of.end());
     const Point a = point(of[0]), b = point(of[1]), c = point(of[2]);
+    const Point ab = {b.x - a.x, b.y - a.y}, ac = {c.x - a.x, c.y - a.y};
+    const double left = ab.x * ac.y, right = ab.y * ac.x, area = left - right;
+    const double b_square = ab.x * ab.x + ab.y * ab.y, c_square = ac.x * ac.x + ac.y * ac.y;
+    const double b_lighter = weight(of[0]) - weight(of[1]), c_lighter = weight(of[0]) - weight(of[2]);
+    const double b_lift = b_square + b_lighter, c_lift = c_square + c_lighter;
+    const double b_size = b_square + std::fabs(b_lighter), c_size = c_square + std::fabs(c_lighter);
+    const Point lever = {ac.y * b_lift - ab.y * c_lift, ab.x * c_lift - ac.x * b_lift};
+    const double terms =
+        (std::fabs(ac.x) + std::fabs(ac.y)) * b_size + (std::fabs(ab.x) + std::fabs(ab.y)) * c_size;
+    // As in voronoi/voronoi.cl.
+    constexpr double kCancelled = 4096;
+    if (std::fabs(left) + std::fabs(right) <= kCancelled * area &&
+        terms <= kCancelled * (std::fabs(lever.x) + std::fabs(lever.y)))
+      return {a.x + lever.x / (2 * area), a.y + lever.y / (2 * area)};
     using kernel::double2;
     using kernel::two_sum;
     const double2 bx = two_sum(b.x, -a.x), by = two_sum(b.y, -a.y), cx = two_sum(c.x, -a.x),
@@ -209,12 +233,11 @@ class Places {
 
 // The places of a cell's corners, as x and y.
 void append_places(const Places& places, std::int32_t vertex, const std::vector<Stars::Spoke>& ring,
-                   const std::vector<Corner>& polygon, std::vector<double>& to) {
+                   const std::vector<int>& sides, std::vector<double>& to) {
   const auto add = [&](Point p) { to.insert(to.end(), {p.x, p.y}); };
   const auto spoke = [&](int side) { return ring[static_cast<std::size_t>(side)]; };
-  int before = polygon.back().side;
-  for (const Corner& corner : polygon) {
-    const int behind = corner.side;
+  int before = sides.back();
+  for (const int behind : sides) {
     if (before >= 0 && behind >= 0) {
       // Sides between them may have been too short to be seen.
       for (auto k = static_cast<std::size_t>(before); k != static_cast<std::size_t>(behind);
@@ -270,31 +293,31 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
   voronoi::Cells rounded{std::vector<std::int32_t>(n + 1, 0), {}};
   std::vector<std::vector<double>> corners_of_runs(geometry::runs_of(vertices.size()));
   geometry::for_each_run(&runtime, vertices.size(), [&](std::size_t r, std::size_t begin, std::size_t end) {
-    std::vector<Corner> polygon, spare;
-    std::vector<Point> seen;
+    Polygon polygon, spare;
     std::vector<Stars::Spoke> ring;
     for (std::size_t v = begin; v < end; ++v) {
       const auto i = static_cast<std::size_t>(vertices[v]);
       const Point p = {points[2 * i], points[2 * i + 1]};
       // As seen from the point, so that what is far away from the origin has as many digits.
-      polygon.clear();
-      for (std::size_t k = 0; k < corners.size(); k += 2)
-        polygon.push_back({{corners[k] - p.x, corners[k + 1] - p.y}, ~static_cast<int>(k / 2)});
+      polygon.corners.clear();
+      polygon.sides.clear();
+      for (std::size_t k = 0; k < corners.size(); k += 2) {
+        polygon.corners.push_back({corners[k] - p.x, corners[k + 1] - p.y});
+        polygon.sides.push_back(~static_cast<int>(k / 2));
+      }
       stars.collect(vertices[v], ring);
-      for (std::size_t k = 0; k < ring.size() && !polygon.empty(); ++k) {
+      for (std::size_t k = 0; k < ring.size() && !polygon.sides.empty(); ++k) {
         const auto j = static_cast<std::size_t>(ring[k].neighbor);
         const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
         clip(polygon, d, d.x * d.x + d.y * d.y - (weights[j] - weights[i]), static_cast<int>(k), spare);
       }
-      seen.clear();
-      for (const Corner& corner : polygon) seen.push_back(corner.at);
-      const Moments moments = moments_of(seen);
+      const Moments moments = moments_of(polygon.corners);
       if (moments.area == 0) continue;
       cells.areas[i] = moments.area;
       cells.centroids[2 * i] = p.x + moments.centroid.x;
       cells.centroids[2 * i + 1] = p.y + moments.centroid.y;
       const std::size_t size = corners_of_runs[r].size();
-      append_places(places, vertices[v], ring, polygon, corners_of_runs[r]);
+      append_places(places, vertices[v], ring, polygon.sides, corners_of_runs[r]);
       rounded.offsets[i + 1] = static_cast<std::int32_t>((corners_of_runs[r].size() - size) / 2);
     }
   });
