@@ -13,7 +13,7 @@ void check_count(std::uint64_t count, const char* name, std::uint64_t most) {
 void check_array(const void* array, std::uint64_t count, const char* name, std::uint64_t most) {
   check_count(count, name, most);
   if (count > 0 && array == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("{} {}, but the pointer to them is null", count, name));
+    throw Error(ErrorKind::usage, fmt::format("{} {}, but the pointer to them is NULL", count, name));
   }
 }
 

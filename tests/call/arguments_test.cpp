@@ -170,11 +170,14 @@ bool says(const std::string& message, const std::vector<std::string>& words) {
 constexpr const char* kMayBeNull[] = {"offsets",    "options", "enqueue", "constraints",
                                       "distances",  "device",  "context", "contours",
                                       "breaklines", "arrays",  "files"};
-// Nothing is wrong with these here, or something else: there is no hidden point, and no mode of the host.
-constexpr const char* kOther[] = {"flaunay_dynamic_rows(triangles)", "flaunay_dynamic_rows(neighbors)",
+// Nothing is wrong with these here, or something else: there is no hidden point, no mode of the host, no
+// period.
+constexpr const char* kOther[] = {"flaunay_dynamic_rows(triangles)",
+                                  "flaunay_dynamic_rows(neighbors)",
                                   "flaunay_weighted_hiding_triangles(triangles)",
                                   "flaunay_triangulate_on_host(n)",
-                                  "flaunay_triangulate_on_host(coordinates)"};
+                                  "flaunay_triangulate_on_host(coordinates)",
+                                  "flaunay_take_to_places(n)"};
 
 template <std::size_t N>
 bool is_one_of(const char* const (&names)[N], const std::string& name) {
@@ -239,7 +242,7 @@ class Sweep {
       const flaunay_status status = std::apply(call_, all);
       const std::string message = flaunay_last_error();
       EXPECT_EQ(status, count > 0 ? FLAUNAY_ERROR_INPUT : FLAUNAY_ERROR_USAGE) << message;
-      EXPECT_TRUE(count > 0 ? says(message, {"too many"}) : says(message, {"null", "NULL"})) << message;
+      EXPECT_TRUE(count > 0 ? says(message, {"too many"}) : says(message, {"NULL"})) << message;
       std::vector<std::string> words = words_for(name);
       if constexpr (std::is_pointer_v<T>) {
         using Of = std::remove_pointer_t<T>;
@@ -292,7 +295,7 @@ void expect_error(ErrorKind kind, const std::vector<std::string>& words, const s
 void expect_all_refused(const std::vector<Case>& cases, std::size_t most = 0) {
   for (const Case& one : cases) {
     SCOPED_TRACE(one.word);
-    expect_error(ErrorKind::usage, {one.word, "null"}, [&] { one.call(kNull); });
+    expect_error(ErrorKind::usage, {one.word, "NULL"}, [&] { one.call(kNull); });
     for (const std::size_t count : kHuge) {
       if (count <= most) continue;
       SCOPED_TRACE(count);
@@ -491,6 +494,10 @@ TEST(SmallArguments, OfStreamsAndChunks) {
                throw Error(ErrorKind::input, "too many values");  // there are as many as points
              throw_error_of(flaunay_rasterize_chunks(&points, &values, 0, &raster, nullptr, nullptr, 0,
                                                      nullptr, nullptr, nullptr, &report));
+           }},
+          {"points",
+           [&](std::size_t count) {
+             take_to_places({8, 8}, const_cast<double*>(array_for(count, kPoints)), counted(count));
            }},
           {"points",
            [&](std::size_t count) {
