@@ -1763,7 +1763,8 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   EXPECT_EQ(of_kept["split_points"], 0);
   EXPECT_GT(of_kept["bad_triangles"]["kept"], 0);
   const std::string far = write("far.xy", "500000 5000000\n500004 5000000\n500002 5000000.375\n");
-  const Outcome there = run_well({"triangulate", far, "--min-angle", "30", "--keep-edges", "all"}, kNoPlatform);
+  const Outcome there =
+      run_well({"triangulate", far, "--min-angle", "30", "--keep-edges", "all"}, kNoPlatform);
   EXPECT_NE(there.out.find(" at (500002, 5000000.125)\n"), std::string::npos) << there.out;
   const Outcome few = refine({"--max-area", "0.01", "--most-points", "5"});
   EXPECT_NE(few.out.find("for --most-points"), std::string::npos) << few.out;

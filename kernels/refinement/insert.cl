@@ -192,10 +192,10 @@ static inline int is_as_listed(const seen_mesh* mesh, const insertion* of, globa
 
 // n elements of the list. first: the claim of rank 0. cavities: lists, see propose.cl, which are kept up. sizes: of
 // each point the number of triangles around it.
-kernel void claim_points(int n, refinement_rules rules, int step, int is_first, uint first, int listed, global const int* restrict list,
-                         global int* restrict cavities, REFINED_MESH(), global volatile uint* restrict claims,
-                         global insertion* restrict insertions, global uint* restrict sizes,
-                         global uchar* restrict states) {
+kernel void claim_points(int n, refinement_rules rules, int step, int is_first, uint first, int listed,
+                         global const int* restrict list, global int* restrict cavities, REFINED_MESH(),
+                         global volatile uint* restrict claims, global insertion* restrict insertions,
+                         global uint* restrict sizes, global uchar* restrict states) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
@@ -232,8 +232,8 @@ kernel void claim_points(int n, refinement_rules rules, int step, int is_first, 
           state = POINT_REFUSED;
         } else if (can_split) {
           const int beyond = neighbor_at(&mesh, of.corner);
-          size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, 0.0, claim, claims, cavity, 0,
-                                  &of.count);
+          size =
+              (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, 0.0, claim, claims, cavity, 0, &of.count);
           of.count = (int)size - 1;
           if (beyond >= 0) {
             const int other = corner_facing(&mesh, beyond, row_of(of.corner));

@@ -38,7 +38,8 @@ kernel void find_active(int n, int waits, global const int* restrict list, globa
 }
 
 // The off-centre of a triangle (Uengoer, 2009): on the bisector of the shortest side, as far from it as the
-// circumcentre, but no farther than where an edge to it would make the smallest angle that is wanted.
+// circumcentre, but no farther than where an edge to it would make the smallest angle that is wanted. Relative to the
+// corner after the one opposite to that side.
 static inline double2 centre_of(const double2* p, int is_large, refinement_rules rules) {
   const int k = opposite_to_shortest(p);
   const double2 from = p[(k + 1) % 3], to = p[(k + 2) % 3], apex = p[k];
@@ -49,7 +50,7 @@ static inline double2 centre_of(const double2* p, int is_large, refinement_rules
     const double2 off = VECTOR(double2, 0.5 * u.x - rules.off_centre * u.y, 0.5 * u.y + rules.off_centre * u.x);
     if (squared_length(off) < squared_length(centre)) centre = off;
   }
-  return VECTOR(double2, rounded_to(from.x + centre.x, rules.coarse), rounded_to(from.y + centre.y, rules.coarse));
+  return centre;
 }
 
 // Walks from a corner's triangle to p, over one side after the other that p is beyond. Returns the first corner of its
@@ -105,7 +106,10 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
     const ordered_triangle triangle = ordered(&mesh, row);
     const uint64 key = row_keys[row];
     proposal made;
-    const double2 p = centre_of(triangle.point, is_key_of_large(key), rules);
+    const double2 from = triangle.point[(opposite_to_shortest(triangle.point) + 1) % 3],
+                  centre = centre_of(triangle.point, is_key_of_large(key), rules),
+                  p = VECTOR(double2, rounded_to(from.x + centre.x, rules.coarse),
+                             rounded_to(from.y + centre.y, rules.coarse));
     made.x = p.x;
     made.y = p.y;
     made.row = row;
@@ -114,8 +118,11 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
     made.hit = -1;
     made.start = triangle.corner[0];
     int outcome = PROPOSAL_OPEN;
-    const int nearest = (opposite_to_shortest(triangle.point) + 1) % 3;
-    if (!(squared_distance(p, triangle.point[nearest]) >= rules.min_edge) ||
+    // Farther points are not rounded by as much as an eighth of that, and all vertices are nearly as far away: the
+    // circle around such a point leaves that of the triangle only beyond the shortest side, which is not much nearer.
+    const double distance = squared_distance(p, from);
+    const int is_close = distance < rules.long_edge;
+    if (!(distance >= rules.min_edge) || (is_close && 64.0 * squared_distance(p - from, centre) > distance) ||
         !(fabs(p.x) < INFINITY && fabs(p.y) < INFINITY)) {
       outcome = EXCUSED_MIN_EDGE;
     } else {
@@ -144,8 +151,6 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
           ++made.count;
         } else {
           ++sides;
-          if (squared_distance(p, point_at(&mesh, next_halfedge(next))) < rules.min_edge)
-            refused = min(refused, (int)EXCUSED_MIN_EDGE);
           if (made.hit < 0 && edge_at(&mesh, next) >= 0 && encroaches(&mesh, next, p, rules)) {
             const int reason = why_not_split(&mesh, next, places, ends, rules);
             if (reason == EXCUSED_NOT) {
@@ -158,6 +163,8 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
       }
       // Constraints that may be split are, whatever others are encroached.
       if (made.splits == 0) outcome = refused;
+      if (made.splits == 0 && is_close && is_near_vertex(&mesh, made.start, made.start, p, rules.min_edge))
+        outcome = min(outcome, (int)EXCUSED_MIN_EDGE);
       // Of a long tour, which meets rows twice, there is no list.
       if (made.count > listed || made.count != sides - 2) {
         made.count = max(sides - 2, listed + 1);

@@ -30,7 +30,7 @@ typedef struct {
   double squared_cosine;                 // of the angle under which a point encroaches an edge; 0: conforming
   double area;                           // the largest, or 0
   double min_edge;                       // squared
-  double long_edge;                      // six times that, squared; infinite if rounding could matter
+  double long_edge;                      // six times as long, squared; infinite if rounding could matter
   double coarse;                         // new coordinates below it are multiples of its last binary place
   int area_kind, rule, waits, vertices;  // vertices: those of the input
 } refinement_rules;

@@ -372,7 +372,7 @@ def refine(
     kept_segments : array_like of bool, shape (k,), optional
         For each segment whether no points may be put on it.
     min_edge : float, optional
-        No two points are put nearer to each other. Without it, 2^-40 of the extent, or 2^-45 of the largest
+        No two points are put nearer to each other. Without it, 2^-40 of the extent, or 2^-48 of the largest
         coordinate if that is more.
     most_points, most_rounds : int, optional
         No more points are added to a set, and no more rounds made of it.

@@ -58,7 +58,7 @@ class Check {
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
     min_edge_ = wanted.min_edge >= 0 ? std::ldexp(wanted.min_edge, scale_)
-                                     : std::max(0x1p-40 * extent_, 0x1p-45 * largest_);
+                                     : std::max(0x1p-40 * extent_, 0x1p-48 * largest_);
     const double smallest = std::ldexp(std::numeric_limits<double>::denorm_min(), scale_);
     off_ = std::max(kOff * largest_, kSmallestOff * smallest);
     coarse_ = std::max(kCoarse * largest_, kSmallestCoarse * smallest);
@@ -225,11 +225,13 @@ class Check {
       wrong("point " + place(v) + " is not on edge " + std::to_string(e));
   }
 
-  // No point is put nearer to another one than the smallest edge. The nearest one that it sees is a neighbour.
+  // No point is put nearer to another one than the smallest edge. The nearest one that it sees is a
+  // neighbour.
   void check_lengths() {
     for (std::size_t c = 0; c < refined_.triangles.size(); ++c) {
       const Index u = refined_.triangles[c], v = refined_.triangles[after(c)];
-      if (static_cast<std::size_t>(std::max(u, v)) >= mesh_.points && length(u, v) < min_edge_ * (1 - 0x1p-48))
+      if (static_cast<std::size_t>(std::max(u, v)) >= mesh_.points &&
+          length(u, v) < min_edge_ * (1 - 0x1p-48))
         return wrong("points " + place(u) + " and " + place(v) + " are nearer than the smallest edge");
     }
   }

@@ -417,6 +417,17 @@ TEST(SmallRefinement, SmallestEdgeWithinARound) {
   }
 }
 
+// At 2^62 doubles are so far apart that no point mends triangles of a height of 1. Points on a side that is
+// as long would make triangles that all have it in their circles.
+TEST(SmallRefinement, NoSmallestEdge) {
+  DomainToRefine domain;
+  domain.points = {0, 0, 0x1p62, 0, 0x1p62, 1, 0, 1};
+  Refinement wanted = angle_of(30);
+  wanted.min_edge = 0;
+  const RefinedMesh refined = expect_right(mesh_to_refine(domain), wanted);
+  for (std::size_t i = 0; i < refined.added.size(); i += 2) EXPECT_LT(refined.added[i], 0x1p62);
+}
+
 // An edge that rounding did not allow to split beside a flat triangle, which others replace later.
 TEST(SmallRefinement, FrozenEdgesThaw) {
   if (!tests_native()) GTEST_SKIP() << "hundreds of rounds";

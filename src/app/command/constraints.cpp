@@ -361,9 +361,10 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                    kKeptEdges)
       ->default_str("none");
   command
-      ->add_option("--min-edge", refinement.min_edge,
-                   "Put no two points nearer to each other; default: 2^-40 of the extent, or 2^-45 of the largest "
-                   "coordinate if that is more")
+      ->add_option(
+          "--min-edge", refinement.min_edge,
+          "Put no two points nearer to each other; default: 2^-40 of the extent, or 2^-48 of the largest "
+          "coordinate if that is more")
       ->check(CLI::NonNegativeNumber)
       ->type_name("LENGTH");
   command->add_option("--most-points", refinement.most_points, "Add no more points")->type_name("N");

@@ -51,9 +51,10 @@ constexpr double kWaitsUpTo = 30, kRingAbove = 32;
 constexpr std::size_t kMostWithoutWaiting = 4000;
 // Smoothing makes no smaller angles, whatever is asked for.
 constexpr double kSmoothedAngle = 20;
-// The smallest edge unless the caller has one: 2^-40 of the larger side of the bounding box, or 2^-45 of the
-// largest coordinate if that is more, so that it is at least 128 units in the last place of any coordinate.
-constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -45;
+// The smallest edge unless the caller has one: 2^-40 of the larger side of the bounding box, or 2^-48 of the
+// largest coordinate if that is more, which is at least 16 units in the last place of any coordinate. With
+// 2^-45 of the largest coordinate, rounding moves points by less than 2 % of the smallest edge.
+constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -48, kFineOfLargest = -45;
 // New coordinates have no binary places below that of the largest coordinate by so many.
 constexpr int kBinaryPlaces = 200;
 // The rows of cavities with at most so many are kept in lists. On average there are four, but in empty
@@ -153,14 +154,14 @@ class Rounds {
   // -------------------------------------------------------------------------------------------------------
   // Before and after
 
-  // The largest coordinate is brought to about 1, whatever it is, so that results for the same points in other
-  // units that are a power of two apart are the same; only the lowest bit of points that span more binary
-  // places than there are below 1 decides first.
+  // The largest coordinate is brought to just below 1, whatever it is, so that results for the same points in
+  // other units that are a power of two apart are the same; only the lowest bit of points that span more
+  // binary places than there are below 1 decides first.
   void scale() {
     const geometry::Magnitudes magnitudes = geometry::inspect(mesh_.coordinates, 0, mesh_.points);
     geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes);  // throws if there is none
     if (geometry::bits_of(magnitudes) > 0)
-      shift_ = std::max(-magnitudes.largest, kernel::LOWEST_EXPONENT - magnitudes.lowest);
+      shift_ = std::max(-1 - magnitudes.largest, kernel::LOWEST_EXPONENT - magnitudes.lowest);
     // The last binary place that new coordinates have, scaled: exact in predicates, and a double when scaled
     // back.
     const int lowest = std::max({magnitudes.largest + shift_ - kBinaryPlaces, int{kernel::LOWEST_EXPONENT},
@@ -213,11 +214,11 @@ class Rounds {
     rules_.off_centre = bounds.off_centre;
     rules_.squared_cosine = wanted_.conforming ? 0 : bounds.squared_cosine;
     rules_.area = scaled_area(wanted_.max_area);
-    const double coarse = std::ldexp(largest_, kMinEdgeOfLargest);
     const double min_edge = wanted_.min_edge >= 0 ? std::ldexp(wanted_.min_edge, shift_)
-                                                  : std::max(std::ldexp(extent_, kMinEdgeOfExtent), coarse);
+                                                  : std::max(std::ldexp(extent_, kMinEdgeOfExtent),
+                                                             std::ldexp(largest_, kMinEdgeOfLargest));
     rules_.min_edge = min_edge * min_edge;
-    rules_.long_edge = min_edge >= coarse ? 36 * rules_.min_edge : HUGE_VAL;
+    rules_.long_edge = min_edge >= std::ldexp(largest_, kFineOfLargest) ? 36 * rules_.min_edge : HUGE_VAL;
     rules_.area_kind = wanted_.areas_at               ? kernel::AREAS_BY_ROW
                        : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
                                                       : kernel::AREAS_NONE;
@@ -881,7 +882,7 @@ class Rounds {
   Buffer<cl_int> ends_{};
   Buffer<cl_double> parent_areas_{};
   Buffer<mesh_row> given_{};  // the rows at first, if triangles of one region have different areas
-  Buffer<cl_int2> made_{};  // what the last round has made: rows and their first vertices
+  Buffer<cl_int2> made_{};    // what the last round has made: rows and their first vertices
   std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
               added_ = 0, tried_ = 0;
   cl_uint next_claim_ = 0;

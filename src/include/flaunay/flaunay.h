@@ -503,13 +503,13 @@ typedef struct flaunay_refinement {
   void* areas_data;              ///< passed to areas_at unchanged
   int kept;                      ///< a flaunay_kept_edges
   const uint8_t* kept_segments;  ///< NULL, or one per segment: 1 if it must not be split
-  /// Other than 0: `min_edge` counts. 0: 2^-40 of the larger side of the bounding box, or 2^-45 of the largest
-  /// coordinate if that is more.
+  /// Other than 0: `min_edge` counts. 0: 2^-40 of the larger side of the bounding box, or 2^-48 of the
+  /// largest coordinate if that is more.
   int has_min_edge;
-  double min_edge;               ///< no two points are put nearer to each other
-  int has_most_points;           ///< other than 0: `most_points` counts; 0: there is no limit
-  size_t most_points;            ///< no more points are added to a set
-  size_t most_rounds;            ///< no more rounds are made; 0: 10,000
+  double min_edge;      ///< no two points are put nearer to each other
+  int has_most_points;  ///< other than 0: `most_points` counts; 0: there is no limit
+  size_t most_points;   ///< no more points are added to a set
+  size_t most_rounds;   ///< no more rounds are made; 0: 10,000
   /// Other than 0: constraints and the border are split until no angle opposite to them is obtuse; then all
   /// triangles are Delaunay without constraints, too.
   int conforming;

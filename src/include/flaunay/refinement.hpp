@@ -51,7 +51,7 @@ struct Refinement {
   KeptEdges kept = KeptEdges::none;             ///< which constraints must not be split
   const std::uint8_t* kept_segments = nullptr;  ///< one per segment: 1 if it must not be split, or null
   /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
-  /// bounding box, or 2^-45 times the largest coordinate if that is more.
+  /// bounding box, or 2^-48 times the largest coordinate if that is more.
   double min_edge = -1;
   std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set
   std::size_t most_rounds = 10000;                         ///< no more rounds are made
