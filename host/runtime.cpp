@@ -8,8 +8,10 @@
 #include "host/error.hpp"
 #include "host/memory/counting.hpp"
 #include "host/native/backend.hpp"
-#include "host/opencl/backend.hpp"
 #include "host/system/pages.hpp"
+#ifndef FLAUNAY_WITHOUT_OPENCL
+#include "host/opencl/backend.hpp"
+#endif
 
 namespace flaunay::host {
 

@@ -54,7 +54,7 @@ llvm = "Apache-2.0 WITH LLVM-exception"
 components = [
     component("fmt", fmt, "MIT", everywhere, f"pkg:github/fmtlib/fmt@{fmt}"),
     component("boost", boost, "BSL-1.0", f"headers of Compute, Multiprecision and Uuid, {everywhere}"),
-    component("opencl-headers", debian_version("opencl-headers"), "Apache-2.0", everywhere),
+    component("opencl-headers", debian_version("opencl-headers"), "Apache-2.0", "in every library but that for JavaScript"),
     component("CLI11", debian_version("libcli11-dev"), "BSD-3-Clause", "in the command of Debian's package"),
     component("nlohmann_json", debian_version("nlohmann-json3-dev"), "MIT", "in the command of Debian's package"),
     component("libc++", libcxx, llvm, wheels),

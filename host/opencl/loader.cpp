@@ -33,13 +33,12 @@ struct Signature<R(P...)> {
 };
 
 // What a function answers if there is no OpenCL.
-template <typename Result, typename... Ignored>
-Result missing(Ignored...) {
+template <typename Result>
+Result missing() {
   if constexpr (std::is_same_v<Result, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
   if constexpr (!std::is_same_v<Result, cl_int>) return nullptr;
 }
 
-#ifndef FLAUNAY_WITHOUT_OPENCL
 namespace fs = std::filesystem;
 namespace system = flaunay::system;
 
@@ -91,9 +90,6 @@ Platforms platforms_of(const std::string& driver) {
 }
 
 Platforms installed_platforms() {
-#ifdef FLAUNAY_WITHOUT_OPENCL
-  return {};
-#endif
   if (const auto list = find<decltype(clGetPlatformIDs)>("clGetPlatformIDs")) {
     cl_uint count = 0;
     if (list(0, nullptr, &count) != CL_SUCCESS) return {};
@@ -141,16 +137,11 @@ Platforms all_platforms() {
   }
   return all;
 }
-#endif
 
 }  // namespace
 
 namespace flaunay::host {
 
-#ifdef FLAUNAY_WITHOUT_OPENCL
-void add_driver(const std::string&, const std::string&) {}
-std::vector<std::string> installed_drivers() { return {}; }
-#else
 std::vector<std::string> installed_drivers() {
   const char* given = std::getenv("OCL_ICD_VENDORS");
   if (given == nullptr) given = std::getenv("OPENCL_VENDOR_PATH");
@@ -180,17 +171,11 @@ void add_driver(const std::string& platform, const std::string& path) {
   }
   added_drivers().push_back({platform, path, false, {}});
 }
-#endif
 
 }  // namespace flaunay::host
 
 #define RESULT(name) Signature<decltype(name)>::Result CL_API_CALL
 #define PARAMETER(name, k) Signature<decltype(name)>::Parameter<k> p##k
-#ifdef FLAUNAY_WITHOUT_OPENCL
-// Without loading anything, so that the linker leaves out what would.
-#define PASS_ON(name, ...) \
-  { return missing<Signature<decltype(name)>::Result>(__VA_ARGS__); }
-#else
 #define PASS_ON(name, ...)                                               \
   {                                                                      \
     static auto* const function = find<decltype(name)>(#name);           \
@@ -199,7 +184,6 @@ void add_driver(const std::string& platform, const std::string& path) {
     if (functions != nullptr) return functions->name(__VA_ARGS__);       \
     return missing<Signature<decltype(name)>::Result>();                 \
   }
-#endif
 #define PARAMETERS_1(name) PARAMETER(name, 0)
 #define PARAMETERS_2(name) PARAMETERS_1(name), PARAMETER(name, 1)
 #define PARAMETERS_3(name) PARAMETERS_1(name), PARAMETER(name, 1), PARAMETER(name, 2)
@@ -272,9 +256,6 @@ FUNCTION_9(clEnqueueReadBuffer)
 FUNCTION_9(clEnqueueWriteBuffer)
 FUNCTION_10(clEnqueueMapBuffer)
 
-#ifdef FLAUNAY_WITHOUT_OPENCL
-FUNCTION_3(clGetPlatformIDs)
-#else
 cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* places, cl_uint* count) {
   try {
     const Platforms all = all_platforms();
@@ -285,5 +266,4 @@ cl_int CL_API_CALL clGetPlatformIDs(cl_uint capacity, cl_platform_id* places, cl
     return CL_OUT_OF_HOST_MEMORY;
   }
 }
-#endif
 }

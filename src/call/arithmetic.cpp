@@ -10,9 +10,11 @@
 #include <memory>
 
 #include "host/clock.hpp"
-#include "host/opencl/programs.hpp"
 #include "launchers/call/rates.cl.hpp"
 #include "tuning/tuning.hpp"
+#ifndef FLAUNAY_WITHOUT_OPENCL
+#include "host/opencl/programs.hpp"
+#endif
 
 namespace flaunay::call {
 namespace {
@@ -121,7 +123,8 @@ void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& sl
   runtime.set_capabilities(capabilities);
 }
 
-void choose_arithmetic(host::Runtime& runtime) {
+void choose_arithmetic([[maybe_unused]] host::Runtime& runtime) {
+#ifndef FLAUNAY_WITHOUT_OPENCL
   // Of CPUs it is known, and what pretends to be one and a GPU is a simulator, whose times mean nothing.
   if (runtime.is_native() || (runtime.device().type() & CL_DEVICE_TYPE_CPU) != 0) return;
   choose_arithmetic(runtime, [&] {
@@ -131,6 +134,7 @@ void choose_arithmetic(host::Runtime& runtime) {
     return remembered_slowness(host::ProgramCache(host::default_cache_folder()), key,
                                [&] { return measured_slowness_of_fp64(runtime); });
   });
+#endif
 }
 
 }  // namespace flaunay::call

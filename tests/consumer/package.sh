@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the package, each for one run of CTest (tests/CMakeLists.txt):
 #
-#   package.sh install | symbols | header | find_package | mpi | pkg_config | subdirectory | static
+#   package.sh install | symbols | header | find_package | mpi | pkg_config | subdirectory | static | without_opencl
 #
 # In the environment: SOURCE, BUILD and VERSION of flaunay, WORK (a folder to work in), CMAKE, CC and CXX.
 # WORK/prefix is what install installs, the only thing that find_package and pkg_config know of flaunay; static tests
@@ -132,6 +132,15 @@ case "$1" in
     run_consumers "$WORK/subdirectory"
     rm -rf "$static"
     "$CMAKE" --install "$WORK/subdirectory" --prefix "$static"
+    ;;
+
+  without_opencl)
+    # Without the headers of OpenCL, flaunay is configured, and two files that use them compile: the macro makes the real
+    # ones empty, if they are installed. The build for JavaScript compiles all of the library in this way.
+    "$CMAKE" -S "$SOURCE" -B "$WORK/without_opencl" -G Ninja -DCMAKE_BUILD_TYPE= -DCMAKE_CXX_COMPILER="$CXX" \
+      -DFLAUNAY_OPENCL=OFF -DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON -DCMAKE_UNITY_BUILD=OFF \
+      -DCMAKE_CXX_FLAGS="-D__OPENCL_CL_H"
+    "$CMAKE" --build "$WORK/without_opencl" --target host/CMakeFiles/flaunay_host.dir/{memory/arena,opencl/device}.cpp.o
     ;;
 
   static)
