@@ -1151,7 +1151,7 @@ static void test_constrained(void) {
 
 static void test_carried(void) {
   const int32_t segment_markers[] = {-1, 4, 5, 6}, point_markers[] = {8, 7, 6, 5, 4, 3, 2, 1};
-  const double seeds[] = {0.25, 1, 6, 1, 5.5, 1.5}, attributes[] = {0.5, 1.5, 2.5};
+  const double seeds[] = {0.25, 1, 5.5, 0.75, 5.5, 1.5}, attributes[] = {0.5, 1.5, 2.5};
   const size_t seed_offsets[] = {0, 1, 3};
   const flaunay_constraints constraints = {.segments = kDiagonals,
                                            .segment_count = 4,
@@ -1233,6 +1233,30 @@ static void test_refined(void) {
   }
   CHECK(flaunay_constrained_get_arrays(result)->piece_edges[1] == 1);
   flaunay_constrained_destroy(result);
+
+  // No rounds are none, and no angle that is asked for is measured; what counts is said.
+  refinement = (flaunay_refinement){.max_area = 0.05, .has_most_rounds = 1};
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
+                                          &result) == FLAUNAY_SUCCESS);
+  report = flaunay_constrained_refinement(result);
+  CHECK(report->added_points == 0 && report->excuses[0] == FLAUNAY_EXCUSE_MOST_ROUNDS);
+  flaunay_constrained_destroy(result);
+  refinement = (flaunay_refinement){0};
+  REQUIRE(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
+                                          &result) == FLAUNAY_SUCCESS);
+  report = flaunay_constrained_refinement(result);
+  CHECK(report->smallest_angle > 44 && report->smallest_angle < 46 && report->largest_angle > 89);
+  flaunay_constrained_destroy(result);
+  const flaunay_refinement meaningless[] = {{.most_rounds = 3},
+                                            {.most_points = 3},
+                                            {.min_edge = 0.5},
+                                            {.has_min_edge = 1, .min_edge = -1},
+                                            {.has_min_edge = 1, .min_edge = NAN}};
+  for (size_t k = 0; k < sizeof meaningless / sizeof *meaningless; ++k) {
+    refinement = meaningless[k];
+    CHECK(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &constraints, NULL,
+                                          &result) == FLAUNAY_ERROR_USAGE);
+  }
 
   flaunay_polygons polygons = kPolygons;
   polygons.refinement = &refinement;

@@ -120,8 +120,31 @@ static inline int is_encroached(double2 a, double2 b, double2 p, double squared_
   return cosine_sign(a, p, p, b, squared_cosine) >= 0;
 }
 
-// Whether the angle at v between a and b is below 60 degrees.
-static inline int is_below_60_degrees(double2 v, double2 a, double2 b) { return cosine_sign(v, a, v, b, 0.25) > 0; }
+// The sign of the length from a to b less that from c to d. Squared lengths have an error below 4.01 e of themselves.
+OUT_OF_LINE static inline int length_sign_exact(double2 a, double2 b, double2 c, double2 d) {
+  const double2 ux = two_sum(b.x, -a.x), uy = two_sum(b.y, -a.y), vx = two_sum(d.x, -c.x), vy = two_sum(d.y, -c.y);
+  expansion sum;
+  sum.size = 0;
+  expansion_add_product(&sum, ux, ux);
+  expansion_add_product(&sum, uy, uy);
+  expansion_add_product(&sum, vx, -vx);
+  expansion_add_product(&sum, vy, -vy);
+  return expansion_sign(&sum);
+}
+static inline int length_sign(double2 a, double2 b, double2 c, double2 d) {
+  const double u = squared_length(b - a), v = squared_length(d - c);
+  if (fabs(u - v) > 6 * DOUBLE_ROUNDOFF * (u + v)) return u > v ? 1 : -1;
+  return length_sign_exact(a, b, c, d);
+}
+
+// Angles below this one are sharp. It is 6e-8 below 60 degrees, so that a corner of 60 degrees is never sharp because
+// points are rounded.
+#define SHARP_SQUARED_COSINE (0.25 + 0x1p-30)
+
+// Whether the angle at v between a and b is sharp.
+static inline int is_sharp(double2 v, double2 a, double2 b) {
+  return cosine_sign(v, a, v, b, SHARP_SQUARED_COSINE) > 0;
+}
 
 END_SHARED
 

@@ -56,18 +56,41 @@ static inline int is_too_large(const seen_mesh* mesh, int row, const double2* p,
   return area > 0.0 && area < INFINITY && is_area_above(p[0], p[1], p[2], area);
 }
 
+// The corner with the smallest angle, by its place among the three: the first one of equal ones.
+static inline int corner_of_smallest_angle(const double2* p) {
+  const int k = length_sign(p[2], p[0], p[1], p[2]) < 0;
+  return length_sign(p[0], p[1], p[(k + 1) % 3], p[(k + 2) % 3]) < 0 ? 2 : k;
+}
+
+// Whether two edges that meet at a vertex do so at a sharp angle, with triangles all the way between them.
+// wedges: for each end of an edge the next edge counter-clockwise around it, or -1 if there are no triangles between.
+static inline int is_sharp_inside(GLOBAL const double2* points, GLOBAL const int* ends, GLOBAL const int* wedges,
+                                  int vertex, int a, int b) {
+  const int end_a = ends[2 * a] == vertex ? 2 * a : 2 * a + 1, end_b = ends[2 * b] == vertex ? 2 * b : 2 * b + 1;
+  const double2 from = points[vertex], to_a = points[ends[end_a ^ 1]], to_b = points[ends[end_b ^ 1]];
+  if (!is_sharp(from, to_a, to_b)) return 0;
+  const int is_turned = orient_sign(from, to_a, to_b, ORIENT_BOUND) < 0, first = is_turned ? b : a,
+            last = is_turned ? a : b;
+  int edge = first;
+  do {
+    edge = wedges[ends[2 * edge] == vertex ? 2 * edge : 2 * edge + 1];
+  } while (edge >= 0 && edge != first && edge != last);
+  return edge == last;
+}
+
 // Whether the smallest angle of a triangle cannot be helped: it is one between two constraints that meet at a vertex of
-// the input, or is across from one (Miller, Pav and Walkington, 2003): the shortest side joins two constraints, equally
-// far from where they meet.
+// the input, or is across from one (Miller, Pav and Walkington, 2003): the shortest side, which is no constraint, joins
+// two constraints, equally far from where they meet.
 static inline int excuse_of(const seen_mesh* mesh, const ordered_triangle* triangle, GLOBAL const edge_place* places,
-                            int vertices) {
-  const int k = opposite_to_shortest(triangle->point), corner = triangle->corner[k], next = next_halfedge(corner),
+                            GLOBAL const int* ends, GLOBAL const int* wedges, int vertices) {
+  const int corner = triangle->corner[corner_of_smallest_angle(triangle->point)], next = next_halfedge(corner),
             previous = previous_halfedge(corner);
   if (vertex_at(mesh, corner) < vertices && edge_at(mesh, next) >= 0 && edge_at(mesh, previous) >= 0)
     return EXCUSED_INPUT_ANGLE;
   const edge_place a = places[vertex_at(mesh, next)], b = places[vertex_at(mesh, previous)];
-  return a.apex >= 0 && a.apex == b.apex && a.edge != b.edge &&
-                 fabs(a.distance - b.distance) <= EQUAL_DISTANCES * a.distance
+  return edge_at(mesh, corner) < 0 && a.apex >= 0 && a.apex == b.apex && a.edge != b.edge &&
+                 fabs(a.distance - b.distance) <= EQUAL_DISTANCES * a.distance &&
+                 is_sharp_inside(mesh->points, ends, wedges, a.apex, a.edge, b.edge)
              ? EXCUSED_NEAR_APEX
              : EXCUSED_NOT;
 }

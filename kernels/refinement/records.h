@@ -15,8 +15,9 @@ typedef struct {
 ASSERT_SIZE(mesh_row, 44);
 
 // Where a vertex is on an edge that must stay: the part of its length from its first end, and the nominal distance from
-// the apex, a vertex where edges meet at less than 60 degrees. Without an edge or an apex: -1. A vertex that is an apex
-// has itself, at a distance of 0; another one of the input that is the far end of an edge with an apex, that apex.
+// the apex, a vertex where edges meet at a sharp angle inside of the mesh. Without an edge or an apex: -1. A vertex
+// that is an apex has itself, at a distance of 0; another one of the input that is the far end of an edge with an apex,
+// that apex.
 typedef struct {
   double part, distance;
   int edge, apex;

@@ -64,7 +64,7 @@ kernel void test_rows(int n, refinement_rules rules, global const int2* restrict
       keys[row] = NO_KEY;
       if (is_bad) {
         const ordered_triangle triangle = ordered(&mesh, row);
-        is_bad = is_large || excuse_of(&mesh, &triangle, places, rules.vertices) == EXCUSED_NOT;
+        is_bad = is_large || excuse_of(&mesh, &triangle, places, ends, wedges, rules.vertices) == EXCUSED_NOT;
         if (is_bad) keys[row] = key_of(&triangle, is_large);
       }
       for (int k = 0; k < 3; ++k) {
@@ -199,7 +199,7 @@ kernel void report_rows(int n, refinement_rules rules, REFINED_MESH(), global co
         excuse = reason;
       } else if (is_angle_below(p[0], p[1], p[2], rules.squared_sine)) {
         const ordered_triangle triangle = ordered(&mesh, row);
-        excuse = excuse_of(&mesh, &triangle, places, rules.vertices);
+        excuse = excuse_of(&mesh, &triangle, places, ends, wedges, rules.vertices);
         if (excuse == EXCUSED_NOT) excuse = reason;
       }
       if (excuse == EXCUSED_NOT && rules.squared_cosine == 0.0)

@@ -142,7 +142,7 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     for name in ("most_points", "most_rounds", "smoothing_steps"):
         if name in wanted:
             wanted[name] = as_count(wanted[name], name)
-    for name in ("min_edge", "most_points"):
+    for name in ("min_edge", "most_points", "most_rounds"):
         wanted[f"has_{name}"] = int(name in wanted)
     if "seed_areas" in wanted:
         wanted["seed_areas"] = _row(wanted["seed_areas"], "seed_areas", seeds, np.float64)

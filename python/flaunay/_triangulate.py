@@ -177,7 +177,8 @@ def triangulate(
     seeds : array_like, shape (r, 3), optional
         With segments, x, y and an attribute each, which becomes that of all triangles that are connected to
         this place without crossing a segment: `ConstrainedTriangulation.triangle_attributes`. Of several
-        seeds in one region the last counts. Those on a segment, and those in no triangle, count for nothing.
+        seeds in one region the last counts. As for holes, places on a segment, and in no triangle of the convex
+        hull, are errors.
     seed_offsets : array_like of int, shape (sets + 1,), optional
         As `hole_offsets`.
     outside : {"keep", "hull", "holes"}
@@ -348,7 +349,7 @@ def refine(
         the convex hull. A `ConstrainedTriangulation` of one set or a `Delaunay` in the place of points is
         refined further: it has the segments, triangles, markers and attributes, unless they are given.
     min_angle : float
-        In degrees, from 0 to 34. Above 30, many more points are needed.
+        In degrees, from 0 to 34; 0 for any. Above 30, many more points are needed.
     max_area : float
         The largest area of a triangle; 0 for any.
     seed_areas : array_like, shape (r,), optional
@@ -372,10 +373,11 @@ def refine(
     kept_segments : array_like of bool, shape (k,), optional
         For each segment whether no points may be put on it.
     min_edge : float, optional
-        No two points are put nearer to each other. Without it, 2^-40 of the extent, or 2^-48 of the largest
-        coordinate if that is more.
+        No two points are put nearer to each other; from 0 on. Without it, 2^-40 of the extent, or 2^-48 of the
+        largest coordinate if that is more.
     most_points, most_rounds : int, optional
-        No more points are added to a set, and no more rounds made of it.
+        No more points are added to a set, and no more rounds made of it; 0 for none. Without them, there is no
+        limit of points, and one of 10,000 rounds.
     smoothing_steps : int
         So often, added points that are not on segments move to where triangles are more regular.
 

@@ -378,10 +378,13 @@ def test_markers_are_carried():
 
 def test_regions_have_the_attributes_of_their_seeds():
     points, segments = squares(1, 2, 3)
-    seeds = [[1.5, 0.25, 7.5], [0, 0, 1.0], [1.75, 0, -2.5], [1, 0.5, 9], [50, 0, 9]]
+    seeds = [[1.5, 0.25, 7.5], [0, 0, 1.0], [1.75, 0, -2.5]]
     mesh = flaunay.triangulate(points, segments, seeds=seeds)
     rings = np.abs(middles(mesh)).max(axis=1) // 1
     assert np.array_equal(mesh.triangle_attributes, np.array([1, -2.5, 0])[rings.astype(int)])
+    for place, what in (([1, 0.5, 9], "on a constraint"), ([50, 0, 9], "in no triangle")):
+        with pytest.raises(flaunay.InputError, match=f"seed 3 at .* is {what}"):
+            flaunay.triangulate(points, segments, seeds=[*seeds, place])
     two = flaunay.triangulate(
         np.concatenate([points, points]),
         np.concatenate([segments, segments + 12]),

@@ -217,6 +217,8 @@ def test_regions_kept_edges_and_limits():
         ({"keep_edges": "some"}, "keep_edges"),
         ({"kept_segments": [1, 0]}, "kept_segments"),
         ({"seed_areas": [1]}, "seed_areas"),
+        ({"min_edge": -1}, "min_edge is -1"),
+        ({"min_edge": np.inf}, "smallest edge is inf"),
         ({"most_points": -3}, "most_points"),
         ({"most_points": 2.5}, "most_points"),
         ({"smoothing_steps": -1}, "smoothing_steps"),
@@ -226,6 +228,16 @@ def test_regions_kept_edges_and_limits():
 def test_wrong_requests(options, message):
     with pytest.raises(flaunay.UsageError, match=message):
         flaunay.refine(SQUARE, RING, **options)
+
+
+def test_nothing_is_one_of_many_numbers():
+    for limit in ("most_points", "most_rounds"):
+        none = flaunay.refine(SQUARE, RING, max_area=0.1, **{limit: 0})
+        assert none.refinement.added_points == 0 and set(none.refinement.excuses) == {limit}
+    any_angle = flaunay.refine(SQUARE, RING, min_angle=0)
+    assert any_angle.refinement.added_points == 0
+    assert any_angle.refinement.smallest_angle == pytest.approx(45)
+    assert any_angle.refinement.largest_angle == pytest.approx(90)
 
 
 def test_unknown_keywords():

@@ -72,6 +72,16 @@ static_assert(FLAUNAY_EXCUSE_INPUT_ANGLE == static_cast<int>(Excuse::input_angle
               FLAUNAY_EXCUSE_MOST_ROUNDS == static_cast<int>(Excuse::most_rounds));
 static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
 
+// A value that counts if the caller says so. Others must be 0, so that none is forgotten.
+template <typename T>
+void take(int counts, T given, const char* name, T& value) {
+  if (counts != 0) {
+    value = given;
+  } else if (given != 0) {
+    throw Error(ErrorKind::usage, fmt::format("{} is {}, but has_{} is 0: set it, too", name, given, name));
+  }
+}
+
 Refinement to_refinement(const flaunay_refinement* wanted) {
   Refinement result;
   if (wanted == nullptr) return result;
@@ -93,10 +103,15 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
   }
   result.kept = c::to_enum<KeptEdges>(given.kept, FLAUNAY_KEPT_EDGES_ALL, "flaunay_kept_edges");
   result.kept_segments = given.kept_segments;
-  if (given.has_min_edge != 0) result.min_edge = given.min_edge;
-  if (given.has_most_points != 0) result.most_points = given.most_points;
-  if (given.most_rounds != 0) result.most_rounds = given.most_rounds;
+  if (given.min_edge < 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("min_edge is {}, but it must be a length from 0 on", given.min_edge));
+  }
+  take(given.has_min_edge, given.min_edge, "min_edge", result.min_edge);
+  take(given.has_most_points, given.most_points, "most_points", result.most_points);
+  take(given.has_most_rounds, given.most_rounds, "most_rounds", result.most_rounds);
   result.smoothing_steps = given.smoothing_steps;
+  result.measured = true;
   return result;
 }
 

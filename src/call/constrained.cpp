@@ -283,10 +283,14 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   check_offsets(offsets);
   check_points(coordinates, offsets.back());
   check(constraints, options);
-  if (options.refinement.mesh.count == 0)
-    return constrain_and_refine(self, coordinates, offsets, constraints, options, request, nullptr);
-  const GivenMesh mesh(coordinates, offsets.back(), constraints, options);
-  return constrain_and_refine(self, coordinates, offsets, mesh.constraints(), mesh.options(), request, &mesh);
+  std::optional<GivenMesh> mesh;
+  if (options.refinement.mesh.count > 0) mesh.emplace(coordinates, offsets.back(), constraints, options);
+  ConstrainedTriangulation result =
+      constrain_and_refine(self, coordinates, offsets, mesh ? mesh->constraints() : constraints,
+                           mesh ? mesh->options() : options, request, mesh ? &*mesh : nullptr);
+  const Refinement& wanted = options.refinement;
+  if (wanted.measured && !wanted.is_wanted()) measure_angles(coordinates, offsets.back(), false, result);
+  return result;
 }
 
 ConstrainedTriangulation Triangulator::constrained(const double* coordinates,

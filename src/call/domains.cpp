@@ -80,7 +80,7 @@ void label_seeds(host::Runtime& runtime, const std::vector<std::int32_t>& triang
   const std::vector<cl_int> of = points::download(runtime, regions.of_triangles, triangle_count);
   std::vector<cl_int> seeds(regions.count, -1);
   for (std::size_t k = 0; k < triangles.size(); ++k) {
-    if (triangles[k] >= 0) seeds[of[triangles[k]]] = static_cast<cl_int>(k);
+    seeds[of[triangles[k]]] = static_cast<cl_int>(k);
   }
   regions.seeds = runtime.upload(runtime.arena(), std::move(seeds));
 }
@@ -132,13 +132,13 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
     find_depths(runtime, mesh, request.rules, regions);
   }
   const auto find = [&](const constrained::Places& places) {
-    return find_places(call, with_doubles, mesh, places, coordinates, offsets, result);
+    std::vector<std::int32_t> found =
+        find_places(call, with_doubles, mesh, places, coordinates, offsets, result);
+    constrained::check_found(places, found);
+    return found;
   };
   if (constraints.hole_count > 0) {
-    const constrained::Places holes = constrained::holes_of(constraints, offsets.size() - 1);
-    const std::vector<std::int32_t> found = find(holes);
-    constrained::check_found(holes, found);
-    drop_holes(runtime, found, regions);
+    drop_holes(runtime, find(constrained::holes_of(constraints, offsets.size() - 1)), regions);
   }
   if (constraints.seed_count > 0) {
     label_seeds(runtime, find(constrained::seeds_of(constraints, offsets.size() - 1)), mesh.triangle_count(),

@@ -1,5 +1,7 @@
 #include "call/refine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -132,22 +134,6 @@ double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t 
                 mesh.largest_areas[t];
   }
   return expected;
-}
-
-void measure_angles(std::vector<double> coordinates, const Ids& triangles, bool with_mean,
-                    RefinementReport& report) {
-  double largest = 0;
-  for (const double x : coordinates) largest = std::max(largest, std::fabs(x));
-  // With all binary places that there may be, squares of lengths are doubles if the largest one is near 1.
-  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  if (exponent < -7 || exponent > 250) {
-    for (double& x : coordinates) x = std::ldexp(x, -exponent);
-  }
-  constrained::Angles angles(with_mean);
-  for (std::size_t t = 0; t < triangles.size(); t += 3) angles.add(coordinates.data(), &triangles[t]);
-  report.smallest_angle = angles.smallest();
-  report.largest_angle = angles.largest();
-  report.mean_angle = angles.mean();
 }
 
 // The points that were added on each edge, from its first end to its second one.
@@ -512,13 +498,32 @@ void renumber_regions(Ids& regions) {
   }
 }
 
+void measure_angles(const double* coordinates, std::size_t n, bool with_mean,
+                    ConstrainedTriangulation& result) {
+  std::vector<double> all(coordinates, coordinates + 2 * n);
+  all.insert(all.end(), result.added_points.begin(), result.added_points.end());
+  double largest = 0;
+  for (const double x : all) largest = std::max(largest, std::fabs(x));
+  // With all binary places that there may be, squares of lengths are doubles if the largest one is near 1.
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  if (exponent < -7 || exponent > 250) {
+    for (double& x : all) x = std::ldexp(x, -exponent);
+  }
+  constrained::Angles angles(with_mean);
+  for (std::size_t t = 0; t < result.triangles.size(); t += 3) angles.add(all.data(), &result.triangles[t]);
+  result.refinement.smallest_angle = angles.smallest();
+  result.refinement.largest_angle = angles.largest();
+  result.refinement.mean_angle = angles.mean();
+}
+
 void check_refinement(const Refinement& wanted, std::size_t seeds) {
   constrained::quality_bounds(wanted.min_angle);
   constrained::check_areas(&wanted.max_area, 1, "all triangles");
   if (wanted.seed_areas != nullptr) constrained::check_areas(wanted.seed_areas, seeds, "seed");
   if (wanted.mesh.areas != nullptr)
     constrained::check_areas(wanted.mesh.areas, wanted.mesh.count, "triangle of the mesh");
-  expect(!std::isnan(wanted.min_edge), "the smallest edge is not a number");
+  expect(wanted.min_edge == kDefaultMinEdge || (wanted.min_edge >= 0 && std::isfinite(wanted.min_edge)),
+         fmt::format("the smallest edge is {}, but it must be a length from 0 on", wanted.min_edge));
 }
 
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
@@ -555,9 +560,7 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   write_mesh(edges, EdgeChains(edges, refined, points), refined, result);
   sort_by_sets(n, refined.parents, result);
   renumber_regions(result.regions);
-  std::vector<double> all(coordinates, coordinates + 2 * n);
-  all.insert(all.end(), result.added_points.begin(), result.added_points.end());
-  measure_angles(std::move(all), result.triangles, wanted.smoothing_steps > 0, result.refinement);
+  measure_angles(coordinates, n, wanted.smoothing_steps > 0, result);
   result.refinement.smallest_angle_before = refined.before_smoothing.smallest();
   result.refinement.mean_angle_before = refined.before_smoothing.mean();
   result.statistics.points += result.refinement.added_points;

@@ -13,6 +13,10 @@ namespace flaunay::call {
 /// Throws Error(usage), which names the member, if a refinement cannot be what is meant.
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
+/// Reports the angles of a result. coordinates: of the n points of the caller. with_mean: also their mean.
+void measure_angles(const double* coordinates, std::size_t n, bool with_mean,
+                    ConstrainedTriangulation& result);
+
 /// Numbers regions by their first triangles.
 void renumber_regions(std::vector<std::int32_t>& regions);
 

@@ -131,13 +131,18 @@ std::int32_t triangle_at(const ConstrainedTriangulation& mesh, const Coordinates
   return found;
 }
 
-// Random places on a finer grid than points, which are often on edges, and some far away.
+// Random places on a finer grid than points, which are often on edges. whole: up to the hull.
 struct Seeds {
-  explicit Seeds(const Input& input, std::uint64_t round) {
+  Seeds(const Input& input, std::uint64_t round, const ConstrainedTriangulation& whole) {
+    Coordinates all = input.points;
+    all.insert(all.end(), whole.added_points.begin(), whole.added_points.end());
     FixtureRandom random(100 + round);
     for (std::size_t s = 0; s + 1 < input.offsets.size(); ++s) {
-      for (auto count = random.integer(0, 25); count > 0; --count) {
-        for (int c = 0; c < 2; ++c) places.push_back(static_cast<double>(random.integer(-1, 15)) / 2);
+      for (auto count = random.integer(0, 60); count > 0; --count) {
+        double place[2];
+        for (double& x : place) x = static_cast<double>(random.integer(-1, 15)) / 2;
+        if (triangle_at(whole, all, s, place) < 0) continue;
+        places.insert(places.end(), place, place + 2);
         attributes.push_back(0.5 + static_cast<double>(attributes.size()));
       }
       offsets.push_back(attributes.size());
@@ -159,8 +164,10 @@ TEST(SmallCarried, TrianglesHaveTheAttributesOfTheirRegions) {
   for (std::uint64_t round = 0; round < 12; ++round) {
     SCOPED_TRACE(round);
     const Input input(round);
-    const Seeds seeds(input, round);
     Constraints constraints = input.constraints();
+    const Seeds seeds(
+        input, round,
+        any.constrained(input.points.data(), input.offsets, constraints, split_with(Outside::keep, true)));
     seeds.give(constraints);
     for (const Outside outside : {Outside::keep, Outside::hull}) {
       const auto constrain = [&](Triangulator& by, bool labels) {
@@ -211,8 +218,15 @@ TEST(SmallCarried, SeedsThatAreNone) {
     }
     return "no error";
   };
-  EXPECT_EQ(constrain().triangle_attributes, (std::vector<double>{7, 7})) << "far away is outside";
-  places[3] = NAN;
+  EXPECT_EQ(error(ErrorKind::input), "seed 1 at (1.0000000000000001e+300, 0.5) is in no triangle");
+  const Segments diagonal = {0, 2};
+  constraints.segments = diagonal.data();
+  constraints.segment_count = 1;
+  places = {0.5, 0.25, 0.5, 0.5};
+  EXPECT_EQ(error(ErrorKind::input), "seed 1 at (0.5, 0.5) is on a constraint");
+  places = {0.5, 0.25, 0.25, 0.5};
+  EXPECT_EQ(constrain().triangle_attributes, (std::vector<double>{8, 7}));
+  places = {0.5, 0.25, 1e300, NAN};
   EXPECT_EQ(error(ErrorKind::input), "seed 1 is not finite: (1.0000000000000001e+300, nan)");
   constraints.seed_offsets = {0, 1, 2};
   EXPECT_EQ(error(ErrorKind::usage), "the offsets of 2 seeds do not fit 1 sets");

@@ -26,6 +26,8 @@ using constrained::MeshToRefine;
 using constrained::RefinedMesh;
 using Index = std::int32_t;
 
+/// The squared cosine of the angle below which segments are at an apex: 60 degrees less 6e-8.
+constexpr double kSharp = 0.25 + 0x1p-30;
 /// Of lengths along segments, which are compared without being exact.
 constexpr double kLengthSlack = 1e-6;
 /// Vertices on a segment may be off it by this part of the largest coordinate, and by some of the smallest
@@ -278,18 +280,12 @@ class Check {
     return area > 0 ? std::max(std::ldexp(area, 2 * scale_), std::numeric_limits<double>::min()) : 0;
   }
 
-  /// The corners whose opposite edges are shortest, or would be if their lengths were rounded.
+  /// The corners whose opposite edges are shortest.
   std::vector<std::size_t> smallest_angles(std::size_t t) {
-    const std::vector<Index>& rows = refined_.triangles;
-    double lengths[3], shortest = HUGE_VAL;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t c = 3 * t + k;
-      lengths[k] = length(rows[after(c)], rows[after(after(c))]);
-      shortest = std::min(shortest, lengths[k]);
-    }
     std::vector<std::size_t> smallest;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (lengths[k] <= shortest * (1 + 0x1p-49)) smallest.push_back(3 * t + k);
+    for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+      const double *a = corner(c), *b = corner(after(c)), *d = corner(after(after(c)));
+      if (exact_.compare_lengths(b, d, a) <= 0 && exact_.compare_lengths(d, b, a) <= 0) smallest.push_back(c);
     }
     return smallest;
   }
@@ -402,14 +398,20 @@ class Check {
     return ending_[v];
   }
 
-  /// Whether two edges that end at a point are at less than 60 degrees there.
-  bool is_apex(Index v) {
-    const std::vector<Index> edges = edges_at(v);
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const Index p = other_end(edges[i], v), q = other_end(edges[j], v);
-        if (exact_.compare_cosine(at(v), at(p), at(q), 0.25) > 0) return true;
+  /// Whether two edges that end at a point are at less than 60 degrees there, by more than rounding makes of
+  /// 60, with triangles of the mesh all the way between them.
+  bool are_sharp_inside(Index v, Index e, Index f) {
+    if (exact_.orient2d(at(v), at(other_end(e, v)), at(other_end(f, v))) < 0) std::swap(e, f);
+    if (exact_.compare_cosine(at(v), at(other_end(e, v)), at(other_end(f, v)), kSharp) <= 0) return false;
+    for (std::size_t c = 0; c < mesh_.triangles.size(); ++c) {
+      if (mesh_.triangles[c] != v || mesh_.edges[after(after(c))] != e) continue;
+      for (std::size_t side = after(c); mesh_.edges[side] != f;) {
+        const Index beyond = mesh_.neighbors[side];
+        if (beyond < 0) return false;
+        side = 3 * static_cast<std::size_t>(beyond);
+        while (mesh_.triangles[after(after(side))] != v) ++side;
       }
+      return true;
     }
     return false;
   }
@@ -420,6 +422,7 @@ class Check {
 
   bool is_near_apex(std::size_t t) {
     for (const std::size_t c : smallest_angles(t)) {
+      if (refined_.edges[c] >= 0) continue;
       const Index p = refined_.triangles[after(c)], q = refined_.triangles[after(after(c))];
       for (const Index e : edges_at(p)) {
         for (const Index f : edges_at(q)) {
@@ -431,7 +434,7 @@ class Check {
             if (mesh_.edge_ends[other] != apex && mesh_.edge_ends[other + 1] != apex) continue;
             const double first = length(apex, p), second = length(apex, q);
             const double most = 1e-3 * (1 + kLengthSlack) * first + 2 * off_;
-            if (std::fabs(first - second) <= most && is_apex(apex)) return true;
+            if (std::fabs(first - second) <= most && are_sharp_inside(apex, e, f)) return true;
           }
         }
       }

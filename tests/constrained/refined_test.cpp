@@ -787,7 +787,8 @@ TEST(SmallRefined, WrongRequestsAreNamed) {
   expect_named("nan", [&](Refinement& wanted) { wanted.min_angle = nan; });
   expect_named("largest area is -2", [](Refinement& wanted) { wanted.max_area = -2; });
   expect_named("seed 1", [&](Refinement& wanted) { wanted.seed_areas = areas; });
-  expect_named("smallest edge", [&](Refinement& wanted) { wanted.min_edge = nan; });
+  for (const double wrong : {nan, -0.5, HUGE_VAL})
+    expect_named("smallest edge", [&](Refinement& wanted) { wanted.min_edge = wrong; });
 }
 
 }  // namespace

@@ -453,6 +453,62 @@ TEST(SmallRefinement, SmallInputAngles) {
   EXPECT_EQ(excused, refined.report.excuses.size());
 }
 
+/// A square with a triangle inside, turned by an angle.
+DomainToRefine turned_triangle(double angle, const Coordinates& corners) {
+  DomainToRefine domain;
+  nasty_detail::add_square(domain, 0.5, 0.5, 0.5);
+  const auto first = static_cast<std::int32_t>(domain.points.size() / 2);
+  for (std::size_t k = 0; k < corners.size(); k += 2) {
+    const double x = corners[k], y = corners[k + 1];
+    domain.point(0.5 + std::cos(angle) * x - std::sin(angle) * y,
+                 0.5 + std::sin(angle) * x + std::cos(angle) * y);
+  }
+  domain.chain(first, true);
+  return domain;
+}
+constexpr double kTurn = 2 * 3.141592653589793;
+
+// Only an angle of the domain excuses triangles, and never those that stand on a constraint.
+TEST(SmallRefinement, AnglesOutsideExcuseNothing) {
+  DomainToRefine domain = turned_triangle(0, {-0.3, 0, 0.1, -0.0035, 0.1, 0.0035});
+  domain.outside = Outside::holes;
+  EXPECT_EQ(expect_right(mesh_to_refine(domain), angle_of(30)).report.bad_triangles.size(), 0);
+  // Corners of 60 degrees, which rounding makes smaller.
+  FixtureRandom random(1);
+  for (int round = 0; round < repeated(200); ++round) {
+    const double half = 0.2 * std::sqrt(3.0);
+    domain = turned_triangle(kTurn * random.unit(), {0.4, 0, -0.2, half, -0.2, -half});
+    for (const Outside outside : {Outside::holes, Outside::hull}) {
+      domain.outside = outside;
+      const MeshToRefine mesh = mesh_to_refine(domain);
+      const RefinedMesh refined = constrained::refine(native_runtime(), mesh, angle_of(30));
+      ASSERT_EQ(what_is_wrong(mesh, refined, angle_of(30)), "");
+      ASSERT_EQ(refined.report.bad_triangles.size(), 0) << round;
+    }
+  }
+}
+
+// Two angles of 25 degrees but for rounding, of which one is between edges of the border.
+TEST(SmallRefinement, TheSmallestAngleIsExact) {
+  FixtureRandom random(1);
+  Refinement wanted = angle_of(30);
+  wanted.most_points = 0;
+  std::size_t excused = 0;
+  for (int round = 0; round < 100; ++round) {
+    const double angle = kTurn * random.unit(), c = std::cos(angle), s = std::sin(angle);
+    DomainToRefine domain;
+    for (const auto& [x, y] :
+         {std::pair(-1.0, 0.0), {1.0, 0.0}, {1.0, 0.7}, {0.0, std::tan(kTurn * 25 / 360)}})
+      domain.point(c * x - s * y, s * x + c * y);
+    const MeshToRefine mesh = mesh_to_refine(domain);
+    const RefinedMesh refined = constrained::refine(native_runtime(), mesh, wanted);
+    ASSERT_EQ(what_is_wrong(mesh, refined, wanted), "") << round;
+    excused += excused_for(refined, Excuse::input_angle);
+  }
+  EXPECT_GT(excused, 20);
+  EXPECT_LT(excused, 80);
+}
+
 // Positions by the sequential twin, and then the canonical triangulation of these.
 TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
   std::size_t moved = 0, cancelled = 0;

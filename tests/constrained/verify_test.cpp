@@ -345,18 +345,23 @@ TEST(SmallVerifyRefined, ConformingMeshes) {
   }
 }
 
+// Whether the border is made of segments or not.
 TEST(SmallVerifyRefined, SliversAtTheHull) {
   for (const double off : {0x1p-53, 1e-9}) {
-    Case mesh({0, 0, 1, 0, 1, 1, 0, 1, 1 - off, 0.5}, {0, 1, 1, 4, 4, 2, 2, 3, 3, 0});
-    mesh.max_area = 1;
-    mesh.keep_if([](const Ids& row) {
-      return std::find(row.begin(), row.end(), 0) != row.end() ||
-             std::find(row.begin(), row.end(), 3) != row.end();
-    });
-    EXPECT_EQ(mesh.triangles.size(), 9u);
-    EXPECT_EQ(mesh.problem().empty(), off < 1e-9);
-    mesh.max_area = 0;
-    EXPECT_NE(mesh.problem(), "");
+    for (const Segments& segments :
+         {Segments{0, 1, 1, 4, 4, 2, 2, 3, 3, 0}, Segments{0, 4}, Segments{3, 0}}) {
+      Case mesh({0, 0, 1, 0, 1, 1, 0, 1, 1 - off, 0.5}, segments);
+      mesh.max_area = 1;
+      mesh.keep_if([](const Ids& row) {
+        return std::find(row.begin(), row.end(), 0) != row.end() ||
+               std::find(row.begin(), row.end(), 3) != row.end();
+      });
+      EXPECT_EQ(mesh.triangles.size(), 9u);
+      EXPECT_EQ(mesh.problem().empty(), off < 1e-9) << mesh.problem();
+      EXPECT_EQ(mesh.verify().problem.empty(), off < 1e-9) << mesh.verify().problem;
+      mesh.max_area = 0;
+      EXPECT_NE(mesh.problem(), "");
+    }
   }
 }
 
@@ -374,6 +379,26 @@ TEST(SmallVerifyRefined, Apexes) {
   EXPECT_NE(problem(1.01, 0).find(" has an angle of "), std::string::npos) << problem(1.01, 0);
   // The upper segment's first part is not on one line with the others.
   EXPECT_NE(problem(1, 1e-9).find(" has an angle of "), std::string::npos) << problem(1, 1e-9);
+}
+
+// Two segments meet at 14.3 degrees, and their other ends, equally far away, are two corners of a triangle
+// of 14.3 degrees.
+TEST(SmallVerifyRefined, AnglesThatAreNotExcused) {
+  const auto problem = [](const Segments& inside, Outside outside) {
+    Segments segments = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 0, 0, 6, 0, 7};
+    segments.insert(segments.end(), inside.begin(), inside.end());
+    Case mesh({0, 0, 0, 8, 16, 8, 16, 0, 16, -8, 0, -8, 8, 1, 8, -1, 7.5, 0}, segments);
+    mesh.outside = outside;
+    const auto is_hole = [&](const Ids& row) { return row[0] == 0 && row[1] > 5 && row[2] > 5; };
+    if (outside == Outside::holes) mesh.keep_if([&](const Ids& row) { return !is_hole(row); });
+    mesh.min_angle = 14.5;
+    return mesh.problem();
+  };
+  const Segments dent = {6, 8, 8, 7}, across = {6, 7, 6, 8, 8, 7, 0, 8};
+  EXPECT_EQ(problem({0, 8}, Outside::keep), "");
+  for (const auto& [inside, outside] : {std::pair(dent, Outside::holes), std::pair(across, Outside::keep)}) {
+    EXPECT_NE(problem(inside, outside).find("angle of 14.25"), std::string::npos) << problem(inside, outside);
+  }
 }
 
 // Rectangles along the lines of a grid, which overlap: depths by counting the rectangles around a triangle.

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/constrained.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "tests/constrained/nasty_domains.hpp"
 #include "tests/constrained/refined.hpp"
@@ -178,6 +179,41 @@ std::string differs_in_other_units(const DomainToRefine& domain, const Refinemen
              : "differs in other units";
 }
 
+/// What the verifier says of a mesh in which only angles of the input make triangles bad.
+std::string verified(const DomainToRefine& domain, const MeshToRefine& mesh, const RefinedMesh& refined,
+                     const Demands& demands) {
+  const auto is_of_input = [](Excuse e) { return e == Excuse::input_angle || e == Excuse::near_apex; };
+  const std::vector<Excuse>& excuses = refined.report.excuses;
+  if (!std::all_of(excuses.begin(), excuses.end(), is_of_input)) return "";
+  // It tells by places alone what is on one segment, for which coordinates may be too coarse.
+  double largest = 0;
+  for (const double x : domain.points) largest = std::max(largest, std::fabs(x));
+  if (extent_of(domain.points) < 1e-6 * largest) return "";
+  Coordinates points = domain.points;
+  points.insert(points.end(), refined.added.begin(), refined.added.end());
+  // The hull is no constraint.
+  const bool has_border = domain.outside != Outside::keep || !domain.holes.empty();
+  std::vector<std::int32_t> segments;
+  for (std::size_t c = 0; c < refined.edges.size(); ++c) {
+    const std::int32_t beyond = refined.neighbors[c];
+    if (refined.edges[c] < 0 || (beyond < 0 ? !has_border : beyond < static_cast<std::int32_t>(c / 3)))
+      continue;
+    for (std::size_t k = 1; k < 3; ++k) segments.push_back(refined.triangles[c - c % 3 + (c + k) % 3]);
+  }
+  VerifyConstraints constraints;
+  constraints.segments = &segments;
+  constraints.outside = domain.outside;
+  if (!domain.holes.empty()) constraints.holes = &domain.holes;
+  constraints.min_angle = demands.wanted.min_angle;
+  constraints.max_area = demands.wanted.max_area;
+  constraints.conforming = demands.wanted.conforming;
+  const std::string problem =
+      verify_constrained(points.data(), points.size() / 2, refined.triangles, &refined.neighbors, constraints)
+          .problem;
+  // Edges that are kept or too short may be.
+  return problem.find("is encroached") == std::string::npos ? problem : "";
+}
+
 /// Which runtimes are to have the same results.
 enum class Runtimes { one, native, all };
 
@@ -272,7 +308,8 @@ class RefinementFuzzer : public Fuzzer {
     try {
       const RefinedMesh refined = constrained::refine(*native_[0], mesh, demands.wanted);
       count(refined);
-      const std::string problem = testing::what_is_wrong(mesh, refined, demands.wanted);
+      std::string problem = testing::what_is_wrong(mesh, refined, demands.wanted);
+      if (problem.empty()) problem = verified(domain, mesh, refined, demands);
       if (!problem.empty()) return problem;
       for (std::size_t i = 1; with != Runtimes::one && i < native_.size(); ++i) {
         if (!are_same(constrained::refine(*native_[i], mesh, demands.wanted), refined))

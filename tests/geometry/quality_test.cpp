@@ -29,13 +29,13 @@ struct Case {
   double square, area;
 };
 constexpr std::size_t kWidth = sizeof(Case) / sizeof(double);
-constexpr const char* kNames[] = {"is_angle_below", "is_area_above", "is_encroached", "is_below_60_degrees"};
+constexpr const char* kNames[] = {"is_angle_below", "is_area_above", "is_encroached", "is_sharp"};
 using Decisions = std::array<bool, std::size(kNames)>;
 
 Decisions by_host(const Case& of) {
   const auto& [a, b, c] = of.p;
   return {kernel::is_angle_below(a, b, c, of.square) != 0, kernel::is_area_above(a, b, c, of.area) != 0,
-          kernel::is_encroached(a, b, c, of.square) != 0, kernel::is_below_60_degrees(a, b, c) != 0};
+          kernel::is_encroached(a, b, c, of.square) != 0, kernel::is_sharp(a, b, c) != 0};
 }
 
 /// As `flaunay verify` decides.
@@ -45,7 +45,7 @@ Decisions by_verify(const Case& of) {
   return {exact.compare_sine(a, b, c, of.square) < 0 || exact.compare_sine(b, c, a, of.square) < 0 ||
               exact.compare_sine(c, a, b, of.square) < 0,
           exact.compare_area(a, b, c, of.area) > 0, exact.compare_cosine(c, a, b, -of.square) <= 0,
-          exact.compare_cosine(a, b, c, 0.25) > 0};
+          exact.compare_cosine(a, b, c, SHARP_SQUARED_COSINE) > 0};
 }
 
 /// In units of 2^-255, and their products.
@@ -76,7 +76,8 @@ Decisions by_definition(const Case& of) {
   decisions[2] = seen <= 0 && square.get_den() * seen * seen >= square.get_num() * dot(ca, ca) * dot(cb, cb);
   const Vector ab = between(a, b), ac = between(a, c);
   const mpz_class at_a = dot(ab, ac);
-  decisions[3] = at_a > 0 && 4 * at_a * at_a > dot(ab, ab) * dot(ac, ac);
+  const mpq_class sharp = SHARP_SQUARED_COSINE;
+  decisions[3] = at_a > 0 && sharp.get_den() * at_a * at_a > sharp.get_num() * dot(ab, ab) * dot(ac, ac);
   return decisions;
 }
 

@@ -11,6 +11,6 @@ kernel void quality_cases(int n, global const double* restrict cases, global cha
     decisions[4 * i] = is_angle_below(a, b, c, q[6]);
     decisions[4 * i + 1] = is_area_above(a, b, c, q[7]);
     decisions[4 * i + 2] = is_encroached(a, b, c, q[6]);
-    decisions[4 * i + 3] = is_below_60_degrees(a, b, c);
+    decisions[4 * i + 3] = is_sharp(a, b, c);
   }
 }

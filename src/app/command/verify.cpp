@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -117,18 +116,6 @@ Checked verify_in_chunks(const VerifyRequest& request, std::uint64_t memory, Pro
   return {report, stopwatch.seconds(), how};
 }
 
-/// The edges that one triangle has: constraints of a mesh that has been refined without any.
-std::vector<std::int32_t> border_of(const std::vector<std::int32_t>& triangles) {
-  std::set<std::pair<std::int32_t, std::int32_t>> open;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::int32_t a = triangles[i], b = triangles[i % 3 == 2 ? i - 2 : i + 1];
-    if (open.erase({b, a}) == 0) open.insert({a, b});
-  }
-  std::vector<std::int32_t> ends;
-  for (const auto& [a, b] : open) ends.insert(ends.end(), {a, b});
-  return ends;
-}
-
 Checked verify_with_constraints(const VerifyRequest& request, Progress& progress) {
   ConstraintRequest asked = request.constraints;
   io::Map map;
@@ -138,8 +125,7 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
     map.points = io::read_points(request.points, request.columns);
   }
   const std::vector<std::int32_t> triangles = io::read_triangles(request.triangles);
-  const std::vector<std::int32_t> segments =
-      request.has_constraints ? all_segments(map) : border_of(triangles);
+  const std::vector<std::int32_t> segments = all_segments(map);
   const Rings rings = rings_of(map, asked.fill);
   std::vector<std::int32_t> neighbors, edges;
   if (!request.neighbors.empty()) neighbors = io::read_neighbors(request.neighbors);

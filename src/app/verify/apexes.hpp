@@ -17,6 +17,10 @@ namespace flaunay::verification {
 /// terms of the largest coordinate: each is two units in the last place of that off at most.
 constexpr double kRoundedOff = 0x1p-50;
 
+/// Constraints meet at less than 60 degrees if their squared cosine is above this, which is 3e-8 degrees
+/// less: so corners of 60 degrees that are rounded do not.
+constexpr double kSharp = 0.25 + 0x1p-31;
+
 /// Constraint edges that go on straight, but for the rounding of their points, are one chain.
 class Apexes {
  public:
@@ -45,8 +49,11 @@ class Apexes {
     }
   }
 
-  /// Whether p and q are equally far from a point where chains that they are on meet at less than 60 degrees.
-  bool are_shells(std::int32_t p, std::int32_t q) {
+  /// Whether p and q are equally far from a point where chains that they are on meet at less than 60 degrees,
+  /// with triangles all the way between. are_triangles_between(apex, a, b): whether there are, from the edge
+  /// to a counter-clockwise to that to b.
+  template <typename AreTrianglesBetween>
+  bool are_shells(std::int32_t p, std::int32_t q, const AreTrianglesBetween& are_triangles_between) {
     for (const std::int32_t of_p : chains_at(p)) {
       for (const std::int32_t of_q : chains_at(q)) {
         if (of_p == of_q) continue;
@@ -54,8 +61,14 @@ class Apexes {
         std::set_intersection(junctions_[of_p].begin(), junctions_[of_p].end(), junctions_[of_q].begin(),
                               junctions_[of_q].end(), std::back_inserter(common));
         for (const std::int32_t apex : common) {
-          if (apex != p && apex != q && is_as_far(apex, p, q) &&
-              predicates_.compare_cosine(point(apex), point(p), point(q), 0.25) > 0) {
+          if (apex == p || apex == q || !is_as_far(apex, p, q) ||
+              predicates_.compare_cosine(point(apex), point(p), point(q), kSharp) <= 0) {
+            continue;
+          }
+          const std::int32_t to_p = next_towards(apex, of_p, p), to_q = next_towards(apex, of_q, q);
+          const bool is_turned = predicates_.orient2d(point(apex), point(p), point(q)) < 0;
+          if (to_p != apex && to_q != apex &&
+              are_triangles_between(apex, is_turned ? to_q : to_p, is_turned ? to_p : to_q)) {
             return true;
           }
         }
@@ -77,7 +90,18 @@ class Apexes {
   /// 1e-3.
   bool is_as_far(std::int32_t apex, std::int32_t p, std::int32_t q) const {
     const double of_p = distance(apex, p), of_q = distance(apex, q);
-    return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q);
+    return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q) + kRoundedOff * largest_;
+  }
+  /// Where the edge of a chain from one of its points in the direction of another one ends.
+  std::int32_t next_towards(std::int32_t v, std::int32_t chain, std::int32_t goal) {
+    const double x = point(goal)[0] - point(v)[0], y = point(goal)[1] - point(v)[1];
+    std::int32_t next = v;
+    for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {
+      const double* to = point(edges_at_[i].other);
+      const bool is_ahead = x * (to[0] - point(v)[0]) + y * (to[1] - point(v)[1]) > 0;
+      if (is_ahead && chain_of(edges_at_[i].edge) == chain) next = edges_at_[i].other;
+    }
+    return next;
   }
   /// Lengths are scaled, so that their squares are doubles.
   bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) const {

@@ -140,11 +140,15 @@ class ConstrainedChecker : public Checker {
 
  private:
   std::size_t point_of(std::size_t place) const { return static_cast<std::size_t>(point_of_place_[place]); }
-  bool is_constraint(const Piece& piece) const { return piece.segment != kHull; }
+  bool is_constraint(const Piece& piece) const {
+    return piece.segment != kHull && static_cast<std::size_t>(piece.segment) < segments_.size() / 2;
+  }
 
   std::string describe_segment(std::size_t s) const {
-    return fmt::format("segment {} from {} to {}", s, describe_point(segments_[2 * s]),
-                       describe_point(segments_[2 * s + 1]));
+    const std::size_t count = segments_.size() / 2;
+    const std::int32_t* ends = s < count ? &segments_[2 * s] : &border_[2 * (s - count)];
+    return fmt::format("{} from {} to {}", s < count ? fmt::format("segment {}", s) : "the border",
+                       describe_point(ends[0]), describe_point(ends[1]));
   }
   std::string describe_piece(const Piece& piece) const {
     return fmt::format("the edge from {} to {}",
@@ -217,6 +221,7 @@ class ConstrainedChecker : public Checker {
     }
     add_hull(spans, 1);
     add_hull(spans, -1);
+    if (is_refined() && constraints_.outside == Outside::keep) add_border(spans);
     const Sweep::Crossing crossing = sweep_.run(spans);
     if (crossing.first >= 0) {
       violate("{} and {} cross at a place that is no point", describe_segment(crossing.first),
@@ -238,6 +243,17 @@ class ConstrainedChecker : public Checker {
       chain.push_back(v);
     }
     for (std::size_t i = 1; i < chain.size(); ++i) spans.push_back({chain[i - 1], chain[i], kHull});
+  }
+
+  /// Where points on the hull were rounded, the border of a refined mesh is another one.
+  void add_border(std::vector<Span>& spans) {
+    for (std::size_t h = 0; h < twins_.size(); ++h) {
+      if (twins_[h] != kNone) continue;
+      const std::int32_t a = place_of_point_[origin(h)], b = place_of_point_[target(h)];
+      const std::size_t number = segments_.size() / 2 + border_.size() / 2;
+      spans.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(number)});
+      border_.insert(border_.end(), {origin(h), target(h)});
+    }
   }
 
   /// Finds the piece that each half-edge is, and the triangles beside each piece.
@@ -291,7 +307,7 @@ class ConstrainedChecker : public Checker {
     double largest = 0;
     for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
       const Piece& piece = sweep_.pieces()[i];
-      if (is_constraint(piece)) continue;
+      if (piece.segment != kHull) continue;
       hull_piece[std::max(piece.below, piece.above)] = static_cast<std::int32_t>(i);
       for (const double x : places_[piece.from].at) largest = std::max(largest, std::fabs(x));
     }
@@ -760,13 +776,27 @@ class ConstrainedChecker : public Checker {
       if (predicates_.compare_sine(c, a, b, squared_sine) >= 0) return;
       smallest = h;
       is_excused = is_excused || (piece_of_[next] != kNoPiece && piece_of_[last] != kNoPiece) ||
-                   apexes().are_shells(corners_[next], corners_[last]);
+                   (piece_of_[h] == kNoPiece && is_across_apex(corners_[next], corners_[last]));
     }
     if (!is_excused) {
       violate("{} has an angle of {} degrees at point {}, which is below {}", describe_row(t),
               angle_at(smallest), corners_[smallest], constraints_.min_angle);
     }
     ++report_.excused_triangles;
+  }
+
+  bool is_across_apex(std::int32_t p, std::int32_t q) {
+    return apexes().are_shells(p, q, [this](std::int32_t apex, std::int32_t first, std::int32_t last) {
+      const std::int32_t from = place_of_point_[apex], to = place_of_point_[first];
+      std::int64_t t = (from < to ? above_ : below_)[find_piece(std::min(from, to), std::max(from, to))];
+      while (t != kNone) {
+        std::size_t back = 3 * static_cast<std::size_t>(t);  // the half-edge that ends at the apex
+        while (target(back) != apex) ++back;
+        if (origin(back) == last) return true;
+        t = twins_[back] == kNone ? kNone : twins_[back] / 3;
+      }
+      return false;
+    });
   }
 
   /// At the corner opposite to a half-edge, in degrees.
@@ -799,6 +829,7 @@ class ConstrainedChecker : public Checker {
   std::unique_ptr<Apexes> apexes_;
   std::vector<Place> places_;
   std::vector<std::int32_t> place_of_point_, point_of_place_, place_of_hole_;
+  std::vector<std::int32_t> border_;  // 2 points per edge of a refined mesh that one triangle has
   Sweep sweep_;
   std::vector<std::int32_t> first_piece_;    // by place: of those that begin there, and the number of all
   std::vector<std::int32_t> piece_of_;       // by half-edge

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace flaunay::verification {
 
@@ -114,12 +115,12 @@ void Sweep::merge_leaving(std::int32_t place) {
 }
 
 /// Of those with one direction: up to their furthest ends, on the line of what ended at the place, or a new
-/// one.
+/// one. Of segments that end at one place, the one with the smallest number counts.
 Sweep::Active Sweep::merged(std::size_t first, std::size_t last) {
   Active all = leaving_[first];
   for (std::size_t i = first; i < last; ++i) {
     const Active& other = leaving_[i];
-    if (other.segment_to > all.segment_to) {
+    if (std::pair(other.segment_to, all.segment) > std::pair(all.segment_to, other.segment)) {
       all.segment_to = other.segment_to;
       all.segment = other.segment;
     }

@@ -13,6 +13,7 @@
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/smooth.hpp"
+#include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "host/launch/vector_operations.hpp"
@@ -228,7 +229,7 @@ class Rounds {
     rules_.vertices = static_cast<int>(mesh_.points);
   }
 
-  // The ends of edges, the lexicographically smaller one first.
+  // The ends of edges, 2 per edge, the lexicographically smaller one first.
   std::vector<std::int32_t> ordered_ends() const {
     std::vector<std::int32_t> ends = places_of(mesh_.edge_ends);
     for (std::size_t e = 0; 2 * e < ends.size(); ++e) {
@@ -254,27 +255,36 @@ class Rounds {
     }
   }
 
-  // Where input vertices are: those at which two edges meet at less than 60 degrees are apexes.
-  std::vector<edge_place> input_places() const {
-    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
-    const std::vector<std::int32_t> ends = places_of(mesh_.edge_ends);
-    std::vector<std::size_t> first(mesh_.points + 1);
-    for (const std::int32_t v : ends) ++first[v + 1];
-    for (std::size_t v = 0; v < mesh_.points; ++v) first[v + 1] += first[v];
-    std::vector<std::int32_t> other(ends.size());
-    std::vector<std::size_t> next(first.begin(), first.end() - 1);
-    for (std::size_t i = 0; i < ends.size(); ++i) other[next[ends[i]]++] = ends[i ^ 1];
-    // Of more edges than this, two meet at less than 60 degrees.
-    constexpr std::size_t kMostApart = 6;
-    for (std::size_t v = 0; v < mesh_.points; ++v) {
-      const std::size_t begin = first[v], end = first[v + 1];
-      bool is_apex = end - begin > kMostApart;
-      for (std::size_t i = begin; i < end && !is_apex; ++i) {
-        for (std::size_t j = i + 1; j < end && !is_apex; ++j) {
-          is_apex = kernel::is_below_60_degrees(points_[v], points_[other[i]], points_[other[j]]) != 0;
-        }
+  // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
+  std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends) const {
+    std::vector<std::int32_t> wedges(ends.size(), -1);
+    const auto vertex = [&](int corner) { return place_of_[mesh_.triangles[corner]]; };
+    for (int c = 0; c < static_cast<int>(mesh_.triangles.size()); ++c) {
+      const int edge = mesh_.edges[geometry::previous_halfedge(c)], v = vertex(c);
+      if (edge < 0) continue;
+      int last = geometry::next_halfedge(c);  // opposite to the side that comes next
+      while (mesh_.edges[last] < 0) {
+        int at = 3 * mesh_.neighbors[last];
+        while (vertex(at) != v) ++at;
+        last = geometry::next_halfedge(at);
       }
-      if (is_apex) places[v].apex = static_cast<int>(v);
+      wedges[ends[2 * edge] == v ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
+    }
+    return wedges;
+  }
+
+  // Where input vertices are: those at which two edges meet at a sharp angle, with triangles between, are
+  // apexes.
+  std::vector<edge_place> input_places(const std::vector<std::int32_t>& ends,
+                                       const std::vector<std::int32_t>& wedges) const {
+    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (wedges[i] < 0) continue;
+      const std::int32_t v = ends[i], next = 2 * wedges[i];
+      const double2 at = points_[v], first = points_[ends[i ^ 1]],
+                    last = points_[ends[ends[next] == v ? next + 1 : next]];
+      const bool is_convex = kernel::orient_sign(at, first, last, ORIENT_BOUND) > 0;
+      if (is_convex && kernel::is_sharp(at, first, last) != 0) places[v].apex = v;
     }
     add_far_ends(ends, places);
     return places;
@@ -287,7 +297,10 @@ class Rounds {
     for (std::int32_t& e : edges) {
       if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
     }
-    ends_ = runtime_.upload(arena_, ordered_ends());
+    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends);
+    const std::vector<edge_place> places = input_places(ends, wedges);
+    ends_ = runtime_.upload(arena_, std::move(ends));
+    wedges_ = runtime_.upload(arena_, std::move(wedges));
     reserve(rows_, vertices_);
     clear_claims();
     reserve_made(rows_);
@@ -303,7 +316,6 @@ class Rounds {
       runtime_.finish();
     }
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
-    const std::vector<edge_place> places = input_places();
     runtime_.write(arrays_.places, 0, places.size(), places.data());
     if (!mesh_.largest_areas.empty()) {
       std::vector<double> areas = mesh_.largest_areas;
@@ -386,6 +398,7 @@ class Rounds {
             .points = arrays_.points,
             .places = arrays_.places,
             .ends = ends_,
+            .wedges = wedges_,
             .areas = rules_.area_kind == kernel::AREAS_BY_ROW ? arrays_.areas : parent_areas_};
   }
 
@@ -879,7 +892,7 @@ class Rounds {
   std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
   std::vector<double2> points_;         // scaled, by these numbers
   Arrays arrays_;
-  Buffer<cl_int> ends_{};
+  Buffer<cl_int> ends_{}, wedges_{};
   Buffer<cl_double> parent_areas_{};
   Buffer<mesh_row> given_{};  // the rows at first, if triangles of one region have different areas
   Buffer<cl_int2> made_{};    // what the last round has made: rows and their first vertices

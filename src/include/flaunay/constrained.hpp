@@ -72,7 +72,8 @@ struct Constraints {
   /// One per point, or null. If there are some, ConstrainedTriangulation::vertex_markers are computed.
   const std::int32_t* point_markers = nullptr;
   /// x and y per seed: the region that this place is in has an attribute. If there are some,
-  /// ConstrainedTriangulation::triangle_attributes are computed.
+  /// ConstrainedTriangulation::triangle_attributes are computed. As for holes, it is an error if a place is
+  /// on a constraint, or in no triangle of the convex hull.
   const double* seeds = nullptr;
   const double* seed_attributes = nullptr;  ///< one per seed; may be null if there are seed_areas
   std::size_t seed_count = 0;               ///< number of seeds

@@ -490,7 +490,7 @@ typedef struct flaunay_given_triangles {
   uintptr_t reserved[4];  ///< 0
 } flaunay_given_triangles;
 
-/// What a mesh is refined to. {0}: nothing is added.
+/// What a mesh is refined to. {0}: nothing is added, but the report has angles.
 typedef struct flaunay_refinement {
   double min_angle;  ///< in degrees, from 0 to 34: no angle of a triangle is smaller; 0 for any
   double max_area;   ///< no triangle is larger; 0 for any
@@ -506,13 +506,14 @@ typedef struct flaunay_refinement {
   /// Other than 0: `min_edge` counts. 0: 2^-40 of the larger side of the bounding box, or 2^-48 of the
   /// largest coordinate if that is more.
   int has_min_edge;
-  double min_edge;      ///< no two points are put nearer to each other
+  double min_edge;      ///< no two points are put nearer to each other; from 0 on
   int has_most_points;  ///< other than 0: `most_points` counts; 0: there is no limit
-  size_t most_points;   ///< no more points are added to a set
-  size_t most_rounds;   ///< no more rounds are made; 0: 10,000
+  size_t most_points;   ///< no more points are added to a set; 0: none
+  size_t most_rounds;   ///< no more rounds are made; 0: none
   /// Other than 0: constraints and the border are split until no angle opposite to them is obtuse; then all
   /// triangles are Delaunay without constraints, too.
   int conforming;
+  int has_most_rounds;                  ///< other than 0: `most_rounds` counts; 0: 10,000
   const flaunay_given_triangles* mesh;  ///< NULL, or a mesh that is refined further
   size_t smoothing_steps;               ///< so often, added points move to where triangles are more regular
   uintptr_t reserved[1];                ///< 0
@@ -552,7 +553,8 @@ typedef struct flaunay_constraints {
   const int32_t* segment_markers;  ///< NULL, or one per segment: edge_markers are computed
   const int32_t* point_markers;    ///< NULL, or one per point: vertex_markers are computed
   /// x and y per seed: the region that this place is in has an attribute. If there are some,
-  /// triangle_attributes are computed.
+  /// triangle_attributes are computed. As for holes, it is an error if a place is on a constraint, or in no
+  /// triangle of the convex hull.
   const double* seeds;
   const double* seed_attributes;         ///< one per seed; may be NULL if there are seed_areas
   size_t seed_count;                     ///< number of seeds

@@ -34,6 +34,9 @@ struct GivenTriangles {
   const double* attributes = nullptr;
 };
 
+/// In the place of a smallest edge: the default.
+constexpr double kDefaultMinEdge = -1;
+
 /// What a mesh is refined to. By default, nothing is added.
 struct Refinement {
   /// In degrees, from 0 to 34: no angle of a triangle is smaller, except where docs/refinement.md says that
@@ -50,14 +53,15 @@ struct Refinement {
   bool conforming = false;
   KeptEdges kept = KeptEdges::none;             ///< which constraints must not be split
   const std::uint8_t* kept_segments = nullptr;  ///< one per segment: 1 if it must not be split, or null
-  /// No two points are put nearer to each other than that. Negative: 2^-40 times the larger side of the
-  /// bounding box, or 2^-48 times the largest coordinate if that is more.
-  double min_edge = -1;
-  std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set
-  std::size_t most_rounds = 10000;                         ///< no more rounds are made
+  /// No two points are put nearer to each other than that, from 0 on. The default is 2^-40 times the larger
+  /// side of the bounding box, or 2^-48 times the largest coordinate if that is more.
+  double min_edge = kDefaultMinEdge;
+  std::size_t most_points = static_cast<std::size_t>(-1);  ///< no more points are added to a set; 0: none
+  std::size_t most_rounds = 10000;                         ///< no more rounds are made; 0: none
   /// So often, added points that are not on constraints move to where triangles are more regular, as far as
   /// these stay as good as is asked for. It ends at a limit of points or rounds.
   std::size_t smoothing_steps = 0;
+  bool measured = false;  ///< whether angles are reported even if nothing is asked for
 
   /// Whether anything is asked for.
   bool is_wanted() const {
@@ -69,8 +73,8 @@ struct Refinement {
 /// Why a triangle is worse than it should be.
 enum class Excuse : std::uint8_t {
   input_angle = 1,  ///< its smallest angle is one between two segments
-  /// Its shortest edge joins points on two segments, equally far from where these meet at less than 60
-  /// degrees.
+  /// Its shortest edge, which is no segment, joins points on two segments, equally far from where these meet
+  /// at less than 60 degrees, with triangles all the way between them.
   near_apex,
   min_edge,     ///< what would mend it is nearer to a point than Refinement::min_edge
   kept,         ///< a constraint is in the way that must not be split
@@ -84,8 +88,8 @@ struct RefinementReport {
   std::size_t rounds = 0;        ///< in which points were added; of several sets the most
   std::size_t added_points = 0;  ///< on constraints or not
   std::size_t split_points = 0;  ///< those of them that are on constraints
-  double smallest_angle = 0;     ///< of all triangles, in degrees, rounded; 0 if there are none
-  double largest_angle = 0;      ///< of all triangles, in degrees, rounded; 0 if there are none
+  /// Of all triangles, in degrees, rounded; 0 if there are none, or if nothing was asked for.
+  double smallest_angle = 0, largest_angle = 0;
   double mean_angle = 0;  ///< of the smallest angle of each triangle, in degrees, if there was smoothing
   double smallest_angle_before = 0;         ///< as smallest_angle, before smoothing; 0 without
   double mean_angle_before = 0;             ///< as mean_angle, before smoothing; 0 without
