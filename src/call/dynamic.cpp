@@ -225,13 +225,13 @@ struct DynamicTriangulation::Implementation {
   // What a batch is to do with the mesh. Points leave their old places before others come.
   struct Batch {
     Ids removed, moved, inserted;
+    bool moves_many = false;
   };
 
   // Changes the mesh, of points that are where they are to be. Returns whether it could.
   bool change(Batch batch, std::vector<updates::SplitEdge>& splits, Changes& changes) {
     if (!mesh->remove(batch.removed)) return false;
-    const std::size_t most = share(tuning_of(engine->runtime).removed_percent, mesh->triangles() / 2);
-    std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), most);
+    std::optional<Ids> out = mesh->move(std::move(batch.moved), points.coordinates(), batch.moves_many);
     if (!out) return false;
     batch.inserted.insert(batch.inserted.end(), out->begin(), out->end());
     auto found = mesh->insert(std::move(batch.inserted), points.coordinates(), splits);
@@ -382,7 +382,7 @@ struct DynamicTriangulation::Implementation {
     const bool is_large = m > share(tuning_of(engine->runtime).inserted_percent, points.count());
     return run(is_large, numbers, [&] {
       points.append(coordinates, m);
-      return Batch{{}, {}, numbers};
+      return Batch{{}, {}, numbers, false};
     });
   }
 
@@ -405,8 +405,11 @@ struct DynamicTriangulation::Implementation {
     check_points(coordinates, m);
     if (m == 0) return nothing();
     points.check_coordinates(coordinates, numbers, m);
-    return run(false, Ids(numbers, numbers + m), [&] {
+    const bool moves_many = m > 1 && m > share(tuning_of(engine->runtime).moved_percent, points.count());
+    const bool is_large = moves_many && unmended_left > 0;
+    Changes changes = run(is_large, Ids(numbers, numbers + m), [&] {
       Batch batch;
+      batch.moves_many = moves_many;
       Ids coming;
       for (const std::size_t i : order_of_leaving(numbers, m)) {
         const std::int32_t v = numbers[i];
@@ -421,6 +424,12 @@ struct DynamicTriangulation::Implementation {
       batch.inserted.insert(batch.inserted.end(), coming.begin(), coming.end());
       return batch;
     });
+    if (is_large) {
+      --unmended_left;
+    } else if (moves_many) {
+      unmended_left = unmended = changes.is_anew ? std::min(2 * unmended + 1, kMostUnmended) : 0;
+    }
+    return changes;
   }
 
   Changes nothing() const {
@@ -466,6 +475,10 @@ struct DynamicTriangulation::Implementation {
   std::optional<updates::Mesh> mesh;
   bool is_loaded = false, is_lost = false;
   std::size_t triangle_count = 0, row_count = 0;
+  // After a batch that moved many points and could not mend the mesh, so many like it do not try: each time
+  // twice as many. An attempt takes half as long as triangulating anew.
+  static constexpr std::size_t kMostUnmended = 31;
+  std::size_t unmended = 0, unmended_left = 0;
 };
 
 DynamicTriangulation::DynamicTriangulation(Triangulator& triangulator, const double* coordinates,

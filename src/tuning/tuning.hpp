@@ -121,6 +121,8 @@ struct Tuning : host::Sizes {
   /// triangulated anew.
   std::size_t inserted_percent = 0;
   std::size_t removed_percent = 0;
+  /// If a batch moves more than so many percent, the mesh is mended only if hardly an edge of it changes.
+  std::size_t moved_percent = 0;
 
   const Tuning& tuning() const override { return *this; }
   std::shared_ptr<host::Sizes> copy() const override { return std::make_shared<Tuning>(*this); }

@@ -484,15 +484,9 @@ Mesh::RowList Mesh::rows_around(const Buffer<cl_int>& vertices, std::size_t coun
   return rows;
 }
 
-std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinates, std::size_t most) {
+std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinates, bool are_many) {
   Arena& arena = runtime_.arena();
-  // If most rows are looked at anyway, all are.
-  constexpr std::size_t kRowsAround = 6;
-  const bool all = kRowsAround * vertices.size() > rows_;
-  // More passes over all rows would take longer than triangulating anew.
-  constexpr int kMostPasses = 2;
-  int passes = 0;
-  // So would flips if one row in so many is wrong, unless there are few.
+  // Flips take longer than triangulating anew if one row in so many is wrong, unless there are few.
   constexpr std::size_t kRowsPerFlip = 100, kFewRows = 5000;
   Ids out;
   while (!vertices.empty()) {
@@ -504,14 +498,14 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     const kernels::living_mesh mesh{.rows = row_array_, .points = points_};
     const auto others = runtime_.upload(arena, scaled(vertices, coordinates)).as<cl_double2>();
     bool is_turned = false;
-    if (!all) {
+    if (!are_many) {
       // The hull stays what it is, so that triangles that have not turned over are apart.
       runtime_.map(count,
                    kernels::find_hull_vertices{
                        .vertices = moved, .living_mesh = mesh, .rows_of = rows_of_, .on_hull = turned});
     }
     swap_places(moved, others, count);
-    const RowList rows = all ? RowList{true, moved, rows_} : rows_around(moved, count);
+    const RowList rows = are_many ? RowList{true, moved, rows_} : rows_around(moved, count);
     const auto found = arena.allocate<cl_uchar>(rows.count);
     const auto minima = runtime_.upload(arena, std::vector<cl_int>{0});
     runtime_.map_in_small_groups(
@@ -529,19 +523,19 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     std::vector<cl_uint> are_turned(count);
     runtime_.read(turned, 0, count, are_turned.data());
     const auto [at, wrong] = host::pack_positions(runtime_, found, rows.count, kernel::ROW_WRONG);
-    if (all && kRowsPerFlip * wrong > rows_ && rows_ > kFewRows) return {};
+    if (are_many && kRowsPerFlip * wrong > rows_ && rows_ > kFewRows) return {};
     Ids left, leave;
     for (std::size_t i = 0; i < count; ++i) (are_turned[i] != 0 ? leave : left).push_back(vertices[i]);
     is_turned = !leave.empty();
     if (!is_turned) {
-      if (all && runtime_.read_one(minima, 0) != 1) return {};
+      if (are_many && runtime_.read_one(minima, 0) != 1) return {};
       const auto list = arena.allocate<cl_int>(wrong);
       runtime_.map(wrong,
                    kernels::append_rows{.positions = at, .all = rows.all, .from = rows.list, .list = list});
       flip({false, list, wrong});
       return out;
     }
-    if (out.size() + leave.size() > most || (all && ++passes == kMostPasses)) return {};
+    if (are_many) return {};
     swap_places(moved, others, count);
     if (!remove(leave)) return {};
     out.insert(out.end(), leave.begin(), leave.end());

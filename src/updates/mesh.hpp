@@ -66,9 +66,9 @@ class Mesh {
   /// triangle is left. The mesh must be loaded again then.
   bool remove(const Ids& vertices);
   /// Moves vertices to other places, as far as the mesh can be mended there. Returns those that were taken
-  /// out instead, and are to be inserted; nothing if these are more than `most`, or if the mesh must be
-  /// loaded again.
-  std::optional<Ids> move(Ids vertices, const std::vector<double>& coordinates, std::size_t most);
+  /// out instead, and are to be inserted; nothing if the mesh must be loaded again. are_many: none are taken
+  /// out, and few edges are flipped, since triangulating anew would take less time.
+  std::optional<Ids> move(Ids vertices, const std::vector<double>& coordinates, bool are_many);
 
   /// All rows, in host memory.
   std::vector<kernel::mesh_row> read_rows() const;

@@ -133,12 +133,20 @@ SegmentSet on_rounded_lines(FixtureRandom& random) {
   return set;
 }
 
-/// Equal points, segments in another order, or points moved.
+/// Equal points, other magnitudes, of which some round points to multiples of the smallest double, or points
+/// moved.
 void change(FixtureRandom& random, SegmentSet& set) {
   if (once_in(random, 6)) {
     const testing::SegmentInput twice = testing::duplicated(
         {set.points, set.segments}, static_cast<std::uint64_t>(random.integer(0, 1'000'000)));
     set = {twice.points, twice.segments};
+  }
+  if (once_in(random, 5)) {
+    const int exponent = once_in(random, 2) ? -1074 : static_cast<int>(random.integer(-1074, 970));
+    Coordinates scaled = set.points;
+    for (double& x : scaled) x = std::ldexp(x, exponent);
+    if (std::all_of(scaled.begin(), scaled.end(), [](double value) { return std::isfinite(value); }))
+      set.points = scaled;
   }
   if (once_in(random, 5)) {
     const Coordinates moved =
