@@ -83,19 +83,20 @@ def parts_of(given: Any) -> Iterator[int]:
 class ClippedVoronoi(Frozen):
     """The Voronoi cells of points, clipped to a box or a convex polygon. `Voronoi.clipped` makes it.
 
-    Which vertices a cell has is decided exactly; their coordinates are rounded. Vertices that cells
-    share are the same to the last bit.
+    Which vertices a cell has is decided exactly; their coordinates are rounded. Vertices that coincide but
+    for that are one, in all cells that share them. So polygons are simple, and tile.
 
     Attributes
     ----------
     vertices : ndarray of float64, shape (nvertices, 2)
         Cell i has ``vertices[offsets[i]:offsets[i + 1]]``, counter-clockwise. It has none if its point
-        equals an earlier one, or if the cell has no area within the bounds; otherwise three at least.
+        equals an earlier one, or if the cell has no area within the bounds, or none but for rounding;
+        otherwise three at least.
     offsets : ndarray of int32, shape (npoints + 1,)
     areas : ndarray of float64, shape (npoints,)
-        0 for cells without vertices.
+        0 for cells without area within the bounds.
     centroids : ndarray of float64, shape (npoints, 2)
-        NaN for cells without vertices.
+        NaN for these.
     bounds : ndarray of float64, shape (m, 2)
         The corners of the box or polygon, counter-clockwise.
     """
@@ -135,9 +136,7 @@ class ClippedVoronoi(Frozen):
     def to_shapely(self) -> npt.NDArray[np.object_]:
         """An array of one shapely.Polygon per point, empty polygons for cells without vertices.
 
-        Needs shapely 2. A geopandas.GeoSeries takes the array as it is. Vertices are rounded, so a
-        polygon can cross itself where vertices nearly coincide, as for points on a circle:
-        ``shapely.is_valid`` finds those, and ``shapely.make_valid`` mends them.
+        Needs shapely 2. A geopandas.GeoSeries takes the array as it is. The polygons are valid.
 
         Raises
         ------

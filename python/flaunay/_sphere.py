@@ -16,7 +16,6 @@ from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
 
-
 def _as_points(given: ArrayLike, name: str) -> Doubles:
     points = np.asarray(as_floats(given, name), np.float64)
     if points.ndim == 0 or points.shape[-1] not in (2, 3):
@@ -46,7 +45,12 @@ class SphericalVoronoi:
     """
 
     def __init__(
-        self, vertices: Doubles, cell_offsets: Indices, cells: Indices, areas: Doubles, tri: SphericalDelaunay
+        self,
+        vertices: Doubles,
+        cell_offsets: Indices,
+        cells: Indices,
+        areas: Doubles,
+        tri: SphericalDelaunay,
     ) -> None:
         self.vertices = vertices
         self.cell_offsets = cell_offsets

@@ -48,7 +48,8 @@ class Voronoi(Frozen):
         The coordinates.
     vertices : ndarray of float64, shape (nvertices, 2)
         The circumcentres of the triangles, rounded: those of all in their order, or with `merge` of the
-        first of each circumcircle. What is adjacent does not depend on rounding.
+        first of each circumcircle. What is adjacent does not depend on rounding. Vertices that coincide
+        but for that are equal, so that bounded cells do not cross themselves.
     cells : ndarray of int32
         Point i has the vertices ``cells[cell_offsets[i]:cell_offsets[i + 1]]``, counter-clockwise;
         of an unbounded cell from the hull edge that leaves the point to the one that arrives. None

@@ -137,3 +137,23 @@ def test_errors_say_what_is_wrong():
         tri.interpolate([1, 2], [0, 0])
     with pytest.raises(flaunay.UsageError, match="offsets"):
         flaunay.spherical([[0, 0], [1, 1]], [0, 3])
+
+
+def test_cells_of_a_great_circle_can_be_drawn(random):
+    s = 0.5**0.5
+    cells = flaunay.spherical([[0, 0], [90, 0], [180, 0], [270, 0]]).voronoi
+    lune = [[0, 0, 1], [s, -s, 0], [0, 0, -1], [s, s, 0]]
+    np.testing.assert_allclose(cells.polygon(0), lune, atol=1e-15)
+    # The corner in the middle of a side is the same for both cells.
+    assert cells.polygon(1)[1].tobytes() == cells.polygon(0)[3].tobytes()
+    # Within half a circle, the sides between the ends are beyond.
+    np.testing.assert_allclose(
+        flaunay.spherical([[0, 0], [0, 30], [0, 50]]).voronoi.polygon(0)[3],
+        [-np.cos(np.pi * 25 / 180), 0, -np.sin(np.pi * 25 / 180)],
+        atol=1e-15,
+    )
+    points = on_sphere(random, 50)
+    cells = flaunay.spherical(points).voronoi
+    np.testing.assert_array_equal(cells.polygon(-1), cells.vertices[cells.regions[-1]])
+    with pytest.raises(IndexError):
+        cells.polygon(50)

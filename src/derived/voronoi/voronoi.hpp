@@ -14,9 +14,10 @@ struct Buffers {
   host::Buffer<cl_uchar> unbounded{};       ///< n
 };
 
-/// Enqueues the computation of the dual, and does not wait. If the mesh is not valid, the results are
-/// unspecified, but no memory outside of the arrays is accessed. Temporary memory: 13 bytes per triangle. A
-/// cell of d triangles takes O(d log d) steps, of which one work-item does O(d).
+/// Enqueues the computation of the dual. Waits once, or until circumcentres are mended (mend.hpp). If the
+/// mesh is not valid, the results are unspecified, but no memory outside of the arrays is accessed. Temporary
+/// memory: 13 bytes per triangle. A cell of d triangles takes O(d log d) steps, of which one work-item does
+/// O(d).
 void compute(host::Runtime& runtime, const points::DeviceMesh& mesh, const Buffers& result);
 
 /// Computes the circumcentres of all triangles: 2 per triangle.

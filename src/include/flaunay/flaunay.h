@@ -1224,7 +1224,8 @@ FLAUNAY_API flaunay_status flaunay_device_voronoi_set_buffer(flaunay_device_voro
 /// The buffer of one part; see flaunay_device_triangulation_buffer.
 FLAUNAY_API cl_mem flaunay_device_voronoi_buffer(const flaunay_device_voronoi* voronoi, unsigned part);
 /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
-/// representatives. The work is enqueued like that of flaunay_triangulate_device, with the same errors.
+/// representatives. The work is enqueued like that of flaunay_triangulate_device, with the same errors. The
+/// host waits once, or until cells are mended that would cross themselves but for that.
 FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* triangulator,
                                                           const flaunay_device_points* points,
                                                           const flaunay_device_triangulation* triangulation,
@@ -1235,8 +1236,9 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
 
 /// Computes the Voronoi cells of these n points, clipped to a convex polygon: x0 y0 x1 y1 ... for 3 to 16,383
 /// corners, counter-clockwise. A corner may lie on the line through its neighbours; cells do not have it
-/// then. What vertices cells have is decided exactly; their coordinates are rounded. The triangulation must
-/// have neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
+/// then. What vertices cells have is decided exactly; their coordinates are rounded, and those that coincide
+/// but for that are one vertex, so that polygons are simple, and tile. The triangulation must have
+/// neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
 /// message that names a corner. The caller destroys the result.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
                                                 size_t n, const flaunay_triangulation* triangulation,
@@ -1252,11 +1254,11 @@ FLAUNAY_API size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_vo
 /// bit.
 FLAUNAY_API const double* flaunay_clipped_voronoi_vertices(const flaunay_clipped_voronoi* cells);
 /// n + 1 values: the cell of point i has vertices [offsets[i], offsets[i + 1]). Points that another point
-/// represents have none, nor have points whose cells have no area in the polygon.
+/// represents have none, nor have points whose cells have no area in the polygon, or none but for rounding.
 FLAUNAY_API const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped_voronoi* cells);
-/// n values; 0 for points without vertices.
+/// n values; 0 for points whose cells have no area.
 FLAUNAY_API const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells);
-/// 2 n values; NaN for points without vertices.
+/// 2 n values; NaN for these.
 FLAUNAY_API const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells);
 
 /// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
@@ -1275,7 +1277,8 @@ FLAUNAY_API cl_mem flaunay_device_clipped_voronoi_buffer(const flaunay_device_cl
 FLAUNAY_API size_t flaunay_device_clipped_voronoi_vertex_count(const flaunay_device_clipped_voronoi* cells);
 /// flaunay_voronoi_clip in device memory. The triangulation must have the parts triangles, neighbors, hull
 /// and representatives; of several sets, each has cells of its own. The work is enqueued like that of
-/// flaunay_triangulate_device, with the same errors. The host waits twice.
+/// flaunay_triangulate_device, with the same errors. The host waits three times, or until polygons are
+/// mended.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
                                                        const flaunay_device_points* points,
                                                        const flaunay_device_triangulation* triangulation,

@@ -196,7 +196,8 @@ FLAUNAY_API const Parts& triangles_alone() noexcept;
 /// The dual of a triangulation of n points. Where more than three points are cocircular, circumcentres
 /// coincide.
 struct Voronoi {
-  /// x and y per triangle. They are rounded; which cells are adjacent was decided by exact predicates.
+  /// x and y per triangle. They are rounded; which cells are adjacent was decided by exact predicates. Those
+  /// that coincide but for rounding are equal, so that bounded cells do not cross themselves.
   std::vector<double> circumcentres;
   /// n + 1 values: the cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells.
   std::vector<std::int32_t> cell_offsets;
@@ -212,15 +213,16 @@ struct Voronoi {
 
 /// The Voronoi cells of n points, clipped to a convex polygon.
 struct ClippedVoronoi {
-  /// x and y per vertex of a cell, counter-clockwise. They are rounded; which vertices a cell has was decided
-  /// by exact predicates, and vertices that cells share are the same to the last bit.
+  /// x and y per vertex of a cell, counter-clockwise. Which vertices a cell has was decided by exact
+  /// predicates; they are rounded, and those that coincide but for that are one, in all cells that share
+  /// them. So polygons are simple, and tile.
   std::vector<double> vertices;
   /// n + 1 values: the cell of point i has vertices [offsets[i], offsets[i + 1]). Points that another point
-  /// represents have none, nor have points whose cells have no area in the polygon. Other cells have at least
-  /// three, no two of which are the same point before rounding.
+  /// represents have none, nor have points whose cells have no area in the polygon, or none but for rounding.
+  /// Other cells have at least three.
   std::vector<std::int32_t> offsets;
-  std::vector<double> areas;      ///< n values; 0 for points without vertices
-  std::vector<double> centroids;  ///< x and y per point; NaN for points without vertices
+  std::vector<double> areas;      ///< n values; 0 for points whose cells have no area
+  std::vector<double> centroids;  ///< x and y per point; NaN for these
 };
 
 /// Computes triangulations, on one device or on the host. It owns the compiled kernels, the working memory

@@ -130,10 +130,10 @@ FLAUNAY_API void triangulate_periodic(Triangulator& triangulator, const DevicePo
                                       const Enqueue& enqueue = own_queue());
 
 /// Computes the Voronoi cells on the torus, each around its point's place, so that some reach beyond the
-/// period. Vertices are rounded, each cell by itself; where more than three points are cocircular, some are
-/// the same but for that. The areas of a set's cells sum to that of the period. Points that another one
-/// represents have no vertices. Throws Error(usage) for arrays that are none's, and for a cylinder, where
-/// cells have no end. O(n).
+/// period. Vertices are rounded to the units of the period, so that their images are exact, and are those of
+/// ClippedVoronoi: simple polygons that tile the torus. The areas of a set's cells sum to that of the period.
+/// Points that another one represents have no vertices. Throws Error(usage) for arrays that are none's, and
+/// for a cylinder, where cells have no end. O(n).
 FLAUNAY_API ClippedVoronoi periodic_cells(Triangulator& triangulator,
                                           const PeriodicTriangulation& triangulation);
 

@@ -50,11 +50,11 @@ FLAUNAY_API std::string verify_weighted(Triangulator& triangulator, const double
                                         const WeightedTriangulation& triangulation);
 
 /// Computes the power cells of n points, clipped to a convex polygon: of each point the places whose power,
-/// the squared distance less the weight, is least for it. Vertices, areas and centroids are rounded, each
-/// cell by itself. Points without a cell in the polygon, such as hidden ones, have no vertices. corners: as
-/// of Triangulator::clipped_voronoi, with its errors. The triangulation is of one set, with neighbours;
-/// throws Error(usage) for arrays that do not fit each other. O(n k) for k corners, but for points with very
-/// many neighbours.
+/// the squared distance less the weight, is least for it. Vertices, areas and centroids are rounded; polygons
+/// are simple, and tile. Points without a cell in the polygon, such as hidden ones, have no vertices.
+/// corners: as of Triangulator::clipped_voronoi, with its errors. The triangulation is of one set, with
+/// neighbours; throws Error(usage) for arrays that do not fit each other. O(n k) for k corners, but for
+/// points with very many neighbours.
 FLAUNAY_API ClippedVoronoi power_cells(Triangulator& triangulator, const double* points,
                                        const double* weights, std::size_t n,
                                        const WeightedTriangulation& triangulation, const double* corners,
