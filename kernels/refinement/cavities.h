@@ -218,17 +218,6 @@ static inline int is_near_vertex(const seen_mesh* mesh, int start, int end, doub
   return 0;
 }
 
-// The same of a point that splits the constraint opposite to a corner.
-static inline int is_split_near_vertex(const seen_mesh* mesh, int corner, double2 p, double distance) {
-  const int beyond = neighbor_at(mesh, corner);
-  for (int side = 0; side < (beyond < 0 ? 1 : 2); ++side) {
-    const int from = side ? corner_facing(mesh, beyond, row_of(corner)) : corner;
-    // Otherwise it will not be split.
-    if (is_in_circle(mesh, row_of(from), p) && is_near_vertex(mesh, next_halfedge(from), from, p, distance)) return 1;
-  }
-  return 0;
-}
-
 // Whether a point is strictly left of the two sides of a row that are not opposite to the corner, and in its circle. If
 // rounding puts it beyond the constraint by more than the circle reaches, the row would have to stay.
 static inline int is_before_sides(const seen_mesh* mesh, int corner, double2 p) {

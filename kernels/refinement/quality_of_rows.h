@@ -107,6 +107,20 @@ static inline split_place place_of_constraint(const seen_mesh* mesh, int corner,
                         edge_at(mesh, corner) & EDGE_NUMBER, mesh->points, places, ends, rules.vertices, rules.coarse);
 }
 
+// Whether the point that splits the constraint opposite to a corner would be nearer to a vertex than the smallest edge.
+OUT_OF_LINE static inline int is_split_crowded(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
+                                               GLOBAL const int* ends, refinement_rules rules) {
+  const double2 p = place_of_constraint(mesh, corner, places, ends, rules).point;
+  const int beyond = neighbor_at(mesh, corner);
+  for (int side = 0; side < (beyond < 0 ? 1 : 2); ++side) {
+    const int from = side ? corner_facing(mesh, beyond, row_of(corner)) : corner;
+    // Otherwise it will not be split.
+    if (is_in_circle(mesh, row_of(from), p) && is_near_vertex(mesh, next_halfedge(from), from, p, rules.min_edge))
+      return 1;
+  }
+  return 0;
+}
+
 // How far a corner is from the line opposite to it, squared, times that line's squared length.
 static inline double scaled_height(const seen_mesh* mesh, int corner) {
   const double2 from = point_at(mesh, next_halfedge(corner));
@@ -136,8 +150,7 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const 
   if (beyond >= 0) height = fmin(height, scaled_height(mesh, corner_facing(mesh, beyond, row_of(corner))));
   if (height < rules.min_edge * length) return EXCUSED_FROZEN;
   if (length >= rules.long_edge && height >= FAR_CORNER * rules.min_edge * length) return EXCUSED_NOT;
-  const double2 p = place_of_constraint(mesh, corner, places, ends, rules).point;
-  return is_split_near_vertex(mesh, corner, p, rules.min_edge) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
+  return is_split_crowded(mesh, corner, places, ends, rules) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 
 // With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.

@@ -12,7 +12,6 @@
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/refine.hpp"
-#include "geometry/magnitudes.hpp"
 #include "statistics/phases.hpp"
 #include "tuning/tuning.hpp"
 
@@ -137,10 +136,12 @@ double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t 
 
 void measure_angles(std::vector<double> coordinates, const Ids& triangles, bool with_mean,
                     RefinementReport& report) {
-  const int shift =
-      geometry::scaling_for(geometry::inspect(coordinates.data(), 0, coordinates.size() / 2)).shift;
-  if (shift != 0) {
-    for (double& x : coordinates) x = std::ldexp(x, shift);
+  double largest = 0;
+  for (const double x : coordinates) largest = std::max(largest, std::fabs(x));
+  // With all binary places that there may be, squares of lengths are doubles if the largest one is near 1.
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  if (exponent < -7 || exponent > 250) {
+    for (double& x : coordinates) x = std::ldexp(x, -exponent);
   }
   constrained::Angles angles(with_mean);
   for (std::size_t t = 0; t < triangles.size(); t += 3) angles.add(coordinates.data(), &triangles[t]);

@@ -11,7 +11,7 @@
 namespace flaunay::constrained {
 
 /// Corners relative to each other. Squares of their differences must be neither too large nor too small for
-/// doubles: coordinates are scaled before (geometry/magnitudes.hpp).
+/// doubles: coordinates are scaled before.
 struct Shape {
   Shape(const double* coordinates, const std::int32_t* corners) {
     for (std::size_t k = 0; k < 3; ++k) {
