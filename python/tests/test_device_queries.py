@@ -175,7 +175,7 @@ def test_tolerances_of_gradients(case):
     assert not same(coarse, case.locator.gradients(case.device_values).get())
     with pytest.raises(flaunay.UsageError, match="tol must be greater than 0"):
         case.locator.gradients(case.device_values, tol=np.nan)
-    with pytest.raises(flaunay.UsageError, match="maxiter must be 1 or more"):
+    with pytest.raises(flaunay.UsageError, match="maxiter must be an integer from 1"):
         case.locator.gradients(case.device_values, maxiter=0)
 
 
