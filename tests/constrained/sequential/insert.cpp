@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "constrained/crossings/segment_set.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "mesh/barycentric.h"
 #include "tests/constrained/sequential/constraints.hpp"
