@@ -362,7 +362,7 @@ static void test_bad_kept_triangulations(void) {
     changed = good, changed.neighbors = bad[k];
     CHECK(fails(create_from(changed, &result), usage, "neighbors: "));
     changed = good, changed.hull = bad[k];
-    CHECK(fails(create_from(changed, &result), usage, "hull: "));
+    CHECK(fails(create_from(changed, &result), usage, "hull vertices: "));
     changed = good, changed.representatives = bad[k];
     CHECK(fails(create_from(changed, &result), usage, "representatives: "));
   }
@@ -370,9 +370,9 @@ static void test_bad_kept_triangulations(void) {
   changed.neighbors = kTriangle;  // triangle 1 of one
   CHECK(fails(create_from(changed, &result), usage, "neighbors: 1 is none of the 1 triangles"));
   changed = good, changed.t = SIZE_MAX / 3 + 1;
-  CHECK(fails(create_from(changed, &result), usage, "32-bit"));
+  CHECK(fails(create_from(changed, &result), FLAUNAY_ERROR_INPUT, "triangles are too many"));
   changed = good, changed.hull = NULL;
-  CHECK(fails(create_from(changed, &result), usage, "hull must not be NULL"));
+  CHECK(fails(create_from(changed, &result), usage, "3 hull vertices, but the pointer to them is NULL"));
   CHECK(fails(create_from(good, NULL), usage, "handle"));
   CHECK(flaunay_last_error_status() == usage);
 }
@@ -408,7 +408,7 @@ static void test_tables_of_triangles(void) {
       fails(flaunay_first_triangles(kTriangle, 1, 2, first), usage, "triangles: 2 is none of the 2 points"));
   CHECK(fails(flaunay_first_triangles(kTriangle, 1, 3, NULL), usage, "NULL"));
   CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kNoNeighbors, 3, 3, starts, neighbors), usage,
-              "hull: -1"));
+              "hull vertices: -1"));
   CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kTriangle, 3, 3, NULL, neighbors), usage, "NULL"));
   CHECK(fails(flaunay_vertex_neighbors(kTriangle, 1, kTriangle, 3, 3, starts, NULL), usage, "NULL"));
   CHECK(fails(flaunay_vertex_neighbors(NULL, 1, kTriangle, 3, 3, starts, neighbors), usage, "triangles"));
@@ -476,7 +476,7 @@ static void test_measures_of_triangles(void) {
   CHECK(flaunay_circumradii(NULL, 0, NULL, 0, NULL) == FLAUNAY_SUCCESS);
   CHECK(fails(flaunay_circumradii(places, 4, corners, 3, radii), usage, "triangles: 4 is none"));
   CHECK(fails(flaunay_circumradii(places, 5, corners, 3, NULL), usage, "NULL"));
-  CHECK(fails(flaunay_triangle_turns(NULL, 5, corners, 3, turns), usage, "null"));
+  CHECK(fails(flaunay_triangle_turns(NULL, 5, corners, 3, turns), usage, "NULL"));
   CHECK(fails(flaunay_triangle_angles(places, 5, NULL, 3, angles), usage, "triangles"));
   CHECK(fails(flaunay_same_circles(places, 5, corners, 3, NULL, first), usage, "neighbors"));
   CHECK(fails(flaunay_edge_circles(places, 5, corners, 3, NULL, sides), usage, "halfedges"));
@@ -879,7 +879,7 @@ static void test_bad_offsets(void) {
   CHECK(fails(triangulate_sets((const size_t[]){0, 3, 2, 4}, 3), usage, "not decrease"));
   CHECK(fails(triangulate_sets((const size_t[]){1, 4}, 1), usage, "begin with 0"));
   CHECK(fails(triangulate_sets((const size_t[]){0, 3}, 1), usage, "end with 3, but there are 4"));
-  CHECK(fails(triangulate_sets((const size_t[]){0}, SIZE_MAX), usage, "too many sets"));
+  CHECK(fails(triangulate_sets((const size_t[]){0}, SIZE_MAX), FLAUNAY_ERROR_INPUT, "sets are too many"));
 }
 
 // Points are not read before their number is checked.
@@ -895,8 +895,8 @@ static void test_too_many_points(void) {
     CHECK(bytes == 0);
   }
   size_t bytes = 0;
-  CHECK(fails(flaunay_triangulator_workspace_bytes(triangulator, 1, SIZE_MAX, &bytes), FLAUNAY_ERROR_USAGE,
-              "too many sets"));
+  CHECK(fails(flaunay_triangulator_workspace_bytes(triangulator, 1, SIZE_MAX, &bytes), FLAUNAY_ERROR_INPUT,
+              "sets are too many"));
 }
 
 static void test_bad_coordinates(void) {
@@ -942,7 +942,8 @@ static void test_bad_device_points(void) {
   CHECK(fails(triangulate_square(input, 0, NULL), usage, "it has 64 bytes, 80 are needed"));
   input = square;
   input.first = SIZE_MAX;
-  CHECK(fails(triangulate_square(input, 0, NULL), usage, "too many points"));
+  CHECK(fails(triangulate_square(input, 0, NULL), FLAUNAY_ERROR_INPUT,
+              "points before the first one are too many"));
   input = square;
   input.memory = NULL;
   CHECK(fails(triangulate_square(input, 0, NULL), usage, "no buffer of points"));
@@ -981,7 +982,7 @@ static void test_bad_device_offsets(void) {
   input.sets = 4;
   CHECK(fails(triangulate_square(input, 0, NULL), usage, "it has 16 bytes, 20 are needed"));
   input.sets = SIZE_MAX;
-  CHECK(fails(triangulate_square(input, 0, NULL), usage, "too many sets"));
+  CHECK(fails(triangulate_square(input, 0, NULL), FLAUNAY_ERROR_INPUT, "sets are too many"));
   input.sets = 3;
   input.offsets = host_short;
   CHECK(flaunay_last_error()[0] != '\0' && triangulate_square(input, 0, NULL) == usage);
@@ -1050,9 +1051,9 @@ static void test_out_of_memory(void) {
   struct rlimit before;
   REQUIRE(getrlimit(RLIMIT_AS, &before) == 0);
   struct rlimit limited = before;
-  limited.rlim_cur = (rlim_t)1 << 38;
+  limited.rlim_cur = (rlim_t)1 << 33;
   REQUIRE(setrlimit(RLIMIT_AS, &limited) == 0);
-  CHECK(fails(triangulate_sets((const size_t[]){0, 4}, (size_t)1 << 36), FLAUNAY_ERROR_MEMORY, "memory"));
+  CHECK(fails(triangulate_sets((const size_t[]){0, 4}, (size_t)1 << 30), FLAUNAY_ERROR_MEMORY, "memory"));
   REQUIRE(setrlimit(RLIMIT_AS, &before) == 0);
 #endif
 }
@@ -1325,9 +1326,9 @@ static void test_bad_constraints(void) {
                                      {.fill_rule = -1},
                                      {.reserved = {1}}};
   const char* const texts[] = {"4",
-                               "null",
-                               "null",
-                               "null",
+                               "NULL",
+                               "NULL",
+                               "NULL",
                                "flaunay_crossings",
                                "flaunay_outside",
                                "_fill_rule",
@@ -1429,7 +1430,7 @@ static void test_bad_polygons(void) {
   CHECK(fails(polygons_with(input), usage, "rings"));
   input = kPolygons;
   input.coordinates = NULL;
-  CHECK(fails(polygons_with(input), usage, "null"));
+  CHECK(fails(polygons_with(input), usage, "NULL"));
   input = kPolygons;
   input.polygon_count = 1;
   CHECK(polygons_with(input) == usage);
@@ -1479,7 +1480,7 @@ static void test_clipped_voronoi(void) {
               "corner 1"));
   CHECK(cells == NULL);
   CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, NULL, 4, &cells), FLAUNAY_ERROR_USAGE,
-              "null"));
+              "NULL"));
   CHECK(fails(flaunay_voronoi_clip(triangulator, kSquare, 3, mesh, box, 4, &cells), FLAUNAY_ERROR_USAGE,
               "points"));
   CHECK(flaunay_clipped_voronoi_vertices(NULL) == NULL && flaunay_clipped_voronoi_point_count(NULL) == 0);
@@ -1562,7 +1563,7 @@ static void test_clipped_voronoi_on_device(void) {
   CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, bow, 4, &plain, cells),
               FLAUNAY_ERROR_INPUT, "corner 1"));
   CHECK(fails(flaunay_voronoi_clip_device(triangulator, &square, device_mesh, NULL, 4, &plain, cells), usage,
-              "null"));
+              "NULL"));
   CHECK(fails(flaunay_voronoi_clip_device(NULL, &square, device_mesh, box, 4, &plain, cells), usage, "NULL"));
   CHECK(
       fails(flaunay_voronoi_clip_device(triangulator, &square, NULL, box, 4, &plain, cells), usage, "NULL"));
@@ -1751,7 +1752,7 @@ static void test_weighted(void) {
   CHECK(fabs(areas[0] + areas[1] + areas[2] + areas[3] + areas[5] - 16) < 1e-12);
   flaunay_clipped_voronoi_destroy(cells);
   CHECK(fails(flaunay_weighted_create(triangulator, places, NULL, 6, NULL, 0, &none), FLAUNAY_ERROR_USAGE,
-              "no weights"));
+              "6 weights"));
   CHECK(fails(flaunay_weighted_hiding_triangles(triangulator, NULL, places, &hiding), FLAUNAY_ERROR_USAGE,
               "NULL"));
   CHECK(none == NULL && flaunay_weighted_hidden(NULL) == NULL);
@@ -1889,7 +1890,7 @@ static void test_locator(void) {
   options.method = 0;
   options.reserved[7] = 1;
   CHECK(fails(flaunay_locator_gradients(locator, rows, &options, gradients), usage, "does not know"));
-  CHECK(fails(flaunay_locator_gradients(locator, NULL, NULL, gradients), usage, "null"));
+  CHECK(fails(flaunay_locator_gradients(locator, NULL, NULL, gradients), usage, "NULL"));
   CHECK(fails(flaunay_locator_gradients(locator, kValues, NULL, NULL), usage, "NULL"));
 
   const double bad[] = {0, 0, NAN, 1};
@@ -2587,13 +2588,13 @@ static void test_bad_chunk_options(void) {
   CHECK(chunks_with((flaunay_chunk_options){.devices = names, .device_count = 1}) == FLAUNAY_SUCCESS);
   CHECK(fails(chunks_with((flaunay_chunk_options){.devices = names, .device_count = 2}), FLAUNAY_ERROR_DEVICE,
               "no such device"));
-  CHECK(fails(chunks_with((flaunay_chunk_options){.device_count = 1}), usage, "list of devices"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.device_count = 1}), usage, "1 devices"));
   flaunay_triangulator* const own[] = {triangulator, NULL};
   CHECK(chunks_with((flaunay_chunk_options){.triangulators = own, .triangulator_count = 1}) ==
         FLAUNAY_SUCCESS);
   CHECK(fails(chunks_with((flaunay_chunk_options){.triangulators = own, .triangulator_count = 2}), usage,
               "a triangulator for chunks"));
-  CHECK(fails(chunks_with((flaunay_chunk_options){.triangulator_count = 1}), usage, "list of triangulators"));
+  CHECK(fails(chunks_with((flaunay_chunk_options){.triangulator_count = 1}), usage, "1 triangulators"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.memory_bytes = 1000}), usage, "too little"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.reserved = {[7] = 1}}), usage, "flaunay_chunk_options"));
   CHECK(fails(chunks_with((flaunay_chunk_options){.scratch = "/nowhere/at/all"}), FLAUNAY_ERROR_INPUT,

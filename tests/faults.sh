@@ -56,8 +56,8 @@ limited() { # limited OPTION KILOBYTES COMMAND...
   )
 }
 
-# PoCL is what lacks memory, or a folder for its kernels; what flaunay itself keeps is out of the way. Other drivers are,
-# too: if there are several, the loader opens their devices before it says that there are any.
+# PoCL is what lacks memory, or a folder for its kernels; what flaunay itself keeps is out of the way, and so are other
+# drivers.
 on_pocl() {
   export FLAUNAY_DEVICE='#0' FLAUNAY_CACHE_DIR='' OCL_ICD_VENDORS=/etc/OpenCL/vendors/pocl.icd
 }
@@ -98,6 +98,11 @@ case "$1" in
         limited -v $((1024 * megabytes)) "$FLAUNAY" devices
     done
     refuse 'too little to load a driver' 'ulimit -v' limited -v 100000 "$FLAUNAY" triangulate "$input" --quiet
+    # If there are several drivers, the loader opens their devices before it says that there are any.
+    for megabytes in 230 250 270 290; do
+      refuse "$megabytes MB, too little to load all drivers" 'ulimit -v' \
+        limited -v $((1024 * megabytes)) env -u OCL_ICD_VENDORS "$FLAUNAY" triangulate "$input" --quiet
+    done
     refuse 'too little to compile' 'ulimit -v' limited -v 450000 "$FLAUNAY" triangulate "$input" --quiet
     # To compile needs no more than the least that is not refused.
     export POCL_CACHE_DIR="$work/none"

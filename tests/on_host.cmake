@@ -126,3 +126,18 @@ if(WIN32 OR NOT CMAKE_CROSSCOMPILING)
     LIBRARIES flaunay_core flaunay_host flaunay_io
     LABELS asan)
 endif()
+
+# Its first test calls all functions that flaunay.h declares.
+file(READ ${PROJECT_SOURCE_DIR}/src/include/flaunay/flaunay.h HEADER)
+string(REGEX REPLACE "//[^\n]*|\n" " " HEADER "${HEADER}")
+string(REPLACE ";" "\n" HEADER "${HEADER}")
+string(REGEX MATCHALL "FLAUNAY_API [^\n]*" DECLARATIONS "${HEADER}")
+list(TRANSFORM DECLARATIONS REPLACE ".* \\*?(flaunay_[a-z_]+)\\((.*)\\)" "FUNCTION(\\1, \"\\2\")")
+list(JOIN DECLARATIONS "\n" DECLARATIONS)
+file(CONFIGURE OUTPUT functions/flaunay_functions.inc CONTENT "${DECLARATIONS}\n" @ONLY)
+flaunay_test(
+  test_arguments UNOPTIMISED
+  SOURCES call/arguments_test.cpp
+  LIBRARIES flaunay::flaunay
+  LABELS asan)
+target_include_directories(test_arguments PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/functions)

@@ -104,6 +104,7 @@ std::string hint_of_address_space() {
 }  // namespace
 
 std::vector<boost::compute::device> all_devices() {
+  require_space_to_load_pocl();
   cl_uint platform_count = 0;
   const cl_int code = clGetPlatformIDs(0, nullptr, &platform_count);
   if (code != CL_SUCCESS || platform_count == 0) {

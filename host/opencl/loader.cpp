@@ -90,29 +90,6 @@ Platforms platforms_of(const std::string& driver) {
   return list(count, found.data(), nullptr) == CL_SUCCESS ? found : Platforms();
 }
 
-// The drivers that are installed, as the loader finds them: the first line of each file *.icd.
-std::vector<std::string> installed_drivers() {
-  const char* given = std::getenv("OCL_ICD_VENDORS");
-  if (given == nullptr) given = std::getenv("OPENCL_VENDOR_PATH");
-  const fs::path place = given != nullptr ? given : "/etc/OpenCL/vendors";
-  std::vector<fs::path> files;
-  std::error_code error;
-  if (fs::is_directory(place, error)) {
-    for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
-      files.push_back(entry->path());
-    }
-  } else {
-    files.push_back(place);
-  }
-  std::sort(files.begin(), files.end());
-  std::vector<std::string> drivers;
-  for (const fs::path& file : files) {
-    std::string driver;
-    if (file.extension() == ".icd" && std::getline(std::ifstream(file), driver)) drivers.push_back(driver);
-  }
-  return drivers;
-}
-
 Platforms installed_platforms() {
 #ifdef FLAUNAY_WITHOUT_OPENCL
   return {};
@@ -124,7 +101,7 @@ Platforms installed_platforms() {
     return list(count, found.data(), nullptr) == CL_SUCCESS ? found : Platforms();
   }
   Platforms all;
-  for (const std::string& driver : installed_drivers()) {
+  for (const std::string& driver : flaunay::host::installed_drivers()) {
     const Platforms found = platforms_of(driver);
     all.insert(all.end(), found.begin(), found.end());
   }
@@ -172,7 +149,30 @@ namespace flaunay::host {
 
 #ifdef FLAUNAY_WITHOUT_OPENCL
 void add_driver(const std::string&, const std::string&) {}
+std::vector<std::string> installed_drivers() { return {}; }
 #else
+std::vector<std::string> installed_drivers() {
+  const char* given = std::getenv("OCL_ICD_VENDORS");
+  if (given == nullptr) given = std::getenv("OPENCL_VENDOR_PATH");
+  const fs::path place = given != nullptr ? given : "/etc/OpenCL/vendors";
+  std::vector<fs::path> files;
+  std::error_code error;
+  if (fs::is_directory(place, error)) {
+    for (fs::directory_iterator entry(place, error), end; !error && entry != end; entry.increment(error)) {
+      files.push_back(entry->path());
+    }
+  } else {
+    files.push_back(place);
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> drivers;
+  for (const fs::path& file : files) {
+    std::string driver;
+    if (file.extension() == ".icd" && std::getline(std::ifstream(file), driver)) drivers.push_back(driver);
+  }
+  return drivers;
+}
+
 void add_driver(const std::string& platform, const std::string& path) {
   const std::lock_guard lock(added_mutex);
   for (const AddedDriver& driver : added_drivers()) {

@@ -1,5 +1,6 @@
 #include "host/opencl/pocl.hpp"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
@@ -7,16 +8,20 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "host/error.hpp"
 #include "host/memory/system_memory.hpp"
+#include "host/opencl/loader.hpp"
 #include "host/opencl/private_folder.hpp"
 
 namespace flaunay::host {
@@ -26,6 +31,7 @@ namespace fs = std::filesystem;
 
 // Measured with PoCL 3.1 and LLVM 15, on two cores, with a margin: with less, it ends the process where it
 // makes threads, or its compiler hangs. Threads have their stacks besides.
+constexpr std::size_t kSpaceForLibrary = 256 * kMebibyte;
 constexpr std::size_t kSpaceForDevice = 64 * kMebibyte;
 constexpr std::size_t kSpaceForCompiler = 192 * kMebibyte;
 // A program with its kernels takes less than 1 MiB, and linking some temporary files.
@@ -36,6 +42,10 @@ std::size_t stack_of_thread() {
   rlimit stack{};
   getrlimit(RLIMIT_STACK, &stack);
   return stack.rlim_cur == RLIM_INFINITY ? kWithoutLimit : stack.rlim_cur;
+}
+
+std::size_t space_for_device() {
+  return kSpaceForDevice + std::thread::hardware_concurrency() * stack_of_thread();
 }
 
 void require_space(std::size_t bytes, const char* what) {
@@ -82,10 +92,20 @@ bool is_pocl(cl_platform_id platform) {
          std::strstr(name, "Portable Computing Language") != nullptr;
 }
 
-void require_space_for_pocl() {
-  require_space(kSpaceForDevice + std::thread::hardware_concurrency() * stack_of_thread(),
-                "to open its device");
+void require_space_to_load_pocl() {
+  const std::vector<std::string> drivers = installed_drivers();
+  const auto driver = std::find_if(drivers.begin(), drivers.end(), [](const std::string& name) {
+    return name.find("pocl") != std::string::npos;
+  });
+  if (driver == drivers.end()) return;
+  if (void* const loaded = dlopen(driver->c_str(), RTLD_LAZY | RTLD_NOLOAD); loaded != nullptr) {
+    dlclose(loaded);
+    return;
+  }
+  require_space(kSpaceForLibrary + space_for_device(), "to be loaded and to open its device");
 }
+
+void require_space_for_pocl() { require_space(space_for_device(), "to open its device"); }
 
 void require_pocl_compiler() {
   require_space(kSpaceForCompiler, "to compile kernels");

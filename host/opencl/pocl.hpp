@@ -12,6 +12,7 @@ namespace flaunay::host {
 
 // There, it is a driver like all others.
 constexpr bool is_pocl(cl_platform_id) { return false; }
+inline void require_space_to_load_pocl() {}
 inline void require_space_for_pocl() {}
 inline void require_pocl_folder() {}
 inline void require_pocl_compiler() {}
@@ -20,6 +21,11 @@ inline void note_pocl_ended_well() noexcept {}
 #else
 
 bool is_pocl(cl_platform_id platform);
+
+/// To be called before platforms are listed: where there are several, the ICD loader asks all of them for
+/// their devices to sort them. Throws DeviceError if PoCL is installed, but not loaded yet, and the limits of
+/// the process leave too little address space for its library and its device.
+void require_space_to_load_pocl();
 
 /// To be called before PoCL opens its device. Throws DeviceError if the limits of the process leave too
 /// little address space for it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import sys
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -300,6 +301,25 @@ def as_integers(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
     if array.dtype.kind not in "iu" and array.size:
         raise UsageError(f"{name} must be integers, not {array.dtype}")
     return array
+
+
+def as_int32(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.int32]:
+    """The same integers as the library takes them; UsageError for those that would be others."""
+    kept = np.ascontiguousarray(given, np.int32)
+    if (kept != given).any():
+        raise UsageError(f"{name} must be int32: {given[kept != given][0]} is too large")
+    return kept
+
+
+def as_count(given: Any, name: str, least: int = 0) -> int:
+    """A number of things that a size_t can be; UsageError for anything else."""
+    try:
+        count = operator.index(given)
+    except TypeError:
+        count = -1
+    if isinstance(given, bool) or not least <= count <= sys.maxsize:
+        raise UsageError(f"{name} must be an integer from {least} to {sys.maxsize}, not {given!r}")
+    return count
 
 
 def as_offsets(given: npt.ArrayLike, name: str = "offsets") -> npt.NDArray[np.int64]:

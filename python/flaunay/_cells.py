@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import Frozen, as_floats, as_points, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, as_count, as_floats, as_points, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
@@ -59,13 +59,6 @@ def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
         across = across / (np.max(np.abs(across), initial=0.0) or 1.0)
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
     return (corners[::-1], True) if area < 0 else (corners, False)
-
-
-def as_iterations(given: Any) -> int:
-    iterations = operator.index(given)
-    if iterations < 0:
-        raise UsageError(f"iterations must not be negative: {iterations}")
-    return iterations
 
 
 class ClippedVoronoi(Frozen):
@@ -234,6 +227,6 @@ def relax(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times = as_iterations(iterations)
+    times = as_count(iterations, "iterations")
     given = np.asarray(as_points(points), np.float64)
     return _calls.relax(_triangulators.of_device(device), given, corners_of(bounds), times)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import operator
 import os
 import re
 import tempfile
@@ -18,6 +17,7 @@ import numpy.typing as npt
 from flaunay import _calls, _declarations, _raster, _triangulators
 from flaunay._arrays import (
     FloatArray,
+    as_count,
     as_floats,
     as_points,
     check_out,
@@ -140,16 +140,10 @@ def _as_bytes(memory: Union[None, int, str]) -> int:
             )
         size = int(match[1]) * _UNITS[match[2].upper()]
     else:
-        size = _as_count(memory, "memory")
+        size = as_count(memory, "memory")
     if not 0 < size <= _MOST_BYTES:
         raise UsageError(f"memory must be from 1 to {_MOST_BYTES} bytes, not {size}")
     return size
-
-
-def _as_count(given: object, name: str) -> int:
-    if isinstance(given, bool) or not isinstance(given, (int, np.integer)):
-        raise UsageError(f"{name} must be an integer, not {given!r}")
-    return operator.index(given)
 
 
 def _is_wide(index: Optional[int], n: int, wanted: dict[str, Optional[str]]) -> bool:
@@ -172,13 +166,11 @@ def chunks_of(
     progress: _calls.Progress,
 ) -> _calls.Chunks:
     """What `triangulate_chunks` is told of these names."""
-    if chunk_points is not None and _as_count(chunk_points, "chunk_points") < 1:
-        raise UsageError(f"chunk_points must be 1 at least, not {chunk_points}")
     return _calls.Chunks(
         _as_bytes(memory),
         b"" if scratch is None else os.fsencode(scratch),
         _triangulators.names_for_chunks(devices),
-        0 if chunk_points is None else min(int(chunk_points), _MOST_BYTES),
+        0 if chunk_points is None else as_count(chunk_points, "chunk_points", 1),
         progress,
     )
 

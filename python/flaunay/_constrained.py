@@ -14,6 +14,7 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import (
     ArrayLike,
     as_floats,
+    as_int32,
     as_integers,
     as_offsets,
     as_points,
@@ -469,10 +470,7 @@ def _as_markers(given: Optional[npt.ArrayLike], name: str, count: int) -> Option
     markers = as_integers(given, name)
     if markers.shape != (count,):
         raise UsageError(f"{name} must have the shape ({count},), not {markers.shape}")
-    kept = np.ascontiguousarray(markers, np.int32)
-    if (kept != markers).any():
-        raise UsageError(f"{name} must be int32: {markers[kept != markers][0]} is too large")
-    return kept
+    return as_int32(markers, name)
 
 
 def with_device(mesh: _Mesh, device: Optional[str]) -> _Mesh:

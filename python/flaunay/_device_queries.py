@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import summary
+from flaunay._arrays import as_count, summary
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for
 from flaunay._errors import UsageError
 
@@ -188,8 +188,7 @@ class DeviceLocator:
         handle = self._opened()
         if not tol > 0:
             raise UsageError(f"tol must be greater than 0, not {tol}")
-        if maxiter < 1:
-            raise UsageError(f"maxiter must be 1 or more, not {maxiter}")
+        maxiter = as_count(maxiter, "maxiter", 1)
         call = DeviceCall(queue_for(values, queue, "values"), wait_for)
         memory, columns = self._values(call, values)
         shape = (*values.shape, 2)

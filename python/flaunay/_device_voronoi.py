@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import summary
-from flaunay._cells import ClippedVoronoi, as_iterations, corners_of
+from flaunay._arrays import as_count, summary
+from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._device_arrays import DeviceCall, queue_for
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def relax_device(
     array([[1.33, 1.33],
            [2.67, 2.67]])
     """
-    times, corners = as_iterations(iterations), corners_of(bounds)
+    times, corners = as_count(iterations, "iterations"), corners_of(bounds)
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     given = call.points(points, None, "points")
     triangulator = _triangulators.of_queue(call.queue)

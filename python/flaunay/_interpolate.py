@@ -17,6 +17,7 @@ from flaunay._arrays import (
     FloatArray,
     are_rows,
     as_any,
+    as_count,
     as_floats,
     check_memory,
     frozen,
@@ -636,8 +637,7 @@ class CloughTocherInterpolator(_Columns):
     ) -> None:
         if not tol > 0:
             raise UsageError(f"tol must be greater than 0, not {tol}")
-        if maxiter < 1:
-            raise UsageError(f"maxiter must be 1 or more, not {maxiter}")
+        maxiter = as_count(maxiter, "maxiter", 1)
         if gradients is None:
             if 2 * _RATE**maxiter > tol:
                 warnings.warn(

@@ -273,7 +273,8 @@ def periodic(
     points : array_like, shape (n, 2)
         Any points, which are taken into the period.
     period : (float or None, float or None)
-        Where the plane begins again, in x and in y. None, or infinity, for one of them: it does not.
+        Where the plane begins again, in x and in y: from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and
+        neither more than 2^30 times the other. None, or infinity, for one of them: it does not.
     offsets : array_like of int, optional
         Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
         are one set.
@@ -287,7 +288,7 @@ def periodic(
     Raises
     ------
     UsageError
-        For a wrong shape, a period that is not positive, and offsets that decrease or do not go from 0 to n.
+        For a wrong shape, a period beyond these limits, and offsets that decrease or do not go from 0 to n.
     InputError
         For a point that is not finite.
     DeviceError

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 import threading
 from collections.abc import Callable
 from functools import cached_property
@@ -13,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, FloatArray, are_rows, as_floats, check_out
+from flaunay._arrays import ArrayLike, FloatArray, are_rows, as_count, as_floats, check_out
 from flaunay._errors import InputError, UsageError
 
 Indices = npt.NDArray[np.int32]
@@ -269,10 +268,8 @@ class Queries:
         """
         queries, shape = as_queries(xi)
         is_alone = k is None
-        count = 1 if k is None else operator.index(k)
+        count = 1 if k is None else as_count(k, "k", 1)
         most = math.inf if distance_upper_bound is None else distance_upper_bound
-        if count < 1:
-            raise UsageError(f"k must be 1 or more, not {k}")
         if not most >= 0:
             raise UsageError(f"distance_upper_bound must be 0 or more, not {most}")
         if not is_alone:

@@ -9,7 +9,7 @@ from typing import Any, Optional, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_floats, as_integers, frozen
+from flaunay._arrays import as_count, as_floats, as_int32, as_integers, frozen
 from flaunay._declarations import EXCUSE, KEPT_EDGES
 from flaunay._errors import UsageError
 
@@ -84,12 +84,6 @@ def _number(given: Any, name: str) -> float:
         raise UsageError(f"{name} must be a number, not {given!r}") from None
 
 
-def _count(given: Any, name: str) -> int:
-    if not isinstance(given, (int, np.integer)) or given < 0:
-        raise UsageError(f"{name} must be an integer from 0 on, not {given!r}")
-    return int(given)
-
-
 def _row(given: Any, name: str, size: int, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     array = np.asarray(as_floats(given, name))
     if array.shape != (size,):
@@ -109,7 +103,7 @@ def _mesh(wanted: dict[str, Any]) -> dict[str, Any]:
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise UsageError(f"triangles must have the shape (m, 3), not {rows.shape}")
     mesh: dict[str, Any] = {
-        "triangles": np.ascontiguousarray(rows, np.int32),
+        "triangles": as_int32(rows, "triangles"),
         "count": len(rows),
     }
     for name, value in values.items():
@@ -143,7 +137,7 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
             wanted[name] = _number(wanted[name], name)
     for name in ("most_points", "most_rounds", "smoothing_steps"):
         if name in wanted:
-            wanted[name] = _count(wanted[name], name)
+            wanted[name] = as_count(wanted[name], name)
     for name in ("min_edge", "most_points"):
         wanted[f"has_{name}"] = int(name in wanted)
     if "seed_areas" in wanted:

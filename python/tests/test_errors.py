@@ -52,6 +52,28 @@ def test_points_that_are_none(call, points, message):
     assert (raised.value.code, raised.value.call) == (0, "")
 
 
+@pytest.mark.parametrize("given", [-1, 2**64, 2**64 + 5, 1.5, "3"])
+def test_counts_that_are_none(given):
+    box = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    calls = [
+        lambda: flaunay.relax(FOUR, box, iterations=given),
+        lambda: flaunay.Delaunay(FOUR).nearest(FOUR, k=given),
+        lambda: flaunay.refine(FOUR, max_area=1, most_points=given),
+        lambda: flaunay.refine(FOUR, max_area=1, most_rounds=given),
+        lambda: flaunay.refine(FOUR, max_area=1, smoothing_steps=given),
+        lambda: flaunay.CloughTocherInterpolator(FOUR, FOUR[:, 0], maxiter=given),
+        lambda: flaunay.triangulate_chunks(FOUR, triangles=True, chunk_points=given),
+    ]
+    for call in calls:
+        with pytest.raises(flaunay.UsageError, match="must be an integer from"):
+            call()
+
+
+def test_indices_beyond_int32():
+    with pytest.raises(flaunay.UsageError, match="triangles must be int32: 4294967298"):
+        flaunay.refine(FOUR, triangles=[[0, 1, 2**32 + 2]], max_area=1)
+
+
 @pytest.mark.parametrize("call", CALLS)
 def test_ragged_lists(call):
     with pytest.raises(flaunay.UsageError, match="points are no array of numbers"):

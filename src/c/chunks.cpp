@@ -74,11 +74,11 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
   c::check_reserved(*options, "flaunay_chunk_options");
   result.memory_bytes = options->memory_bytes;
   if (options->scratch != nullptr) result.scratch = options->scratch;
-  if (options->device_count > 0) required(options->devices, "a list of devices that is not empty");
+  check_array(options->devices, options->device_count, "devices");
   for (std::size_t k = 0; k < options->device_count; ++k) {
     result.devices.emplace_back(options->devices[k] != nullptr ? options->devices[k] : "");
   }
-  if (options->triangulator_count > 0) required(options->triangulators, "a list of triangulators");
+  check_array(options->triangulators, options->triangulator_count, "triangulators");
   for (std::size_t k = 0; k < options->triangulator_count; ++k) {
     result.triangulators.push_back(&required(options->triangulators[k], "a triangulator for chunks").cpp);
   }
@@ -125,7 +125,7 @@ class StridedValuedPoints : public ValuedPoints {
   StridedValuedPoints(const flaunay_strided_points& points, const flaunay_strided_values& values)
       : points_(points), values_(values.values, values.precision, values.stride) {
     c::check_reserved(values, "flaunay_strided_values");
-    if (points.count > 0) required(static_cast<const char*>(values.values), "the values of points");
+    check_array(values.values, points.count, "values", kMostPointsInChunks);
   }
   std::uint64_t size() const override { return points_.size(); }
   void read(std::uint64_t first, std::size_t count, double* coordinates) override {

@@ -83,9 +83,9 @@ flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* c
                              const double* corners, size_t corner_count, size_t iterations, double* relaxed) {
   return guarded([&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    if (n > 0) required(relaxed, "the array of relaxed points");
-    const std::vector<double> moved = cpp.relax(coordinates, n, corners, corner_count, iterations);
-    std::copy(moved.begin(), moved.end(), relaxed);
+    check_points(coordinates, n);
+    check_array(relaxed, n, "relaxed points");
+    c::copy_to(relaxed, cpp.relax(coordinates, n, corners, corner_count, iterations), "relaxed points");
   });
 }
 

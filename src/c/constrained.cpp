@@ -132,23 +132,25 @@ PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_o
   return result;
 }
 
+// count: of what the offsets begin and end. Null: none.
+std::vector<std::size_t> copy_offsets(const std::size_t* offsets, std::size_t count, const char* name) {
+  if (offsets == nullptr) return {};
+  check_count(count, name);
+  return {offsets, offsets + count + 1};
+}
+
 Polygons to_polygons(const flaunay_polygons& given) {
+  check_array(given.ring_offsets, given.ring_count, "rings");
   Polygons result;
   result.coordinates = given.coordinates;
   result.ring_offsets = {0};
-  if (given.ring_count > 0) {
-    const std::size_t* const first = &required(given.ring_offsets, "the offsets of rings");
-    result.ring_offsets.assign(first, first + given.ring_count + 1);
-  }
-  if (given.polygon_offsets != nullptr) {
-    result.polygon_offsets.assign(given.polygon_offsets, given.polygon_offsets + given.polygon_count + 1);
-  } else {
+  if (given.ring_count > 0) result.ring_offsets = copy_offsets(given.ring_offsets, given.ring_count, "rings");
+  result.polygon_offsets = copy_offsets(given.polygon_offsets, given.polygon_count, "polygons");
+  if (given.polygon_offsets == nullptr) {
     result.polygon_offsets.resize(given.ring_count + 1);
     std::iota(result.polygon_offsets.begin(), result.polygon_offsets.end(), 0);
   }
-  if (given.part_offsets != nullptr) {
-    result.part_offsets.assign(given.part_offsets, given.part_offsets + given.part_count + 1);
-  }
+  result.part_offsets = copy_offsets(given.part_offsets, given.part_count, "parts");
   return result;
 }
 
@@ -162,17 +164,13 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   result.segment_count = given.segment_count;
   result.holes = given.holes;
   result.hole_count = given.hole_count;
-  if (given.hole_offsets != nullptr) {
-    result.hole_offsets.assign(given.hole_offsets, given.hole_offsets + sets + 1);
-  }
+  result.hole_offsets = copy_offsets(given.hole_offsets, sets, "sets");
   result.segment_markers = given.segment_markers;
   result.point_markers = given.point_markers;
   result.seeds = given.seeds;
   result.seed_attributes = given.seed_attributes;
   result.seed_count = given.seed_count;
-  if (given.seed_offsets != nullptr) {
-    result.seed_offsets.assign(given.seed_offsets, given.seed_offsets + sets + 1);
-  }
+  result.seed_offsets = copy_offsets(given.seed_offsets, sets, "sets");
   return result;
 }
 

@@ -149,11 +149,7 @@ int flaunay_dynamic_has_point(const flaunay_dynamic* dynamic, size_t number) {
 }
 
 flaunay_status flaunay_dynamic_coordinates(const flaunay_dynamic* dynamic, double* coordinates) {
-  return guarded([&] {
-    const std::vector<double> all = required(dynamic, kName).cpp.coordinates();
-    if (!all.empty()) required(coordinates, "the array of coordinates");
-    std::copy(all.begin(), all.end(), coordinates);
-  });
+  return guarded([&] { c::copy_to(coordinates, required(dynamic, kName).cpp.coordinates(), "coordinates"); });
 }
 
 flaunay_status flaunay_dynamic_rows(flaunay_dynamic* dynamic, int32_t* triangles, int32_t* neighbors) {

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "flaunay/flaunay.h"
 #include "flaunay/flaunay.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::c {
 
@@ -36,6 +38,13 @@ template <typename T>
 T& required(T* pointer, const char* what) {
   if (pointer == nullptr) throw Error(ErrorKind::usage, fmt::format("{} must not be NULL", what));
   return *pointer;
+}
+
+/// Copies results to the caller's array. Throws Error(usage) if there are some, but the pointer is null.
+template <typename T, typename Values>
+void copy_to(T* place, const Values& values, const char* name) {
+  check_array(place, values.size(), name, kMostCountable);
+  std::copy(values.begin(), values.end(), place);
 }
 
 /// Stores the handle that make() returns in *place, or null if it throws.

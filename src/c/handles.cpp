@@ -5,8 +5,7 @@
 
 #include <cstdint>
 
-#include "call/handles.hpp"
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::c {
 namespace {
@@ -17,8 +16,6 @@ using research::Hull;
 using research::Mode;
 
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
-
-using call::kMostCountable;
 
 static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&
               FLAUNAY_MODE_DWYER == static_cast<int>(Mode::dwyer));
@@ -180,9 +177,9 @@ unsigned to_bits(const Parts& parts) {
 
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n) {
   if (offsets == nullptr) return {0, n};
-  if (sets > kMostCountable) throw_usage("too many sets");
+  check_count(sets, "sets");
   std::vector<std::size_t> result(offsets, offsets + sets + 1);
-  geometry::check_offsets(result, n);
+  check_offsets(result, n);
   return result;
 }
 
@@ -196,8 +193,8 @@ void give(const DeviceBuffer& made, cl_mem& place) {
   place = made.memory();
 }
 
-DevicePoints to_points(const flaunay_device_points* points) {
-  const flaunay_device_points& given = required(points, "the points");
+DevicePoints to_points(const flaunay_device_points* points, const char* what) {
+  const flaunay_device_points& given = required(points, what);
   check_reserved(given, "flaunay_device_points");
   DevicePoints result;
   result.memory = given.memory;
@@ -216,10 +213,8 @@ Enqueue to_enqueue(const flaunay_enqueue* enqueue) {
   if (enqueue->event != nullptr) *enqueue->event = nullptr;
   check_reserved(*enqueue, "flaunay_enqueue");
   result.queue = enqueue->queue;
-  if (enqueue->wait_for_count > 0) {
-    const cl_event* first = &required(enqueue->wait_for, "a list of events that is not empty");
-    result.wait_for.assign(first, first + enqueue->wait_for_count);
-  }
+  check_array(enqueue->wait_for, enqueue->wait_for_count, "events to wait for");
+  result.wait_for.assign(enqueue->wait_for, enqueue->wait_for + enqueue->wait_for_count);
   result.event = enqueue->event;
   result.profile = enqueue->profile != 0;
   return result;

@@ -35,8 +35,8 @@ void check_reserved(const Struct& given, const char* name) {
 /// names the type of C.
 template <typename Enum>
 Enum to_enum(int value, int last, const char* name) {
-  if (value >= 0 && value <= last) return static_cast<Enum>(value);
-  throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, name));
+  check_enumerator(value, last, name);
+  return static_cast<Enum>(value);
 }
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
@@ -105,7 +105,7 @@ std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets
 /// Throws Error(usage) for a number that is no flaunay_precision.
 Precision to_precision(int precision);
 
-DevicePoints to_points(const flaunay_device_points* points);
+DevicePoints to_points(const flaunay_device_points* points, const char* what = "the points");
 
 /// Null: the defaults. Sets *enqueue->event to null.
 Enqueue to_enqueue(const flaunay_enqueue* enqueue);

@@ -36,10 +36,9 @@ flaunay_status answer(flaunay_locator* locator, const double* queries, size_t m,
   return guarded([&] {
     Locator& cpp = required(locator, "the locator").cpp;
     const std::vector<std::size_t> checked = c::to_offsets(offsets, sets, m);
-    if (m > 0) required(queries, "the queries");
-    if (m > 0) required(place, "the array of results");
-    const auto values = compute(cpp, checked);
-    std::copy(values.begin(), values.end(), place);
+    check_queries(queries, m);
+    check_array(place, m, "results");
+    c::copy_to(place, compute(cpp, checked), "results");
   });
 }
 
@@ -63,7 +62,7 @@ flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_p
                                 const flaunay_enqueue* enqueue, cl_mem* place, const Compute& compute) {
   return write_on_device(locator, enqueue, place,
                          [&](Locator& cpp, DeviceBuffer& buffer, const Enqueue& queued) {
-                           compute(cpp, c::to_points(queries), buffer, queued);
+                           compute(cpp, c::to_points(queries, "the queries"), buffer, queued);
                          });
 }
 
@@ -89,10 +88,8 @@ flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangul
     ConstrainedTriangulation searched;
     static_cast<Triangulation&>(searched) = required(triangulation, "the triangulation").cpp;
     const std::size_t corners = searched.triangles.size();
-    if (corners > 0) {
-      required(constrained, "the array of what is constrained");
-      searched.constrained.assign(constrained, constrained + corners);
-    }
+    check_array(constrained, corners, "marks of constrained edges");
+    searched.constrained.assign(constrained, constrained + corners);
     return std::make_unique<flaunay_locator>(flaunay_locator{Locator(cpp, coordinates, n, searched)});
   });
 }
@@ -127,10 +124,8 @@ flaunay_status flaunay_locator_nearest(flaunay_locator* locator, const double* q
 flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
                                            const double* queries, size_t m, const size_t* offsets,
                                            size_t sets, double* results) {
-  return answer(locator, queries, m, offsets, sets, results, [&](Locator& cpp, const auto& checked) {
-    if (m > 0) required(values, "the values of points");
-    return cpp.interpolate(values, queries, checked);
-  });
+  return answer(locator, queries, m, offsets, sets, results,
+                [&](Locator& cpp, const auto& checked) { return cpp.interpolate(values, queries, checked); });
 }
 
 flaunay_status flaunay_locator_locate_device(flaunay_locator* locator, const flaunay_device_points* queries,
@@ -157,7 +152,6 @@ flaunay_status flaunay_locator_interpolate_with(flaunay_locator* locator, const 
                                                 size_t sets, const flaunay_interpolation_options* options,
                                                 double* results) {
   return answer(locator, queries, m, offsets, sets, results, [&](Locator& cpp, const auto& checked) {
-    if (m > 0) required(values, "the values of points");
     return cpp.interpolate(values, queries, checked, c::to_interpolation(options));
   });
 }
@@ -178,9 +172,7 @@ flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double*
   return guarded([&] {
     Locator& cpp = required(locator, "the locator").cpp;
     const InterpolationOptions checked = c::to_interpolation(options);
-    const auto found = cpp.gradients(values, checked.columns, checked.estimation);
-    if (!found.empty()) required(gradients, "the array of gradients");
-    std::copy(found.begin(), found.end(), gradients);
+    c::copy_to(gradients, cpp.gradients(values, checked.columns, checked.estimation), "gradients");
   });
 }
 
@@ -230,8 +222,9 @@ flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double
                                           double* distances) {
   return guarded([&] {
     PointTree& cpp = required(tree, "the tree").cpp;
+    check_queries(queries, m);
+    check_array(points, m, "results");
     const Neighbors found = cpp.nearest(queries, m, {count, max_distance});
-    if (m > 0) required(points, "the array of results");
     std::copy(found.points.begin(), found.points.end(), points);
     if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
   });

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -15,22 +14,18 @@ using namespace flaunay;
 
 using c::create;
 using c::guarded;
-using c::required;
 
 namespace {
 
 using Indices = std::vector<std::int32_t>;
 
-// A copy of the caller's indices, from `lowest` to n - 1. They are checked in the copy, since the caller's
-// other threads may change the original. name: the array; what: that of which there are n.
-Indices checked(const std::int32_t* given, std::size_t count, std::int32_t lowest, std::size_t n,
-                const char* name, const char* what) {
-  if (count == 0) return {};
-  if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw Error(ErrorKind::usage, fmt::format("{} are more than 32-bit indices can count", name));
-  }
-  const std::int32_t* const first = &required(given, name);
-  Indices copy(first, first + count);
+// A copy of the caller's indices, in `rows` rows of so many columns, from `lowest` to n - 1. They are checked
+// in the copy, since the caller's other threads may change the original. name: the array; what: that of which
+// there are n.
+Indices checked(const std::int32_t* given, std::size_t rows, std::size_t columns, std::int32_t lowest,
+                std::size_t n, const char* name, const char* what) {
+  check_array(given, rows, name, kMostIndexed / columns);
+  Indices copy(given, given + rows * columns);
   for (const std::int32_t index : copy) {
     if (index < lowest || index >= static_cast<std::int64_t>(n)) {
       throw Error(ErrorKind::usage, fmt::format("{}: {} is none of the {} {}", name, index, n, what));
@@ -39,13 +34,9 @@ Indices checked(const std::int32_t* given, std::size_t count, std::int32_t lowes
   return copy;
 }
 
-// 3 t; the product of a number that is too large stays too large.
-std::size_t entries_of(std::size_t t) {
-  return 3 * std::min(t, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
-}
-
 Indices checked_corners(const std::int32_t* triangles, std::size_t t, std::size_t n) {
-  return checked(triangles, entries_of(t), 0, n, "triangles", "points");
+  check_count(n, "points");
+  return checked(triangles, t, 3, 0, n, "triangles", "points");
 }
 
 // Calls visit(from, to) for each edge of a mesh from each of its ends: a triangle has its edges one way
@@ -63,8 +54,10 @@ template <typename Result, typename Work>
 flaunay_status measure(const double* coordinates, std::size_t n, const std::int32_t* corners, std::size_t t,
                        Result* results, const Work& work) {
   return guarded([&] {
+    check_points(coordinates, n);
     const Indices copy = checked_corners(corners, t, n);
-    if (t > 0) work(geometry::Triangles(coordinates, n, copy), &required(results, "the array of results"));
+    check_array(results, t, "results");
+    if (t > 0) work(geometry::Triangles(coordinates, n, copy), results);
   });
 }
 
@@ -77,9 +70,9 @@ flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, 
   return create(triangulation, [&] {
     Triangulation made;
     made.triangles = checked_corners(triangles, t, n);
-    made.neighbors = checked(neighbors, entries_of(t), -1, t, "neighbors", "triangles");
-    made.hull = checked(hull, h, 0, n, "hull", "points");
-    made.representatives = checked(representatives, n, 0, n, "representatives", "points");
+    made.neighbors = checked(neighbors, t, 3, -1, t, "neighbors", "triangles");
+    made.hull = checked(hull, h, 1, 0, n, "hull vertices", "points");
+    made.representatives = checked(representatives, n, 1, 0, n, "representatives", "points");
     made.triangle_offsets = {0, t};
     made.hull_offsets = {0, h};
     made.statistics.points = n;
@@ -92,8 +85,8 @@ flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, 
 flaunay_status flaunay_first_triangles(const int32_t* triangles, size_t t, size_t n, int32_t* first) {
   return guarded([&] {
     const Indices corners = checked_corners(triangles, t, n);
-    if (n == 0) return;
-    std::fill_n(&required(first, "the array of results"), n, -1);
+    check_array(first, n, "results");
+    std::fill_n(first, n, -1);
     for (std::size_t i = corners.size(); i-- > 0;) first[corners[i]] = static_cast<std::int32_t>(i / 3);
   });
 }
@@ -102,15 +95,13 @@ flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, cons
                                         size_t n, int32_t* starts, int32_t* neighbors) {
   return guarded([&] {
     const Indices corners = checked_corners(triangles, t, n);
-    Indices ring = checked(hull, h, 0, n, "hull", "points");
+    Indices ring = checked(hull, h, 1, 0, n, "hull vertices", "points");
     // Points on one line have no edges.
     if (t == 0) ring.clear();
-    if (corners.size() + ring.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-      throw Error(ErrorKind::usage, "the points have more neighbours than 32-bit indices can count");
-    }
-    std::fill_n(&required(starts, "the array of starts"), n + 1, 0);
+    check_array(starts, n + 1, "starts");
+    check_array(neighbors, corners.size() + ring.size(), "neighbours");
+    std::fill_n(starts, n + 1, 0);
     if (t == 0) return;
-    required(neighbors, "the array of neighbours");
     for_each_edge(corners, ring, [&](std::int32_t from, std::int32_t) { ++starts[from + 1]; });
     for (std::size_t i = 0; i < n; ++i) starts[i + 1] += starts[i];
     Indices next(starts, starts + n);
@@ -152,7 +143,7 @@ flaunay_status flaunay_circumradii(const double* coordinates, size_t n, const in
 flaunay_status flaunay_edge_circles(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
                                     const int32_t* halfedges, int8_t* sides) {
   return measure(coordinates, n, triangles, t, sides, [&](const auto& of, int8_t* results) {
-    const Indices twins = checked(halfedges, entries_of(t), -1, entries_of(t), "halfedges", "halfedges");
+    const Indices twins = checked(halfedges, t, 3, -1, 3 * t, "halfedges", "halfedges");
     for (std::size_t h = 0; h < twins.size(); ++h) {
       results[h] =
           static_cast<int8_t>(twins[h] < 0 ? -1 : of.circle(h / 3, static_cast<std::size_t>(twins[h])));
@@ -163,7 +154,6 @@ flaunay_status flaunay_edge_circles(const double* coordinates, size_t n, const i
 flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles, size_t t,
                                     const int32_t* neighbors, int32_t* first) {
   return measure(coordinates, n, triangles, t, first, [&](const auto& of, int32_t* results) {
-    geometry::find_same_circles(of, checked(neighbors, entries_of(t), -1, t, "neighbors", "triangles"),
-                                results);
+    geometry::find_same_circles(of, checked(neighbors, t, 3, -1, t, "neighbors", "triangles"), results);
   });
 }

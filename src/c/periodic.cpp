@@ -1,7 +1,6 @@
 // The C interface to points on a torus or a cylinder.
 #include "flaunay/periodic.hpp"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -46,12 +45,9 @@ flaunay_status answer(flaunay_periodic_locator* locator, const double* queries, 
                       const Answer& answer) {
   return guarded([&] {
     PeriodicLocator& cpp = required(locator, "the locator").cpp;
-    if (m > 0) {
-      required(queries, "the queries");
-      required(to, "the room for results");
-    }
-    const std::vector<Value> found = answer(cpp);
-    std::copy(found.begin(), found.end(), to);
+    check_queries(queries, m);
+    check_array(to, m, "results");
+    c::copy_to(to, answer(cpp), "results");
   });
 }
 

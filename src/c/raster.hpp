@@ -31,8 +31,8 @@ inline RasterOptions to_options(const flaunay_raster& raster) {
 
 /// The heights of contours.
 inline std::vector<double> to_heights(const double* heights, std::size_t count) {
-  const double* const first = count == 0 ? nullptr : &required(heights, "the heights");
-  return {first, first + count};
+  check_array(heights, count, "heights");
+  return {heights, heights + count};
 }
 
 }  // namespace flaunay::c

@@ -1,7 +1,6 @@
 // The C interface to points on a sphere.
 #include "flaunay/sphere.hpp"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -57,12 +56,9 @@ flaunay_status answer(flaunay_spherical_locator* locator, const double* queries,
                       Value* to, const Answer& answer) {
   return guarded([&] {
     SphereLocator& cpp = required(locator, "the locator").cpp;
-    if (m > 0) {
-      required(queries, "the queries");
-      required(to, "the room for results");
-    }
-    const std::vector<Value> found = answer(cpp, to_coordinates(coordinates));
-    std::copy(found.begin(), found.end(), to);
+    check_queries(queries, m);
+    check_array(to, m, "results");
+    c::copy_to(to, answer(cpp, to_coordinates(coordinates)), "results");
   });
 }
 
@@ -90,8 +86,7 @@ size_t flaunay_spherical_triangle_count(const flaunay_spherical* spherical) {
 
 flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical, double* directions) {
   return guarded([&] {
-    const std::vector<double> all = directions_of(required(spherical, "the triangulation").cpp.places);
-    if (!all.empty()) std::copy(all.begin(), all.end(), &required(directions, "the room for directions"));
+    c::copy_to(directions, directions_of(required(spherical, "the triangulation").cpp.places), "directions");
   });
 }
 

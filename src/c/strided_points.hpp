@@ -53,7 +53,7 @@ class StridedPoints : public PointSource {
                : static_cast<const char*>(given.coordinates) + (n_ > 0 ? given.coordinate_stride : 0),
            given.precision, given.point_stride) {
     check_reserved(given, "flaunay_strided_points");
-    if (n_ > 0) required(static_cast<const char*>(given.coordinates), "the coordinates of points");
+    check_array(given.coordinates, n_, "points", kMostPointsInChunks);
   }
 
   std::uint64_t size() const override { return n_; }

@@ -1,7 +1,6 @@
 // The C interface to weighted points.
 #include "flaunay/weighted.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,9 +65,7 @@ flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangula
   return guarded([&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     const flaunay_weighted& mesh = required(weighted, "the triangulation");
-    const std::vector<std::int32_t> hiding = hiding_triangles(cpp, points, mesh.offsets, mesh.cpp);
-    if (!hiding.empty())
-      std::copy(hiding.begin(), hiding.end(), &required(triangles, "the room for triangles"));
+    c::copy_to(triangles, hiding_triangles(cpp, points, mesh.offsets, mesh.cpp), "results");
   });
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "flaunay/constrained.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/predicates.hpp"
 
 namespace flaunay::call {
@@ -126,12 +126,9 @@ void PointsWithLines::read_values(std::uint64_t first, std::size_t count, double
 }
 
 CrossedTriangles::CrossedTriangles(const Breaklines& lines) : lines_(lines) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  expect(lines.points <= kMost && lines.segment_count <= kMost / 2,
-         "breaklines have more points or segments than 32-bit indices can count");
-  expect(lines.points == 0 || (lines.coordinates != nullptr && lines.values != nullptr),
-         "breaklines have points, but no coordinates or no values: the pointer is null");
-  expect(lines.segment_count == 0 || lines.segments != nullptr, "segments, but the pointer is null");
+  check_array(lines.coordinates, lines.points, "points of breaklines");
+  check_array(lines.values, lines.points, "values of breaklines");
+  check_array(lines.segments, lines.segment_count, "segments of breaklines", kMostIndexed / 2);
   double high = -std::numeric_limits<double>::infinity(), heights = 0;
   low_ = -high;
   for (std::size_t s = 0; s < lines.segment_count; ++s) {

@@ -12,7 +12,7 @@
 #include "call/chunks.hpp"
 #include "call/implementation.hpp"
 #include "call/with_errors.hpp"
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 #include "host/memory/system_memory.hpp"
 #include "large/chunks/array_sink.hpp"
 #include "large/chunks/run.hpp"
@@ -34,9 +34,6 @@ constexpr std::uint64_t kValuesBytesPerPoint = 3 * sizeof(double) + 24;
 // Chunks differ: those of more than one and a half times the points that they should have are cut again.
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
-
-// So that their numbers of bytes are 64-bit numbers, on disk and in the results.
-constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 56;
 
 constexpr const char* kAllDevices = "all";
 
@@ -103,12 +100,6 @@ chunks::Plan make_plan(std::uint64_t n, const ChunkOptions& options, const Devic
   return plan;
 }
 
-void check_count(std::uint64_t n) {
-  if (n <= kMostPoints) return;
-  throw Error(ErrorKind::input,
-              fmt::format("{} points are too many; at most {} are possible", n, kMostPoints));
-}
-
 // Points that rows and their number can refer to.
 void check_indices(std::uint64_t n, std::uint64_t most_index) {
   if (n <= most_index / 2) return;
@@ -150,15 +141,14 @@ std::uint64_t call::chunk_memory(const ChunkOptions& options) {
 }
 
 void call::check_chunk_arrays(const double* coordinates, std::uint64_t n, std::uint64_t most_index) {
-  geometry::check_coordinates(coordinates, n);
-  check_count(n);
+  check_array(coordinates, n, "points", kMostPointsInChunks);
   check_indices(n, most_index);
 }
 
 ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
                                          const ChunkOptions& options, chunks::Folding* folding) {
   if (points.size() == 0) return ChunkStatistics();
-  check_count(points.size());
+  check_count(points.size(), "points", kMostPointsInChunks);
   const bool with_areas = sink.wants(MeshArray::areas);
   const Devices devices = open_devices(options, with_areas);
   const std::uint64_t bytes_per_point = kBytesPerPoint + (with_areas ? kAreasBytesPerPoint : 0) +

@@ -25,12 +25,19 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-void check(const Constraints& constraints, const Refinement& refinement) {
-  call::expect(constraints.segments != nullptr || constraints.segment_count == 0, "the segments are null");
-  call::expect(constraints.holes != nullptr || constraints.hole_count == 0, "the holes are null");
-  const bool has_seed_values = constraints.seed_attributes != nullptr || refinement.seed_areas != nullptr;
-  call::expect((constraints.seeds != nullptr && has_seed_values) || constraints.seed_count == 0,
-               "the seeds or their attributes are null");
+void check(const Constraints& constraints, const ConstrainedOptions& options) {
+  const Refinement& refinement = options.refinement;
+  check_enumerator(options.crossings, Crossings::split, "Crossings");
+  check_enumerator(options.outside, Outside::holes, "Outside");
+  check_enumerator(options.fill_rule, FillRule::winding, "FillRule");
+  check_enumerator(refinement.kept, KeptEdges::all, "KeptEdges");
+  check_array(constraints.segments, constraints.segment_count, "segments", kMostIndexed / 2);
+  check_array(constraints.holes, constraints.hole_count, "holes", kMostIndexed / 2);
+  check_array(constraints.seeds, constraints.seed_count, "seeds", kMostIndexed / 2);
+  call::expect(constraints.seed_count == 0 || constraints.seed_attributes != nullptr ||
+                   refinement.seed_areas != nullptr,
+               "seeds have neither attributes nor areas: both pointers are null");
+  check_array(refinement.mesh.triangles, refinement.mesh.count, "triangles of the mesh", kMostIndexed / 3);
   call::check_refinement(refinement, constraints.seed_count);
 }
 
@@ -273,9 +280,9 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
                                                    const Constraints& constraints,
                                                    const ConstrainedOptions& options,
                                                    const DomainRequest& request) {
-  geometry::check_offsets(offsets);
-  geometry::check_coordinates(coordinates, offsets.back());
-  check(constraints, options.refinement);
+  check_offsets(offsets);
+  check_points(coordinates, offsets.back());
+  check(constraints, options);
   if (options.refinement.mesh.count == 0)
     return constrain_and_refine(self, coordinates, offsets, constraints, options, request, nullptr);
   const GivenMesh mesh(coordinates, offsets.back(), constraints, options);
@@ -289,6 +296,7 @@ ConstrainedTriangulation Triangulator::constrained(const double* coordinates,
   return call::take_turn(*implementation_, [&] {
     const Rings& rings = constraints.rings;
     const bool has_rings = !rings.segment_offsets.empty();
+    check(constraints, options);
     if (has_rings) constrained::check_rings(rings, constraints.segment_count, options.fill_rule);
     const constrained::Curves curves = has_rings ? constrained::curves_of(rings) : constrained::Curves();
     call::DomainRequest request = call::request_of(options, false);

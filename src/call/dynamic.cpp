@@ -39,15 +39,6 @@ void check_supported(const Constraints& constraints, const ConstrainedOptions& o
                "a triangulation that changes has no markers");
 }
 
-// Throws unless n further points can be counted.
-void check_count(std::size_t numbers, std::size_t n) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
-  if (n > kMost || numbers + n > kMost) {
-    throw Error(ErrorKind::input, fmt::format("{} points are inserted to {}: more than {} are not supported",
-                                              n, numbers, kMost));
-  }
-}
-
 bool is_triangle(const kernel::mesh_row& row) {
   return row.corner[0] >= 0 && row.corner[1] >= 0 && row.corner[2] >= 0;
 }
@@ -138,8 +129,7 @@ struct DynamicTriangulation::Implementation {
 
   void make(const double* coordinates, std::size_t n) {
     choose_engine();
-    check_count(0, n);
-    geometry::check_coordinates(coordinates, n);
+    check_points(coordinates, n);
     points.check_coordinates(coordinates, nullptr, n);
     points.append(coordinates, n);
     triangulate_anew({});
@@ -149,8 +139,7 @@ struct DynamicTriangulation::Implementation {
             const ConstrainedOptions& wanted) {
     choose_engine();
     check_supported(constraints, wanted);
-    check_count(0, n);
-    geometry::check_coordinates(coordinates, n);
+    check_points(coordinates, n);
     points.check_coordinates(coordinates, nullptr, n);
     ConstrainedOptions all = wanted;
     all.neighbors = true;
@@ -309,8 +298,8 @@ struct DynamicTriangulation::Implementation {
   }
 
   Changes insert(const double* coordinates, std::size_t m) {
-    check_count(points.numbers(), m);
-    geometry::check_coordinates(coordinates, m);
+    check_points(coordinates, m);
+    check_count(points.numbers() + m, "points that have been inserted", kMostPointsAtOnce);
     Changes changes = run(m, [&] {
       points.check_coordinates(coordinates, nullptr, m);
       Batch batch;
@@ -344,7 +333,7 @@ struct DynamicTriangulation::Implementation {
 
   Changes move(const std::int32_t* numbers, const double* coordinates, std::size_t m) {
     check_numbers(numbers, m, "moved");
-    geometry::check_coordinates(coordinates, m);
+    check_points(coordinates, m);
     Changes changes = run(m, [&] {
       points.check_coordinates(coordinates, numbers, m);
       Batch batch;
@@ -369,7 +358,7 @@ struct DynamicTriangulation::Implementation {
 
   // Throws unless these are living points, each once, that may leave their places.
   void check_numbers(const std::int32_t* numbers, std::size_t m, const char* what) {
-    call::expect(m == 0 || numbers != nullptr, "points, but no numbers: the pointer is null");
+    check_array(numbers, m, "numbers of points");
     const std::size_t bad = points.mark(numbers, m);
     if (bad < m) {
       const std::int32_t v = numbers[bad];

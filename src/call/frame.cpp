@@ -90,7 +90,7 @@ void Frame::begin() {
 }
 
 void Frame::check(const DevicePoints& points, const char* what) {
-  check_points(place_.device->runtime, points, what);
+  check_device_points(place_.device->runtime, points, what);
   memories_.push_back(points.memory);
 }
 

@@ -16,7 +16,7 @@
 #include "call/handles.hpp"
 #include "call/implementation.hpp"
 #include "flaunay/device_memory.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "points/download.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay {
 
@@ -147,15 +147,15 @@ std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoi
     offsets.assign(read.begin(), read.end());
   }
   if (offsets.empty()) offsets = {0, points.count};
-  geometry::check_offsets(offsets, points.count);
+  check_offsets(offsets, points.count);
   return offsets;
 }
 
-void check_points(host::Runtime& runtime, const DevicePoints& points, const std::string& what) {
-  // Checked before these numbers are multiplied, because products of larger ones could overflow.
-  if (points.count > kMostCountable || points.first > kMostCountable)
-    throw_usage(fmt::format("too many {}", what));
-  if (points.sets > kMostCountable) throw_usage(fmt::format("too many sets of {}", what));
+void check_device_points(host::Runtime& runtime, const DevicePoints& points, const char* what) {
+  check_enumerator(points.precision, Precision::float32, "Precision");
+  check_count(points.count, what);
+  check_count(points.first, fmt::format("{} before the first one", what).c_str(), kMostCountable);
+  check_count(points.sets, "sets");
   const std::size_t bytes = points.count == 0 ? 0 : (points.first + points.count) * bytes_per_point(points);
   check_buffer(runtime, points.memory, bytes, Access::read, what);
 }

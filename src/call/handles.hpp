@@ -27,9 +27,6 @@ struct DeviceBufferAccess {
 
 namespace call {
 
-/// Larger numbers of points or sets are refused, because their sums and products could overflow.
-constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
-
 /// How a buffer is used: kernels read it, kernels write it, the host reads it, or kernels and host do both.
 enum class Access { read, write, host, workspace };
 
@@ -59,8 +56,9 @@ void check_distinct(std::vector<cl_mem> buffers);
 /// unless they go from 0 to the number of points without decreasing.
 std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoints& points);
 
-/// Throws Error(usage) if the buffer of points is missing or too small.
-void check_points(host::Runtime& runtime, const DevicePoints& points, const std::string& what);
+/// Throws Error(usage) if the buffer of points is missing or too small, or if a number is no precision, and
+/// Error(input) if there are too many points or sets.
+void check_device_points(host::Runtime& runtime, const DevicePoints& points, const char* what);
 
 /// Provides a buffer of at least this size for results. If it is flaunay's own, makes it or replaces it by a
 /// larger one, and increments `made`. Throws Error(usage) if the caller's buffer is too small.

@@ -138,6 +138,7 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
     first.event = nullptr;
     Parts parts;
     parts.neighbors = parts.hull = parts.representatives = true;
+    check_count(segments.count, "segments", kMostIndexed / 2);
     call::check_buffer(engine.runtime, segments.memory, 2 * segments.count * sizeof(cl_int),
                        call::Access::read, "segments");
     call::triangulate(self, points, mesh, parts, first);

@@ -134,19 +134,6 @@ struct Locator::Implementation {
                                    [&](const std::string&) { return answer(doubles()); });
   }
 
-  // Kernels use 32-bit indices for the coordinates of queries, and for columns.
-  static void check_queries(std::size_t m, std::size_t columns) {
-    call::expect(m <= std::numeric_limits<std::int32_t>::max() / 2,
-                 "more queries than 32-bit indices can count");
-    check_numbers(m, columns);
-  }
-
-  static void check_numbers(std::size_t rows, std::size_t columns) {
-    constexpr std::size_t kMostColumns = std::numeric_limits<std::int32_t>::max();
-    call::expect(columns <= std::min(kMostColumns, call::kMostCountable / std::max<std::size_t>(rows, 1)),
-                 "more numbers than memory can hold");
-  }
-
   /// Answers queries in host memory. columns: the length of each result. work(call, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
@@ -154,13 +141,13 @@ struct Locator::Implementation {
                                                const std::vector<std::size_t>& offsets, std::size_t columns,
                                                const Work& work) {
     return call::take_turn(*owner, [&] {
-      geometry::check_offsets(offsets);
+      check_offsets(offsets);
       const std::size_t m = offsets.back();
-      check_queries(m, columns);
-      call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
+      check_queries(queries, m);
+      const std::size_t numbers = check_columns(columns, m);
       std::vector<Result> results;
       call::Frame call(by.place.engine);
-      const auto output = call.out<Result>(results, m * columns);
+      const auto output = call.out<Result>(results, numbers);
       const geometry::Fitted<geometry::Done> done =
           work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
       if (!done) return geometry::Fitted<std::vector<Result>>(done.too_wide());
@@ -192,9 +179,10 @@ struct Locator::Implementation {
                                           const Work& work) {
     return on_device(by, enqueue, [&](call::Frame& call) {
       call.check(queries, "queries");
-      check_queries(queries.count, columns);
+      check_count(queries.count, "queries", kMostIndexed / 2);
+      const std::size_t numbers = check_columns(columns, queries.count);
       const std::vector<std::size_t> offsets = call.offsets(queries);
-      const auto output = call.out<Result>(result, queries.count * columns, what);
+      const auto output = call.out<Result>(result, numbers, what);
       call.check_distinct(read);
       const geometry::Fitted<geometry::Done> done =
           work(call, by.locator, call.points(queries), queries.count, offsets, output);
@@ -204,11 +192,7 @@ struct Locator::Implementation {
   }
 
   /// The length of the array of values.
-  std::size_t numbers(std::size_t columns) const {
-    call::expect(columns > 0, "values have no columns: a point needs at least one number");
-    check_numbers(point_count, columns);
-    return point_count * columns;
-  }
+  std::size_t numbers(std::size_t columns) const { return check_columns(columns, point_count); }
 
   static flaunay::interpolate::NaturalWeights natural_weights(Interpolation method) {
     call::expect(method == Interpolation::sibson || method == Interpolation::laplace,
@@ -400,8 +384,8 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 std::vector<double> Locator::interpolate(const double* values, const double* queries,
                                          const std::vector<std::size_t>& offsets,
                                          const InterpolationOptions& options) {
-  const std::size_t numbers = implementation_->numbers(options.columns);
-  if (numbers > 0) call::expect(values != nullptr, "points have no values: the pointer is null");
+  check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
+  check_enumerator(options.method, Interpolation::laplace, "Interpolation");
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
   Implementation& self = implementation_->for_method(options.method);
   return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
@@ -410,6 +394,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
+  check_enumerator(options.method, Interpolation::laplace, "Interpolation");
   Implementation& self = implementation_->for_method(options.method);
   const auto work = self.interpolation(options, values, options.device_gradients);
   *self.answer<cl_double>(self.doubles(), queries, {values, options.device_gradients}, results,
@@ -424,9 +409,9 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
   Implementation& self = *implementation_;
   call::Answerer& by = self.doubles();
   return call::take_turn(*self.owner, [&] {
+    check_queries(queries, m);
+    check_enumerator(method, Interpolation::laplace, "Interpolation");
     const auto weighed = Implementation::natural_weights(method);
-    Implementation::check_queries(m, 1);
-    call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
     NaturalWeights result;
     call::Frame call(by.place.engine);
     const flaunay::interpolate::NaturalLists lists(
@@ -444,9 +429,7 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
   Implementation& self = *implementation_;
   call::Answerer& by = self.doubles();
   return call::take_turn(*self.owner, [&] {
-    if (self.numbers(columns) > 0) {
-      call::expect(values != nullptr, "points have no values: the pointer is null");
-    }
+    check_array(values, self.numbers(columns), "values", kMostCountable);
     std::vector<double> results;
     call::Frame call(by.place.engine);
     self.estimate_gradients(call, by.locator, values, columns, options, results);

@@ -1,12 +1,12 @@
 #include "call/mesh_of.hpp"
 
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::call {
 
 points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const Triangulation& triangulation) {
   const std::size_t n = points.count;
-  expect(n == 0 || points.wide != nullptr, "points, but no coordinates: the pointer is null");
+  check_points(points.wide, n);
   expect(triangulation.representatives.size() == n, "the triangulation is of another number of points");
   expect(triangulation.neighbors.size() == triangulation.triangles.size(),
          "the triangulation has no neighbours: see Options::neighbors");
@@ -23,7 +23,7 @@ points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const Triangul
 
 points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const std::vector<std::size_t>& offsets,
                            const Triangulation& triangulation) {
-  geometry::check_offsets(offsets);
+  check_offsets(offsets);
   expect(triangulation.triangle_offsets.size() == offsets.size() &&
              triangulation.hull_offsets.size() == offsets.size(),
          "the triangulation is of another number of sets");

@@ -178,7 +178,7 @@ const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {
     if (row.info.mode == mode) return row;
   }
-  throw Error(ErrorKind::usage, "there is no such mode");
+  throw Error(ErrorKind::usage, fmt::format("{} is no Mode", static_cast<int>(mode)));
 }
 
 }  // namespace call

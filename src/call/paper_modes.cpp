@@ -7,11 +7,19 @@
 #include "call/modes.hpp"
 #include "call/with_errors.hpp"
 #include "flaunay/research.hpp"
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 #include "modes/flattened/run.hpp"
 
 namespace flaunay::research {
 namespace {
+
+// Those of modes are checked by the table of modes.
+void check_enumerators(const Options& options) {
+  check_enumerator(options.cut, Cut::alternate, "Cut");
+  check_enumerator(options.hull, Hull::monotone_chain, "Hull");
+  check_enumerator(options.finish, Finish::levels, "Finish");
+  check_enumerator(options.record, Record::steps, "Record");
+}
 
 void check_options(const Options& options) {
   const ModeInfo& mode = call::row_of(options.mode).info;
@@ -33,6 +41,7 @@ Triangulation checked_call(Triangulator& triangulator, const double* wide, const
   return with_errors([&] {
     const call::HostPoints points = call::checked_points(wide, narrow, offsets);
     const call::ModeRow& row = call::row_of(options.mode);
+    check_enumerators(options);
     const call::Request request{points, offsets, options};
     if (row.on_host != nullptr) {
       const std::vector<double> doubles = call::widened(points);
@@ -83,8 +92,10 @@ Triangulation triangulate_on_host(const double* coordinates, const std::vector<s
     }
     throw Error(ErrorKind::usage, fmt::format("only the modes {} run without a device", names));
   }
+  const call::HostPoints points = call::checked_points(coordinates, nullptr, offsets);
+  check_enumerators(options);
   Triangulation result = row.on_host(coordinates, {{}, offsets, options});
-  if (options.areas) call::write_areas({coordinates, nullptr, offsets.back()}, result);
+  if (options.areas) call::write_areas(points, result);
   return result;
 }
 
@@ -95,13 +106,14 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     Options uncounted = options;
     uncounted.mode = Mode::flattened;
     uncounted.count = false;
+    check_enumerators(options);
     check_options(uncounted);
     call::Implementation& owner = TriangulatorAccess::implementation(triangulator);
     const call::Turn turn(owner);
     call::Engine& asked = owner.for_host_memory();
     call::Engine& self = owner.with_doubles(asked);
     self.check_size(n);
-    geometry::check_coordinates(coordinates, n);
+    check_points(coordinates, n);
     Partition result;
     result.statistics.device = self.runtime.name();
     if (n == 0) return result;

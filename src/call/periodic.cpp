@@ -11,22 +11,22 @@
 #include "derived/periodic/cells.hpp"
 #include "derived/periodic/torus.hpp"
 #include "derived/periodic/verify.hpp"
-#include "geometry/indices.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay {
 
 void call::check(const Period& period) {
   const auto is_length = [](double x) { return (x >= 0x1p-900 && x <= 0x1p900) || x == HUGE_VAL; };
-  if (!is_length(period.x) || !is_length(period.y) || std::min(period.x, period.y) == HUGE_VAL) {
-    throw Error(ErrorKind::usage,
-                fmt::format("the period {} x {} is none: both must be positive, neither tiny nor huge, and "
-                            "not both infinite",
-                            period.x, period.y));
-  }
+  expect(is_length(period.x) && is_length(period.y) && std::min(period.x, period.y) < HUGE_VAL,
+         fmt::format(
+             "the period {} x {} is none: both must be from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or "
+             "one of them infinite; scale points and period",
+             period.x, period.y));
   constexpr double kMostUnequal = 1 << 30;
   expect(std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) ||
              std::isinf(period.x) || std::isinf(period.y),
-         "one period is more than 2^30 times as long as the other one");
+         fmt::format("the period {} x {} is none: one is more than 2^30 times as long as the other one",
+                     period.x, period.y));
 }
 
 void call::check(const PeriodicTriangulation& mesh) {
@@ -35,10 +35,25 @@ void call::check(const PeriodicTriangulation& mesh) {
   expect(mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
              mesh.offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
              !mesh.point_offsets.empty() &&
-             geometry::are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
-             geometry::are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
-             geometry::are_indices(mesh.triangles, n) && geometry::are_indices(mesh.neighbors, triangles, -1),
+             are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
+             are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
+             are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles, -1),
          "the arrays are not those of a triangulation on a torus or a cylinder");
+}
+
+void call::check_with_places(const PeriodicTriangulation& mesh) {
+  check(mesh);
+  const kernel::periodic_axes axes = periodic::axes_of({mesh.period.x, mesh.period.y});
+  const auto is_place = [](double x, const auto& axis) {
+    return std::isfinite(x) && kernel::place_of(x, axis) == x;
+  };
+  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+    const double x = mesh.places[2 * i], y = mesh.places[2 * i + 1];
+    if (is_place(x, axes.x) && is_place(y, axes.y)) continue;
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("place {} of the triangulation on a torus or a cylinder is none: ({}, {})", i, x, y));
+  }
 }
 
 namespace {
@@ -107,10 +122,10 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 
 PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                            const std::vector<std::size_t>& offsets, const Period& period) {
-  geometry::check_offsets(offsets);
+  check_offsets(offsets);
   call::check(period);
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-  geometry::check_coordinates(points, n);
+  check_points(points, n);
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   // Calls work(k, runtime): several sets side by side, or one on all threads.
   const auto for_each_set = [&](std::size_t count, const auto& work) {
@@ -192,7 +207,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
-    call::check(mesh);
+    call::check_with_places(mesh);
     call::expect(std::isfinite(mesh.period.x) && std::isfinite(mesh.period.y),
                  "cells on a cylinder have no end");
     return periodic::make_cells(self.native().runtime, mesh);

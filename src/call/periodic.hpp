@@ -9,5 +9,7 @@ namespace flaunay::call {
 void check(const Period& period);
 /// Throws Error(usage) for arrays that are not those of a triangulation on a torus or a cylinder.
 void check(const PeriodicTriangulation& mesh);
+/// Throws Error(usage), too, if it has places that no call has made.
+void check_with_places(const PeriodicTriangulation& mesh);
 
 }  // namespace flaunay::call

@@ -15,7 +15,7 @@
 #include "call/periodic.hpp"
 #include "call/with_errors.hpp"
 #include "derived/periodic/torus.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "host/clock.hpp"
 #include "host/memory/system_memory.hpp"
 #include "large/chunks/array_sink.hpp"
@@ -265,8 +265,8 @@ ChunkStatistics triangulate_into(const double* coordinates, std::uint64_t n, con
 PeriodicMeshSink::~PeriodicMeshSink() = default;
 
 Period take_to_places(const Period& period, double* points, std::size_t n) {
+  check_array(points, n, "points", kMostPointsInChunks);
   call::check(period);
-  geometry::check_coordinates(points, n);
   const Pair<double> lengths = periodic::rounded(period);
   periodic::take_into(lengths, points, n, 0, "point", points);
   return {lengths[0], lengths[1]};
@@ -276,6 +276,7 @@ ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& p
                                             const ChunkOptions& options) {
   return with_errors([&] {
     call::check(period);
+    check_count(points.size(), "points", kMostPointsInChunks);
     expect(!sink.wants(MeshArray::hull), "a torus or a cylinder has no hull");
     const double begin = host::now();
     const Pair<double> lengths = periodic::rounded(period);

@@ -15,7 +15,7 @@ namespace flaunay {
 struct PeriodicLocator::Implementation {
   Implementation(Triangulator& used, const PeriodicTriangulation& mesh)
       : owner(TriangulatorAccess::shared(used)), period{mesh.period.x, mesh.period.y} {
-    call::check(mesh);
+    call::check_with_places(mesh);
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
     if (n == 0) return;
@@ -48,10 +48,9 @@ struct PeriodicLocator::Implementation {
   }
 
   std::vector<double> to_places(const double* queries, std::size_t m) {
-    return call::take_turn(*owner, [&] {
-      call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
-      return periodic::to_places(owner->native().runtime, queries, m, period, "query");
-    });
+    check_queries(queries, m);
+    return call::take_turn(
+        *owner, [&] { return periodic::to_places(owner->native().runtime, queries, m, period, "query"); });
   }
 
   std::shared_ptr<call::Implementation> owner;
@@ -87,11 +86,11 @@ std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::s
 
 std::vector<double> PeriodicLocator::interpolate(const double* values, std::size_t columns,
                                                  const double* queries, std::size_t m) {
-  call::expect(columns > 0, "columns: at least one number per point is needed");
   const std::vector<double> places = implementation_->to_places(queries, m);
+  const std::size_t results = check_columns(columns, m);
   if (!implementation_->locator)
-    return std::vector<double>(columns * m, std::numeric_limits<double>::quiet_NaN());
-  call::expect(values != nullptr, "no values: the pointer is null");
+    return std::vector<double>(results, std::numeric_limits<double>::quiet_NaN());
+  check_array(values, check_columns(columns, implementation_->plane->points()), "values", kMostCountable);
   const periodic::Unrolled& plane = *implementation_->plane;
   std::vector<double> of_images(values, values + columns * plane.points());
   of_images.reserve(columns * (plane.points() + plane.images()));

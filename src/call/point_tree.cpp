@@ -14,8 +14,6 @@ namespace {
 // Queries are shared among threads in runs of so many.
 constexpr std::size_t kRun = 512;
 
-constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max();
-
 }  // namespace
 
 struct PointTree::Implementation {
@@ -25,8 +23,7 @@ struct PointTree::Implementation {
 
 PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n)
     : implementation_(with_errors([&] {
-        call::expect(n <= kMostPoints, "more points than 32-bit indices can count");
-        call::expect(n == 0 || coordinates != nullptr, "points, but no coordinates: the pointer is null");
+        check_points(coordinates, n);
         return std::make_unique<Implementation>(
             Implementation{TriangulatorAccess::shared(triangulator), nearest::PointTree(coordinates, n)});
       })) {}
@@ -40,10 +37,9 @@ Neighbors PointTree::nearest(const double* queries, std::size_t m, const Neighbo
   return call::take_turn(*self.owner, [&] {
     call::expect(options.count > 0, "the number of nearest points must be 1 or more");
     call::expect(options.max_distance >= 0, "the largest distance must be 0 or more");
-    call::expect(m <= kMostPoints / 2, "more queries than 32-bit indices can count");
-    call::expect(m == 0 || queries != nullptr, "queries, but no coordinates: the pointer is null");
-    call::expect(options.count <= call::kMostCountable / std::max<std::size_t>(m, 1),
-                 "more neighbours than memory can hold");
+    check_queries(queries, m);
+    check_count(options.count, "neighbours of each query",
+                std::min(kMostIndexed, kMostCountable / std::max<std::size_t>(m, 1)));
     Neighbors result;
     result.points.resize(m * options.count, -1);
     result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());

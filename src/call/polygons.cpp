@@ -8,7 +8,7 @@
 #include "call/triangulate.hpp"
 #include "constrained/crossings/first_crossing.hpp"
 #include "constrained/domains/map.hpp"
-#include "geometry/magnitudes.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay {
 namespace {
@@ -18,11 +18,12 @@ using Ids = std::vector<std::int32_t>;
 void check(const Polygons& polygons, const PolygonOptions& options) {
   call::expect(!polygons.ring_offsets.empty() && !polygons.polygon_offsets.empty(),
                "polygons need offsets of rings and of polygons, which begin with 0");
-  geometry::check_offsets(polygons.ring_offsets);
-  geometry::check_offsets(polygons.polygon_offsets);
+  check_offsets(polygons.ring_offsets);
+  check_offsets(polygons.polygon_offsets);
   call::expect(polygons.polygon_offsets.back() == polygons.ring_offsets.size() - 1,
                "the offsets of polygons do not end with the number of rings");
-  geometry::check_coordinates(polygons.coordinates, polygons.ring_offsets.back());
+  check_points(polygons.coordinates, polygons.ring_offsets.back());
+  check_enumerator(options.overlaps, Overlaps::error, "Overlaps");
   call::expect(!options.map || options.fill_rule != FillRule::nesting,
                "the polygons of a map need the fill rule even-odd or winding");
 }

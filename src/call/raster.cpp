@@ -1,8 +1,6 @@
 // The public calls for rasters and contours.
 #include "derived/raster/raster.hpp"
 
-#include <limits>
-
 #include "call/frame.hpp"
 #include "derived/contours/contours.hpp"
 
@@ -11,13 +9,10 @@ namespace flaunay {
 namespace {
 
 void check(const MeshView& mesh, const double* values) {
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  call::expect(mesh.points <= kMost && mesh.count <= kMost / 3,
-               "the mesh has more points or triangles than 32-bit indices can count");
-  call::expect(mesh.points == 0 || (mesh.coordinates != nullptr && values != nullptr),
-               "points, but no coordinates or no values: the pointer is null");
-  call::expect(mesh.count == 0 || (mesh.triangles != nullptr && mesh.neighbors != nullptr),
-               "triangles, but no corners or no neighbours: the pointer is null");
+  check_array(mesh.coordinates, mesh.points, "points");
+  check_array(values, mesh.points, "values");
+  check_array(mesh.triangles, mesh.count, "triangles", kMostIndexed / 3);
+  check_array(mesh.neighbors, mesh.count, "neighbours of triangles");
 }
 
 }  // namespace
@@ -29,7 +24,7 @@ void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* v
     const std::size_t count = raster::checked_pixels(grid, options);
     check(mesh, values);
     if (count == 0) return;
-    call::expect(pixels != nullptr, "pixels, but no room for them: the pointer is null");
+    check_array(pixels, count, "pixels", kMostCountable);
     call::Frame call(self.with_doubles(self.for_host_memory()));
     host::Runtime& runtime = call.runtime;
     const raster::Surface surface{call.in(mesh.coordinates, 2 * mesh.points),

@@ -97,7 +97,8 @@ ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, co
                                  const Breaklines& breaklines, const ChunkOptions& chunks) {
   return with_errors([&] {
     const std::size_t count = raster::checked_pixels(grid, options);
-    call::expect(count == 0 || pixels != nullptr, "pixels, but no room for them: the pointer is null");
+    check_enumerator(duplicates, Duplicates::mean, "Duplicates");
+    check_array(pixels, count, "pixels", kMostCountable);
     contours::check(heights, options.max_edge);
     Scanner scanner(grid, options, pixels, heights, breaklines);
     call::PointsWithLines all(breaklines, points);

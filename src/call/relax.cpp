@@ -55,7 +55,7 @@ void relax_in(call::Frame& call, const Points& points, const voronoi::ClipPolygo
 std::vector<double> Triangulator::relax(const double* coordinates, std::size_t n, const double* corners,
                                         std::size_t corner_count, std::size_t iterations) {
   return call::take_turn(*implementation_, [&] {
-    geometry::check_coordinates(coordinates, n);
+    check_points(coordinates, n);
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
     std::vector<double> relaxed;
     call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));

@@ -1,6 +1,8 @@
 // The public calls for points on a sphere.
 #include "flaunay/sphere.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -13,7 +15,8 @@
 #include "derived/sphere/plane.hpp"
 #include "derived/sphere/verify.hpp"
 #include "derived/sphere/walk.hpp"
-#include "geometry/indices.hpp"
+#include "geometry/arguments.hpp"
+#include "sphere/places.h"
 
 namespace flaunay {
 namespace {
@@ -24,11 +27,9 @@ using sphere::Point;
 
 std::vector<double> places_of(call::Implementation& self, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what) {
-  return call::take_turn(self, [&] {
-    call::expect(n == 0 || points != nullptr, "points, but no coordinates: the pointer is null");
-    sphere::check(coordinates);
-    return sphere::to_places(self.native().runtime, points, n, coordinates, what);
-  });
+  check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
+  return call::take_turn(
+      self, [&] { return sphere::to_places(self.native().runtime, points, n, coordinates, what); });
 }
 
 // Appends the triangles of one set in the plane.
@@ -98,17 +99,23 @@ SphericalTriangulation close_all(const Plane& plane, Triangulation planar, Spher
 
 void check_arrays(const SphericalTriangulation& mesh) {
   const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
-  const bool is_whole =
-      mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 && mesh.representatives.size() == n &&
-      mesh.neighbors.size() == mesh.triangles.size() && !mesh.point_offsets.empty() &&
-      geometry::are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
-      geometry::are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
-      geometry::are_indices(mesh.triangles, n) && geometry::are_indices(mesh.neighbors, triangles);
+  const bool is_whole = mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 &&
+                        mesh.representatives.size() == n && mesh.neighbors.size() == mesh.triangles.size() &&
+                        !mesh.point_offsets.empty() &&
+                        are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
+                        are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
+                        are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles);
   call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
 }
 
 void check(const SphericalTriangulation& mesh) {
   check_arrays(mesh);
+  for (std::size_t i = 0; i < mesh.places.size() / 2; ++i) {
+    const Point place = sphere::place_at(mesh.places, i), known = kernel::rounded_place(place.x, place.y);
+    call::expect(
+        place.x == known.x && place.y == known.y,
+        fmt::format("place {} of the triangulation on the sphere is none: ({}, {})", i, place.x, place.y));
+  }
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
     const std::int32_t* const t = &mesh.triangles[c / 3 * 3];
@@ -130,8 +137,8 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
 SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
                                           const std::vector<std::size_t>& offsets,
                                           SphereCoordinates coordinates) {
-  geometry::check_offsets(offsets);
-  sphere::check_count(offsets.back());
+  check_offsets(offsets);
+  check_points(points, offsets.back());
   SphericalTriangulation mesh;
   mesh.places = places_of(TriangulatorAccess::implementation(triangulator), points, offsets.back(),
                           coordinates, "point");
@@ -145,7 +152,8 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
 std::string verify_sphere(Triangulator& triangulator, const double* points,
                           const std::vector<std::size_t>& offsets, SphereCoordinates coordinates,
                           const SphericalTriangulation& triangulation) {
-  geometry::check_offsets(offsets);
+  check_offsets(offsets);
+  check_points(points, offsets.back());
   check_arrays(triangulation);
   if (offsets != triangulation.point_offsets) return "the sets have other points";
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
@@ -203,10 +211,13 @@ struct SphereLocator::Implementation {
     return result;
   }
 
-  /// Calls work(i, place, start) for each query, on several threads; for those that are near each other one
-  /// after the other, which finds what they need in the cache.
-  template <typename Work>
-  void answer(const double* queries, std::size_t m, SphereCoordinates coordinates, const Work& work) {
+  /// Returns so many numbers per query. Calls work(place, start, numbers) for each query, on several threads;
+  /// for those that are near each other one after the other, which finds what they need in the cache.
+  template <typename T, typename Work>
+  std::vector<T> answer(const double* queries, std::size_t m, SphereCoordinates coordinates,
+                        std::size_t columns, T none, const Work& work) {
+    check_queries(queries, m);
+    std::vector<T> result(check_columns(columns, m), none);
     const std::vector<double> places = places_of(*owner, queries, m, coordinates, "query");
     const Ids order =
         call::take_turn(*owner, [&] { return sphere::order_along_curve(owner->native().runtime, places); });
@@ -214,9 +225,10 @@ struct SphereLocator::Implementation {
     call::take_turn(*owner, [&] {
       sphere::for_each(owner->native().runtime, m, [&](std::size_t k) {
         const auto i = static_cast<std::size_t>(order[k]);
-        if (start[k] >= 0) work(i, sphere::place_at(places, i), start[k]);
+        if (start[k] >= 0) work(sphere::place_at(places, i), start[k], &result[columns * i]);
       });
     });
+    return result;
   }
 
   // A set without triangles has one or two points.
@@ -254,29 +266,27 @@ SphereLocator& SphereLocator::operator=(SphereLocator&&) noexcept = default;
 
 std::vector<std::int32_t> SphereLocator::locate(const double* queries, std::size_t m,
                                                 SphereCoordinates coordinates) {
-  Ids result(m, -1);
-  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
-    result[i] = implementation_->locate(query, start).triangle;
-  });
-  return result;
+  return implementation_->answer(queries, m, coordinates, 1, std::int32_t{-1},
+                                 [&](Point query, std::int32_t start, std::int32_t* triangle) {
+                                   *triangle = implementation_->locate(query, start).triangle;
+                                 });
 }
 
 std::vector<std::int32_t> SphereLocator::nearest(const double* queries, std::size_t m,
                                                  SphereCoordinates coordinates) {
-  Ids result(m, -1);
-  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
-    result[i] = implementation_->nearest(query, start);
-  });
-  return result;
+  return implementation_->answer(queries, m, coordinates, 1, std::int32_t{-1},
+                                 [&](Point query, std::int32_t start, std::int32_t* point) {
+                                   *point = implementation_->nearest(query, start);
+                                 });
 }
 
 std::vector<double> SphereLocator::interpolate(const double* values, std::size_t columns,
                                                const double* queries, std::size_t m,
                                                SphereCoordinates coordinates) {
-  call::expect(columns > 0, "columns: at least one number per point is needed");
-  call::expect(values != nullptr || implementation_->mesh.places.empty(), "no values: the pointer is null");
-  std::vector<double> result(columns * m, std::numeric_limits<double>::quiet_NaN());
-  implementation_->answer(queries, m, coordinates, [&](std::size_t i, Point query, std::int32_t start) {
+  check_array(values, check_columns(columns, implementation_->mesh.representatives.size()), "values",
+              kMostCountable);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto compute = [&](Point query, std::int32_t start, double* numbers) {
     const sphere::Found found = implementation_->locate(query, start);
     if (found.triangle < 0) return;
     const std::array<double, 3> weights = implementation_->walker->weights(found, query);
@@ -287,10 +297,10 @@ std::vector<double> SphereLocator::interpolate(const double* values, std::size_t
             static_cast<std::size_t>(implementation_->walker->corner(found.triangle, static_cast<int>(k)));
         if (weights[k] != 0) sum += weights[k] * values[columns * v + c];
       }
-      result[columns * i + c] = sum;
+      numbers[c] = sum;
     }
-  });
-  return result;
+  };
+  return implementation_->answer(queries, m, coordinates, columns, kNone, compute);
 }
 
 }  // namespace flaunay

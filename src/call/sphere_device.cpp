@@ -185,10 +185,10 @@ void triangulate_sphere(Triangulator& triangulator, const DevicePoints& points, 
   rest.wait_for.clear();
   std::vector<double> for_host;
   call::take_turn(self, enqueue, [&] {
-    sphere::check(coordinates);
+    check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
     call::Frame call(self, call::with_doubles(self, self.on_device()), first);
     call.check(points, "points");
-    sphere::check_count(n);
+    check_count(n, "points", kMostPointsAtOnce);
     call.begin();
     result.point_offsets = call.offsets(points);
     result.triangle_offsets.assign(result.point_offsets.size(), 0);

@@ -197,8 +197,8 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
 }  // namespace
 
 HostPoints checked_points(const double* wide, const float* narrow, const std::vector<std::size_t>& offsets) {
-  geometry::check_offsets(offsets);
-  if (narrow == nullptr) geometry::check_coordinates(wide, offsets.back());
+  check_offsets(offsets);
+  check_points(narrow != nullptr ? static_cast<const void*>(narrow) : wide, offsets.back());
   return {wide, narrow, offsets.back()};
 }
 

@@ -115,8 +115,7 @@ std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const
   return with_errors([&] {
     const call::Engine& engine = implementation_->on_device();
     engine.check_size(n);
-    // Sums with larger numbers could overflow.
-    if (sets > call::kMostCountable) throw Error(ErrorKind::usage, "too many sets of points");
+    check_count(sets, "sets");
     const blocks::WorkspaceBytes needed = blocks::workspace_bytes(engine.runtime, n, sets);
     return needed.persistent + needed.scratch;
   });

@@ -14,7 +14,7 @@
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
 #include "derived/weighted/verify.hpp"
-#include "geometry/indices.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
 
@@ -76,11 +76,9 @@ void settle(const double* points, const double* weights, const std::vector<std::
 }
 
 void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  using geometry::are_indices;
-  using geometry::are_offsets;
-  geometry::check_offsets(offsets);
+  check_offsets(offsets);
+  check_points(points, offsets.back());
   const std::size_t n = offsets.back(), sets = offsets.size() - 1, triangles = mesh.triangles.size() / 3;
-  geometry::check_coordinates(points, n);
   call::expect(mesh.representatives.size() == n && are_indices(mesh.representatives, n) &&
                    mesh.triangles.size() == 3 * triangles && are_indices(mesh.triangles, n) &&
                    are_indices(mesh.hull, n) && are_indices(mesh.hidden, n) &&
@@ -90,10 +88,6 @@ void check(const double* points, const std::vector<std::size_t>& offsets, const 
                "the triangulation is not one of these points");
   call::expect(mesh.neighbors.size() == mesh.triangles.size() && are_indices(mesh.neighbors, triangles, -1),
                "the triangulation must have its neighbours");
-}
-
-void check_weights(const double* weights, std::size_t n) {
-  call::expect(n == 0 || weights != nullptr, "points, but no weights: the pointer is null");
 }
 
 }  // namespace
@@ -109,7 +103,8 @@ WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const dou
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     const call::HostPoints given = call::checked_points(points, nullptr, offsets);
-    check_weights(weights, given.count);
+    check_array(weights, given.count, "weights");
+    self.native().check_size(given.count);
     const geometry::SetScalings scalings = geometry::set_scalings(
         points, offsets,
         [&](std::size_t first, std::size_t last) { return geometry::inspect(points, first, last); });
@@ -157,7 +152,7 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
   return call::take_turn(self, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
     check(points, {0, n}, mesh);
-    check_weights(weights, n);
+    check_array(weights, n, "weights");
     return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
   });
 }
@@ -165,7 +160,7 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
 std::string verify_weighted(Triangulator& triangulator, const double* points, const double* weights,
                             const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
   check(points, offsets, mesh);
-  check_weights(weights, offsets.back());
+  check_array(weights, offsets.back(), "weights");
   const weighted::Claim claim{points, weights, offsets, mesh};
   std::string problem = weighted::find_problem(claim);
   if (!problem.empty()) return problem;

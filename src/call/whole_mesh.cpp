@@ -129,7 +129,7 @@ void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
 
 WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_t n,
                const ConstrainedTriangulation& mesh) {
-  expect(n == 0 || coordinates != nullptr, "points, but no coordinates: the pointer is null");
+  check_points(coordinates, n);
   WholeMesh filled;
   filled.coordinates.assign(coordinates, coordinates + 2 * n);
   filled.coordinates.insert(filled.coordinates.end(), mesh.added_points.begin(), mesh.added_points.end());

@@ -143,24 +143,4 @@ SetScalings set_scalings(const double* coordinates, const std::vector<std::size_
   return scalings;
 }
 
-void check_offsets(const std::vector<std::size_t>& offsets) {
-  if (offsets.empty() || offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
-    throw Error(ErrorKind::usage, "offsets of point sets must begin with 0 and not decrease");
-  }
-}
-
-void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n) {
-  check_offsets(offsets);
-  if (offsets.back() != n) {
-    throw Error(ErrorKind::usage,
-                fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n));
-  }
-}
-
-void check_coordinates(const void* coordinates, std::size_t n) {
-  if (n > 0 && coordinates == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("{} points, but no coordinates: the pointer is null", n));
-  }
-}
-
 }  // namespace flaunay::geometry

@@ -146,12 +146,4 @@ SetScalings set_scalings(const double* coordinates, const std::vector<std::size_
   return set_scalings(coordinates, offsets, by_set);
 }
 
-/// Throws Error(usage) unless offsets begin with 0 and do not decrease.
-void check_offsets(const std::vector<std::size_t>& offsets);
-/// Throws Error(usage) unless offsets begin with 0, do not decrease and end with n.
-void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n);
-
-/// Throws Error(usage) if there are points, but the pointer to their coordinates is null.
-void check_coordinates(const void* coordinates, std::size_t n);
-
 }  // namespace flaunay::geometry

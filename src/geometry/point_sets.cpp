@@ -1,28 +1,14 @@
 #include "geometry/point_sets.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
-#include "flaunay/flaunay.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/sort.hpp"
-#include "mesh/limits.h"
 
 namespace flaunay::geometry {
 namespace {
-
-// A mesh has up to 6 half-edges per point, which are numbered by 32-bit integers.
-constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max() / kernel::EDGES_PER_VERTEX;
-
-void check_size(std::size_t n) {
-  if (n <= kMostPoints) return;
-  throw Error(
-      ErrorKind::input,
-      fmt::format("{} points are too many for 32-bit indices: at most {} are possible", n, kMostPoints));
-}
 
 // Adding 0 turns -0 into 0.
 double scaled(double x, double factor) { return x * factor + 0.0; }
@@ -76,8 +62,7 @@ class Order {
 PointSets ingest(const double* coordinates, const std::vector<std::size_t>& offsets) {
   check_offsets(offsets);
   const std::size_t n = offsets.back();
-  check_coordinates(coordinates, n);
-  check_size(n);
+  check_points(coordinates, n);
   const SetScalings scalings = set_scalings(
       coordinates, offsets,
       [coordinates](std::size_t first, std::size_t last) { return inspect(coordinates, first, last); });

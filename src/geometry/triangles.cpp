@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/area.h"
 #include "predicates/rounded_area.h"
@@ -44,7 +45,7 @@ constexpr double kCancelled = 0x1p-4, kCancelledTwofold = 0x1p-50, kUnderflow = 
 
 Triangles::Triangles(const double* coordinates, std::size_t n, const std::vector<std::int32_t>& corners)
     : coordinates_(coordinates), corners_(corners) {
-  check_coordinates(coordinates, n);
+  check_points(coordinates, n);
   const Scaling scaling = scaling_for(coordinates, 0, n, inspect(coordinates, 0, n));
   shift_ = scaling.shift;
   scale_ = scaling.powers();

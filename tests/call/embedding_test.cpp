@@ -881,9 +881,9 @@ TEST(SmallLocator, InterpolatesInBothMemories) {
     }
   }
   options.columns = 0;
-  expect_usage_error({"no columns"},
+  expect_usage_error({"columns"},
                      [&] { on_host.interpolate(rows.data(), q.queries.data(), q.query_offsets, options); });
-  expect_usage_error({"no columns"}, [&] { on_host.gradients(rows.data(), 0); });
+  expect_usage_error({"columns"}, [&] { on_host.gradients(rows.data(), 0); });
   options.columns = 3;
   options.gradients = gradients.data();
   expect_usage_error({"host memory"},
@@ -909,10 +909,10 @@ TEST(SmallLocator, BadUseIsAnError) {
   Triangulation mesh = expected_of(points, {0, 30});
   Locator locator(triangulator(), points.data(), 30, mesh);
   const double* const nothing = nullptr;
-  expect_usage_error({"pointer is null"}, [&] { locator.locate(nothing, 3); });
+  expect_usage_error({"3 queries", "NULL"}, [&] { locator.locate(nothing, 3); });
   EXPECT_TRUE(locator.locate(nothing, 0).empty());
   expect_usage_error({"sets"}, [&] { locator.locate(points.data(), {0, 1, 2}); });
-  expect_usage_error({"values", "null"}, [&] { locator.interpolate(nothing, points.data(), 3); });
+  expect_usage_error({"values", "NULL"}, [&] { locator.interpolate(nothing, points.data(), 3); });
   expect_error(ErrorKind::input, {"query 1", "not finite"}, [&] {
     const Coordinates wrong{0, 0, std::nan(""), 0};
     locator.nearest(wrong.data(), 2);
@@ -1237,7 +1237,7 @@ TEST(SmallEmbeddingMisuse, ContextAndDevice) {
   expect_usage_error({"context and a device"}, [] { Triangulator t(nullptr, embedder().device()); });
   expect_usage_error({"context and a device"}, [] { Triangulator t(embedder().context(), nullptr); });
   const double* const nothing = nullptr;
-  expect_usage_error({"pointer is null"}, [&] { triangulator().triangulate(nothing, 3); });
+  expect_usage_error({"3 points", "NULL"}, [&] { triangulator().triangulate(nothing, 3); });
   EXPECT_TRUE(triangulator().triangulate(nothing, 0).triangles.empty());
 }
 

@@ -217,7 +217,7 @@ TEST(SmallCarried, SeedsThatAreNone) {
   constraints.seed_offsets = {0, 1, 2};
   EXPECT_EQ(error(ErrorKind::usage), "the offsets of 2 seeds do not fit 1 sets");
   constraints.seed_attributes = nullptr;
-  EXPECT_EQ(error(ErrorKind::usage), "the seeds or their attributes are null");
+  EXPECT_EQ(error(ErrorKind::usage), "seeds have neither attributes nor areas: both pointers are null");
 }
 
 }  // namespace

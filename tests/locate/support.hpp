@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/predicates.hpp"
 #include "host/opencl/device.hpp"
 #include "points/device_mesh.hpp"
 #include "tests/support/device.hpp"

@@ -286,7 +286,7 @@ TEST(PeriodicChunks, RefuseWrongInput) {
   expect_error(ErrorKind::usage, "enough", [&] { triangulate({}, options); });
   points[150] = std::nan("");
   expect_error(ErrorKind::input, "point 75 is not finite", [&] { triangulate({}); });
-  expect_error(ErrorKind::usage, "pointer is null", [&] {
+  expect_error(ErrorKind::usage, "pointer to them is NULL", [&] {
     triangulate_periodic_chunks(nullptr, 5, {}, MeshArrays<std::int32_t>{}, nullptr, in_chunks_of(50));
   });
 }

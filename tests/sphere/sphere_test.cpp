@@ -468,7 +468,7 @@ TEST(Sphere, ErrorsSayWhatIsWrong) {
     triangulated({0, 0, 7, 0, 0, 0}, kDirections);
   });
   expect_failure(ErrorKind::input, "point 0 is not finite", [] { triangulated({HUGE_VAL, 0}, kDegrees); });
-  expect_failure(ErrorKind::usage, "null",
+  expect_failure(ErrorKind::usage, "NULL",
                  [] { triangulate_sphere(testing::triangulator(), nullptr, 3, kDegrees); });
   expect_failure(ErrorKind::usage, "offsets", [] {
     const double points[] = {1, 2, 3, 4};

@@ -527,7 +527,7 @@ TEST_F(WeightedTest, WrongWeightsAreNamed) {
   expect_failed(ErrorKind::input, {"point 1 has a weight that is not finite"}, [&] { with(NAN); });
   expect_failed(ErrorKind::input, {"point 1 has a weight", "too large"}, [&] { with(1e300); });
   expect_failed(ErrorKind::input, {"point 1 has a weight", "too fine"}, [&] { with(1e-300); });
-  expect_failed(ErrorKind::usage, {"no weights"},
+  expect_failed(ErrorKind::usage, {"weights", "NULL"},
                 [&] { triangulate_weighted(triangulator_, points.data(), nullptr, 3); });
   with(0x1p490);
   const Numbers weights = {0, 1, 2};

@@ -16,6 +16,7 @@
 #include "constrained/crossings/segment_set.hpp"
 #include "constrained/crossings/snap.hpp"
 #include "flaunay/flaunay.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/point_sets.hpp"
 #include "geometry/sort.hpp"
@@ -262,7 +263,7 @@ bool may_cross(const double* coordinates, const Ids& segments, const Ids& of_set
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets, const Ids& segments,
             const SplitLimits& limits) {
   check_offsets(offsets);
-  check_coordinates(coordinates, offsets.back());
+  check_points(coordinates, offsets.back());
   const SetScalings scalings = set_scalings(
       coordinates, offsets,
       [coordinates](std::size_t first, std::size_t last) { return inspect(coordinates, first, last); });

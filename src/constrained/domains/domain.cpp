@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "constrained/fill_rules.h"
+#include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/constrained/domain.cl.hpp"
 #include "launchers/constrained/seeds.cl.hpp"
@@ -229,7 +230,7 @@ Places checked_places(const char* name, const double* coordinates, std::size_t c
   if (offsets.size() != sets + 1 || offsets.back() != count) {
     throw Error(ErrorKind::usage, fmt::format("the offsets of {} {}s do not fit {} sets", count, name, sets));
   }
-  geometry::check_offsets(offsets);
+  check_offsets(offsets);
   return {name, coordinates, count, std::move(offsets)};
 }
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "predicates/planar.h"
 
 namespace flaunay::constrained {

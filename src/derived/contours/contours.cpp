@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "derived/surface.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "raster/edges.h"
 
 namespace flaunay::contours {

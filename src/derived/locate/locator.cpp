@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flaunay/flaunay.hpp"
+#include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/locate/fixed_point.cl.hpp"
 #include "points/inspect.hpp"

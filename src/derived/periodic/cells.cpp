@@ -6,7 +6,7 @@
 
 #include "arithmetic/exact_arithmetic.h"
 #include "derived/voronoi/moments.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/for_each.hpp"
 
 namespace flaunay::periodic {

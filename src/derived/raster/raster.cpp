@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "derived/surface.hpp"
-#include "geometry/expect.hpp"
+#include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/raster/scan.cl.hpp"
 #include "launchers/raster/sides.cl.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "geometry/sort.hpp"
@@ -23,20 +22,6 @@ Direction direction_of(Point place) {
   if (is_pole(place)) return {0, 0, -1};
   const double square = place.x * place.x + place.y * place.y, factor = 2 / (1 + square);
   return {place.x * factor, place.y * factor, (1 - square) / (1 + square)};
-}
-
-void check(SphereCoordinates coordinates) {
-  if (coordinates != SphereCoordinates::directions && coordinates != SphereCoordinates::degrees)
-    throw Error(ErrorKind::usage, "coordinates of a sphere are directions or degrees");
-}
-
-void check_count(std::size_t n) {
-  // There are twice as many triangles as points.
-  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 6;
-  if (n > kMost) {
-    throw Error(ErrorKind::input,
-                fmt::format("the sphere has too many points: at most {} are possible", kMost));
-  }
 }
 
 void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what) {

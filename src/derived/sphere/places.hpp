@@ -41,10 +41,6 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
   return coordinates == SphereCoordinates::directions ? 3 : 2;
 }
 
-/// Throws Error(usage) for a kind of coordinates that there is not.
-void check(SphereCoordinates coordinates);
-/// Throws Error(input) for more points than have triangles whose corners can be numbered.
-void check_count(std::size_t n);
 /// Throws Error(input) for what is no point. what: its name.
 [[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what);
 

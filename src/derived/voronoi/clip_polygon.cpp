@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "arithmetic/records.h"
+#include "geometry/arguments.hpp"
 #include "geometry/predicates.hpp"
 #include "points/codes.h"
 #include "voronoi/codes.h"
@@ -45,7 +46,7 @@ bool turns_left(const geometry::Predicates& predicates, Point a, Point b, Point 
 }  // namespace
 
 ClipPolygon checked_polygon(const double* corners, std::size_t count) {
-  if (corners == nullptr) throw Error(ErrorKind::usage, "the clip polygon's corners must not be null");
+  check_array(corners, count, "corners of the clip polygon");
   if (count < 3) throw bad("has {} corners, and needs three", count);
   if (count > kernel::STRICTLY_INSIDE) {
     throw bad("has {} corners; corner {} is one too many", count, kernel::STRICTLY_INSIDE);

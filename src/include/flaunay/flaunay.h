@@ -5,7 +5,8 @@
 /// Functions that can fail return a flaunay_status; flaunay_last_error has the message. A function that makes
 /// a handle writes it to its last argument, or NULL if it fails. An accessor returns NULL or 0 if the handle
 /// does not have the value; it also does so if the handle is NULL, but then flaunay_last_error has a message.
-/// Passing NULL where it is not allowed is FLAUNAY_ERROR_USAGE. No function ends the process or throws.
+/// Passing NULL where it is not allowed is FLAUNAY_ERROR_USAGE, and a count that is larger than any array is
+/// FLAUNAY_ERROR_INPUT; both are checked before an array is read. No function ends the process or throws.
 ///
 /// Handles are made by flaunay_..._create or by a computation, and destroyed by their flaunay_..._destroy,
 /// which also accepts NULL. The arrays, strings and structs that accessors return belong to the handle; they
@@ -869,7 +870,7 @@ FLAUNAY_API flaunay_status flaunay_first_triangles(const int32_t* triangles, siz
 /// Finds for each of n points its neighbours in a mesh of t triangles with h hull vertices, in increasing
 /// order. starts: n + 1 values of the caller's; neighbors: 3 t + h values of the caller's, none if t is 0.
 /// The neighbours of point i are [starts[i], starts[i + 1]) of neighbors. FLAUNAY_ERROR_USAGE if an index is
-/// out of range, or if there are more values than an int32_t can count. O(n log n) work.
+/// out of range, FLAUNAY_ERROR_INPUT if there are more values than an int32_t can count. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_vertex_neighbors(const int32_t* triangles, size_t t, const int32_t* hull,
                                                     size_t h, size_t n, int32_t* starts, int32_t* neighbors);
 
@@ -1575,8 +1576,9 @@ FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spheric
 typedef struct flaunay_periodic flaunay_periodic;
 /// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period; if
 /// one period is INFINITY, on a cylinder. offsets and sets: as for flaunay_triangulate. Any points do,
-/// however few. Errors are those of flaunay_triangulate; a period that is none is FLAUNAY_ERROR_USAGE. The
-/// caller destroys the result. O(n log n) work.
+/// however few. Errors are those of flaunay_triangulate; FLAUNAY_ERROR_USAGE for a period that is not from
+/// 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or more than 2^30 times the other one. The caller destroys
+/// the result. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points,
                                                    size_t n, const size_t* offsets, size_t sets,
                                                    double period_x, double period_y,

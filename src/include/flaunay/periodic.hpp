@@ -15,8 +15,8 @@ namespace flaunay {
 
 /// Where the plane begins again, in x and in y.
 struct Period {
-  /// Positive, and at most 2^30 times the other. If one is infinite, the plane does not repeat itself in that
-  /// direction: it is a cylinder.
+  /// From 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and at most 2^30 times the other. If one is infinite,
+  /// the plane does not repeat itself in that direction: it is a cylinder.
   double x = 1;
   double y = 1;  ///< see x
 };

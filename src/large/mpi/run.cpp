@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "arithmetic/records.h"
+#include "geometry/arguments.hpp"
 #include "geometry/euler.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
@@ -95,13 +96,7 @@ Frame find_frame(Ranks& ranks, host::Threads& threads, const GivenPoints& points
 GivenPoints number_points(const Ranks& ranks, const double* coordinates, std::size_t n) {
   GivenPoints points{coordinates, n, {}};
   ranks.together([&] {
-    geometry::check_coordinates(coordinates, n);
-    if (n > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-      throw Error(
-          ErrorKind::input,
-          fmt::format("{} points are too many for one rank; at most {} are possible, more on more ranks", n,
-                      std::numeric_limits<int>::max()));
-    }
+    check_array(coordinates, n, "points of one rank");
     if (ranks.size() > kMostRanks)
       throw Error(ErrorKind::usage,
                   fmt::format("{} ranks; at most {} are possible", ranks.size(), kMostRanks));

@@ -269,7 +269,7 @@ Point crossing(const ScaledPoints& scaled, int shift, const Segment& first, cons
 Result constrain(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& delaunay, const Ids& segments) {
   check_offsets(offsets);
-  check_coordinates(coordinates, offsets.back());
+  check_points(coordinates, offsets.back());
   constrained::check_segments(offsets, segments);
   const ScaledPoints scaled = scale_points(coordinates, offsets);
   Ids unique_of;

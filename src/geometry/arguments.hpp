@@ -1,0 +1,71 @@
+// The checks of what callers pass to public functions of C++ and C. A call makes them before anything else:
+// before it multiplies a count, allocates memory or reads an array.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "flaunay/flaunay.hpp"
+#include "mesh/limits.h"
+
+namespace flaunay {
+
+/// Throws Error(usage) with the message `what` unless the condition holds.
+template <typename Message>
+void expect(bool holds, const Message& what) {
+  if (!holds) throw Error(ErrorKind::usage, what);
+}
+
+/// The largest number of elements that 32-bit indices count.
+constexpr std::size_t kMostIndexed = std::numeric_limits<std::int32_t>::max();
+/// The largest number of points in the plane: a mesh has up to 6 half-edges per point, numbered by 32-bit
+/// integers.
+constexpr std::size_t kMostPointsAtOnce = kMostIndexed / kernel::EDGES_PER_VERTEX;
+/// The largest number of points of triangulations in chunks. Sums and products with numbers of bytes do not
+/// overflow.
+constexpr std::uint64_t kMostPointsInChunks = std::uint64_t{1} << 56;
+/// The largest number of rows times columns: what an array has in bytes does not overflow.
+constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
+
+/// Throws Error(input) if there are more than `most` elements. name: what they are, as a plural.
+void check_count(std::uint64_t count, const char* name, std::uint64_t most = kMostIndexed);
+/// Throws Error(input) if there are more than `most` elements, and Error(usage) if there are some but the
+/// pointer to them is null.
+void check_array(const void* array, std::uint64_t count, const char* name, std::uint64_t most = kMostIndexed);
+/// check_array for points in the plane, on a sphere or on a torus.
+void check_points(const void* coordinates, std::uint64_t count);
+/// check_array for queries. Kernels use 32-bit indices for their coordinates.
+void check_queries(const void* coordinates, std::uint64_t count);
+/// Checks a number of columns of arrays with so many rows. Returns how many numbers these have.
+std::size_t check_columns(std::size_t columns, std::size_t rows);
+
+/// Throws Error(usage) for a number that is no enumerator. They are numbered from 0 to `last`. type: the name
+/// of the enumeration.
+void check_enumerator(int value, int last, const char* type);
+template <typename Enum>
+void check_enumerator(Enum value, Enum last, const char* type) {
+  check_enumerator(static_cast<int>(value), static_cast<int>(last), type);
+}
+
+/// Throws Error(usage) unless offsets of sets begin with 0 and do not decrease.
+void check_offsets(const std::vector<std::size_t>& offsets);
+/// Throws Error(usage) unless offsets of sets begin with 0, do not decrease and end with n.
+void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n);
+
+/// Whether all are below `end`, and none below `least`. O(n).
+inline bool are_indices(const std::vector<std::int32_t>& ids, std::size_t end, std::int32_t least = 0) {
+  return std::all_of(ids.begin(), ids.end(), [&](std::int32_t i) {
+    return i >= least && (i < 0 || static_cast<std::size_t>(i) < end);
+  });
+}
+
+/// Whether they cut an array of `size` elements into so many parts. O(parts).
+inline bool are_offsets(const std::vector<std::size_t>& offsets, std::size_t parts, std::size_t size) {
+  return offsets.size() == parts + 1 && offsets.front() == 0 && offsets.back() == size &&
+         std::is_sorted(offsets.begin(), offsets.end());
+}
+
+}  // namespace flaunay
