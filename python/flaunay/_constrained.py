@@ -402,7 +402,8 @@ class _Searched:
 def edge_keys(first: Indices, second: Indices) -> npt.NDArray[np.int64]:
     """A number for each edge by its ends, whatever its direction; they sort as rows with the smaller end first."""
     keys: npt.NDArray[np.int64] = np.minimum(first, second).astype(np.int64) << 32
-    return keys | np.maximum(first, second)
+    keys |= np.maximum(first, second)
+    return keys
 
 
 def rows_of_edges(keys: npt.NDArray[np.int64]) -> Indices:

@@ -181,7 +181,7 @@ def _attributes(mesh: Members, values: Array) -> Array:
     count, points = len(values), mesh["points"]
     if len(points) == count:
         return values
-    all_values = np.concatenate([values, LinearInterpolator(points[:count], values)(points[count:])])
+    all_values: Array = np.concatenate([values, LinearInterpolator(points[:count], values)(points[count:])])
     split, a, b = _ends(mesh, count)
     from_a, from_b = (np.hypot(*(points[split] - points[ends]).T)[:, None] for ends in (a, b))
     all_values[split] = (from_b * values[a] + from_a * values[b]) / (from_a + from_b)
