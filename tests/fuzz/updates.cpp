@@ -106,9 +106,8 @@ class UpdatesFuzzer : public Fuzzer {
   }
 
   std::string summary() const override {
-    return return fmt::format(
-        "{} batches, {} of them with segments, {} with all points on a line, {} interrupted", batches_,
-        constrained_, flat_, interrupted_);
+    return fmt::format("{} batches, {} of them with segments, {} with all points on a line, {} interrupted",
+                       batches_, constrained_, flat_, interrupted_);
   }
 
  private:
