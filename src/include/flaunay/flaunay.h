@@ -1748,8 +1748,8 @@ FLAUNAY_API flaunay_status flaunay_weighted_verify(flaunay_triangulator* triangu
                                                    const flaunay_weighted* weighted, const double* points,
                                                    const double* weights);
 /// Computes the power cells of one set, clipped to a convex polygon, as flaunay_voronoi_clip does without
-/// weights: of each point the places whose squared distance less the weight is least for it. Each cell is
-/// rounded by itself. points, weights: those that were triangulated. The caller destroys the result.
+/// weights: of each point the places whose squared distance less the weight is least for it.
+/// Decisions are rounded, too. points, weights: those that were triangulated. The caller destroys the result.
 FLAUNAY_API flaunay_status flaunay_weighted_cells(flaunay_triangulator* triangulator,
                                                   const flaunay_weighted* weighted, const double* points,
                                                   const double* weights, const double* corners,
