@@ -350,17 +350,19 @@ TEST(SmallVerifyRefined, SliversAtTheHull) {
   for (const double off : {0x1p-53, 1e-9}) {
     for (const Segments& segments :
          {Segments{0, 1, 1, 4, 4, 2, 2, 3, 3, 0}, Segments{0, 4}, Segments{3, 0}}) {
-      Case mesh({0, 0, 1, 0, 1, 1, 0, 1, 1 - off, 0.5}, segments);
-      mesh.max_area = 1;
-      mesh.keep_if([](const Ids& row) {
-        return std::find(row.begin(), row.end(), 0) != row.end() ||
-               std::find(row.begin(), row.end(), 3) != row.end();
-      });
-      EXPECT_EQ(mesh.triangles.size(), 9u);
-      EXPECT_EQ(mesh.problem().empty(), off < 1e-9) << mesh.problem();
-      EXPECT_EQ(mesh.verify().problem.empty(), off < 1e-9) << mesh.verify().problem;
-      mesh.max_area = 0;
-      EXPECT_NE(mesh.problem(), "");
+      for (const double x : {1, 0}) {
+        Case mesh({1 - x, 0, x, 0, x, 1, 1 - x, 1, std::fabs(x - off), 0.5}, segments);
+        mesh.max_area = 1;
+        mesh.keep_if([](const Ids& row) {
+          return std::find(row.begin(), row.end(), 0) != row.end() ||
+                 std::find(row.begin(), row.end(), 3) != row.end();
+        });
+        EXPECT_EQ(mesh.triangles.size(), 9u);
+        EXPECT_EQ(mesh.problem().empty(), off < 1e-9) << mesh.problem();
+        EXPECT_EQ(mesh.verify().problem.empty(), off < 1e-9) << mesh.verify().problem;
+        mesh.max_area = 0;
+        EXPECT_NE(mesh.problem(), "");
+      }
     }
   }
 }

@@ -307,9 +307,11 @@ class ConstrainedChecker : public Checker {
     double largest = 0;
     for (std::size_t i = 0; i < sweep_.pieces().size(); ++i) {
       const Piece& piece = sweep_.pieces()[i];
-      if (piece.segment != kHull) continue;
-      hull_piece[std::max(piece.below, piece.above)] = static_cast<std::int32_t>(i);
-      for (const double x : places_[piece.from].at) largest = std::max(largest, std::fabs(x));
+      if (piece.segment == kHull)
+        hull_piece[std::max(piece.below, piece.above)] = static_cast<std::int32_t>(i);
+      for (const std::int32_t place : {piece.from, piece.to}) {
+        for (const double x : places_[place].at) largest = std::max(largest, std::fabs(x));
+      }
     }
     std::vector<double> widths(covered_.size(), 0);
     for (const Piece& piece : sweep_.pieces()) {
