@@ -191,7 +191,7 @@ TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
   refused("--period", "1", {"--period", "1"});
   const std::string points = write("points.xy", "0 0\n1 0\n0 100\n");
   expect_error(kUsage, {"the period 0 x 1"}, {"triangulate", points, "--period", "0,1"});
-  expect_error(kUsage, {"not both infinite"}, {"triangulate", points, "--period", "inf,inf"});
+  expect_error(kUsage, {"or one of them infinite"}, {"triangulate", points, "--period", "inf,inf"});
   expect_error(kBadInput, {"points.xy", "point 2", "latitude 100"}, {"triangulate", points, "--sphere"});
 }
 
@@ -1841,12 +1841,16 @@ TEST_F(CommandConstraintsTest, ALetterIsWhatTriangleMakesOfIt) {
 
 TEST_F(CommandConstraintsTest, TrianglesHaveTheAttributesOfTheirRegionsAndMarkersAreKept) {
   // Two squares side by side, and a segment across both, which is split at their common side. Of the regions
-  // one has none, one has two, of which the last counts; two places are on a segment and outside.
-  const std::string poly =
-      write("a.poly",
-            "6 2 0 1\n0 0 0 7\n1 4 0 0\n2 4 4 0\n3 0 4 0\n4 8 0 9\n5 8 4 0\n"
-            "8 1\n0 0 1 1\n1 1 2 20\n2 2 3 3\n3 3 0 4\n4 1 4 5\n5 4 5 6\n6 5 2\n7 0 5 10\n"
-            "0\n5\n0 2 3 1.5 0.1\n1 5 1 -2\n2 7 0.5 2.5\n3 4 1 9\n4 20 20 9\n");
+  // one has none, one has two, of which the last counts.
+  const std::string drawing =
+      "6 2 0 1\n0 0 0 7\n1 4 0 0\n2 4 4 0\n3 0 4 0\n4 8 0 9\n5 8 4 0\n"
+      "8 1\n0 0 1 1\n1 1 2 20\n2 2 3 3\n3 3 0 4\n4 1 4 5\n5 4 5 6\n6 5 2\n7 0 5 10\n0\n";
+  const std::string poly = write("a.poly", drawing + "3\n0 2 3 1.5 0.1\n1 5 1 -2\n2 7 0.5 2.5\n");
+  for (const auto& [place, what] : {std::pair("4 1", "on a constraint"), {"20 20", "in no triangle"}}) {
+    expect_error(
+        kBadInput, {"seed 0", what},
+        {"triangulate", write("bad.poly", drawing + "1\n0 " + place + " 9\n"), "--crossings", "split"});
+  }
   const Outcome outcome =
       run_well({"triangulate", poly, "--crossings", "split", "-o", path("b.ele")}, kNoPlatform);
   EXPECT_EQ(outcome.out.find("note"), std::string::npos) << outcome.out;
