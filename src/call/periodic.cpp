@@ -18,15 +18,16 @@ namespace flaunay {
 void call::check(const Period& period) {
   const auto is_length = [](double x) { return (x >= 0x1p-900 && x <= 0x1p900) || x == HUGE_VAL; };
   expect(is_length(period.x) && is_length(period.y) && std::min(period.x, period.y) < HUGE_VAL,
-         fmt::format(
-             "the period is {} x {}, but both must be from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or "
-             "one of them infinite; scale points and period",
-             period.x, period.y));
-  constexpr double kMostUnequal = 1 << 30;
-  expect(std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) ||
-             std::isinf(period.x) || std::isinf(period.y),
-         fmt::format("the period {} x {} is none: one is more than 2^30 times as long as the other one",
+         fmt::format("the period {} x {} is not possible: both must be from 2^-900 to 2^900 (about 1.2e-271 "
+                     "to 8.4e270), or "
+                     "one of them infinite; scale points and period",
                      period.x, period.y));
+  constexpr double kMostUnequal = 1 << 30;
+  expect(
+      std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) || std::isinf(period.x) ||
+          std::isinf(period.y),
+      fmt::format("the period {} x {} is not possible: one is more than 2^30 times as long as the other one",
+                  period.x, period.y));
 }
 
 void call::check(const PeriodicTriangulation& mesh) {
