@@ -137,7 +137,7 @@ TEST(SmallSphereOnDevice, ErrorsSayWhatIsWrong) {
   points.first = 2;
   points.count = 1;
   expect("point 0 is not finite", error_of(points, kDegrees));
-  expect("coordinates", error_of(points, static_cast<SphereCoordinates>(7)));
+  expect("7 is no SphereCoordinates", error_of(points, static_cast<SphereCoordinates>(7)));
   const Memory good = embedder().upload(random_directions(9, 1)), small = embedder().make_buffer(100);
   points.memory = good.get();
   points.first = 0;
