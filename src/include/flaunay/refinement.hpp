@@ -88,9 +88,9 @@ struct RefinementReport {
   std::size_t rounds = 0;        ///< in which points were added; of several sets the most
   std::size_t added_points = 0;  ///< on constraints or not
   std::size_t split_points = 0;  ///< those of them that are on constraints
-  double smallest_angle =
-      0;                     ///< of all triangles, in degrees, rounded; 0 without any, or if nothing is asked
-  double largest_angle = 0;  ///< of all triangles, in degrees, rounded; 0 without any, or if nothing is asked
+  /// Of all triangles, in degrees, rounded; 0 if there are none, or if nothing was asked for.
+  double smallest_angle = 0;
+  double largest_angle = 0;  ///< as smallest_angle
   double mean_angle = 0;     ///< of the smallest angle of each triangle, in degrees, if there was smoothing
   double smallest_angle_before = 0;         ///< as smallest_angle, before smoothing; 0 without
   double mean_angle_before = 0;             ///< as mean_angle, before smoothing; 0 without
