@@ -750,7 +750,7 @@ class ConstrainedChecker : public Checker {
     for (std::size_t t = 0; t < report_.triangles; ++t) {
       const double *a = point(corners_[3 * t]), *b = point(corners_[3 * t + 1]),
                    *c = point(corners_[3 * t + 2]);
-      if (area > 0 && predicates_.compare_area(a, b, c, area) > 0) {
+      if (area > 0 && std::isfinite(area) && predicates_.compare_area(a, b, c, area) > 0) {
         const double twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         violate("{} has the area {}, which is above {}", describe_row(t), twice / 2, area);
       }
