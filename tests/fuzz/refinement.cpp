@@ -11,6 +11,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
@@ -185,6 +186,9 @@ std::string verified(const DomainToRefine& domain, const MeshToRefine& mesh, con
   const auto is_of_input = [](Excuse e) { return e == Excuse::input_angle || e == Excuse::near_apex; };
   const std::vector<Excuse>& excuses = refined.report.excuses;
   if (!std::all_of(excuses.begin(), excuses.end(), is_of_input)) return "";
+  // Its tolerances of places are squared, so they need coordinates whose squares are doubles with room below.
+  constexpr int kMostExponent = 200;
+  if (std::abs(exponent_of(domain)) > kMostExponent) return "";
   // It tells by places alone what is on one segment, for which coordinates may be too coarse.
   double largest = 0;
   for (const double x : domain.points) largest = std::max(largest, std::fabs(x));
