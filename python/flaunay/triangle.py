@@ -25,7 +25,8 @@ from flaunay._constrained import (
     rules_of,
     sorted_edges,
 )
-from flaunay._errors import UsageError
+from flaunay._delaunay import Delaunay
+from flaunay._errors import InputError, UsageError
 from flaunay._interpolate import LinearInterpolator
 from flaunay._refinement import Refining
 from flaunay._voronoi import Voronoi
@@ -146,9 +147,26 @@ def _triangulated(given: Members, letters: Counter[str], options: Options) -> Me
     others = {name: options.pop(name, None) for name in ("holes", "seeds")}
     others["segment_markers"] = markers
     refining = cast(Refining, options)
-    mesh = arrays_of_constrained(
-        points, segments, None, others, rules, refining, {"neighbors"}, None
-    )
+
+    def arrays() -> Members:
+        return arrays_of_constrained(points, segments, None, others, rules, refining, {"neighbors"}, None)
+
+    try:
+        mesh = arrays()
+    except InputError:
+        seeds = others["seeds"]
+        if seeds is None or not np.isfinite(seeds).all():
+            raise
+        # For Triangle, those outside count for nothing. Where they are is only asked for if it matters.
+        is_inside = Delaunay(points).find_simplex(seeds[:, :2]) >= 0
+        if is_inside.all():
+            raise
+        others["seeds"] = seeds[is_inside]
+        if "seed_areas" in options:
+            options["seed_areas"] = options["seed_areas"][is_inside]
+        mesh = arrays()
+        if not is_inside.any():
+            mesh["triangle_attributes"] = np.zeros(len(mesh["triangles"]))
     return {**mesh, "segments": segments}
 
 

@@ -111,6 +111,16 @@ def test_regions():
     assert np.array_equal(mesh["regions"], wall["regions"])
     assert "triangle_attributes" not in tr.triangulate(wall, "pa")
     assert len(tr.triangulate(wall, "pA")["triangles"]) == 4
+    # Those outside of all triangles count for nothing, as for Triangle.
+    outside = {**wall, "regions": [[9, 9, 5, 0.01], *wall["regions"], [-1, 1, 6, 0.01]]}
+    for switches in ("paA", "pA"):
+        found, expected = tr.triangulate(outside, switches), tr.triangulate(wall, switches)
+        for name in ("vertices", "triangles", "triangle_attributes"):
+            assert np.array_equal(found[name], expected[name])
+    only = tr.triangulate({**wall, "regions": [[9, 9, 5, 0.01]]}, "pA")
+    assert len(only["triangles"]) == 4 and not only["triangle_attributes"].any()
+    with pytest.raises(flaunay.InputError, match="seed 0 .* on a constraint"):
+        tr.triangulate({**wall, "regions": [[2, 1, 5, 0.01]]}, "pA")
     # Again, with what is known of the triangles.
     again = tr.triangulate(mesh, "ra0.02")
     x = again["vertices"][again["triangles"], 0].mean(axis=1)
