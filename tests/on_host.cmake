@@ -12,7 +12,7 @@ function(flaunay_test NAME)
   list(TRANSFORM ARG_SOURCES PREPEND ${TESTS}/ REGEX "^[^/]")
   add_executable(${NAME} ${ARG_SOURCES})
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(${NAME} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main $<TARGET_NAME_IF_EXISTS:OpenCL::OpenCL>
+  target_link_libraries(${NAME} PRIVATE ${ARG_LIBRARIES} flaunay_options GTest::gtest_main $<TARGET_NAME_IF_EXISTS:OpenCL::OpenCL>
                                         $<$<BOOL:${CMAKE_CROSSCOMPILING}>:fmt::fmt>)
   target_compile_definitions(${NAME} PRIVATE FLAUNAY_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   if(WIN32)
