@@ -11,6 +11,7 @@
 #include "host/system/pages.hpp"
 #ifndef FLAUNAY_WITHOUT_OPENCL
 #include "host/opencl/backend.hpp"
+#include "host/opencl/launch_check.hpp"
 #endif
 
 namespace flaunay::host {
@@ -128,6 +129,28 @@ Kernel& Runtime::find_kernel(const KernelName& name) {
   const auto found = kernels.find(&name);
   if (found != kernels.end()) return *found->second;
   return *kernels.emplace(&name, backend_->make_kernel(name, build_options(), counting_)).first->second;
+}
+
+void Runtime::launch_on_device(const KernelName& name, ArgumentList& arguments, std::size_t work_items,
+                               std::size_t group) {
+  Kernel& kernel = find_kernel(name);
+  // A kernel that has one more argument counts.
+  const bool counts = counting_ && kernel.takes_counters(static_cast<cl_uint>(arguments.size()));
+  if (counts) arguments(counters_);
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    kernel.set_argument(static_cast<cl_uint>(k), arguments.values()[k], arguments.bytes(k));
+  }
+#ifndef FLAUNAY_WITHOUT_OPENCL
+  LaunchCheck* const check = LaunchCheck::of_thread();
+  if (check != nullptr && !counts) {
+    group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
+    check->launch(name, arguments, (work_items + group - 1) / group * group, group, build_options(), *backend_,
+                  [&] { backend_->launch(kernel, work_items, group); });
+    return;
+  }
+#endif
+  backend_->launch(kernel, work_items, group);
+  if (counts && accounts_.log != nullptr) record_counted();
 }
 
 void Runtime::touch_new(void* begin, std::size_t bytes) {

@@ -19,10 +19,10 @@
 
 #include "host/backend.hpp"
 #include "host/launch/accounts.hpp"
+#include "host/launch/argument_list.hpp"
 #include "host/launch/kernel_arguments.hpp"
 #include "host/launch/sizes.hpp"
 #include "host/memory/arena.hpp"
-#include "host/native/launch.hpp"
 
 namespace flaunay::host {
 
@@ -350,53 +350,16 @@ class Runtime {
   template <typename ForEachArgument>
   void launch_by(const KernelName& name, std::size_t work_items, std::size_t group,
                  const ForEachArgument& for_each_argument) {
-    if (is_native()) {
-      NativeArguments arguments;
-      for_each_argument([&](const auto& argument) { arguments(argument); });
-      const bool counts = counting_ && name.counting != nullptr;
-      if (counts) arguments(counters_);
-      backend_->launch(name, counts ? name.counting : name.native, arguments.get(), work_items, group);
-      if (counts && accounts_.log != nullptr) record_counted();
-      return;
-    }
-    Kernel& kernel = find_kernel(name);
-    cl_uint index = 0;
-    for_each_argument([&](const auto& argument) { set_argument(kernel, index++, argument); });
-    finish_launch(kernel, index, work_items, group);
-  }
-  /// arguments: the number of arguments that are set. If the kernel has one more, that is the counters.
-  void finish_launch(Kernel& kernel, cl_uint arguments, std::size_t work_items, std::size_t group) {
-    const bool counts = counting_ && kernel.takes_counters(arguments);
-    if (counts) set_argument(kernel, arguments, counters_);
-    backend_->launch(kernel, work_items, group);
+    ArgumentList arguments;
+    for_each_argument([&](const auto& argument) { arguments(argument); });
+    if (!is_native()) return launch_on_device(name, arguments, work_items, group);
+    const bool counts = counting_ && name.counting != nullptr;
+    if (counts) arguments(counters_);
+    backend_->launch(name, counts ? name.counting : name.native, arguments.values(), work_items, group);
     if (counts && accounts_.log != nullptr) record_counted();
   }
-  template <typename T>
-  void set_bytes(Kernel& kernel, cl_uint index, const T& value) {
-    static_assert(sizeof value <= kLargestArgument && std::is_trivially_copyable_v<T>);
-    kernel.set_argument(index, &value, sizeof value);
-  }
-  template <typename T>
-  void set_argument(Kernel& kernel, cl_uint index, const Buffer<T>& buffer) {
-    set_bytes(kernel, index, buffer.memory());
-  }
-  template <typename T>
-  void set_argument(Kernel& kernel, cl_uint index, const In<T>& array) {
-    set_bytes(kernel, index, array.memory);
-  }
-  template <typename T>
-  void set_argument(Kernel& kernel, cl_uint index, const Out<T>& array) {
-    set_bytes(kernel, index, array.memory);
-  }
-  template <typename T>
-  void set_argument(Kernel& kernel, cl_uint index, const Value<T>& value) {
-    set_bytes(kernel, index, value.value);
-  }
-  template <typename T, typename = std::enable_if_t<std::is_arithmetic_v<T>>>
-  void set_argument(Kernel& kernel, cl_uint index, T value) {
-    set_argument(kernel, index, Value<T>(value));
-  }
-
+  void launch_on_device(const KernelName& name, ArgumentList& arguments, std::size_t work_items,
+                        std::size_t group);
   Kernel& find_kernel(const KernelName& name);
   void read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to);
   void record_counted();

@@ -5,6 +5,7 @@
 #     threads        6 minutes   calls at once, chunks and failing allocations under the thread sanitizer
 #     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
 #     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
+#     devices       10 minutes   all calls and kernels on every OpenCL runtime for CPUs that pip can install
 #     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
 set -euo pipefail
@@ -40,6 +41,10 @@ tunings() {
   build release fuzz_triangulations && build/release/tests/fuzz_triangulations --tunings --seconds 600 --seed "$RANDOM"
 }
 
+devices() {
+  build release flaunay_cli && scripts/devices.py
+}
+
 files() {
   cmake --preset release -DFLAUNAY_MPI=ON && build release flaunay_cli flaunay_mpi_cli || return
   FLAUNAY_DEVICE=host "${PYTHON:-/usr/bin/python3}" tests/chunk_files.py build/release/flaunay --seconds 180 \
@@ -47,7 +52,7 @@ files() {
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments tunings files)
+all=(allocations threads segments tunings devices files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

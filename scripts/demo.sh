@@ -4,15 +4,15 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/install-deps.sh
+scripts/install-deps.sh --build
 
 say() { printf '\n== %s\n' "$*"; }
 
 say 'Building'
-cmake --preset release >/dev/null
-cmake --build --preset release --target flaunay_cli
+cmake --preset command >/dev/null
+cmake --build --preset command
 
-flaunay=build/release/flaunay
+flaunay=build/command/flaunay
 demo=build/demo
 mkdir -p "$demo"
 

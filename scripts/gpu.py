@@ -28,16 +28,17 @@ DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [16384, 65536, 262144], "leaf_spread": [1, 2, 3], "seam_points": [4, 8], "block_group": [1, 4, 32],
          "block_points": [512, 1024, 2048], "halve_group": [64, 128, 256], "tile_group": [0, 128, 256],
          "blocks_in_parallel": [0, 1], "map_group": [64, 128, 256], "sort_items": [8, 16, 32]}
-PARTS = ["device", "tests", "verify", "peers", "modes", "embedding", "batches", "cupy", "tuning", "predictions"]
+PARTS = ["conformance", "device", "tests", "verify", "peers", "modes", "embedding", "batches", "cupy", "tuning",
+         "predictions"]
 # What is less than this share faster may be noise.
 WORTH_A_CHANGE = 0.02
 TEST_SECONDS = 1800
 FULL = {"peer_sizes": [1000000, 10000000], "mode_sizes": "1024,16384,131072,1048576,4194304", "verify_size": 200000,
         "runs": 5, "launch_sizes": "1000000,16000000", "tuned_size": 1000000, "tuned": TUNED, "filter": "*",
-        "tests": None, "flags": []}
+        "points": 1000, "tests": None, "flags": []}
 QUICK = {"peer_sizes": [20000], "mode_sizes": "1024,4096", "verify_size": 5000, "runs": 1,
          "launch_sizes": "20000", "tuned_size": 20000, "tuned": {"block_group": [1, 32]}, "filter": "Small*",
-         "tests": ["test_host", "test_embedding"], "flags": ["--quick"]}
+         "points": 64, "tests": ["test_host"], "flags": ["--quick"]}
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(SOURCE, "bench", "predictions"))
@@ -252,6 +253,15 @@ class Session:
               f"{time.monotonic() - begin:.0f} s", flush=True)
         return {"program": name, "passed": passed, "failed": failed, "exit_code": code}, output
 
+    def conform(self):
+        """What has passed according to the record of an earlier run is not run again."""
+        say("Every call and every kernel, against the host")
+        path = os.path.join(self.plan["output"], "conformance.json")
+        if self.flaunay("devices", "--test", "--record", path, "--points", self.plan["points"]).returncode != 0:
+            self.failures.append("conformance")
+        with open(path, encoding="utf-8") as file:
+            self.record["conformance"] = json.load(file)
+
     def test(self):
         say("Tests")
         names = self.plan["tests"] or [os.path.basename(path) for path in programs_in(self.folder)[1]]
@@ -412,7 +422,6 @@ def write_record(session, command_line, arguments):
     record["command"] = f"scripts/gpu.py {' '.join(command_line)}"
     record["tuning"] = os.environ.get("FLAUNAY_TUNING", "")
     record.update({"quick": arguments.quick, "failures": session.failures, **session.record})
-    os.makedirs(arguments.output, exist_ok=True)
     name = re.sub(r"[^a-z0-9]+", "-", (record["device"] or "").lower()).strip("-") or "unknown-device"
     path = os.path.join(arguments.output, f"{name}.json")
     with open(path, "w", encoding="utf-8") as file:
@@ -424,7 +433,8 @@ def write_record(session, command_line, arguments):
 def main(command_line):
     arguments = arguments_of(command_line)
     plan = QUICK if arguments.quick else FULL
-    plan = dict(plan, runs=arguments.runs or plan["runs"])
+    plan = dict(plan, runs=arguments.runs or plan["runs"], output=arguments.output)
+    os.makedirs(arguments.output, exist_ok=True)
     parts = arguments.parts.split(",")
     if set(parts) - set(PARTS):
         fail(f"--parts has {', '.join(sorted(set(parts) - set(PARTS)))}; there are {', '.join(PARTS)}")
@@ -453,9 +463,9 @@ def main(command_line):
         say("Devices")
         if session.flaunay("devices").returncode != 0:
             fail("no usable device; --icd names a driver")
-        actions = [session.measure_device, session.test, session.verify, session.measure_peers, session.measure_modes,
-                   session.measure_embedding, session.measure_batches, session.measure_cupy, session.tune,
-                   session.predict]
+        actions = [session.conform, session.measure_device, session.test, session.verify, session.measure_peers,
+                   session.measure_modes, session.measure_embedding, session.measure_batches, session.measure_cupy,
+                   session.tune, session.predict]
         for part, action in zip(PARTS, actions):
             if part in parts:
                 action()

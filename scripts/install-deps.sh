@@ -1,35 +1,42 @@
 #!/usr/bin/env bash
-# Installs what flaunay needs on Debian 12 to build, run and test. Does nothing if everything is installed.
-#   scripts/install-deps.sh [--packages]    with what scripts/release.sh and scripts/package-test.sh need, too
+# Installs what flaunay needs on Debian 12. Does nothing if everything is installed.
+#   scripts/install-deps.sh              to build, run, test and benchmark
+#   scripts/install-deps.sh --build      to build and run the library and the command
+#   scripts/install-deps.sh --packages   all, and what scripts/release.sh and scripts/package-test.sh need
 set -euo pipefail
 
 packages=(
-  # building
   ca-certificates git cmake g++ ninja-build pkg-config
   # OpenCL: the loader, the headers, and PoCL, which makes the CPU a device
   ocl-icd-opencl-dev opencl-headers pocl-opencl-icd
-  # a device without double precision, for tests
-  mesa-opencl-icd
-  # libraries
   libboost-dev libfmt-dev libcli11-dev nlohmann-json3-dev
-  # MPI, for what FLAUNAY_MPI builds
-  libopenmpi-dev openmpi-bin
-  # GeoTIFF, for what FLAUNAY_GDAL builds
-  libgdal-dev
-  # tests
-  libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
-  # libFuzzer, for the readers of files
-  clang-14 libclang-rt-14-dev
-  # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
-  libqhull-dev python3-matplotlib
-  # the Python module and its tests
-  python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
-  # the documentation
-  doxygen
-  # the demonstration's picture
-  librsvg2-bin
 )
 
+case "${1-}" in
+  --build) ;;
+  '' | --packages)
+    packages+=(
+      # MPI and GeoTIFF, for what FLAUNAY_MPI and FLAUNAY_GDAL build
+      libopenmpi-dev openmpi-bin libgdal-dev
+      # a device without double precision, for tests
+      mesa-opencl-icd
+      # tests
+      libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
+      # libFuzzer, for the readers of files
+      clang-14 libclang-rt-14-dev
+      # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
+      libqhull-dev python3-matplotlib
+      # the Python module and its tests
+      python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
+      # the documentation
+      doxygen
+    )
+    ;;
+  *)
+    echo "usage: scripts/install-deps.sh [--build | --packages]" >&2
+    exit 2
+    ;;
+esac
 if [[ ${1-} == --packages ]]; then
   packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian llvm-14 musl
     qemu-user wine wine64)

@@ -1,37 +1,30 @@
 #!/bin/sh
-# Runs a test program's Small* suites under oclgrind, the OpenCL simulator, which checks every memory access, every
-# API call, and races between work-items. Fails if a test fails or if oclgrind has anything to say.
+# Runs all kernels and calls (flaunay devices --test) under oclgrind, the OpenCL simulator, which checks every memory
+# access, every API call, and races between work-items. Fails if a result differs from the host's or if oclgrind has
+# anything to say.
 #
-#   tests/oclgrind.sh [--filter FILTER] PROGRAM [TUNING...]
+#   tests/oclgrind.sh FLAUNAY TUNING [CALL...]       CALL: of devices --only; without, all calls
 #
-# TUNING: small (the default), gpu, gpu:32, cpu; see host/tuning.hpp. FILTER: GoogleTest's, in place of Small*.
-#
-# oclgrind puts itself before the OpenCL loader (LD_PRELOAD), so no driver is loaded; FLAUNAY_DEVICE makes sure. Kernels
-# are built without optimisation: its interpreter lacks an intrinsic that inlined `restrict` makes, and so no access is
-# optimised away before it is checked. Its --uninitialized is not used: it reports initialised memory (21.10).
+# oclgrind puts itself before the OpenCL loader (LD_PRELOAD), so no driver is loaded. Kernels are built without
+# optimisation: its interpreter lacks an intrinsic that inlined `restrict` makes, and so no access is optimised away
+# before it is checked. Its --uninitialized is not used: it reports initialised memory (21.10).
 set -eu
 
-filter='Small*'
-if [ "$1" = --filter ]; then
-  filter=$2
-  shift 2
-fi
-program=$1
-shift
-[ $# -gt 0 ] || set -- small
+program=$1 tuning=$2
+shift 2
 command -v oclgrind >/dev/null || { echo "oclgrind is missing: apt-get install oclgrind" >&2; exit 1; }
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-for tuning in "$@"; do
-  echo "oclgrind, tuning $tuning: $program"
+[ $# -gt 0 ] || set -- ''
+for call in "$@"; do
   code=0
-  FLAUNAY_DEVICE=oclgrind FLAUNAY_TUNING=$tuning oclgrind --build-options "-O0" --check-api --data-races \
-    --max-errors 100 --log "$log" "$program" --gtest_filter="$filter" --gtest_brief=1 || code=$?
+  FLAUNAY_TUNING=$tuning oclgrind --build-options "-O0" --check-api --data-races --max-errors 100 --log "$log" \
+    "$program" devices --test --device '#0' --points 40 ${call:+--only "$call"} || code=$?
   if [ -s "$log" ]; then
     cat "$log" >&2
-    echo "oclgrind found errors, tuning $tuning: $program" >&2
+    echo "oclgrind found errors, tuning $tuning $call" >&2
     exit 1
   fi
-  [ $code -eq 0 ] || { echo "exit code $code, tuning $tuning: $program" >&2; exit $code; }
+  [ $code -eq 0 ] || { echo "exit code $code, tuning $tuning $call" >&2; exit $code; }
 done

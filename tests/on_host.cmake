@@ -5,10 +5,11 @@ set(TESTS ${PROJECT_SOURCE_DIR}/tests)
 # GoogleTest program whose tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in
 # one process. UNITY: its files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops
 # take less time than optimising them; UNOPTIMISED: in every build. SMALL_WHEN_SANITIZED: only the Small suites in a
-# sanitized build, which is slow. NATIVE_WHEN_SANITIZED: there, only as NAME.host (see below), which has all that
-# sanitizers can see; what drives OpenCL is in other programs. COST: about how long it takes; the longest begin first.
+# sanitized build, which is slow. NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its
+# Small suites, which reach the same code with the same kinds of input. ON_DEVICE filter: what of a NATIVE program is
+# about devices, as NAME.device. COST: about how long it takes; the longest begin first.
 function(flaunay_test NAME)
-  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;SMALL_WHEN_SANITIZED;NATIVE_WHEN_SANITIZED" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;SMALL_WHEN_SANITIZED;NATIVE" "COST;ON_DEVICE" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   list(TRANSFORM ARG_SOURCES PREPEND ${TESTS}/ REGEX "^[^/]")
   add_executable(${NAME} ${ARG_SOURCES})
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
@@ -30,16 +31,21 @@ function(flaunay_test NAME)
   endif()
   # An emulator takes long to begin.
   if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
-    if(FLAUNAY_SANITIZE AND ARG_NATIVE_WHEN_SANITIZED)
-      return()
-    elseif(FLAUNAY_SANITIZE AND ARG_SMALL_WHEN_SANITIZED)
-      add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1 --gtest_filter=Small*)
-    else()
-      add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1)
+    set(FILTER "*")
+    if(FLAUNAY_SANITIZE AND (ARG_SMALL_WHEN_SANITIZED OR ARG_NATIVE))
+      set(FILTER "Small*")
     endif()
+    add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1 --gtest_filter=${FILTER})
     set_tests_properties(${NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1800)
     if(ARG_COST)
       set_tests_properties(${NAME} PROPERTIES COST ${ARG_COST})
+    endif()
+    if(ARG_NATIVE)
+      set_tests_properties(${NAME} PROPERTIES ENVIRONMENT FLAUNAY_TEST_DEVICE=host)
+    endif()
+    if(ARG_ON_DEVICE AND NOT FLAUNAY_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
+      add_test(NAME ${NAME}.device COMMAND ${NAME} --gtest_brief=1 --gtest_filter=${ARG_ON_DEVICE})
+      set_tests_properties(${NAME}.device PROPERTIES TIMEOUT 1800 COST 60)
     endif()
   else()
     gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}")

@@ -115,6 +115,7 @@ kernel void frame_blocks(int n, CUT_SETS(), int is_merged, scaling scale, global
     }
     const hull_ends ends = solved[is_merged ? first : b].ends;
     find_outside(ends, edges, vertex_edge, frame.outside);
+    frame.unused = 0;
     frames[b] = frame;
     const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
     if (is_single && (is_merged || leaves == 1)) hull_next[vertices[ends.first_x]] = vertices[ends.first_x];

@@ -116,6 +116,7 @@ kernel void propose(int n, refinement_rules rules, int listed, global const int*
     made.count = 1;
     made.splits = 0;
     made.hit = -1;
+    made.spare = 0;
     made.start = triangle.corner[0];
     int outcome = PROPOSAL_OPEN;
     // Farther points are not rounded by as much as an eighth of that, and all vertices are nearly as far away: the

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "app/command/commands.hpp"
+#include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/conformance/run.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::cli {
@@ -53,12 +56,35 @@ int devices() {
   return kSuccess;
 }
 
+int test(const conformance::Request& request) {
+#ifdef FLAUNAY_WITHOUT_OPENCL
+  fail_usage("--test: this build of flaunay does not use OpenCL devices");
+#else
+  return conformance::run(request) ? kSuccess : kFailure;
+#endif
+}
+
 }  // namespace
 
 void add_devices(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("devices", "List the host and the OpenCL devices, with the result of the self-test");
-  command->callback([&action] { action = devices; });
+  const auto request = std::make_shared<conformance::Request>();
+  const auto is_test = std::make_shared<bool>(false);
+  CLI::Option* asks = command->add_flag(
+      "--test", *is_test, "Test a device: every call and every kernel, byte by byte, against the host");
+  add_device(command, request->device)->needs(asks);
+  command->add_option("--only", request->only, "Of --test, only this call")->needs(asks);
+  command->add_option("--points", request->points, "Of --test, about so many points per input")
+      ->check(CLI::Range(32, 1000000))
+      ->capture_default_str()
+      ->needs(asks);
+  add_path(command, "--record", request->record,
+           "Of --test, a file for the results, as JSON; what has passed according to it is not run again")
+      ->needs(asks);
+  command->callback([&action, request, is_test] {
+    action = [request, is_test] { return *is_test ? test(*request) : devices(); };
+  });
 }
 
 }  // namespace flaunay::cli

@@ -126,10 +126,10 @@ void merge_heights(TerrainMesh& terrain, std::size_t fixed, Duplicates duplicate
 }  // namespace
 
 HardEdges::HardEdges(const std::string& breaklines, const std::string& flat, Crossings at_crossings)
-    : crossings(at_crossings),
-      path(breaklines.empty() ? flat
+    : path(breaklines.empty() ? flat
            : flat.empty()     ? breaklines
-                              : breaklines + " and " + flat) {
+                              : breaklines + " and " + flat),
+      crossings(at_crossings) {
   if (!breaklines.empty()) {
     lines = io::read_map(breaklines);
     segments = lines.segments;

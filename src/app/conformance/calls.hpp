@@ -1,0 +1,23 @@
+// Calls of the library, on small inputs that have every kind of degeneracy: what a device is tested with.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/conformance/arrays.hpp"
+#include "flaunay/flaunay.hpp"
+
+namespace flaunay::conformance {
+
+struct Call {
+  std::string name;
+  /// Makes the call on the triangulator's device, and adds its results. n: about so many points.
+  std::function<void(Triangulator& triangulator, std::size_t n, Arrays& results)> make;
+};
+
+/// All of them.
+const std::vector<Call>& calls();
+
+}  // namespace flaunay::conformance

@@ -1,0 +1,23 @@
+// Tests a device: every call of the library on the device and on the host, byte by byte, and every kernel
+// that these launch, natively once more.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace flaunay::conformance {
+
+struct Request {
+  std::string device;         ///< as for Triangulator, not the host; empty: the first one
+  std::string only;           ///< a call's name; empty: all of them
+  std::string record;         ///< a file for the record; what it has of this device already is not run again
+  std::size_t points = 1000;  ///< of an input, about
+  bool kernels = true;        ///< whether launches are compared, too
+};
+
+/// Prints a line per call and per kernel that differs. Returns whether nothing differs.
+bool run(const Request& request);
+
+}  // namespace flaunay::conformance
