@@ -50,7 +50,7 @@ class Changes(NamedTuple):
     made_corners : ndarray of int32, shape (t, 3)
         The corners of these, counter-clockwise.
     is_anew : bool
-        Whether all points were triangulated anew.
+        Whether all points were triangulated anew: all rows are listed then.
     seconds : float
         How long the call took.
     """

@@ -83,7 +83,16 @@ struct Case {
     neighbors = reference_neighbors(kept);
   }
   std::string problem() const { return verify_triangles().problem; }
+  // What is wrong if all coordinates are times 2^power.
+  std::string problem_at(int power) const {
+    Case other = *this;
+    for (double& x : other.points) x = std::ldexp(x, power);
+    return other.problem();
+  }
 };
+
+// Squares of coordinates are doubles at one of these scales only.
+constexpr int kPowers[] = {-1020, -600, 0, 600, 1018};
 
 // Exchanges the diagonal of the two triangles at a half-edge, opposite to a corner.
 void flip(Ids& triangles, const Ids& neighbors, std::size_t corner) {
@@ -358,8 +367,10 @@ TEST(SmallVerifyRefined, SliversAtTheHull) {
                  std::find(row.begin(), row.end(), 3) != row.end();
         });
         EXPECT_EQ(mesh.triangles.size(), 9u);
-        EXPECT_EQ(mesh.problem().empty(), off < 1e-9) << mesh.problem();
         EXPECT_EQ(mesh.verify().problem.empty(), off < 1e-9) << mesh.verify().problem;
+        mesh.max_area = HUGE_VAL;
+        for (const int power : kPowers)
+          EXPECT_EQ(mesh.problem_at(power).empty(), off < 1e-9) << power << ": " << mesh.problem_at(power);
         mesh.max_area = 0;
         EXPECT_NE(mesh.problem(), "");
       }
@@ -369,18 +380,20 @@ TEST(SmallVerifyRefined, SliversAtTheHull) {
 
 // Two segments meet at 22.6 degrees, and are split where they are equally far from there.
 TEST(SmallVerifyRefined, Apexes) {
-  const auto problem = [](double factor, double bend) {
+  const auto problem = [](double factor, double bend, int power) {
     Case mesh({0, 0, 6.5, 0, 13, 0, 26, 0, 24, 10, 12 * factor, 5 * factor, 6, 2.5 + bend},
               {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 0});
     mesh = without_outside(mesh);
     mesh.min_angle = 20.7;
-    return mesh.problem();
+    return mesh.problem_at(power);
   };
-  EXPECT_EQ(problem(1, 0), "");
-  EXPECT_EQ(problem(1.001, 0), "");
-  EXPECT_NE(problem(1.01, 0).find(" has an angle of "), std::string::npos) << problem(1.01, 0);
-  // The upper segment's first part is not on one line with the others.
-  EXPECT_NE(problem(1, 1e-9).find(" has an angle of "), std::string::npos) << problem(1, 1e-9);
+  for (const int power : kPowers) {
+    EXPECT_EQ(problem(1, 0, power), "");
+    EXPECT_EQ(problem(1.001, 0, power), "");
+    EXPECT_NE(problem(1.01, 0, power).find(" has an angle of 19."), std::string::npos);
+    // The upper segment's first part is not on one line with the others.
+    EXPECT_NE(problem(1, 1e-9, power).find(" has an angle of "), std::string::npos);
+  }
 }
 
 // Two segments meet at 14.3 degrees, and their other ends, equally far away, are two corners of a triangle

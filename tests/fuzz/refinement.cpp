@@ -186,9 +186,6 @@ std::string verified(const DomainToRefine& domain, const MeshToRefine& mesh, con
   const auto is_of_input = [](Excuse e) { return e == Excuse::input_angle || e == Excuse::near_apex; };
   const std::vector<Excuse>& excuses = refined.report.excuses;
   if (!std::all_of(excuses.begin(), excuses.end(), is_of_input)) return "";
-  // Its tolerances of places are squared, so they need coordinates whose squares are doubles with room below.
-  constexpr int kMostExponent = 200;
-  if (std::abs(exponent_of(domain)) > kMostExponent) return "";
   // It tells by places alone what is on one segment, for which coordinates may be too coarse.
   double largest = 0;
   for (const double x : domain.points) largest = std::max(largest, std::fabs(x));
@@ -209,7 +206,8 @@ std::string verified(const DomainToRefine& domain, const MeshToRefine& mesh, con
   constraints.outside = domain.outside;
   if (!domain.holes.empty()) constraints.holes = &domain.holes;
   constraints.min_angle = demands.wanted.min_angle;
-  constraints.max_area = demands.wanted.max_area;
+  // Infinite if only other areas are asked for, so that it is known to be refined.
+  constraints.max_area = demands.wanted.max_area > 0 ? demands.wanted.max_area : HUGE_VAL;
   constraints.conforming = demands.wanted.conforming;
   const std::string problem =
       verify_constrained(points.data(), points.size() / 2, refined.triangles, &refined.neighbors, constraints)

@@ -13,9 +13,40 @@
 
 namespace flaunay::verification {
 
-/// How far refined points may be off the straight line through others that are on one edge with them, in
-/// terms of the largest coordinate: each is two units in the last place of that off at most.
-constexpr double kRoundedOff = 0x1p-50;
+/// Places of points that refinement has put on edges and rounded, in units in which the largest coordinate is
+/// about 1, so that their squares are doubles.
+class RoundedPlaces {
+ public:
+  explicit RoundedPlaces(double largest = 0)
+      : scale_(largest > 0 ? -std::ilogb(largest) : 0),
+        off_(std::ldexp(largest, scale_) * 0x1p-50 + std::ldexp(1.5, scale_ + kLeastExponent)) {}
+
+  /// How far points may be off the straight line through others that are on one edge with them: each is two
+  /// units in the last place of the largest coordinate off at most, or half the smallest double on each axis.
+  double off() const { return off_; }
+  /// Whether p is as near to the line through a and b.
+  bool are_straight(const double* a, const double* b, const double* p) const {
+    const Vector ab(*this, a, b), ap(*this, a, p);
+    return std::fabs(ab.x * ap.y - ab.y * ap.x) <= off_ * std::hypot(ab.x, ab.y);
+  }
+  double distance(const double* a, const double* b) const {
+    const Vector ab(*this, a, b);
+    return std::hypot(ab.x, ab.y);
+  }
+
+ private:
+  struct Vector {
+    double x, y;
+    Vector(const RoundedPlaces& places, const double* from, const double* to)
+        : x(std::ldexp(to[0], places.scale_) - std::ldexp(from[0], places.scale_)),
+          y(std::ldexp(to[1], places.scale_) - std::ldexp(from[1], places.scale_)) {}
+  };
+
+  static constexpr int kLeastExponent = -1074;  // of the smallest double
+
+  int scale_;
+  double off_;
+};
 
 /// Constraints meet at less than 60 degrees if their squared cosine is above this, which is 3e-8 degrees
 /// less: so corners of 60 degrees that are rounded do not.
@@ -34,11 +65,13 @@ class Apexes {
     for (const std::int32_t v : edges) ++first_edge_[static_cast<std::size_t>(v) + 1];
     std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
     edges_at_.resize(edges.size());
+    double largest = 0;
     std::vector<std::size_t> next(first_edge_.begin(), first_edge_.end() - 1);
     for (std::size_t i = 0; i < edges.size(); ++i) {
       edges_at_[next[edges[i]]++] = {static_cast<std::int32_t>(i / 2), edges[i ^ 1]};
-      largest_ = std::max({largest_, std::fabs(point(edges[i])[0]), std::fabs(point(edges[i])[1])});
+      largest = std::max({largest, std::fabs(point(edges[i])[0]), std::fabs(point(edges[i])[1])});
     }
+    places_ = RoundedPlaces(largest);
     std::iota(chains_.begin(), chains_.end(), 0);
     for (std::size_t v = 0; v < points; ++v) join_at(static_cast<std::int32_t>(v));
     junctions_.resize(chains_.size());
@@ -83,35 +116,26 @@ class Apexes {
   };
 
   const double* point(std::int32_t v) const { return coordinates_ + 2 * static_cast<std::size_t>(v); }
-  double distance(std::int32_t a, std::int32_t b) const {
-    return std::hypot(point(b)[0] - point(a)[0], point(b)[1] - point(a)[1]);
-  }
   /// Points on constraints are rounded, so their distances are a little more apart than the tolerance of
   /// 1e-3.
   bool is_as_far(std::int32_t apex, std::int32_t p, std::int32_t q) const {
-    const double of_p = distance(apex, p), of_q = distance(apex, q);
-    return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q) + kRoundedOff * largest_;
+    const double of_p = places_.distance(point(apex), point(p)),
+                 of_q = places_.distance(point(apex), point(q));
+    return std::max(of_p, of_q) <= 1.0011 * std::min(of_p, of_q) + places_.off();
   }
   /// Where the edge of a chain from one of its points in the direction of another one ends.
   std::int32_t next_towards(std::int32_t v, std::int32_t chain, std::int32_t goal) {
-    const double x = point(goal)[0] - point(v)[0], y = point(goal)[1] - point(v)[1];
     std::int32_t next = v;
     for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {
-      const double* to = point(edges_at_[i].other);
-      const bool is_ahead = x * (to[0] - point(v)[0]) + y * (to[1] - point(v)[1]) > 0;
+      const bool is_ahead =
+          predicates_.compare_cosine(point(v), point(goal), point(edges_at_[i].other), 0) > 0;
       if (is_ahead && chain_of(edges_at_[i].edge) == chain) next = edges_at_[i].other;
     }
     return next;
   }
-  /// Lengths are scaled, so that their squares are doubles.
-  bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) const {
-    const int scale = largest_ > 0 ? -std::ilogb(largest_) : 0;
-    const auto along = [&](std::int32_t to, std::size_t axis) {
-      return std::ldexp(point(to)[axis] - point(v)[axis], scale);
-    };
-    const double ax = along(a, 0), ay = along(a, 1), bx = along(b, 0), by = along(b, 1);
-    const double off = std::fabs(ax * by - ay * bx) / std::hypot(bx - ax, by - ay);
-    return ax * bx + ay * by < 0 && off <= kRoundedOff * std::ldexp(largest_, scale);
+  bool is_straight(std::int32_t a, std::int32_t v, std::int32_t b) {
+    return places_.are_straight(point(a), point(b), point(v)) &&
+           predicates_.compare_cosine(point(v), point(a), point(b), 0) < 0;
   }
   void join_at(std::int32_t v) {
     for (std::size_t i = first_edge_[v]; i < first_edge_[v + 1]; ++i) {
@@ -138,7 +162,7 @@ class Apexes {
 
   const double* coordinates_;
   ExactPredicates& predicates_;
-  double largest_ = 0;
+  RoundedPlaces places_;
   std::vector<std::size_t> first_edge_;  // by point
   std::vector<EdgeAt> edges_at_;
   std::vector<std::int32_t> chains_;                  // by edge: union and find

@@ -313,22 +313,20 @@ class ConstrainedChecker : public Checker {
         for (const double x : places_[place].at) largest = std::max(largest, std::fabs(x));
       }
     }
-    std::vector<double> widths(covered_.size(), 0);
+    const verification::RoundedPlaces rounded(largest);
+    std::vector<char> is_wide(covered_.size(), 0);
     for (const Piece& piece : sweep_.pieces()) {
       for (const std::int32_t face : {piece.below, piece.above}) {
         if (hull_piece[face] == kNoPiece) continue;
-        const double* from = places_[sweep_.pieces()[hull_piece[face]].from].at;
-        const double* to = places_[sweep_.pieces()[hull_piece[face]].to].at;
-        const double x = to[0] - from[0], y = to[1] - from[1], length = std::hypot(x, y);
+        const Piece& hull = sweep_.pieces()[hull_piece[face]];
         for (const std::int32_t place : {piece.from, piece.to}) {
-          const double* at = places_[place].at;
-          widths[face] =
-              std::max(widths[face], std::fabs(x * (at[1] - from[1]) - y * (at[0] - from[0])) / length);
+          is_wide[face] |=
+              !rounded.are_straight(places_[hull.from].at, places_[hull.to].at, places_[place].at);
         }
       }
     }
     for (std::size_t f = 1; f < covered_.size(); ++f) {
-      if (hull_piece[f] != kNoPiece && widths[f] <= verification::kRoundedOff * largest) covered_[f] = 0;
+      if (hull_piece[f] != kNoPiece && is_wide[f] == 0) covered_[f] = 0;
     }
   }
   bool is_refined() const {

@@ -24,7 +24,7 @@ struct Changes {
   /// triangle be that was taken away for a while.
   std::vector<std::int32_t> made;
   std::vector<std::int32_t> made_corners;  ///< 3 per row of `made`: the corners, counter-clockwise
-  bool is_anew = false;                    ///< whether all points were triangulated anew
+  bool is_anew = false;                    ///< whether all points were triangulated anew: all rows are listed
   double seconds = 0;                      ///< how long the call took
 };
 

@@ -646,7 +646,7 @@ typedef struct flaunay_changes {
   const int32_t* removed;       ///< the rows whose triangles are gone, each once
   const int32_t* made;          ///< the rows that have new triangles, each once; some may be in both lists
   const int32_t* made_corners;  ///< 3 per row of `made`: the corners, counter-clockwise
-  int is_anew;                  ///< 1 if all points were triangulated anew
+  int is_anew;                  ///< 1 if all points were triangulated anew: all rows are listed
   double seconds;               ///< how long the call took
 } flaunay_changes;
 

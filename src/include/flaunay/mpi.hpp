@@ -79,12 +79,13 @@ struct Triangulation {
 /// are, depends on the points and on the number of ranks and on Options::round_points, and not on how points
 /// are spread over ranks or on devices.
 ///
-/// MPI must be initialised with MPI_THREAD_FUNNELED or more. The communicator is duplicated, so other
-/// messages on it do not matter. Throws what Triangulator and its triangulate throw, and Error(input) if a
-/// rank would have more points than its device can take at once. All ranks throw the same error, which names
-/// the first rank that failed. If MPI fails, what the communicator's error handler says happens; if it
-/// returns, that rank throws Error(internal) alone. A rank has about as many points in the call as any other;
-/// each point is sent once, and a few of a hundred once more. O(n log n) work over all ranks.
+/// MPI must be initialised with MPI_THREAD_FUNNELED or more. Other messages on the communicator do not
+/// matter: the first call duplicates it, and its duplicate, which has its error handler, ends with it. Throws
+/// what Triangulator and its triangulate throw, and Error(input) if a rank would have more points than its
+/// device can take at once. All ranks throw the same error, which names the first rank that failed. If MPI
+/// fails, what the communicator's error handler says happens; if it returns, that rank throws Error(internal)
+/// alone. A rank has about as many points in the call as any other; each point is sent once, and a few of a
+/// hundred once more. O(n log n) work over all ranks.
 FLAUNAY_API Triangulation triangulate(MPI_Comm communicator, const double* coordinates, std::size_t n,
                                       const Options& options = {});
 /// Uses the rank's own triangulator, for several calls. Options::device is not used.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <new>
 #include <numeric>
 #include <string>
@@ -80,6 +81,39 @@ int checked_count(std::size_t count) {
   throw Error(ErrorKind::input, fmt::format("{} records for one message; use more ranks", count));
 }
 
+// Communicators of the library's own for one of the caller's, which keeps them until it is freed: making them
+// takes many messages.
+struct Communicators {
+  MPI_Comm all = MPI_COMM_NULL, here = MPI_COMM_NULL;
+};
+
+int free_communicators(MPI_Comm, int, void* made, void*) {
+  const std::unique_ptr<Communicators> own(static_cast<Communicators*>(made));
+  MPI_Comm_free(&own->here);
+  return MPI_Comm_free(&own->all);
+}
+
+int key_of_communicators() {
+  static const int key = [] {
+    int made = MPI_KEYVAL_INVALID;
+    check(MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, free_communicators, &made, nullptr),
+          "MPI_Comm_create_keyval");
+    return made;
+  }();
+  return key;
+}
+
+Communicators* make_communicators(MPI_Comm communicator) {
+  auto made = std::make_unique<Communicators>();
+  int rank = 0;
+  check(MPI_Comm_rank(communicator, &rank), "MPI_Comm_rank");
+  check(MPI_Comm_dup(communicator, &made->all), "MPI_Comm_dup");
+  check(MPI_Comm_split_type(made->all, MPI_COMM_TYPE_SHARED, rank, MPI_INFO_NULL, &made->here),
+        "MPI_Comm_split_type");
+  check(MPI_Comm_set_attr(communicator, key_of_communicators(), made.get()), "MPI_Comm_set_attr");
+  return made.release();
+}
+
 // What a rank tells others of its error.
 struct Failure {
   int kind = 0, code = 0;
@@ -97,17 +131,16 @@ void check(int code, const char* call) {
 }
 
 Ranks::Ranks(MPI_Comm communicator) {
-  check(MPI_Comm_dup(communicator, &communicator_), "MPI_Comm_dup");
+  void* made = nullptr;
+  int is_made = 0;
+  check(MPI_Comm_get_attr(communicator, key_of_communicators(), &made, &is_made), "MPI_Comm_get_attr");
+  if (is_made == 0) made = make_communicators(communicator);
+  const auto& own = *static_cast<const Communicators*>(made);
+  communicator_ = own.all;
+  here_ = own.here;
   check(MPI_Comm_size(communicator_, &size_), "MPI_Comm_size");
   check(MPI_Comm_rank(communicator_, &rank_), "MPI_Comm_rank");
-  check(MPI_Comm_split_type(communicator_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &here_),
-        "MPI_Comm_split_type");
   check(MPI_Comm_rank(here_, &rank_here_), "MPI_Comm_rank");
-}
-
-Ranks::~Ranks() {
-  MPI_Comm_free(&here_);
-  MPI_Comm_free(&communicator_);
 }
 
 void Ranks::together(const std::function<void()>& work) const {

@@ -18,9 +18,8 @@ void check(int code, const char* call);
 /// sleeps, because they may share its cores.
 class Ranks {
  public:
-  /// Duplicates the communicator.
+  /// Works with a duplicate of the communicator, which that one keeps for the next call.
   explicit Ranks(MPI_Comm communicator);
-  ~Ranks();
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
 
