@@ -144,8 +144,8 @@ void Runtime::launch_on_device(const KernelName& name, ArgumentList& arguments, 
   LaunchCheck* const check = LaunchCheck::of_thread();
   if (check != nullptr && !counts) {
     group = std::max<std::size_t>(1, std::min(group, kernel.largest_group));
-    check->launch(name, arguments, (work_items + group - 1) / group * group, group, build_options(), *backend_,
-                  [&] { backend_->launch(kernel, work_items, group); });
+    check->launch(name, arguments, (work_items + group - 1) / group * group, group, build_options(),
+                  *backend_, [&] { backend_->launch(kernel, work_items, group); });
     return;
   }
 #endif

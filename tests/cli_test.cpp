@@ -795,6 +795,31 @@ TEST_F(CommandDeviceTest, DevicesListsWhatMatters) {
   EXPECT_NE(out.find("passed"), std::string::npos) << out;
 }
 
+// A kernel that is wrong is named, with the call that shows it.
+TEST_F(CommandDeviceTest, TestsNameTheKernelThatDiffers) {
+  const Arguments test = {"devices", "--test", "--device", "#0", "--only", "sets", "--points", "40"};
+  EXPECT_NE(run_well(test).out.find(" 0 differences"), std::string::npos);
+
+  const fs::path kernels = path("kernels"), mesh = kernels / "blocks/mesh.cl";
+  fs::copy(fs::path(FLAUNAY_TEST_DATA) / "../../kernels", kernels, fs::copy_options::recursive);
+  std::string text = contents(mesh);
+  const std::string right = "? -1 : of.right / 3;";
+  ASSERT_NE(text.find(right), std::string::npos);
+  write_file(mesh, text.replace(text.find(right), right.size(), "? -1 : of.right / 3 + 1;"));
+  const Outcome wrong = run(test, {{"FLAUNAY_KERNEL_PATH", kernels.string()}});
+  EXPECT_EQ(wrong.exit_code, kFailure) << wrong.err;
+  for (const char* part : {"sets neighbors, value 0 of", "kernel blocks/mesh: write_neighbors: DIFFERENT",
+                           "(global int* restrict neighbors), byte 0 of", "2 differences"}) {
+    EXPECT_NE(wrong.out.find(part), std::string::npos) << part << " in " << wrong.out;
+  }
+
+  expect_error(kUsage, {"there are triangulate sets"},
+               {"devices", "--test", "--device", "#0", "--only", "nothing"});
+  expect_error(kUsage, {"the host is what devices are compared with"},
+               {"devices", "--test", "--device", "host"});
+  expect_error(kUsage, {"--test"}, {"devices", "--only", "sets"});
+}
+
 // ---------------------------------------------------------------------------------------------- triangulate
 
 using CommandTriangulateTest = CommandTest;

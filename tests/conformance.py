@@ -8,9 +8,9 @@ import re
 import subprocess
 import sys
 
-# A CPU's sizes; a GPU's, in groups of 32; blocks of a few points, so that little input has several rounds and merges;
-# fixed point, whose kernels have no counterpart on the host.
-TUNINGS = ["cpu", "gpu:32", "small-blocks,blocks_in_parallel=1,round_points=5,tile_group=4", "gpu,fixed_point=1"]
+# A CPU's sizes; a GPU's, in groups of 32; fixed point, whose kernels have no counterpart on the host. Blocks of a few
+# points are for the simulator (tests/oclgrind.sh).
+TUNINGS = ["cpu", "gpu:32", "gpu,fixed_point=1"]
 # What measures a device or tries its arithmetic, and has tests of its own (tests/call).
 APART = {"call/probe", "call/rates", "call/self_test", "call/self_test_fixed"}
 

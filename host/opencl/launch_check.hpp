@@ -37,7 +37,8 @@ class LaunchCheck {
   /// Launches by `on_device`, and compares. work_items: with those that fill up the last group; options:
   /// those that the kernel was compiled with.
   void launch(const KernelName& name, const ArgumentList& arguments, std::size_t work_items,
-              std::size_t group, const std::string& options, Backend& backend, const std::function<void()>& on_device);
+              std::size_t group, const std::string& options, Backend& backend,
+              const std::function<void()>& on_device);
 
   /// By program and kernel, "blocks/mesh: emit_triangles".
   const std::map<std::string, Tested>& kernels() const { return kernels_; }

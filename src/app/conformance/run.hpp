@@ -14,7 +14,6 @@ struct Request {
   std::string only;           ///< a call's name; empty: all of them
   std::string record;         ///< a file for the record; what it has of this device already is not run again
   std::size_t points = 1000;  ///< of an input, about
-  bool kernels = true;        ///< whether launches are compared, too
 };
 
 /// Prints a line per call and per kernel that differs. Returns whether nothing differs.
