@@ -332,7 +332,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
       from += count;
     }
   });
-  voronoi::mend(runtime, points, corners, voronoi::kNoPeriod, rounded);
+  voronoi::mend(runtime, {0, n}, points, corners, voronoi::kNoPeriod, rounded);
   cells.offsets = std::move(rounded.offsets);
   cells.vertices = std::move(rounded.vertices);
   return cells;
