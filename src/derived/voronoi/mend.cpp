@@ -18,10 +18,10 @@ using geometry::Point;
 using geometry::operator==;
 using kernel::comes_before;
 
-// An edge that is longer than this part of its distance from the cell's point is no matter of rounding,
-// unless both ends are so many times as far away as all points lie apart; and what is nearer is small, not
-// rounded.
-constexpr double kLong = 0x1p-10, kRemote = 0x1p30, kTiny = 0x1p-12;
+// An edge is no matter of rounding if it is longer than these parts of its distance from the cell's point and
+// of the largest coordinate, unless both ends are so many times as far away as all points lie apart; and what
+// is nearer is small, not rounded.
+constexpr double kLong = 0x1p-10, kLongAtAll = 0x1p-46, kRemote = 0x1p30, kTiny = 0x1p-12;
 
 struct Earlier {
   bool operator()(Point a, Point b) const { return comes_before(a, b); }
@@ -71,8 +71,22 @@ struct Loop {
   std::size_t first, count;
 };
 
-// Appends, for each two edges that are no neighbours and have a place in common, the way between them around
-// the polygon that has fewer edges, both included; both ways if they have as many.
+// The way from edge i to edge j around the polygon, or on from j to i, that is shorter between them.
+Loop shorter_way(const std::vector<Point>& at, std::size_t i, std::size_t j) {
+  const std::size_t n = at.size();
+  // Both at once, as far as the shorter one.
+  std::size_t from_i = i, from_j = j;
+  double length_i = 0, length_j = 0;
+  while (true) {
+    const bool is_i = length_i < length_j || (length_i == length_j && comes_before(at[i], at[j]));
+    std::size_t& k = is_i ? from_i : from_j;
+    k = k + 1 < n ? k + 1 : 0;
+    if (k == (is_i ? j : i)) return {is_i ? i : j, (is_i ? j + n - i : i + n - j) % n + 1};
+    (is_i ? length_i : length_j) += distance(at[k], at[k + 1 < n ? k + 1 : 0]);
+  }
+}
+
+// Appends the way between each two edges that are no neighbours and have a place in common, both included.
 void find_crossings(const std::vector<Point>& at, std::vector<Loop>& loops) {
   const std::size_t n = at.size();
   // A sweep in the direction in which the polygon is longer.
@@ -101,9 +115,7 @@ void find_crossings(const std::vector<Point>& at, std::vector<Loop>& loops) {
     for (const Span& other : open) {
       const std::size_t i = std::min(span.edge, other.edge), j = std::max(span.edge, other.edge);
       if (next(i) == j || next(j) == i || !meet(at[i], at[next(i)], at[j], at[next(j)])) continue;
-      const std::size_t inner = j - i + 1, outer = n + 2 - inner;
-      if (inner <= outer) loops.push_back({i, inner});
-      if (outer <= inner) loops.push_back({j, outer});
+      loops.push_back(shorter_way(at, i, j));
     }
     open.push_back(span);
   }
@@ -454,7 +466,7 @@ class Mender {
       const double length = distance(a, b), away = std::min(distance(a, site(i)), distance(b, site(i)));
       const double relative = length / kernel::corner_scale(a, b, site(i));
       const auto [p, q] = edge(k);
-      const bool is_long = length > kLong * away && away <= kRemote * reach_;
+      const bool is_long = length > kLong * away && relative > kLongAtAll && away <= kRemote * reach_;
       const bool stays = is_long || (places_[index(p)].is_fixed && places_[index(q)].is_fixed);
       lengths.push_back(stays ? HUGE_VAL : relative);
       if (!stays && length <= kTiny * away && relative <= CORNERS_COINCIDE) scratch.edges.push_back({p, q});
