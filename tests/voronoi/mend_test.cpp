@@ -128,8 +128,8 @@ void expect_tiling(const ClippedVoronoi& cells, double x0, double y0, double x1,
 // Cells that are long and thin, whose corners nearly coincide, and of which none may be lost.
 TEST(Mend, RingsFarFromTheOriginAreCovered) {
   for (const auto& [count, radius, x, y] :
-       {std::array<double, 4>{3000, 7, 5e5, 5e6}, std::array<double, 4>{1000, 1000, 5e5, 5e6},
-        std::array<double, 4>{6, 1e-4, -1.8e9, 9.5e9}, std::array<double, 4>{12, 1e-4, -1.8e9, 9.5e9}}) {
+       {std::array<double, 4>{30, 0.01, -1.8e9, 9.5e9}, std::array<double, 4>{300, 1, -1.8e9, 9.5e9},
+        std::array<double, 4>{1000, 0.01, 5e5, 5e6}, std::array<double, 4>{3000, 1, 1e7, 1e7}}) {
     SCOPED_TRACE(count);
     const auto n = static_cast<std::size_t>(count);
     const Coordinates points = ring(n, radius, x, y);

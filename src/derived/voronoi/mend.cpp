@@ -475,14 +475,19 @@ class Mender {
     scratch.at.clear();
     for (const Corner& c : polygon) scratch.at.push_back(c.at);
     const std::vector<Loop> faults = find_faults(scratch.at);
-    for (const Loop& fault : faults) {
-      std::size_t least = fault.first;
-      for (std::size_t k = fault.first; k < fault.first + fault.count; ++k) {
+    const auto shortest = [&](Loop loop) {
+      std::size_t least = loop.first;
+      for (std::size_t k = loop.first; k < loop.first + loop.count; ++k) {
         const std::size_t at = k % n;
         if (lengths[at] < lengths[least] ||
             (lengths[at] == lengths[least] && is_earlier(edge(at), edge(least))))
           least = at;
       }
+      return least;
+    };
+    for (const Loop& fault : faults) {
+      std::size_t least = shortest(fault);
+      if (std::isinf(lengths[least]) && !can_join_) least = shortest({0, n});
       if (std::isfinite(lengths[least])) scratch.edges.push_back(edge(least));
     }
     if (!faults.empty() && scratch.edges.size() == listed)
