@@ -7,6 +7,7 @@
 
 #include "arithmetic/coordinates.h"
 #include "geometry/for_each.hpp"
+#include "operations/prefetch.h"
 #include "predicates/bounds.h"
 #include "voronoi/plain_polygon.h"
 
@@ -17,6 +18,7 @@ using geometry::for_each_run;
 using geometry::Point;
 using geometry::operator==;
 using kernel::comes_before;
+using kernel::fetch;
 
 // An edge is no matter of rounding if it is longer than these parts of its distance from the cell's point and
 // of the largest coordinate, unless both ends are so many times as far away as all points lie apart; and what
@@ -208,10 +210,11 @@ class Mender {
     table_.assign(kLeastTable, -1);
     places_.clear();
     uses_.clear();
-    complete_ = passes_ = 0;
+    complete_ = open_ = 0;
+    passes_ = 0;
     if (doubtful.empty()) return;
     prepare();
-    for (const std::int32_t i : doubtful) open(i);
+    open(doubtful);
     while (!doubtful.empty()) {
       look_at(doubtful);
       doubtful = edges_.empty() ? join() : collapse();
@@ -244,7 +247,6 @@ class Mender {
 
   struct Place {
     Point at;
-    std::uint64_t hash;
     std::uint64_t around;  // hashes of next corners without those of corners before: 0 if cells close
     std::int32_t root;     // another place if the corners here have moved there
     std::int32_t first, last, count;  // uses_ that are of this place
@@ -326,19 +328,21 @@ class Mender {
   // -1 for a place that no open cell has.
   std::int32_t lookup(Point p) const { return table_[slot_of(p, Hash()(p))]; }
 
-  std::int32_t place_at(Point p) {
-    const std::size_t hash = Hash()(p), slot = slot_of(p, hash);
+  std::int32_t place_at(Point p, std::size_t hash) {
+    const std::size_t slot = slot_of(p, hash);
     if (table_[slot] >= 0) return table_[slot];
     const auto place = static_cast<std::int32_t>(places_.size());
     table_[slot] = place;
     const bool is_fixed = std::binary_search(fixed_.begin(), fixed_.end(), p, Earlier());
-    places_.push_back({p, hash, 0, place, -1, -1, 0, is_fixed});
-    if (2 * places_.size() > table_.size()) {
-      table_.assign(2 * table_.size(), -1);
-      for (std::size_t k = 0; k < places_.size(); ++k)
-        table_[slot_of(places_[k].at, places_[k].hash)] = static_cast<std::int32_t>(k);
-    }
+    places_.push_back({p, 0, place, -1, -1, 0, is_fixed});
+    if (2 * places_.size() > table_.size()) make_table(2 * table_.size());
     return place;
+  }
+
+  void make_table(std::size_t size) {
+    table_.assign(size, -1);
+    for (std::size_t k = 0; k < places_.size(); ++k)
+      table_[slot_of(places_[k].at, Hash()(places_[k].at))] = static_cast<std::int32_t>(k);
   }
 
   std::int32_t root(std::int32_t place) const {
@@ -354,23 +358,42 @@ class Mender {
   void add_use(std::int32_t place, std::int32_t cell) {
     Place& at = places_[index(place)];
     const auto use = static_cast<std::int32_t>(uses_.size());
-    uses_.push_back({cell, -1});
-    (at.first < 0 ? at.first : uses_[index(at.last)].next) = use;
-    at.last = use;
+    uses_.push_back({cell, at.first});
+    at.first = use;
+    if (at.last < 0) at.last = use;
     ++at.count;
   }
 
-  // Finds the places of a cell's corners.
-  void open(std::int32_t cell) {
-    const std::size_t begin = begins_[index(cell)], size = index(sizes_[index(cell)]);
-    std::int32_t* const ring = ring_.data() + begin;
-    is_open_[index(cell)] = 1;
-    for (std::size_t k = 0; k < size; ++k) ring[k] = place_at(key(vertex(begin + k)));
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::int32_t before = ring[k > 0 ? k - 1 : size - 1], next = ring[k + 1 < size ? k + 1 : 0];
-      add_use(ring[k], cell);
-      places_[index(ring[k])].around += places_[index(next)].hash - places_[index(before)].hash;
+  // Finds the places of cells' corners.
+  void open(const Ids& cells) {
+    std::size_t corners = 0;
+    for (const std::int32_t i : cells) corners += index(sizes_[index(i)]);
+    // A corner is one of three cells, as a rule.
+    std::size_t size = table_.size();
+    while (size < places_.size() + corners) size *= 2;
+    if (size > table_.size()) make_table(size);
+    std::vector<Point> at;
+    std::vector<std::size_t> hashes;
+    for (const std::int32_t i : cells) {
+      const std::size_t begin = begins_[index(i)], count = index(sizes_[index(i)]);
+      std::int32_t* const ring = ring_.data() + begin;
+      is_open_[index(i)] = 1;
+      at.resize(count);
+      hashes.resize(count);
+      for (std::size_t k = 0; k < count; ++k) {
+        at[k] = key(vertex(begin + k));
+        hashes[k] = Hash()(at[k]);
+        fetch(&table_[hashes[k] & (table_.size() - 1)]);
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        ring[k] = place_at(at[k], hashes[k]);
+        add_use(ring[k], i);
+        places_[index(ring[k])].around +=
+            hashes[k + 1 < count ? k + 1 : 0] - hashes[k > 0 ? k - 1 : count - 1];
+      }
     }
+    open_ += cells.size();
+    if (open_ == last_ - first_) complete_ = std::numeric_limits<std::size_t>::max();
   }
 
   // Opens all cells that have a place which is known by now.
@@ -384,8 +407,7 @@ class Mender {
       return has_place;
     });
     complete_ = places_.size();
-    for (const std::int32_t i : found) open(i);
-    if (is_all) complete_ = std::numeric_limits<std::size_t>::max();
+    open(found);
   }
 
   // ---- Polygons
@@ -652,6 +674,7 @@ class Mender {
   std::vector<Place> places_;
   std::vector<Use> uses_;
   std::size_t complete_ = 0;  // of so many places all cells are open
+  std::size_t open_ = 0;      // cells
   int passes_ = 0;
   std::vector<Edge> edges_;
   Ids thin_;
