@@ -520,15 +520,15 @@ class Mender {
 
   // Makes one place of the ends of each listed edge.
   Ids collapse() {
-    bool is_any_fixed = false;
     const auto is_incomplete = [&](std::int32_t place) { return index(place) >= complete_; };
     for (const auto& [a, b] : edges_) {
       if (is_incomplete(a) || is_incomplete(b)) complete();
-      is_any_fixed = is_any_fixed || places_[index(a)].is_fixed || places_[index(b)].is_fixed;
     }
-    // Two fixed places stay apart, so that the order matters. Nothing depends on the order of the cells.
-    if (is_any_fixed)
-      std::sort(edges_.begin(), edges_.end(), [&](const Edge& a, const Edge& b) { return is_earlier(a, b); });
+    // Two fixed places stay apart, so that the order matters where they are: it is not that of the cells.
+    const auto fixed = std::partition(edges_.begin(), edges_.end(), [&](const Edge& edge) {
+      return !places_[index(edge.first)].is_fixed && !places_[index(edge.second)].is_fixed;
+    });
+    std::sort(fixed, edges_.end(), [&](const Edge& a, const Edge& b) { return is_earlier(a, b); });
     // Of one place those remain that are fixed, then those on the border, around which cells do not close,
     // then those of many cells.
     const auto is_better = [&](std::int32_t a, std::int32_t b) {
