@@ -233,9 +233,24 @@ class Places {
 
 // The places of a cell's corners, as x and y.
 void append_places(const Places& places, std::int32_t vertex, const std::vector<Stars::Spoke>& ring,
-                   const std::vector<int>& sides, std::vector<double>& to) {
+                   std::vector<int>& sides, std::vector<double>& to) {
   const auto add = [&](Point p) { to.insert(to.end(), {p.x, p.y}); };
   const auto spoke = [&](int side) { return ring[static_cast<std::size_t>(side)]; };
+  // Rounding may have changed the order of sides that are too short to be seen: those count that go around
+  // once.
+  const auto least = std::min_element(sides.begin(), sides.end(), [](int a, int b) {
+    return static_cast<unsigned>(a) < static_cast<unsigned>(b);
+  });
+  std::rotate(sides.begin(), least, sides.end());
+  int last = -1;
+  sides.erase(std::remove_if(sides.begin(), sides.end(),
+                             [&](int side) {
+                               if (side < 0) return false;
+                               const bool is_behind = side < last;
+                               last = std::max(last, side);
+                               return is_behind;
+                             }),
+              sides.end());
   int before = sides.back();
   for (const int behind : sides) {
     if (before >= 0 && behind >= 0) {
