@@ -132,12 +132,20 @@ class Places {
  public:
   Places(host::Runtime& runtime, const double* points, const double* weights, const Triangulation& mesh,
          const std::vector<double>& clip)
-      : points_(points), weights_(weights), clip_(clip), centres_(mesh.triangles.size() / 3) {
-    geometry::for_each(runtime, centres_.size(),
-                       [&](std::size_t t) { centres_[t] = centre(&mesh.triangles[3 * t]); });
+      : points_(points),
+        weights_(weights),
+        clip_(clip),
+        centres_(mesh.triangles.size() / 3),
+        beyond_(centres_.size()) {
+    geometry::for_each(runtime, centres_.size(), [&](std::size_t t) {
+      centres_[t] = centre(&mesh.triangles[3 * t]);
+      beyond_[t] = find_edge_before(centres_[t]);
+    });
   }
 
   Point centre(std::int32_t triangle) const { return centres_[static_cast<std::size_t>(triangle)]; }
+  // An edge of the polygon that a centre lies beyond; -1 for none.
+  int edge_before(std::int32_t triangle) const { return beyond_[static_cast<std::size_t>(triangle)]; }
   Point clip_corner(int k) const {
     const std::size_t at = 2 * static_cast<std::size_t>(k) % clip_.size();
     return {clip_[at], clip_[at + 1]};
@@ -162,6 +170,13 @@ class Places {
     return {points_[2 * static_cast<std::size_t>(i)], points_[2 * static_cast<std::size_t>(i) + 1]};
   }
   double weight(std::int32_t i) const { return weights_[static_cast<std::size_t>(i)]; }
+
+  int find_edge_before(Point centre) const {
+    for (int k = 0; k < static_cast<int>(clip_.size() / 2); ++k) {
+      if (kernel::orient_sign(clip_corner(k), clip_corner(k + 1), centre, ORIENT_BOUND) < 0) return k;
+    }
+    return -1;
+  }
 
   // The power of a place with respect to i without that to j, exact until it is rounded.
   double difference(std::int32_t i, std::int32_t j, Point at) const {
@@ -229,6 +244,7 @@ class Places {
   const double *points_, *weights_;
   const std::vector<double>& clip_;
   std::vector<Point> centres_;
+  std::vector<int> beyond_;
 };
 
 // The places of a cell's corners, as x and y.
@@ -257,7 +273,15 @@ void append_places(const Places& places, std::int32_t vertex, const std::vector<
       // Sides between them may have been too short to be seen.
       for (auto k = static_cast<std::size_t>(before); k != static_cast<std::size_t>(behind);
            k = k + 1 < ring.size() ? k + 1 : 0) {
-        if (ring[k].triangle >= 0) add(places.centre(ring[k].triangle));
+        const std::int32_t triangle = ring[k].triangle;
+        if (triangle < 0) continue;
+        if (const int edge = places.edge_before(triangle); edge >= 0) {
+          // The borders with two neighbours are so near to each other that they seem to meet inside.
+          add(places.crossing(vertex, ring[k].neighbor, edge));
+          add(places.crossing(vertex, spoke(static_cast<int>((k + 1) % ring.size())).neighbor, edge));
+        } else {
+          add(places.centre(triangle));
+        }
       }
     } else if (before >= 0) {
       add(places.crossing(vertex, spoke(before).neighbor, ~behind));
