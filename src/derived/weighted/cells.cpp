@@ -12,6 +12,7 @@
 #include "derived/voronoi/moments.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
+#include "operations/prefetch.h"
 #include "predicates/nearness.h"
 
 namespace flaunay::weighted {
@@ -127,6 +128,9 @@ void clip(Polygon& polygon, Point d, double constant, int side, Polygon& spare) 
   std::swap(polygon, spare);
 }
 
+// How many triangles ahead their points are fetched.
+constexpr std::size_t kTrianglesAhead = 32;
+
 // Where rounded corners are, the same for all cells that have them.
 class Places {
  public:
@@ -138,6 +142,11 @@ class Places {
         centres_(mesh.triangles.size() / 3),
         beyond_(centres_.size()) {
     geometry::for_each(runtime, centres_.size(), [&](std::size_t t) {
+      for (std::size_t c = 3 * std::min(t + kTrianglesAhead, centres_.size() - 1), k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(mesh.triangles[c + k]);
+        kernel::fetch(&points[2 * v]);
+        kernel::fetch(&weights[v]);
+      }
       centres_[t] = centre(&mesh.triangles[3 * t]);
       beyond_[t] = find_edge_before(centres_[t]);
     });
@@ -345,6 +354,10 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
         polygon.sides.push_back(~static_cast<int>(k / 2));
       }
       stars.collect(vertices[v], ring);
+      for (const Stars::Spoke& spoke : ring) {
+        kernel::fetch(&points[2 * static_cast<std::size_t>(spoke.neighbor)]);
+        kernel::fetch(&weights[spoke.neighbor]);
+      }
       for (std::size_t k = 0; k < ring.size() && !polygon.sides.empty(); ++k) {
         const auto j = static_cast<std::size_t>(ring[k].neighbor);
         const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
