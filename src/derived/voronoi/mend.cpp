@@ -73,18 +73,30 @@ struct Loop {
   std::size_t first, count;
 };
 
-// The way from edge i to edge j around the polygon, or on from j to i, that is shorter between them.
+// Which part of the edge from a to b lies before the line through c and d.
+double part_before(Point a, Point b, Point c, Point d) {
+  const auto side = [&](Point p) { return (d.x - c.x) * (p.y - c.y) - (d.y - c.y) * (p.x - c.x); };
+  const double from = std::fabs(side(a)), both = from + std::fabs(side(b));
+  return both > 0 ? from / both : 0.5;
+}
+
+// Edges i and j cross, and a polygon goes from there to there in two ways. The edges of the shorter one.
 Loop shorter_way(const std::vector<Point>& at, std::size_t i, std::size_t j) {
   const std::size_t n = at.size();
+  const auto next = [&](std::size_t k) { return k + 1 < n ? k + 1 : 0; };
+  const auto length = [&](std::size_t k) { return distance(at[k], at[next(k)]); };
+  const double part_i = part_before(at[i], at[next(i)], at[j], at[next(j)]),
+               part_j = part_before(at[j], at[next(j)], at[i], at[next(i)]);
   // Both at once, as far as the shorter one.
   std::size_t from_i = i, from_j = j;
-  double length_i = 0, length_j = 0;
+  double length_i = (1 - part_i) * length(i) + part_j * length(j),
+         length_j = part_i * length(i) + (1 - part_j) * length(j);
   while (true) {
     const bool is_i = length_i < length_j || (length_i == length_j && comes_before(at[i], at[j]));
     std::size_t& k = is_i ? from_i : from_j;
-    k = k + 1 < n ? k + 1 : 0;
+    k = next(k);
     if (k == (is_i ? j : i)) return {is_i ? i : j, (is_i ? j + n - i : i + n - j) % n + 1};
-    (is_i ? length_i : length_j) += distance(at[k], at[k + 1 < n ? k + 1 : 0]);
+    (is_i ? length_i : length_j) += length(k);
   }
 }
 
