@@ -48,7 +48,8 @@ static inline int is_plain_edge(double2 p, double2 q, double2 a, double2 b) {
   const double q_left = from_q.x * step.y, q_right = from_q.y * step.x;
   return ((step.x == 0) & (step.y == 0)) | ((p_left - p_right > ORIENT_BOUND * (fabs(p_left) + fabs(p_right))) &
                                             (q_right - q_left > ORIENT_BOUND * (fabs(q_left) + fabs(q_right))) &
-                                            (larger_of(step) > CORNERS_COINCIDE * corner_scale(a, b, p)));
+                                            (larger_of(step) > CORNERS_COINCIDE * corner_scale(a, b, q)) &
+                                            (larger_of(step) > CORNERS_COINCIDE * larger_of(p)));
 }
 
 END_SHARED

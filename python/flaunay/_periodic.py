@@ -94,10 +94,10 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         """The Voronoi cells on the torus, computed when they are first asked for.
 
         Each cell is around its point's place, so that some reach beyond the period, whose box is the
-        ``bounds``. Vertices are rounded, each cell by itself; where more than three points are cocircular,
-        some are the same but for that. The areas of a set's cells sum to that of the period. Points that
-        another one represents have no vertices. On a cylinder this is a UsageError: cells there have no
-        end.
+        ``bounds``. Vertices are rounded, so that all cells that share one have exact images of it; those
+        that coincide but for that are one. The areas of a set's cells sum to that of the period. Points
+        that another one represents have no vertices. On a cylinder this is a UsageError: cells there have
+        no end.
 
         Examples
         --------

@@ -199,6 +199,7 @@ def degenerate_sets(random):
     for n in (5, 100, 500):
         yield np.vstack([ring(n), [[0, 0]]])
         yield 7 * ring(n) + [5e5, 5e6]
+        yield 0.01 * ring(n) + [5e5, 5e6]
     houses = [
         building(*random.uniform((0, 5, 5), (3, 20, 20))) + [30 * k, 5.8e6] for k in range(10)
     ]

@@ -5,33 +5,13 @@
 namespace flaunay {
 namespace {
 
-// All sets, since points on one line are told by their set.
-points::DeviceMesh mesh_with_sets(call::Frame& call, const call::HostPoints& points,
-                                  const Triangulation& triangulation) {
-  points::DeviceMesh mesh = call::mesh_of(call, points, triangulation);
-  call::expect(!triangulation.triangle_offsets.empty() &&
-                   triangulation.triangle_offsets.size() == triangulation.hull_offsets.size() &&
-                   triangulation.triangle_offsets.back() == mesh.triangle_count() &&
-                   triangulation.hull_offsets.back() == triangulation.hull.size(),
-               "the triangulation's offsets do not fit its arrays");
-  mesh.triangle_offsets = triangulation.triangle_offsets;
-  mesh.hull_offsets = triangulation.hull_offsets;
-  // Of the points, kernels need the number alone.
-  mesh.point_offsets.assign(mesh.hull_offsets.size(), points.count);
-  return mesh;
-}
-points::DeviceMesh mesh_with_sets(call::Frame& call, const DevicePoints& points,
-                                  const DeviceTriangulation& triangulation) {
-  return call::mesh_of(call, points, triangulation);
-}
-
 // set_count: takes the number of vertices.
 template <typename Points, typename Mesh, typename Result, typename SetCount>
 void compute(call::Frame& call, const Points& points, const Mesh& triangulation,
              const voronoi::ClipPolygon& polygon, Result& result, const SetCount& set_count) {
   const std::size_t n = points.count;
   call.check_size(n);
-  points::DeviceMesh mesh = mesh_with_sets(call, points, triangulation);
+  points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
   const voronoi::ClippedBuffers buffers{call.out<cl_int>(result.offsets, n + 1, "cell offsets"),
                                         call.out<cl_double>(result.areas, n, "areas"),
                                         call.out<cl_double>(result.centroids, 2 * n, "centroids")};

@@ -1,5 +1,7 @@
 #include "call/mesh_of.hpp"
 
+#include <algorithm>
+
 #include "geometry/arguments.hpp"
 
 namespace flaunay::call {
@@ -34,6 +36,30 @@ points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const std::vec
   mesh.point_offsets = offsets;
   mesh.triangle_offsets = triangulation.triangle_offsets;
   mesh.hull_offsets = triangulation.hull_offsets;
+  return mesh;
+}
+
+points::DeviceMesh mesh_with_sets(Frame& call, const HostPoints& points, const Triangulation& triangulation) {
+  points::DeviceMesh mesh = mesh_of(call, points, triangulation);
+  const std::size_t sets = triangulation.triangle_offsets.size() - 1;
+  expect(!triangulation.triangle_offsets.empty() &&
+             are_offsets(triangulation.triangle_offsets, sets, mesh.triangle_count()) &&
+             are_offsets(triangulation.hull_offsets, sets, triangulation.hull.size()),
+         "the triangulation's offsets do not fit its arrays");
+  mesh.triangle_offsets = triangulation.triangle_offsets;
+  mesh.hull_offsets = triangulation.hull_offsets;
+  // A set's first point equals no earlier one, so it is a vertex.
+  mesh.point_offsets.assign(sets + 1, points.count);
+  for (std::size_t s = sets; s-- > 0;) {
+    std::size_t& first = mesh.point_offsets[s];
+    first = s > 0 ? mesh.point_offsets[s + 1] : 0;
+    const auto look = [&](const std::vector<std::int32_t>& ids, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end && s > 0; ++k)
+        first = std::min(first, static_cast<std::size_t>(ids[k]));
+    };
+    look(triangulation.triangles, 3 * mesh.triangle_offsets[s], 3 * mesh.triangle_offsets[s + 1]);
+    look(triangulation.hull, mesh.hull_offsets[s], mesh.hull_offsets[s + 1]);
+  }
   return mesh;
 }
 

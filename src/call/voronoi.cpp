@@ -9,7 +9,7 @@ namespace {
 template <typename Points, typename Mesh, typename Result>
 void compute(call::Frame& call, const Points& points, const Mesh& triangulation, Result& result) {
   call.check_size(points.count);
-  points::DeviceMesh mesh = call::mesh_of(call, points, triangulation);
+  points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
   const std::size_t triangles = mesh.triangle_count();
   const voronoi::Buffers buffers{call.out<cl_double>(result.circumcentres, 2 * triangles, "circumcentres"),
                                  call.out<cl_int>(result.cell_offsets, points.count + 1, "cell offsets"),

@@ -769,6 +769,15 @@ struct Queried {
       values.push_back(3 * points[2 * i] - 2 * points[2 * i + 1]);
   }
 
+  /// Two sets at the same places, whose Voronoi cells have to be mended.
+  void add_turned_lattices() {
+    for (int step = 1; step <= 2; ++step) {
+      for (int i = 0; i < 36; i += step)
+        points.insert(points.end(), {0.3 * (i / 6) - 0.1 * (i % 6), 0.1 * (i / 6) + 0.3 * (i % 6)});
+      offsets.push_back(points.size() / 2);
+    }
+  }
+
   std::size_t set_of(std::size_t query) const {
     return std::upper_bound(query_offsets.begin(), query_offsets.end(), query) - query_offsets.begin() - 1;
   }
@@ -977,7 +986,8 @@ TEST(SmallLocator, WrongArraysAreAnError) {
 }
 
 TEST(SmallVoronoi, OfTheHostAndOfTheDevice) {
-  const Queried q;
+  Queried q;
+  q.add_turned_lattices();
   const Triangulation mesh = expected_of(q.points, q.offsets);
   const Voronoi dual = triangulator().voronoi(q.points.data(), q.offsets.back(), mesh);
   const std::size_t n = q.offsets.back();
@@ -1027,7 +1037,8 @@ TEST(SmallVoronoi, OfTheHostAndOfTheDevice) {
 }
 
 TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
-  const Queried q;
+  Queried q;
+  q.add_turned_lattices();
   const Coordinates corners = {-1, 0, 0.5, -1, 2, 0.25, 0.5, 2};
   const std::size_t n = q.offsets.back();
   const Triangulation mesh = expected_of(q.points, q.offsets);

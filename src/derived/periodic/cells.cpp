@@ -128,7 +128,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
     cells.centroids[2 * index(v) + 1] = p.y + moments.centroid.y;
   });
   voronoi::Cells rounded{std::move(cells.offsets), std::move(cells.vertices)};
-  voronoi::mend(runtime, mesh.places.data(), {}, period, rounded);
+  voronoi::mend(runtime, mesh.point_offsets, mesh.places.data(), {}, period, rounded);
   cells.offsets = std::move(rounded.offsets);
   cells.vertices = std::move(rounded.vertices);
   return cells;

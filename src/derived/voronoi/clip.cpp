@@ -195,10 +195,10 @@ std::size_t mend_clipped(host::Runtime& runtime, const DeviceMesh& mesh, const C
         n, kernels::mark_doubtful{
                .input = mesh.coordinates, .offsets = offsets, .vertices = vertices, .doubtful = doubtful});
   };
-  if (n == 0 || !is_any_doubtful(runtime, n, mark)) return count;
+  if (n == 0 || doubts_of(runtime, n, mark).empty()) return count;
   Cells cells{download(runtime, offsets, n + 1), download(runtime, vertices, 2 * count)};
   const std::vector<double> sites = download(runtime, mesh.coordinates, 2 * n);
-  mend(runtime, sites.data(), polygon.corners, kNoPeriod, cells);
+  mend(runtime, mesh.point_offsets, sites.data(), polygon.corners, kNoPeriod, cells);
   runtime.write(offsets, 0, n + 1, cells.offsets.data());
   runtime.write(vertices, 0, cells.vertices.size(), cells.vertices.data());
   return cells.vertices.size() / 2;

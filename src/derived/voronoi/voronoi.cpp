@@ -62,12 +62,15 @@ void mend_duals(host::Runtime& runtime, const DeviceMesh& mesh, const Buffers& r
                                                         .centres = result.circumcentres,
                                                         .doubtful = doubtful});
   };
-  if (triangles == 0 || !is_any_doubtful(runtime, triangles, mark)) return;
+  if (triangles == 0) return;
+  const std::vector<cl_uint> doubts = doubts_of(runtime, triangles, mark);
+  if (doubts.empty()) return;
   const std::vector<double> sites = download(runtime, mesh.coordinates, 2 * n);
   std::vector<double> centres = download(runtime, result.circumcentres, 2 * triangles);
   const std::vector<cl_int> offsets = download(runtime, result.cell_offsets, n + 1),
                             corners = download(runtime, result.cells, 3 * triangles);
-  mend_centres(runtime, sites, offsets, corners, download(runtime, result.unbounded, n), centres);
+  mend_centres(runtime, mesh, doubts, sites, offsets, corners, download(runtime, result.unbounded, n),
+               centres);
   runtime.write(result.circumcentres, 0, 2 * triangles, centres.data());
 }
 

@@ -12,6 +12,7 @@
 #include "derived/voronoi/moments.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
+#include "operations/prefetch.h"
 #include "predicates/nearness.h"
 
 namespace flaunay::weighted {
@@ -127,17 +128,33 @@ void clip(Polygon& polygon, Point d, double constant, int side, Polygon& spare) 
   std::swap(polygon, spare);
 }
 
+// How many triangles ahead their points are fetched.
+constexpr std::size_t kTrianglesAhead = 32;
+
 // Where rounded corners are, the same for all cells that have them.
 class Places {
  public:
   Places(host::Runtime& runtime, const double* points, const double* weights, const Triangulation& mesh,
          const std::vector<double>& clip)
-      : points_(points), weights_(weights), clip_(clip), centres_(mesh.triangles.size() / 3) {
-    geometry::for_each(runtime, centres_.size(),
-                       [&](std::size_t t) { centres_[t] = centre(&mesh.triangles[3 * t]); });
+      : points_(points),
+        weights_(weights),
+        clip_(clip),
+        centres_(mesh.triangles.size() / 3),
+        beyond_(centres_.size()) {
+    geometry::for_each(runtime, centres_.size(), [&](std::size_t t) {
+      for (std::size_t c = 3 * std::min(t + kTrianglesAhead, centres_.size() - 1), k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(mesh.triangles[c + k]);
+        kernel::fetch(&points[2 * v]);
+        kernel::fetch(&weights[v]);
+      }
+      centres_[t] = centre(&mesh.triangles[3 * t]);
+      beyond_[t] = find_edge_before(centres_[t]);
+    });
   }
 
   Point centre(std::int32_t triangle) const { return centres_[static_cast<std::size_t>(triangle)]; }
+  // An edge of the polygon that a centre lies beyond; -1 for none.
+  int edge_before(std::int32_t triangle) const { return beyond_[static_cast<std::size_t>(triangle)]; }
   Point clip_corner(int k) const {
     const std::size_t at = 2 * static_cast<std::size_t>(k) % clip_.size();
     return {clip_[at], clip_[at + 1]};
@@ -162,6 +179,13 @@ class Places {
     return {points_[2 * static_cast<std::size_t>(i)], points_[2 * static_cast<std::size_t>(i) + 1]};
   }
   double weight(std::int32_t i) const { return weights_[static_cast<std::size_t>(i)]; }
+
+  int find_edge_before(Point centre) const {
+    for (int k = 0; k < static_cast<int>(clip_.size() / 2); ++k) {
+      if (kernel::orient_sign(clip_corner(k), clip_corner(k + 1), centre, ORIENT_BOUND) < 0) return k;
+    }
+    return -1;
+  }
 
   // The power of a place with respect to i without that to j, exact until it is rounded.
   double difference(std::int32_t i, std::int32_t j, Point at) const {
@@ -229,20 +253,44 @@ class Places {
   const double *points_, *weights_;
   const std::vector<double>& clip_;
   std::vector<Point> centres_;
+  std::vector<int> beyond_;
 };
 
 // The places of a cell's corners, as x and y.
 void append_places(const Places& places, std::int32_t vertex, const std::vector<Stars::Spoke>& ring,
-                   const std::vector<int>& sides, std::vector<double>& to) {
+                   std::vector<int>& sides, std::vector<double>& to) {
   const auto add = [&](Point p) { to.insert(to.end(), {p.x, p.y}); };
   const auto spoke = [&](int side) { return ring[static_cast<std::size_t>(side)]; };
+  // Rounding may have changed the order of sides that are too short to be seen: those count that go around
+  // once.
+  const auto least = std::min_element(sides.begin(), sides.end(), [](int a, int b) {
+    return static_cast<unsigned>(a) < static_cast<unsigned>(b);
+  });
+  std::rotate(sides.begin(), least, sides.end());
+  int last = -1;
+  sides.erase(std::remove_if(sides.begin(), sides.end(),
+                             [&](int side) {
+                               if (side < 0) return false;
+                               const bool is_behind = side < last;
+                               last = std::max(last, side);
+                               return is_behind;
+                             }),
+              sides.end());
   int before = sides.back();
   for (const int behind : sides) {
     if (before >= 0 && behind >= 0) {
       // Sides between them may have been too short to be seen.
       for (auto k = static_cast<std::size_t>(before); k != static_cast<std::size_t>(behind);
            k = k + 1 < ring.size() ? k + 1 : 0) {
-        if (ring[k].triangle >= 0) add(places.centre(ring[k].triangle));
+        const std::int32_t triangle = ring[k].triangle;
+        if (triangle < 0) continue;
+        if (const int edge = places.edge_before(triangle); edge >= 0) {
+          // The borders with two neighbours are so near to each other that they seem to meet inside.
+          add(places.crossing(vertex, ring[k].neighbor, edge));
+          add(places.crossing(vertex, spoke(static_cast<int>((k + 1) % ring.size())).neighbor, edge));
+        } else {
+          add(places.centre(triangle));
+        }
       }
     } else if (before >= 0) {
       add(places.crossing(vertex, spoke(before).neighbor, ~behind));
@@ -306,6 +354,10 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
         polygon.sides.push_back(~static_cast<int>(k / 2));
       }
       stars.collect(vertices[v], ring);
+      for (const Stars::Spoke& spoke : ring) {
+        kernel::fetch(&points[2 * static_cast<std::size_t>(spoke.neighbor)]);
+        kernel::fetch(&weights[spoke.neighbor]);
+      }
       for (std::size_t k = 0; k < ring.size() && !polygon.sides.empty(); ++k) {
         const auto j = static_cast<std::size_t>(ring[k].neighbor);
         const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
@@ -332,7 +384,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
       from += count;
     }
   });
-  voronoi::mend(runtime, points, corners, voronoi::kNoPeriod, rounded);
+  voronoi::mend(runtime, {0, n}, points, corners, voronoi::kNoPeriod, rounded);
   cells.offsets = std::move(rounded.offsets);
   cells.vertices = std::move(rounded.vertices);
   return cells;

@@ -366,6 +366,7 @@ class FLAUNAY_API Triangulator {
                   const ConstrainedTriangulation& triangulation) = delete;
   /// Computes the dual in device memory. The triangulation must have the parts triangles, neighbors, hull and
   /// representatives. The work is enqueued like that of triangulate for device memory, with the same errors.
+  /// The host waits once, or until cells are mended that would cross themselves but for that.
   void voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation, DeviceVoronoi& result,
                const Enqueue& enqueue = own_queue());
 
@@ -383,8 +384,9 @@ class FLAUNAY_API Triangulator {
                                  const ConstrainedTriangulation& triangulation, const double* corners,
                                  std::size_t corner_count) = delete;
   /// Computes clipped cells in device memory. The triangulation must have the parts triangles, neighbors,
-  /// hull and representatives; the corners are in host memory. The host waits twice; otherwise the work is
-  /// enqueued like that of triangulate for device memory, with the same errors.
+  /// hull and representatives; the corners are in host memory. The host waits three times, or
+  /// until polygons are mended; otherwise the work is enqueued like that of triangulate for device memory,
+  /// with the same errors.
   void clipped_voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                        const double* corners, std::size_t corner_count, DeviceClippedVoronoi& result,
                        const Enqueue& enqueue = own_queue());
