@@ -66,10 +66,8 @@ class Surface {
     const double* const p = mesh_.coordinates + 2 * static_cast<std::size_t>(v);
     return {p[0], p[1]};
   }
-  /// The triangle opposite to a corner, or -1 if there is none that has lines.
-  std::int32_t beyond(std::int32_t t, int corner) const {
-    const std::int32_t u = neighbor(t, corner);
-    return u >= 0 && u != t && is_part(u) ? u : -1;
+  std::int32_t neighbor(std::int32_t t, int corner) const {
+    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(corner)];
   }
   /// The side opposite to a corner if its other triangle belongs to another part.
   std::optional<Side> open_side(std::int32_t t, int corner) const {
@@ -77,8 +75,6 @@ class Surface {
     const Place a = place(corners(t)[(corner + 1) % 3]), b = place(corners(t)[(corner + 2) % 3]);
     return Side{std::min(a, b), std::max(a, b)};
   }
-  /// Whether there is no triangle opposite to a corner, nor in another part.
-  bool is_hull(std::int32_t t, int corner) const { return neighbor(t, corner) < 0; }
   /// Whether the triangle has lines.
   bool is_part(std::int32_t t) const {
     const std::int32_t* const v = corners(t);
@@ -120,9 +116,6 @@ class Surface {
   }
 
  private:
-  std::int32_t neighbor(std::int32_t t, int corner) const {
-    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(corner)];
-  }
   static double between(double a, double b, double part) {
     return std::clamp(a + part * (b - a), std::min(a, b), std::max(a, b));
   }
@@ -142,28 +135,35 @@ class Tracer {
   /// crossed: all triangles with corners on both sides.
   void trace_all(const Ids& crossed) {
     if (crossed.empty()) return;
-    is_traced_.assign(surface_.size(), false);
+    states_.assign(surface_.size(), State::not_crossed);
+    for (const std::int32_t t : crossed) state(t) = State::crossed;
     for (const std::int32_t t : crossed) {
-      if (surface_.beyond(t, entry(t)) < 0) trace(t, true);
+      if (beyond(t, entry(t)) < 0) trace(t, true);
     }
     for (const std::int32_t t : crossed) {
-      if (!is_traced_[static_cast<std::size_t>(t)]) trace(t, false);
+      if (state(t) == State::crossed) trace(t, false);
     }
   }
 
  private:
+  enum class State : std::uint8_t { not_crossed, crossed, traced };
+
+  State& state(std::int32_t t) { return states_[static_cast<std::size_t>(t)]; }
+  // The triangle on the other side of one that the line crosses, or -1 if there is none that has lines.
+  std::int32_t beyond(std::int32_t t, int corner) {
+    const std::int32_t u = surface_.neighbor(t, corner);
+    return u >= 0 && u != t && state(u) != State::not_crossed ? u : -1;
+  }
   bool is_above(std::int32_t t, int k) const { return surface_.value(surface_.corners(t)[k]) >= height_; }
   // The corners opposite to the edges on which the line enters and leaves a triangle: counter-clockwise
   // around it, the first one leads down, and the other one up.
   int entry(std::int32_t t) const {
-    int k = 0;
-    while (!is_above(t, (k + 1) % 3) || is_above(t, (k + 2) % 3)) ++k;
-    return k;
+    const bool is_last_above = is_above(t, 2);
+    return is_above(t, 1) && !is_last_above ? 0 : !is_above(t, 0) && is_last_above ? 1 : 2;
   }
   int exit(std::int32_t t) const {
-    int k = 0;
-    while (is_above(t, (k + 1) % 3) || !is_above(t, (k + 2) % 3)) ++k;
-    return k;
+    const bool is_last_above = is_above(t, 2);
+    return !is_above(t, 1) && is_last_above ? 0 : is_above(t, 0) && !is_last_above ? 1 : 2;
   }
   bool is_at_height(std::int32_t v) const { return surface_.value(v) == height_; }
 
@@ -171,16 +171,17 @@ class Tracer {
   // one corner, and two triangles between the line and the other corners, unless it goes through these.
   bool is_in_order(std::int32_t t, int exit, const Crossing& from, const Crossing& to,
                    bool is_at_border) const {
-    const bool is_left = is_above(t, exit);
-    const int corner = (exit + (is_left ? 1 : 2)) % 3;
     const std::int32_t* const v = surface_.corners(t);
-    const std::int32_t on_a = v[(corner + 1) % 3], on_b = v[(corner + 2) % 3];
-    const Place s = surface_.place(v[corner]), a = surface_.place(on_a), b = surface_.place(on_b);
+    const std::int32_t c = v[exit], before = v[exit == 0 ? 2 : exit - 1], after = v[exit == 2 ? 0 : exit + 1];
+    const bool is_left = surface_.value(c) >= height_;
+    const std::int32_t cut_off = is_left ? after : before, on_a = is_left ? before : c,
+                       on_b = is_left ? c : after;
+    const Place s = surface_.place(cut_off), a = surface_.place(on_a), b = surface_.place(on_b);
     if (surface_.is_wide(s, a, b, from.part * to.part)) return true;
     if (is_at_border) return false;
     const Place &m = is_left ? to : from, &w = is_left ? from : to;
-    return is_at_height(v[corner]) || (turn_left(s, m, w) && (is_at_height(on_a) || turn_left(m, a, b)) &&
-                                       (is_at_height(on_b) || turn_left(m, b, w)));
+    return is_at_height(cut_off) || (turn_left(s, m, w) && (is_at_height(on_a) || turn_left(m, a, b)) &&
+                                     (is_at_height(on_b) || turn_left(m, b, w)));
   }
 
   // Adds the place where the line crosses a side.
@@ -197,29 +198,29 @@ class Tracer {
     Piece piece;
     Crossing from = go_to(first, begin, piece);
     piece.begin = surface_.open_side(first, begin);
-    piece.is_in_order = !is_open || surface_.is_hull(first, begin) || piece.begin;
+    piece.is_in_order = !is_open || surface_.neighbor(first, begin) < 0 || piece.begin;
     std::int32_t t = first;
     do {
-      is_traced_[static_cast<std::size_t>(t)] = true;
+      state(t) = State::traced;
       const int k = exit(t);
       const Crossing to = go_to(t, k, piece);
-      const std::int32_t next = surface_.beyond(t, k);
+      const std::int32_t next = beyond(t, k);
       piece.is_in_order =
           piece.is_in_order && is_in_order(t, k, from, to, next < 0 || (is_open && t == first));
       if (next < 0) {
         piece.end = surface_.open_side(t, k);
-        piece.is_in_order = piece.is_in_order && (surface_.is_hull(t, k) || piece.end);
+        piece.is_in_order = piece.is_in_order && (surface_.neighbor(t, k) < 0 || piece.end);
       }
       t = next;
       from = to;
-    } while (t >= 0 && !is_traced_[static_cast<std::size_t>(t)]);
+    } while (t >= 0 && state(t) != State::traced);
     pieces_.push_back(std::move(piece));
   }
 
   const Surface& surface_;
   double height_;
   std::vector<Piece>& pieces_;
-  std::vector<bool> is_traced_;
+  std::vector<State> states_;
 };
 
 // Of a closed line, which may have its smallest point more than once.

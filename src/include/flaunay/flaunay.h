@@ -1334,9 +1334,10 @@ typedef struct flaunay_contours flaunay_contours;
 /// Computes contour lines at so many heights, which must increase, of values at n points that are linear in t
 /// counter-clockwise triangles. Higher values are on the left of a line. It is closed, with its first point
 /// again at the end, or begins and ends at the border. A value that equals a height counts as above it, so
-/// that no two lines cross. Triangles with an edge longer than max_edge (0: no edge is too long), or with a
-/// value that is not finite, are left out. Results do not depend on the order of triangles. Errors as of
-/// flaunay_rasterize. The caller destroys the result.
+/// that no two lines cross, but by rounding. No line goes through a point twice or crosses itself: what it
+/// does between two visits of a point is a closed line of its own. Triangles with an edge longer than
+/// max_edge (0: no edge is too long), or with a value that is not finite, are left out. Results do not depend
+/// on the order of triangles. Errors as of flaunay_rasterize. The caller destroys the result.
 FLAUNAY_API flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator,
                                                     const double* coordinates, size_t n,
                                                     const int32_t* triangles, const int32_t* neighbors,
