@@ -70,10 +70,11 @@ class SphericalVoronoi:
     def polygon(self, i: int) -> Doubles:
         """The corners of cell i as unit vectors, counter-clockwise as seen from outside, shape (k, 3), to be drawn.
 
-        Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells of
-        points on one great circle, such as the equator, are lunes from pole to pole, which two corners could not say,
-        and of two points each has a hemisphere with four corners. Empty for a point that another one represents,
-        and for a point alone, whose cell is the sphere. IndexError for one that does not exist; negative numbers count from the end.
+        Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells
+        of points on one great circle, such as the equator, are lunes from pole to pole, which two corners could
+        not say, and of two points each has a hemisphere with four corners. Empty for a point that another one
+        represents, and for a point alone, whose cell is the sphere. IndexError for one that does not exist;
+        negative numbers count from the end.
 
         Examples
         --------

@@ -46,6 +46,15 @@ def test_contours_are_simple(random):
             assert other.points.tobytes() == lines.points.tobytes()
 
 
+def test_contours_do_not_depend_on_the_scale():
+    points = turned(lattice(12), 0.3)
+    values = np.arange(144) * 7 % 10 % 6
+    lines = flaunay.Delaunay(points).contours(values, np.arange(0, 6, 0.5)).points
+    for factor in (2.0**-900, 2.0**-300, 2.0**900):
+        scaled = flaunay.Delaunay(points * factor).contours(values, np.arange(0, 6, 0.5)).points
+        np.testing.assert_array_equal(scaled, lines * factor)
+
+
 def test_alpha_shapes_are_valid(random):
     for points in degenerate_sets(random):
         tri = flaunay.Delaunay(points)

@@ -45,10 +45,11 @@ struct Split {
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
             const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
 
-/// A path whose pieces are split as segments are, and at the ends of others on them: then no two pieces of it
-/// have a place in common inside of one of them, unless they are equal. The same path, if that is so. No two
-/// places in a row may be equal. If coordinates span too many bits, their lowest ones are rounded first: they
-/// are multiples of the unit of CrossingPlaces, then. Throws Error(input) if there are too many pieces.
+/// A path whose pieces are split as segments are, and cut at the ends of others on them: so no two pieces
+/// have a place in common that is inside of one of them, unless they are equal. The same path, if that is so
+/// already. No two places in a row may be equal. If coordinates span more bits than points may, they are
+/// first rounded to multiples of 2^(E - 504) where the largest is in [2^E, 2^(E + 1)). Throws Error(input)
+/// for too many pieces.
 std::vector<geometry::Point> noded(const std::vector<geometry::Point>& path);
 
 /// The points of all sets, each set's added points after its own.

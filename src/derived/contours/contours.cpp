@@ -22,9 +22,9 @@ using Ids = std::vector<std::int32_t>;
 // Triangles are shared among threads in runs of so many.
 constexpr std::size_t kRun = 1 << 16;
 
-// Closed lines that are cut off are left out if twice their area is at most this, times their length and
-// their largest coordinate.
-constexpr double kRounding = 0x1p-50;
+// Closed lines that are cut off are left out if twice their area is at most this, times their length and the
+// power of two at or below their largest coordinate.
+constexpr double kThin = 0x1p-50;
 
 // Returns whether the place is another one than the last.
 bool append(Line& line, const Place& place) {
@@ -241,15 +241,20 @@ void begin_at_smallest(Line& line) {
 // Whether a closed line is hardly wider than rounding.
 bool is_thin(const Line& ring) {
   double largest = 0, length = 0, area = 0;
-  Place last = ring.front();
+  for (const Place& place : ring) largest = std::max({largest, std::fabs(place.x), std::fabs(place.y)});
+  // Relative to the largest coordinate, so that nothing overflows.
+  const auto scaled = [exponent = std::ilogb(largest)](Place place) -> Place {
+    return {std::ldexp(place.x, -exponent), std::ldexp(place.y, -exponent)};
+  };
+  const Place first = scaled(ring.front());
+  Place last = first;
   for (const Place& place : ring) {
-    largest = std::max({largest, std::fabs(place.x), std::fabs(place.y)});
-    length += std::fabs(place.x - last.x) + std::fabs(place.y - last.y);
-    area += (last.x - ring.front().x) * (place.y - ring.front().y) -
-            (last.y - ring.front().y) * (place.x - ring.front().x);
-    last = place;
+    const Place next = scaled(place);
+    length += std::fabs(next.x - last.x) + std::fabs(next.y - last.y);
+    area += (last.x - first.x) * (next.y - first.y) - (last.y - first.y) * (next.x - first.x);
+    last = next;
   }
-  return std::fabs(area) <= kRounding * largest * length;
+  return std::fabs(area) <= kThin * length;
 }
 
 // In ascending order, those that are there twice.
