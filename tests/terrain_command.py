@@ -24,6 +24,21 @@ def run(*arguments):
     )
 
 
+def notch():
+    """A polygon with a notch and a lattice with few heights, turned together."""
+    c, s = np.cos(0.001), np.sin(0.001)
+
+    def turned(x, y):
+        return 5e5 + np.column_stack([c * x - s * y, s * x + c * y])
+
+    corners = np.array([[3, 3], [25, 3], [25, 25], [14, 9], [3, 25], [3, 3]])
+    x, y = np.meshgrid(np.arange(30.0), np.arange(30.0))
+    random = np.random.default_rng(2)
+    heights = [random.integers(0, 6, 900) for _ in range(2)][1]
+    polygon = {"type": "Polygon", "coordinates": [turned(*corners.T).tolist()]}
+    return polygon, np.column_stack([turned(x.ravel(), y.ravel()), heights])
+
+
 def raster(folder, *arguments):
     path = folder / "out.npy"
     done = run(*arguments, "-o", path, "--device", "host")
@@ -294,6 +309,15 @@ def main(folder):
         at = np.array(feature["geometry"]["coordinates"])
         np.testing.assert_allclose(at[[0, -1], 0], 500050, atol=1e-6)
         np.testing.assert_allclose(np.linalg.norm(np.diff(at, axis=0), axis=1).sum(), 20 * np.pi, rtol=0.01)
+
+    # Nothing goes there and back where both ways cross the boundary at the same rounded place.
+    map_of_notch, turned_lattice = notch()
+    half.write_text(json.dumps(map_of_notch))
+    arguments = (npy("turned.npy", turned_lattice), "--resolution", 1, "-o", lines, "--boundary", half)
+    assert run(*arguments, "--contours", 0.5).returncode == 0
+    for feature in json.loads(lines.read_text())["features"]:
+        at = feature["geometry"]["coordinates"]
+        assert len(at) > (3 if at[0] == at[-1] else 1) and len(set(map(tuple, at[1:]))) == len(at) - 1
 
     # A lake at the height of its first point, and one without heights at the lowest one of its shore.
     lakes = folder / "lakes.geojson"

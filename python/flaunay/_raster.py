@@ -257,7 +257,9 @@ class MapMethods:
         -------
         Contours
             Sorted by height. Higher values are on the left of a line. It is closed, or begins and ends at
-            the border of the triangles; lines do not cross. A value that equals a height counts as above it.
+            the border of the triangles; lines do not cross, but by rounding. A value that equals a height
+            counts as above it. Lines are simple, as Shapely and GIS want them: where one would go through a
+            point twice or cross itself, it becomes several.
 
         Raises
         ------

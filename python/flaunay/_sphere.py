@@ -70,9 +70,11 @@ class SphericalVoronoi:
     def polygon(self, i: int) -> Doubles:
         """The corners of cell i as unit vectors, counter-clockwise as seen from outside, shape (k, 3), to be drawn.
 
-        Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells of
-        points on one great circle, such as the equator, are lunes from pole to pole, which two corners could not say.
-        Empty for a cell without corners. IndexError for one that does not exist; negative numbers count from the end.
+        Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells
+        of points on one great circle, such as the equator, are lunes from pole to pole, which two corners could
+        not say, and of two points each has a hemisphere with four corners. Empty for a point that another one
+        represents, and for a point alone, whose cell is the sphere. IndexError for one that does not exist;
+        negative numbers count from the end.
 
         Examples
         --------
@@ -86,6 +88,8 @@ class SphericalVoronoi:
             raise IndexError(f"cell {i} of {n}")
         i %= n
         triangles = self.cells[self.cell_offsets[i] : self.cell_offsets[i + 1]]
+        if len(triangles) == 0:
+            return self._hemisphere(i)
         corners, xyz = self._tri.simplices[triangles], self._tri.xyz
         polygon: list[Doubles] = []
         # The side to the next triangle is between the point and the corner before it.
@@ -100,6 +104,22 @@ class SphericalVoronoi:
                 middle = np.cross(start, xyz[high] - xyz[low])
                 polygon.append(middle / np.linalg.norm(middle))
         return np.array(polygon).reshape(-1, 3)
+
+    def _hemisphere(self, i: int) -> Doubles:
+        """The polygon of one of two points; empty for others without corners."""
+        tri, offsets = self._tri, self._tri._given[1]
+        ends = np.array([0, len(self.areas)]) if offsets is None else offsets
+        first, last = ends[np.searchsorted(ends, i, "right") - 1 :][:2]
+        others = first + np.flatnonzero(tri.representatives[first:last] != tri.representatives[i])
+        if self.areas[i] == 0 or len(others) == 0:
+            return np.empty((0, 3))
+        low, high = sorted((i, int(others[0])))
+        axis = tri.xyz[low] - tri.xyz[high]
+        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        sides = np.array([across, np.cross(axis, across)])
+        sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+        circle = np.concatenate([sides, -sides])
+        return circle if i == low else circle[::-1].copy()
 
 
 class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):

@@ -139,6 +139,31 @@ def test_errors_say_what_is_wrong():
         flaunay.spherical([[0, 0], [1, 1]], [0, 3])
 
 
+def area_around(site, polygon):
+    """The area of a polygon on the sphere that is star-shaped around a site."""
+    following = np.roll(polygon, -1, axis=0)
+    triple = np.cross(polygon, following) @ site
+    return 2 * np.arctan2(triple, 1 + (polygon * following).sum(1) + polygon @ site + following @ site).sum()
+
+
+@pytest.mark.parametrize("longitudes", [[0, 180], [10, 11], [0, 50, 180], [0, 30, 50], [0, 90, 180, 270]])
+@pytest.mark.parametrize("turn", [0.0, 0.5, np.pi / 2])
+def test_cells_of_points_on_great_circles_have_their_areas(longitudes, turn):
+    angles = np.deg2rad(longitudes)
+    x, y = np.cos(angles), np.sin(angles)
+    tri = flaunay.spherical(np.column_stack([x, y * np.cos(turn), y * np.sin(turn)]))
+    cells = tri.voronoi
+    for i, area in enumerate(cells.areas):
+        assert area_around(tri.xyz[i], cells.polygon(i)) == pytest.approx(area, abs=1e-13)
+
+
+def test_cells_of_two_points_are_hemispheres():
+    cells = flaunay.spherical([[9, 9], [0, 90], [0, 90], [0, -90], [7, 7]], [0, 1, 4, 5]).voronoi
+    assert [len(cells.polygon(i)) for i in range(5)] == [0, 4, 0, 4, 0]
+    np.testing.assert_array_equal(cells.polygon(1), cells.polygon(3)[::-1])
+    np.testing.assert_allclose(cells.polygon(1)[:, 2], 0, atol=1e-15)
+
+
 def test_cells_of_a_great_circle_can_be_drawn(random):
     s = 0.5**0.5
     cells = flaunay.spherical([[0, 0], [90, 0], [180, 0], [270, 0]]).voronoi

@@ -453,6 +453,36 @@ std::vector<Piece> pieces_of(const Terrain& terrain, double height, double max_e
   return pieces;
 }
 
+int side(const Piece& piece, const Place& q) {
+  return sgn(locate::area(piece[0].data(), piece[1].data(), q.data()));
+}
+
+// Whether two pieces have a place in common.
+bool meet(const Piece& p, const Piece& q) {
+  for (const std::size_t k : {0, 1}) {
+    if (std::max(p[0][k], p[1][k]) < std::min(q[0][k], q[1][k]) ||
+        std::max(q[0][k], q[1][k]) < std::min(p[0][k], p[1][k]))
+      return false;
+  }
+  return side(p, q[0]) * side(p, q[1]) <= 0 && side(q, p[0]) * side(q, p[1]) <= 0;
+}
+
+// A line meets itself where one of its pieces ends and the next one begins, and nowhere else.
+void expect_simple(const std::vector<Place>& line) {
+  const bool is_closed = line.front() == line.back();
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Piece piece = {line[i - 1], line[i]};
+    if (i + 1 < line.size()) {
+      EXPECT_FALSE(meet(piece, {line[i + 1], line[i + 1]})) << i;
+      EXPECT_FALSE(meet({line[i], line[i + 1]}, {line[i - 1], line[i - 1]})) << i;
+    }
+    for (std::size_t j = i + 2; j < line.size(); ++j) {
+      if (is_closed && i == 1 && j + 1 == line.size()) continue;
+      EXPECT_FALSE(meet(piece, {line[j - 1], line[j]})) << i << " " << j;
+    }
+  }
+}
+
 void expect_same(const Contours& found, const Contours& expected) {
   EXPECT_TRUE(same_bytes(found.coordinates, expected.coordinates));
   EXPECT_EQ(found.offsets, expected.offsets);
@@ -472,6 +502,7 @@ void check_contours(const Terrain& terrain, const std::vector<double>& heights,
       ASSERT_NE(line[p - 1], line[p]);
       found[static_cast<std::size_t>(contours.heights[i])].push_back({line[p - 1], line[p]});
     }
+    expect_simple(line);
     if (line.front() != line.back()) continue;
     EXPECT_EQ(line.front(), *std::min_element(line.begin(), line.end()));
   }
@@ -533,13 +564,75 @@ TEST(Contours, AHillHasClosedLinesCounterClockwise) {
   }
 }
 
+// Two hills that meet at the height, with lower land around them.
+TEST(Contours, ALineThatTouchesItselfBecomesSeveral) {
+  const Terrain terrain = make_terrain({0, 0, -2, 0, 2, 0, 0, 2, 0, -2, -4, -4, 4, -4, 4, 4, -4, 4},
+                                       {0, 1, 1, -1, -1, -1, -1, -1, -1});
+  const Contours contours = traced(terrain, {0});
+  ASSERT_EQ(2u, contours.heights.size());
+  for (const std::size_t i : {0, 1}) {
+    const std::vector<Place> line = line_of(contours, i);
+    EXPECT_EQ(1, std::count(line.begin() + 1, line.end(), Place{0, 0}));
+    expect_simple(line);
+  }
+  EXPECT_EQ((Place{0, 0}), line_of(contours, 1).front());
+  check_contours(terrain, {-0.5, 0, 0.5});
+}
+
+// A lattice that is turned has triangles at its hull that are thinner than rounding.
+Terrain turned_lattice(int n, double angle, double offset) {
+  Coordinates points;
+  std::vector<double> values;
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      points.insert(points.end(), {offset + c * i - s * j, offset + s * i + c * j});
+      values.push_back(std::sin(c * i - s * j) + s * i + c * j);
+    }
+  }
+  return make_terrain(points, values);
+}
+
+TEST(Contours, OfThinTrianglesAreSimple) {
+  const std::vector<double> heights = {0.5, 2.0, 3.5, 5.0, 7.75, 10.0};
+  for (const double angle : {0.001, 0.7}) {
+    for (const double offset : {0.0, 5.8e6}) {
+      SCOPED_TRACE(::testing::Message() << angle << " " << offset);
+      Terrain terrain = turned_lattice(12, angle, offset);
+      for (const bool has_few_values : {false, true}) {
+        if (has_few_values) terrain.values = random_values(terrain.values.size(), 4, 80);
+        const Contours contours = traced(terrain, heights);
+        for (const std::uint64_t seed : {1, 2})
+          expect_same(traced(shuffled(terrain, seed), heights), contours);
+        std::vector<std::vector<Piece>> pieces;
+        for (const double height : heights) pieces.push_back(pieces_of(terrain, height, 1e300));
+        for (std::size_t i = 0; i < contours.heights.size(); ++i) {
+          const std::vector<Place> line = line_of(contours, i);
+          expect_simple(line);
+          // Places move by no more than rounding.
+          for (const auto& [x, y] : line) {
+            double nearest = 1e300;
+            for (const auto& [a, b] : pieces[static_cast<std::size_t>(contours.heights[i])]) {
+              const double dx = b[0] - a[0], dy = b[1] - a[1];
+              const double part =
+                  std::clamp(((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+              nearest = std::min(nearest, std::hypot(x - a[0] - part * dx, y - a[1] - part * dy));
+            }
+            EXPECT_LE(nearest, 0x1p-50 * (offset + 20));
+          }
+        }
+      }
+    }
+  }
+}
+
 // Alone, and in one pass with a raster.
 TEST(ContoursInChunks, HaveTheBytesOfAllTrianglesAtOnce) {
-  for (const char* const fixture : {"uniform", "grid", "circle", "kuzmin"}) {
+  for (const std::string fixture : {"uniform", "grid", "circle", "kuzmin", "turned"}) {
     SCOPED_TRACE(fixture);
     // Few different values: lines through vertices, many of which are on sides between chunks.
     for (const bool has_few_values : {false, true}) {
-      Terrain terrain = terrain_of(fixture, 4000);
+      Terrain terrain = fixture == "turned" ? turned_lattice(50, 0.01, 5e5) : terrain_of(fixture, 4000);
       if (has_few_values) terrain.values = random_values(terrain.values.size(), 6, 2);
       for (std::size_t i = 0; i < terrain.values.size(); ++i) {  // one value per place
         terrain.values[i] = terrain.values[static_cast<std::size_t>(terrain.mesh.representatives[i])];
@@ -674,9 +767,6 @@ TEST(Contours, DoNotCross) {
     const std::vector<Place> line = line_of(contours, i);
     for (std::size_t p = 1; p < line.size(); ++p) pieces.push_back({line[p - 1], line[p]});
   }
-  const auto side = [](const Piece& piece, const Place& q) {
-    return sgn(locate::area(piece[0].data(), piece[1].data(), q.data()));
-  };
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const Piece &p = pieces[i], &q = pieces[j];

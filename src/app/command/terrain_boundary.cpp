@@ -183,6 +183,9 @@ std::vector<Boundary::Line> Boundary::pieces_of(const Line& line) const {
     pieces.back().insert(pieces.back().end(), pieces.front().begin() + 1, pieces.front().end());
     pieces.erase(pieces.begin());
   }
+  // There and back, if both ways cross the boundary at the same rounded place.
+  const auto is_nothing = [](const Line& each) { return each.size() == 3 && each.front() == each.back(); };
+  pieces.erase(std::remove_if(pieces.begin(), pieces.end(), is_nothing), pieces.end());
   return pieces;
 }
 

@@ -62,6 +62,13 @@ class SetSplitter {
   }
 
   bool is_snapped() const { return is_snapped_; }
+  // Whether no segment crosses another one or has a vertex inside.
+  bool is_as_it_was() const {
+    bool is_one_edge = chains_.offsets.empty();
+    for (std::size_t r = 0; r < edges_.ranges.size(); r += 2)
+      is_one_edge = is_one_edge && edges_.ranges[r + 1] - edges_.ranges[r] == 1;
+    return is_one_edge;
+  }
 
   // Adds the pieces of a segment, two vertices each. What lies between the edges that others cross is one.
   void list_pieces(std::size_t segment, Ids& ends) const {
@@ -325,6 +332,67 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
     }
     result.piece_offsets.push_back(static_cast<std::int32_t>(result.pieces.size() / 2));
   }
+  return result;
+}
+
+std::vector<Point> noded(const std::vector<Point>& path) {
+  Ids segments;
+  std::vector<double> coordinates;
+  for (const Point& p : path) coordinates.insert(coordinates.end(), {p.x, p.y});
+  for (std::int32_t i = 1; i < static_cast<std::int32_t>(path.size()); ++i)
+    segments.insert(segments.end(), {i - 1, i});
+  const Magnitudes magnitudes = inspect(coordinates.data(), 0, path.size());
+  if (magnitudes.bad != kernel::NO_BAD) return path;
+  if (differ_too_much(magnitudes)) {
+    const double unit = std::ldexp(1.0, magnitudes.largest - kernel::MOST_BITS + 1);
+    for (double& c : coordinates) {
+      if (std::fabs(c) < 0x1p52 * unit) c = std::nearbyint(c / unit) * unit;
+    }
+  }
+  const std::vector<std::size_t> offsets = {0, path.size()};
+  const Ids numbers = segments_of_sets(coordinates.data(), offsets, segments)[0];
+  SegmentSet set(coordinates.data(), offsets, 0, segments, numbers);
+  const std::vector<Piece> given = set.pieces;
+  SetSplitter splitter(set.vertices, set.pieces);
+  splitter.run({});
+  if (splitter.is_as_it_was()) return path;
+
+  const Point* const points = set.vertices.points.data();
+  const auto comes_before = [points](std::int32_t u, std::int32_t v) {
+    return kernel::comes_before(points[u], points[v]) != 0;
+  };
+  // From the smaller end of each segment to the other one.
+  Ids ends;
+  std::vector<std::size_t> last;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    splitter.list_pieces(k, ends);
+    last.push_back(ends.size());
+  }
+  std::vector<Piece> pieces;
+  for (std::size_t e = 0; e < ends.size(); e += 2) {
+    const bool is_forward = comes_before(ends[e], ends[e + 1]);
+    pieces.push_back({ends[is_forward ? e : e + 1], ends[is_forward ? e + 1 : e]});
+  }
+  Predicates predicates;
+  predicates.bounds.orient = ORIENT_BOUND;
+  const auto [edges, ranges] = cut_at_vertices(predicates, points, pieces, set.vertices.sorted);
+  Ids all, along;
+  std::size_t e = 0;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    along = {given[k].from};
+    for (; e < last[k]; e += 2) {
+      const std::int32_t first = ranges[e], end = ranges[e + 1];
+      const bool is_forward = comes_before(ends[e], ends[e + 1]);
+      for (std::int32_t i = first; i < end; ++i)
+        along.push_back(is_forward ? edges[i].to : edges[end - 1 - (i - first)].from);
+    }
+    const double* const from = &coordinates[2 * static_cast<std::size_t>(numbers[k])];
+    if (kernel::comes_before({from[2], from[3]}, {from[0], from[1]}))
+      std::reverse(along.begin(), along.end());
+    all.insert(all.end(), along.begin() + (all.empty() ? 0 : 1), along.end());
+  }
+  std::vector<Point> result;
+  for (const std::int32_t v : all) result.push_back(set.vertices.unscaled(points[v]));
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/predicates.hpp"
+
 namespace flaunay::constrained {
 
 /// What splitting may take.
@@ -42,6 +44,13 @@ struct Split {
 /// for points, and if there are more pieces than the limit, or more points than 32-bit indices allow.
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
             const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
+
+/// A path whose pieces are split as segments are, and cut at the ends of others on them: so no two pieces
+/// have a place in common that is inside of one of them, unless they are equal. The same path, if that is so
+/// already. No two places in a row may be equal. If coordinates span more bits than points may, they are
+/// first rounded to multiples of 2^(E - 504) where the largest is in [2^E, 2^(E + 1)). Throws Error(input)
+/// for too many pieces.
+std::vector<geometry::Point> noded(const std::vector<geometry::Point>& path);
 
 /// The points of all sets, each set's added points after its own.
 struct AllPoints {

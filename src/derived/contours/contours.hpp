@@ -24,6 +24,8 @@ using Side = std::pair<Place, Place>;
 struct Piece {
   Line line;
   std::optional<Side> begin, end;
+  std::vector<Place> vertices;  ///< of the mesh, through which it goes
+  bool is_in_order = true;      ///< whether rounding certainly makes it touch itself at these alone
 };
 
 /// Throws Error(usage) unless heights are finite and increase, and max_edge is a length.

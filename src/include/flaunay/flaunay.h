@@ -1334,9 +1334,10 @@ typedef struct flaunay_contours flaunay_contours;
 /// Computes contour lines at so many heights, which must increase, of values at n points that are linear in t
 /// counter-clockwise triangles. Higher values are on the left of a line. It is closed, with its first point
 /// again at the end, or begins and ends at the border. A value that equals a height counts as above it, so
-/// that no two lines cross. Triangles with an edge longer than max_edge (0: no edge is too long), or with a
-/// value that is not finite, are left out. Results do not depend on the order of triangles. Errors as of
-/// flaunay_rasterize. The caller destroys the result.
+/// that no two lines cross, but by rounding. No line goes through a point twice or crosses itself: what it
+/// does between two visits of a point is a closed line of its own. Triangles with an edge longer than
+/// max_edge (0: no edge is too long), or with a value that is not finite, are left out. Results do not depend
+/// on the order of triangles. Errors as of flaunay_rasterize. The caller destroys the result.
 FLAUNAY_API flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator,
                                                     const double* coordinates, size_t n,
                                                     const int32_t* triangles, const int32_t* neighbors,
@@ -1549,7 +1550,11 @@ FLAUNAY_API const double* flaunay_spherical_voronoi_centres(const flaunay_spheri
 /// n + 1 values: the cell of point i has corners [offsets[i], offsets[i + 1]) of cells.
 FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cell_offsets(const flaunay_spherical_voronoi* voronoi);
 /// 3 t values: the triangles whose centres are the corners of cells, counter-clockwise as seen from outside,
-/// smallest first. Points that another point represents have none, nor have sets of one or two points.
+/// smallest first. Points that another point represents have none, nor have sets of one or two points: the
+/// cells of these are hemispheres. If all points are on one great circle, cells are lunes with two corners
+/// (and some that coincide), opposite to each other, so that a side needs its middle to be drawn: of the cell
+/// of p that is the direction of a x (q - p), for the side that begins at the centre a of a triangle and is
+/// shared with q, the corner before p in that triangle.
 FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cells(const flaunay_spherical_voronoi* voronoi);
 /// n values: the areas of cells, rounded by some 1e-15, and if all points are within an angle r, by that
 /// divided by r^2. Those of a set sum to 4 pi.

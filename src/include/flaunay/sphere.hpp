@@ -95,7 +95,11 @@ struct SphericalVoronoi {
   /// n + 1 values: the cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells.
   std::vector<std::int32_t> cell_offsets;
   /// The triangles whose centres are the corners of the cells, counter-clockwise as seen from outside,
-  /// smallest first. Points that another point represents have none, nor have one or two points.
+  /// smallest first. Points that another point represents have none, nor have one or two points: the cells of
+  /// these are hemispheres. If all points are on one great circle, cells are lunes with two corners (and some
+  /// that coincide), opposite to each other, so that a side needs its middle to be drawn: of the cell of p
+  /// that is the direction of a x (q - p), for the side that begins at the centre a of a triangle and is
+  /// shared with q, the corner before p in that triangle.
   std::vector<std::int32_t> cells;
   /// n values: the areas of the cells, of which those of a set sum to 4 pi; rounded by some 1e-15, and if all
   /// points are within an angle r, by that divided by r^2; of points within some 1e-15 of each other a sum

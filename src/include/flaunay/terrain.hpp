@@ -62,13 +62,16 @@ struct Contours {
 /// Computes the contour lines of values that are linear in each triangle. Heights must increase. Higher
 /// values are on the left of a line. It is closed, with its first point again at the end, or begins and ends
 /// at the border of the triangles. A closed line begins at its lexicographically smallest point. A value that
-/// equals a height counts as above it; so no two lines cross, but they can have points in common at such a
-/// vertex. Triangles with a longer edge than max_edge, and those with a value that is not finite, are left
-/// out. Points are rounded, on each edge the same for both triangles; equal ones that follow each other are
-/// one, and lines of one point, and closed ones of two, are none. So the result depends on points, values and
-/// triangles alone, not on their order or the number of threads. It runs on threads of the host. O(triangles
-/// log heights + points of lines). Throws Error(usage) for heights that do not increase or are not finite,
-/// and for triangles of other points.
+/// equals a height counts as above it; so no two lines cross, but by rounding, but they can have points in
+/// common at such a vertex. No line goes through a point twice, and none crosses itself, which is decided
+/// exactly: what a line does between two visits of a point is a closed line of its own, or left out if that
+/// is hardly wider than rounding; docs/exactness.md says how far anything moves. Triangles with a longer edge
+/// than max_edge, and those with a value that is not finite, are left out. Points are rounded, on each edge
+/// the same for both triangles; equal ones that follow each other are one, and lines of one point, and closed
+/// ones of two, are none. So the result depends on points, values and triangles alone, not on their order or
+/// the number of threads. It runs on threads of the host. O(triangles log heights + points of lines), and O(k
+/// log k) for a line of k points in triangles thinner than rounding, as a rule. Throws Error(usage) for
+/// heights that do not increase or are not finite, and for triangles of other points.
 FLAUNAY_API Contours trace_contours(Triangulator& triangulator, const MeshView& mesh, const double* values,
                                     const std::vector<double>& heights,
                                     double max_edge = std::numeric_limits<double>::infinity());
