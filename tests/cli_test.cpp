@@ -1975,6 +1975,21 @@ TEST_F(CommandConstraintsTest, MeshesInSpaceHaveTheHeightsOfTheInput) {
   const auto [low, high] = std::minmax_element(scan.begin(), scan.end());
   EXPECT_TRUE(1353 < *low && *low < 1356 && 1390 < *high && *high < 1405) << *low << " to " << *high;
 
+  // Rows are those of the file, also where it marks points as withheld, which is told.
+  std::string las = contents(data("garden.las"));
+  const auto number_at = [&las](std::size_t at, std::size_t bytes) {
+    std::size_t number = 0;
+    std::memcpy(&number, &las[at], bytes);
+    return number;
+  };
+  const std::size_t begin = number_at(96, 4), record = number_at(105, 2);
+  for (const std::size_t k : {0, 7})
+    las[begin + k * record + 15] |= static_cast<char>(las[104] < 6 ? 0x80 : 4);
+  write_file(path("withheld.las"), las);
+  outcome = run_well({"triangulate", path("withheld.las"), "-o", path("w.obj"), "--device", "host"});
+  EXPECT_NE(outcome.out.find("withheld.las marks 2 points as withheld"), std::string::npos) << outcome.out;
+  EXPECT_EQ(contents(path("w.obj")), contents(path("g.obj")));
+
   // Heights of points that are added: on a segment those of its line, elsewhere of the triangles.
   const std::string plane = write("plane.geojson", R"({"type": "MultiLineString", "coordinates":
       [[[0,0,0],[4,0,4],[4,4],[0,4,8]], [[0,1,0],[4,3,6]], [[1,0,1],[1,4,9]]]})");

@@ -31,7 +31,7 @@ function(flaunay_test NAME)
   endif()
   # An emulator takes long to begin.
   if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
-    set(FILTER "*")
+    set(FILTER "*-*ChoosesDevices*")
     if(FLAUNAY_SANITIZE AND (ARG_SMALL_WHEN_SANITIZED OR ARG_NATIVE))
       set(FILTER "Small*")
     endif()

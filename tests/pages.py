@@ -13,7 +13,7 @@ import sys
 COLUMNS = 120
 PATTERNS = ("*.md", "docs/*.md", "javascript/*.md", "docs/tutorials/*.md", "site/*.md", "bench/results/*.md", "tests/data/*.md")
 # So many words at most, code and tables included: tutorials, which are read one by one, apart from the rest.
-WORDS = {("*.md", "docs/*.md"): 48_000, ("docs/tutorials/*.md",): 4_000}
+WORDS = {("*.md", "docs/*.md"): 49_500, ("docs/tutorials/*.md",): 4_000}
 WRITTEN_BY_PROGRAMS = "bench/results"
 FOLDERS = ("bench", "cmake", "docs", "examples", "host", "javascript", "kernels", "python", "scripts", "site", "src", "tests")
 # A code span with a folder of the source tree, such as `src/call/parts.hpp`. Placeholders and patterns are no paths.

@@ -118,13 +118,16 @@ std::string find_crs(const InputFile& file, std::string_view header, std::uint64
 
 PointRecords las_points(const std::string& path, InputFile& file) {
   const LasHeader header = read_las_header(path, file);
-  return {header.size, header.begin, header.record_bytes,
+  return {header.size,
+          header.begin,
+          header.record_bytes,
           [header](const char* records, std::size_t count, double* coordinates) {
             header.decode<2>(records, count, coordinates);
           },
           [header](const char* records, std::size_t count, double* heights) {
             header.decode<1, 2>(records, count, heights);
-          }};
+          },
+          [header](const char* record) { return header.is_withheld(record); }};
 }
 
 }  // namespace

@@ -44,6 +44,13 @@ Points read_records(const std::string& path, const Format& format, bool with_hei
     points.heights.resize(records.size);
     records.decode_pieces(file, 0, records.size, records.decode_heights, 1, points.heights.data());
   }
+  if (records.is_withheld != nullptr) {
+    const auto count = [&](const char* record, std::size_t n, double*) {
+      for (std::size_t k = 0; k < n; ++k, record += records.bytes)
+        points.withheld += records.is_withheld(record);
+    };
+    records.decode_pieces(file, 0, records.size, count, 0, nullptr);
+  }
   check_finite(path, points);
   return points;
 }

@@ -19,6 +19,7 @@ struct Points {
   std::vector<double> coordinates;
   std::vector<std::int32_t> markers = {};  ///< of the vertices of .poly files that have some
   std::vector<double> heights = {};        ///< of points in space: NaN for one that has none; empty: all 0
+  std::uint64_t withheld = 0;              ///< how many are marked as not to be used, as in .las files
   std::size_t size() const { return coordinates.size() / 2; }
 };
 
@@ -30,6 +31,8 @@ struct PointRecords {
   using Decode = std::function<void(const char* records, std::size_t count, double* numbers)>;
   Decode decode = nullptr;          ///< to coordinates; empty if they are x and y as doubles
   Decode decode_heights = nullptr;  ///< empty if there are none
+  /// Whether a record is marked as not to be used; empty if none can be.
+  std::function<bool(const char* record)> is_withheld = nullptr;
 
   /// Reads points [first, first + count) of the file.
   void read(const InputFile& file, std::uint64_t first, std::size_t count, double* coordinates) const;
