@@ -2001,8 +2001,12 @@ TEST_F(CommandConstraintsTest, MeshesInSpaceHaveTheHeightsOfTheInput) {
   ASSERT_GT(found.size(), 20U);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double x = points[2 * i], y = points[2 * i + 1];
-    if (x == 1 && y != 1.5) EXPECT_DOUBLE_EQ(found[i], 1 + 2 * y);
-    if (y == 1 + x / 2) EXPECT_NEAR(found[i], 1.5 * x, 1e-12) << "the line that comes first";
+    if (x == 1 && y != 1.5) {
+      EXPECT_DOUBLE_EQ(found[i], 1 + 2 * y);
+    }
+    if (y == 1 + x / 2) {
+      EXPECT_NEAR(found[i], 1.5 * x, 1e-12) << "the line that comes first";
+    }
     EXPECT_TRUE(found[i] >= 0 && found[i] <= 9) << found[i];
   }
 }

@@ -193,7 +193,7 @@ TerrainMesh triangulate_scan(Triangulator& triangulator, io::Scan& scan, HardEdg
       std::rotate(lines.segments.begin(), lines.segments.begin() + of_lines, lines.segments.end());
       split_crossings(triangulator, lines.points, lines.segments);
     }
-    const auto& [coordinates, markers, heights] = lines.points;
+    const std::vector<double>&coordinates = lines.points.coordinates, &heights = lines.points.heights;
     fixed = heights.size();
     terrain.coordinates.insert(terrain.coordinates.begin(), coordinates.begin(), coordinates.end());
     terrain.heights.insert(terrain.heights.begin(), heights.begin(), heights.end());
