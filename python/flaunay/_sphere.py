@@ -118,7 +118,7 @@ class SphericalVoronoi:
         across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
         sides = np.array([across, np.cross(axis, across)])
         sides /= np.linalg.norm(sides, axis=1, keepdims=True)
-        circle = np.concatenate([sides, -sides])
+        circle: Doubles = np.concatenate([sides, -sides])
         return circle if i == low else circle[::-1].copy()
 
 
