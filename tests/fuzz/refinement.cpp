@@ -181,8 +181,7 @@ std::string differs_in_other_units(const DomainToRefine& domain, const Refinemen
 }
 
 /// What the verifier says of a mesh in which only angles of the input make triangles bad.
-std::string verified(const DomainToRefine& domain, const MeshToRefine& mesh, const RefinedMesh& refined,
-                     const Demands& demands) {
+std::string verified(const DomainToRefine& domain, const RefinedMesh& refined, const Demands& demands) {
   const auto is_of_input = [](Excuse e) { return e == Excuse::input_angle || e == Excuse::near_apex; };
   const std::vector<Excuse>& excuses = refined.report.excuses;
   if (!std::all_of(excuses.begin(), excuses.end(), is_of_input)) return "";
@@ -311,7 +310,7 @@ class RefinementFuzzer : public Fuzzer {
       const RefinedMesh refined = constrained::refine(*native_[0], mesh, demands.wanted);
       count(refined);
       std::string problem = testing::what_is_wrong(mesh, refined, demands.wanted);
-      if (problem.empty()) problem = verified(domain, mesh, refined, demands);
+      if (problem.empty()) problem = verified(domain, refined, demands);
       if (!problem.empty()) return problem;
       for (std::size_t i = 1; with != Runtimes::one && i < native_.size(); ++i) {
         if (!are_same(constrained::refine(*native_[i], mesh, demands.wanted), refined))
