@@ -808,8 +808,9 @@ TEST_F(CommandDeviceTest, TestsNameTheKernelThatDiffers) {
   write_file(mesh, text.replace(text.find(right), right.size(), "? -1 : of.right / 3 + 1;"));
   const Outcome wrong = run(test, {{"FLAUNAY_KERNEL_PATH", kernels.string()}});
   EXPECT_EQ(wrong.exit_code, kFailure) << wrong.err;
-  for (const char* part : {"sets neighbors, value 0 of", "kernel blocks/mesh: write_neighbors: DIFFERENT",
-                           "(global int* restrict neighbors), byte 0 of", "2 differences"}) {
+  for (const char* part : {"sets neighbors, value 7 of 102: 2 on the device, 1 on the host",
+                           "kernel blocks/mesh: write_neighbors: DIFFERENT",
+                           "(global int* restrict neighbors), byte 28 of 408: 2 on", "2 differences"}) {
     EXPECT_NE(wrong.out.find(part), std::string::npos) << part << " in " << wrong.out;
   }
 
