@@ -67,7 +67,7 @@ RUNTIMES = [
 ]
 
 
-class Test:
+class Tester:
     def __init__(self, build, folder, kind):
         self.build, self.flaunay, self.folder = build, build / "flaunay", folder
         # Tests of several kinds may run at the same time.
@@ -223,35 +223,35 @@ class Test:
         print(f"  {len(paths)} programs need no double precision, no more atomics, and no addresses of 64 bits", flush=True)
 
 
-def test_installable(test):
+def test_installable(tester):
     installed = []
     for runtime in RUNTIMES:
-        reason = test.install(runtime)
+        reason = tester.install(runtime)
         if reason is None:
             installed.append(runtime)
         else:
             print(f"{runtime.name}: left out, it cannot be installed ({reason})", flush=True)
     for runtime in installed:
         for tuning in TUNINGS:
-            test.test(runtime.name, tuning, test.environment(runtime, tuning), known=runtime.known)
+            tester.test(runtime.name, tuning, tester.environment(runtime, tuning), known=runtime.known)
         if runtime.name == TOGETHER:
-            test.work_together(runtime)
+            tester.work_together(runtime)
     if not installed:
         print("devices: SKIPPED, no runtime can be installed: is there no network?")
     return bool(installed)
 
 
-def test_rusticl(test):
-    if test.on_rusticl():
+def test_rusticl(tester):
+    if tester.on_rusticl():
         return True
     print("devices: SKIPPED, there is no rusticl: apt-get install mesa-opencl-icd")
-    test.failures += os.environ.get("FLAUNAY_TEST_ALL") == "1"
+    tester.failures += os.environ.get("FLAUNAY_TEST_ALL") == "1"
     return False
 
 
-def test_poor(test):
-    test.on_poor_devices()
-    test.in_small_buffers()
+def test_poor(tester):
+    tester.on_poor_devices()
+    tester.in_small_buffers()
     return True
 
 
@@ -266,9 +266,9 @@ def main():
     parser.add_argument("--runtimes", type=pathlib.Path, default=SOURCE / "build/device-runtimes",
                         help="where runtimes are installed")
     arguments = parser.parse_args()
-    test = Test(arguments.build.resolve(), arguments.runtimes.resolve(), arguments.devices)
-    was_there = TESTS[arguments.devices](test)
-    if test.failures:
+    tester = Tester(arguments.build.resolve(), arguments.runtimes.resolve(), arguments.devices)
+    was_there = TESTS[arguments.devices](tester)
+    if tester.failures:
         return 1
     return 0 if was_there else SKIPPED
 

@@ -94,7 +94,7 @@ DeviceBlocks::DeviceBlocks(Call& call, const BlockPoints& points) {
 void with_groups(std::size_t capacity, const std::function<void(Runtime&)>& check) {
   if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
   Runtime& runtime = Runtimes::get("groups");
-  for (const std::size_t group : testing::groups_to_test()) {
+  for (const std::size_t group : testing::kGroupsToTest) {
     SCOPED_TRACE("groups of " + std::to_string(group));
     Tuning tuning = tuning_of(runtime);
     tuning.blocks_in_parallel = 1;

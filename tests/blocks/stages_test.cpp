@@ -1,7 +1,7 @@
 // The stages of mode blocks one after the other, each against its twin, on random and on degenerate input,
 // under several tunings.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

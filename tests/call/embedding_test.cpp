@@ -1166,7 +1166,7 @@ TEST(SmallEmbeddingMisuse, Buffers) {
   const Memory shared = embedder().make_buffer(1 << 12);
   result.triangles = result.neighbors = DeviceBuffer(shared.get());
   refused({"one buffer", "two things"}, points_in(memory, 20), result);
-  expect_usage_error({"no buffer"}, [] { DeviceBuffer none(nullptr); });
+  expect_usage_error({"no buffer"}, [] { (void)DeviceBuffer(nullptr); });
 }
 
 TEST(SmallEmbeddingMisuse, Offsets) {

@@ -309,7 +309,7 @@ std::string error_text(ErrorKind kind, const std::function<void()>& action) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------
-// Small: a representative set for the oclgrind simulator, which is thousands of times slower than a device.
+// Small: a representative set, for devices and sanitizers.
 
 TEST(SmallTriangulation, Tiny) {
   for (const Coordinates& points : std::vector<Coordinates>{{},

@@ -1,7 +1,7 @@
 // The triangulation of chains on a device beside PolygonTriangulator, on the cavities of real segments and on
 // chains that are made to be hard.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "constrained/insertion/chains.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // All segments at once, on a device or natively: the same bytes and the same errors as one after the other.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "tests/support/device.hpp"
 
 #include <gtest/gtest.h>

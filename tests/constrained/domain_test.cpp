@@ -1,6 +1,6 @@
 // Domains: the kernels, natively and on a device, against their definition and against their twin.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<std::string> tunings() {
   std::vector<std::string> names = {"own"};
   if (std::getenv("FLAUNAY_TUNING") != nullptr) return names;
   names.emplace_back("small");
-  for (const std::size_t group : groups_to_test()) names.push_back("gpu:" + std::to_string(group));
+  for (const std::size_t group : kGroupsToTest) names.push_back("gpu:" + std::to_string(group));
   for (const std::string& tuning : fixed_point_tunings()) names.push_back(tuning);
   return names;
 }
@@ -213,7 +213,7 @@ Case random_sets(FixtureRandom& random, std::uint64_t round, int sets) {
 
 TEST(SmallDomains, AsDefined) {
   FixtureRandom random(1);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 20 : 400); ++round) {
+  for (std::uint64_t round = 0; round < 400; ++round) {
     expect_right(random_case(random, round));
     if (HasFailure()) return;
   }
@@ -223,7 +223,7 @@ TEST(SmallDomains, AsDefined) {
 // others are left out.
 TEST(SmallDomains, RectanglesAsDefined) {
   FixtureRandom random(2);
-  for (int round = 0; round < (is_simulated() ? 5 : 40); ++round) {
+  for (int round = 0; round < 40; ++round) {
     Case input;
     input.points = grid_points(6, 6);
     input.offsets = {0, 36};
@@ -251,7 +251,7 @@ TEST(SmallDomains, RectanglesAsDefined) {
 
 TEST(SmallDomains, KernelsAsTwin) {
   FixtureRandom random(3);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 10); ++round) {
+  for (std::uint64_t round = 0; round < 10; ++round) {
     const Case input = random_sets(random, round, 8);
     for (const FillRule rule : kRules) {
       for (const Outside outside : kOutsides) {
@@ -266,7 +266,7 @@ TEST(SmallDomains, KernelsAsTwin) {
 // Segments that end anywhere: nesting is defined, the other rules name the first point that is wrong.
 TEST(SmallDomains, OpenSegments) {
   FixtureRandom random(4);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 5 : 30); ++round) {
+  for (std::uint64_t round = 0; round < 30; ++round) {
     Case input;
     input.points = random_integer_points(14, 6, round);
     input.offsets = {0, 14};
@@ -308,7 +308,7 @@ TEST(SmallDomains, CurvesThatAreNotClosed) {
 // Holes at random places of a grid's cells: where they are is known.
 TEST(SmallDomains, Holes) {
   FixtureRandom random(5);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 4 : 20); ++round) {
+  for (std::uint64_t round = 0; round < 20; ++round) {
     Case input = random_sets(random, round, 5);
     const ConstrainedTriangulation mesh = input.triangulate();
     // In the middle of some triangles.

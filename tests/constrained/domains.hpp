@@ -24,12 +24,6 @@ inline ConstrainedTriangulation constrained_of(const Coordinates& points,
   return insert(points, offsets, delaunay_of(points, offsets), segments);
 }
 
-/// Whether a simulator runs the kernels, which is slow.
-inline bool is_simulated() {
-  const char* const device = std::getenv("FLAUNAY_DEVICE");
-  return device != nullptr && device == std::string("oclgrind");
-}
-
 struct RationalPlace {
   mpq_class x, y;
 };

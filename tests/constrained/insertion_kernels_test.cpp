@@ -1,6 +1,6 @@
 // Kernels of the insertion of segments, each beside a plain sequential twin.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

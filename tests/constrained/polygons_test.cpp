@@ -241,7 +241,7 @@ Rings random_polygons(FixtureRandom& random, std::uint64_t round, int most) {
 
 TEST(SmallPolygons, RandomSets) {
   FixtureRandom random(1);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 60); ++round) {
+  for (std::uint64_t round = 0; round < 60; ++round) {
     expect_right_sets(random_polygons(random, round, 6));
     if (HasFailure()) return;
   }
@@ -249,7 +249,7 @@ TEST(SmallPolygons, RandomSets) {
 
 TEST(SmallPolygons, RandomMaps) {
   FixtureRandom random(2);
-  for (std::uint64_t round = 0; round < (is_simulated() ? 3 : 100); ++round) {
+  for (std::uint64_t round = 0; round < 100; ++round) {
     expect_right_map(random_polygons(random, round, 4));
     if (HasFailure()) return;
   }
@@ -378,7 +378,7 @@ bool is_near(const Rings& input, const Segments& segments, const RationalPlace& 
 TEST(SmallPolygons, CrossingsThatAreSplit) {
   FixtureRandom random(4);
   std::size_t all = 0, checked = 0;
-  for (int round = 0; round < (is_simulated() ? 2 : 40); ++round) {
+  for (int round = 0; round < 40; ++round) {
     Rings input;
     input.has_parts = random.integer(0, 1) != 0;
     for (std::int64_t p = random.integer(1, 3); p > 0; --p) {

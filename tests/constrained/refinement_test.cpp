@@ -1,7 +1,7 @@
 // Refinement: by its definition, for domains that are nasty; and the same bytes by any runtime, from input in
 // any order.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -169,12 +169,12 @@ RefinedMesh expect_right(const MeshToRefine& mesh, const Refinement& wanted) {
 }
 
 /// So many natively, and fewer where rounds of little work take long.
-int repeated(int times) { return tests_native() ? times : is_simulated() ? 1 : std::max(1, times / 12); }
+int repeated(int times) { return tests_native() ? times : std::max(1, times / 12); }
 
 Refinement angle_of(double degrees) {
   Refinement wanted;
   wanted.min_angle = degrees;
-  wanted.most_points = is_simulated() ? 50 : tests_native() ? 1000 : 200;
+  wanted.most_points = tests_native() ? 1000 : 200;
   return wanted;
 }
 
@@ -513,10 +513,10 @@ TEST(SmallRefinement, TheSmallestAngleIsExact) {
 TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
   std::size_t moved = 0, cancelled = 0;
   for (const double area : {0.0, 1.0}) {
-    DomainToRefine domain = nasty_detail::polygon(is_simulated() ? 8 : 60, 3);
+    DomainToRefine domain = nasty_detail::polygon(60, 3);
     if (area == 0) {
       domain = {};
-      domain.points = make_fixture("uniform", is_simulated() ? 20 : 400, 1);
+      domain.points = make_fixture("uniform", 400, 1);
     }
     const MeshToRefine mesh = mesh_to_refine(domain);
     Refinement wanted = angle_of(area > 0 ? 20 : 30);
@@ -534,7 +534,7 @@ TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
     EXPECT_EQ(after.report.rounds == before.report.rounds, after.added.size() == expected.size());
   }
   EXPECT_GT(moved, 20);
-  EXPECT_TRUE(is_simulated() || cancelled > 0);
+  EXPECT_GT(cancelled, 0);
 }
 
 TEST(SmallRefinement, SmoothedDomains) {

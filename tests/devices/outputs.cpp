@@ -1,9 +1,7 @@
-// Prints a line per array of results, with its hash, for all fixtures and data files: what scripts/devices.py
-// compares between devices. The lines do not name the device.
+// Prints a line per array of results, with its hash, for all fixtures and data files: what
+// scripts/platform-test.sh compares between platforms. The lines do not name the device.
 //
-//   device_outputs [MOST [STEP [MODE]]]     without inputs of more than MOST points; of the fixtures every
-//   STEP-th; in
-//                                           this mode alone (blocks or flattened)
+//   device_outputs [MOST]     without inputs of more than MOST points
 //
 // The device is FLAUNAY_DEVICE's. What was compiled and how long that took goes to the standard error output.
 #include <fmt/format.h>
@@ -44,7 +42,7 @@ std::uint64_t hash_of(const std::vector<T>& values) {
 
 class Outputs {
  public:
-  Outputs(std::size_t most, const std::string& mode) : most_(most), mode_(mode) {}
+  explicit Outputs(std::size_t most) : most_(most) {}
 
   void print(const std::string& name, const Coordinates& points) {
     print(name, points, {0, points.size() / 2});
@@ -54,7 +52,6 @@ class Outputs {
   void print(const std::string& name, const Coordinates& points, const Offsets& offsets) {
     if (offsets.back() > most_) return;
     for (const Mode mode : {Mode::blocks, Mode::flattened}) {
-      if (!mode_.empty() && mode_ != to_string(mode)) continue;
       for (const bool neighbors : {true, false}) {
         Options options;
         options.mode = mode;
@@ -107,12 +104,11 @@ class Outputs {
   }
 
   std::size_t most_;
-  std::string mode_;  // empty: both
   Triangulator triangulator_;
   double build_seconds_ = 0;
 };
 
-void print_all(Outputs& outputs, std::size_t step) {
+void print_all(Outputs& outputs) {
   constexpr std::size_t kQueried = 300;
   Coordinates all;
   Offsets offsets{0};
@@ -120,9 +116,7 @@ void print_all(Outputs& outputs, std::size_t step) {
     all.insert(all.end(), set.begin(), set.end());
     offsets.push_back(all.size() / 2);
   };
-  const std::vector<Fixture>& fixtures = all_fixtures();
-  for (std::size_t k = 0; k < fixtures.size(); k += step) {
-    const Fixture& fixture = fixtures[k];
+  for (const Fixture& fixture : all_fixtures()) {
     for (const std::size_t n : {1, 2, 3, 7, 60, 400, 3000}) outputs.print(fixture.name, fixture.make(n, n));
     outputs.print(fixture.name + "-perturbed", perturbed(fixture.make(200, 2), 3));
     outputs.print_queries(fixture.name, fixture.make(kQueried, 5));
@@ -144,8 +138,8 @@ void print_all(Outputs& outputs, std::size_t step) {
 int main(int count, char** arguments) {
   try {
     const std::size_t most = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : SIZE_MAX;
-    flaunay::testing::Outputs outputs(most, count > 3 ? arguments[3] : "");
-    flaunay::testing::print_all(outputs, count > 2 ? std::strtoul(arguments[2], nullptr, 10) : 1);
+    flaunay::testing::Outputs outputs(most);
+    flaunay::testing::print_all(outputs);
     const flaunay::DeviceInfo device = outputs.triangulator().device();
     fmt::print(stderr, "{}, {}, {}; compiled for {:.1f} s\n", device.name, device.platform, device.driver,
                outputs.build_seconds());

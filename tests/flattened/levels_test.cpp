@@ -1,7 +1,7 @@
 // The level loop: every stage of every level against its twin, on random and on degenerate input, under the
 // device's own tuning and under one of odd, small sizes.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

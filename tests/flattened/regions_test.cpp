@@ -1,7 +1,7 @@
 // Regions that are solved as blocks, against the host's way with the regions of a partition; and the search
 // for twins across borders.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "modes/flattened/regions.hpp"
 
 #include <gtest/gtest.h>

@@ -32,12 +32,6 @@ using TestRuntimes = SharedRuntimes<make_runtime>;
 [[maybe_unused]] ::testing::Environment* const kRuntimes =
     ::testing::AddGlobalTestEnvironment(new TestRuntimes);
 
-/// Tests of the simulator take as long as all cases together.
-std::size_t cases_to_test(std::size_t n) {
-  const char* const device = std::getenv("FLAUNAY_DEVICE");
-  return device != nullptr && std::string(device) == "oclgrind" ? n / 50 : n;
-}
-
 class SmallFixedKernels : public ::testing::Test {
  protected:
   SmallFixedKernels() : scope_(runtime_.arena()) {}
@@ -64,7 +58,7 @@ TEST_F(SmallFixedKernels, SignsAreExact) {
                        0});
   }
   for (const Class& of : classes) {
-    const std::size_t n = cases_to_test(20000);
+    const std::size_t n = 20000;
     std::vector<cl_long> cases(8 * n);
     for (std::size_t i = 0; i < n; ++i) {
       Integer p[8];
@@ -101,7 +95,7 @@ TEST_F(SmallFixedKernels, SignsAreExact) {
 TEST_F(SmallFixedKernels, DifferencesAreThoseOfTheHost) {
   const FixedPredicates& on_host = fixed_predicates();
   std::vector<cl_long> cases;
-  for (std::size_t i = 0; i < cases_to_test(50000); ++i) {
+  for (std::size_t i = 0; i < 50000; ++i) {
     // Doubles of at most 53 bits below 2^62.
     for (int k = 0; k < 2; ++k)
       cases.push_back(number(random_, between(random_, 0, 53)) * (1L << between(random_, 0, 9)));
@@ -131,7 +125,7 @@ TEST_F(SmallFixedKernels, NumbersOfTheCallerAreReadExactly) {
   const FixedPredicates& on_host = fixed_predicates();
   std::vector<cl_uint> floats;
   std::vector<cl_int> shifts;
-  for (std::size_t i = 0; i < cases_to_test(50000); ++i) {
+  for (std::size_t i = 0; i < 50000; ++i) {
     auto bits = static_cast<cl_uint>(random_());
     if (i % 4 == 0) bits &= 0x807fffffU;   // subnormal
     if (i % 16 == 1) bits |= 0x7f800000U;  // infinite or no number
@@ -161,7 +155,7 @@ TEST_F(SmallFixedKernels, NumbersOfTheCallerAreReadExactly) {
 }
 
 TEST_F(SmallFixedKernels, CertificatesAreNeverWrong) {
-  const std::size_t n = cases_to_test(20000);
+  const std::size_t n = 20000;
   std::vector<cl_long> cases;
   for (std::size_t i = 0; i < n; ++i) {
     Integer p[6];

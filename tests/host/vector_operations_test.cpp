@@ -1,7 +1,6 @@
 // The vector operations against plain loops, under every kind of tuning.
 //
-// Suites named Small... have tiny inputs and make no OpenCL call fail: tests/oclgrind.sh runs them in a
-// simulator.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "host/launch/vector_operations.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Interpolation by every method, several columns at once, against sequential twins.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "derived/interpolate/interpolate.hpp"
 
 #include <gmpxx.h>

@@ -1,7 +1,7 @@
 // Natural-neighbour interpolation against Voronoi cells in rational arithmetic, which are cut out of the
 // plane by bisectors alone.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "derived/interpolate/natural.hpp"
 
 #include <gmpxx.h>

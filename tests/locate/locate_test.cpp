@@ -1,7 +1,7 @@
 // Queries for triangles, nearest points and interpolated values, against twins by brute force in exact
 // arithmetic.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <fmt/format.h>
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -835,8 +835,8 @@ TEST(SmallErrors, MeshesThatAreNone) {
                      "20 points cannot have 41 triangles"));
 }
 
-/// Cells of such meshes mean nothing, but there are some. (Not for oclgrind: a vertex that has several cells
-/// then gets any of them.)
+/// Cells of such meshes mean nothing, but there are some. (A vertex that has several cells then gets any of
+/// them.)
 TEST(Errors, CellsOfMeshesThatAreNone) {
   Runtime& runtime = Runtimes::get("own");
   const Case whole = make_case(make_fixture("uniform", 20, 16), 3, 17);

@@ -1,6 +1,6 @@
 // Kernels for a torus and a cylinder against plain loops, and against what the host does with one set.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Rasters and contours against rational arithmetic, triangle by triangle.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 

@@ -16,13 +16,8 @@
 
 namespace flaunay::testing {
 
-/// The sizes of work-groups that a test of kernels goes through: fewer under the simulator, which takes as
-/// long as all work-items of a group together.
-inline std::vector<std::size_t> groups_to_test() {
-  const char* const device = std::getenv("FLAUNAY_DEVICE");
-  if (device != nullptr && std::string(device) == "oclgrind") return {2, 8};
-  return {1, 2, 32, 64, 256};
-}
+/// The sizes of work-groups that a test of kernels goes through.
+constexpr std::size_t kGroupsToTest[] = {1, 2, 32, 64, 256};
 
 /// Whether tests run kernels natively, on the host, and not on a device.
 inline bool tests_native() {

@@ -1,7 +1,7 @@
 // Batches of points that are inserted, removed and moved: after each the triangulation is that of a call on
 // all points, and its changes are told.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include <gtest/gtest.h>
 
 #include <cmath>

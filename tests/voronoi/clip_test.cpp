@@ -1,7 +1,7 @@
 // Clipped Voronoi cells against twins in exact arithmetic, which know nothing of triangulations: a cell is
 // the polygon cut by the bisectors with all other points.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "derived/voronoi/clip.hpp"
 
 #include <gmpxx.h>

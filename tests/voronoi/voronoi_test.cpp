@@ -1,6 +1,6 @@
 // Voronoi diagrams against twins in exact arithmetic.
 //
-// Suites named Small... have tiny inputs, for slow simulators: tests/oclgrind.sh.
+// Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "derived/voronoi/voronoi.hpp"
 
 #include <gmpxx.h>
@@ -204,7 +204,7 @@ TEST(Voronoi, AFan) {
 }
 
 /// Numbers that are no triangulation at all: cells mean nothing, but they are disjoint parts of their array.
-/// (Not for oclgrind: a vertex that has several cells then gets any of them.)
+/// (A vertex that has several cells then gets any of them.)
 TEST(Voronoi, CellsFitWhateverTheMesh) {
   FixtureRandom random(21);
   for (int round = 0; round < 30; ++round) {

@@ -492,7 +492,8 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
   if (!task.quiet) {
     std::string text = task.profile ? kernel_table(mesh.statistics) : "";
     for (const std::string& note : map.notes) text += "note: " + note + "\n";
-    text += input_note(task.input, task.results.mesh, map.points) + properties_note(task, map, mesh);
+    text += withheld_note(task.input, map.points) + heights_note(task.input, task.results.mesh, map.points) +
+            properties_note(task, map, mesh);
     print(text + empty_note(mesh, request) + refinement_note(mesh, map.points.coordinates) +
           host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
           summary(mesh.statistics, facts));

@@ -111,8 +111,6 @@ void add_points(Triangulator& triangulator, const std::vector<std::int32_t>& seg
   complete_between(triangulator, mesh, points);
 }
 
-namespace {
-
 std::string heights_note(const std::string& input, const std::string& mesh, const io::Points& points) {
   if (points.heights.empty() || mesh.empty() || io::ending_of(mesh) == ".npy") return "";
   if (io::find_format(mesh, io::Use::has_heights) == nullptr) {
@@ -123,20 +121,6 @@ std::string heights_note(const std::string& input, const std::string& mesh, cons
   const bool is_text = io::find_format(input, io::Use::read_points)->text != nullptr;
   return is_text ? "note: the third number of each line is the height; --columns chooses other columns\n"
                  : "";
-}
-
-}  // namespace
-
-std::string input_note(const std::string& input, const std::string& mesh, const io::Points& points) {
-  std::string withheld;
-  if (points.withheld > 0) {
-    withheld = io::printable(
-                   fmt::format("note: {} marks {} points as withheld; triangles have them, as rows are those "
-                               "of the file; flaunay terrain leaves them out",
-                               io::shown_path(input), points.withheld)) +
-               "\n";
-  }
-  return withheld + heights_note(input, mesh, points);
 }
 
 }  // namespace flaunay::cli

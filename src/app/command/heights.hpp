@@ -22,8 +22,8 @@ std::vector<double> heights_at(Triangulator& triangulator, const std::vector<dou
 void add_points(Triangulator& triangulator, const std::vector<std::int32_t>& segments,
                 const ConstrainedTriangulation& mesh, io::Points& points);
 
-/// Lines about the input: how many points are marked as withheld; where heights come from, or that the file
-/// of a mesh has none. Empty if there is nothing to say.
-std::string input_note(const std::string& input, const std::string& mesh, const io::Points& points);
+/// A line that says where heights come from, or that the file of a mesh has none; empty without heights or a
+/// mesh.
+std::string heights_note(const std::string& input, const std::string& mesh, const io::Points& points);
 
 }  // namespace flaunay::cli

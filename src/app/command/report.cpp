@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "app/command/json.hpp"
+#include "files/file.hpp"
 
 namespace flaunay::cli {
 
@@ -224,6 +225,15 @@ std::string degenerate_note(const Statistics& statistics) {
   if (distinct == 2) return "note: only two distinct points: no triangles; the hull is those, in order\n";
   return fmt::format(
       "note: all {} distinct points are on one line: no triangles; the hull is those, in order\n", distinct);
+}
+
+std::string withheld_note(const std::string& input, const io::Points& points) {
+  if (points.withheld == 0) return "";
+  return io::printable(fmt::format(
+             "note: {} marks {} points as withheld; triangles have them, as rows are those of the "
+             "file; flaunay terrain leaves them out",
+             io::shown_path(input), points.withheld)) +
+         "\n";
 }
 
 std::string excuses_text(const RefinementReport& report) {

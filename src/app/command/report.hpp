@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/files/points.hpp"
 #include "flaunay/chunks.hpp"
 #include "flaunay/refinement.hpp"
 #include "flaunay/research.hpp"
@@ -47,6 +48,8 @@ std::string partition_summary(const research::Partition& partition, const RunFac
 
 /// A line that says why there are no triangles; empty if there are some.
 std::string degenerate_note(const Statistics& statistics);
+/// A line that says how many points the input marks as not to be used; empty if none.
+std::string withheld_note(const std::string& input, const io::Points& points);
 
 /// How many triangles are worse than asked for, by the reasons.
 std::string excuses_text(const RefinementReport& report);

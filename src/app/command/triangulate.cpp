@@ -177,9 +177,9 @@ int triangulate(const TriangulateRequest& request) {
 
   if (!request.quiet) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
-          degenerate_note(mesh.statistics) + input_note(request.input, request.results.mesh, points) +
-          host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
-          summary(mesh.statistics, facts));
+          degenerate_note(mesh.statistics) + withheld_note(request.input, points) +
+          heights_note(request.input, request.results.mesh, points) + host_note(facts.compiling_note) +
+          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
   }
   return kSuccess;
 }

@@ -8,7 +8,6 @@
 #include "app/files/generate.hpp"
 #include "flaunay/chunks.hpp"
 #include "flaunay/constrained.hpp"
-#include "flaunay/device_memory.hpp"
 #include "flaunay/dynamic.hpp"
 #include "flaunay/neighbors.hpp"
 #include "flaunay/periodic.hpp"
@@ -41,7 +40,7 @@ const std::vector<std::string> kInputs = {"uniform",        "kuzmin",         "g
 // For calls whose places are not to be far apart.
 const std::vector<std::string> kTameInputs = {"uniform", "grid", "half-duplicates"};
 
-// A box that is half as wide and high as the points, in their middle.
+// A box that is half as wide and high as the points, in their middle; a triangle if all have one x.
 Coordinates box_in(const Coordinates& points) {
   double low[2] = {points[0], points[1]}, high[2] = {points[0], points[1]};
   for (std::size_t k = 2; k < points.size(); ++k) {
@@ -49,12 +48,10 @@ Coordinates box_in(const Coordinates& points) {
     high[k % 2] = std::max(high[k % 2], points[k]);
   }
   const double left = 0.75 * low[0] + 0.25 * high[0], right = 0.25 * low[0] + 0.75 * high[0],
-               bottom = 0.75 * low[1] + 0.25 * high[1], top = 0.25 * low[1] + 0.75 * high[1];
+               bottom = 0.75 * low[1] + 0.25 * high[1];
   if (!(left < right)) return {left - 1, bottom - 1, left + 1, bottom - 1, left, bottom + 1};
-  return {left,  bottom,
-          right, bottom,
-          right, std::max(top, bottom + (right - left)),
-          left,  std::max(top, bottom + (right - left))};
+  const double top = std::max(0.25 * low[1] + 0.75 * high[1], bottom + (right - left));
+  return {left, bottom, right, bottom, right, top, left, top};
 }
 
 // Sets of 0, 1, 2, ... points of all inputs.
@@ -104,6 +101,15 @@ void add(Arrays& results, const std::string& name, const ClippedVoronoi& cells) 
   results.add(name + " centroids", cells.centroids);
 }
 
+// Of a torus or a sphere.
+template <typename Mesh>
+void add_unfolded(Arrays& results, const std::string& name, const Mesh& mesh) {
+  results.add(name + " places", mesh.places);
+  results.add(name + " triangles", mesh.triangles);
+  results.add(name + " neighbors", mesh.neighbors);
+  results.add(name + " representatives", mesh.representatives);
+}
+
 template <typename AnyOptions = Options>
 AnyOptions all_arrays() {
   AnyOptions options;
@@ -131,12 +137,13 @@ void triangulate_sets(Triangulator& triangulator, std::size_t n, Arrays& results
 // The paper's algorithm and its variants.
 void modes(Triangulator& triangulator, std::size_t n, Arrays& results) {
   auto options = all_arrays<research::Options>();
+  options.mode = research::Mode::flattened;
   const auto run = [&](const std::string& name, const Coordinates& points) {
     add(results, name, research::triangulate(triangulator, points.data(), points.size() / 2, options));
   };
   for (const std::string& input : kInputs) {
-    options.mode = research::Mode::flattened;
     options.finish = research::Finish::blocks;
+    options.hull = research::Hull::prune;
     run(input + " to blocks", points_of(input, n));
     options.finish = research::Finish::levels;
     options.hull = research::Hull::balanced;
@@ -407,11 +414,8 @@ void torus(Triangulator& triangulator, std::size_t n, Arrays& results) {
     const Coordinates points = points_of(input, n), places = queries_of(points);
     const PeriodicTriangulation mesh =
         triangulate_periodic(triangulator, points.data(), points.size() / 2, {2.5, 1.25});
-    results.add(input + " places", mesh.places);
-    results.add(input + " triangles", mesh.triangles);
+    add_unfolded(results, input, mesh);
     results.add(input + " offsets", mesh.offsets);
-    results.add(input + " neighbors", mesh.neighbors);
-    results.add(input + " representatives", mesh.representatives);
     add(results, input + " cells", periodic_cells(triangulator, mesh));
     PeriodicLocator locator(triangulator, mesh);
     results.add(input + " located", locator.locate(places.data(), places.size() / 2));
@@ -431,10 +435,7 @@ void sphere(Triangulator& triangulator, std::size_t n, Arrays& results) {
     const std::size_t count = points.size() / 3;
     const SphericalTriangulation mesh =
         triangulate_sphere(triangulator, points.data(), count, SphereCoordinates::directions);
-    results.add(input + " places", mesh.places);
-    results.add(input + " triangles", mesh.triangles);
-    results.add(input + " neighbors", mesh.neighbors);
-    results.add(input + " representatives", mesh.representatives);
+    add_unfolded(results, input, mesh);
     SphereLocator locator(triangulator, mesh);
     results.add(input + " nearest", locator.nearest(points.data(), count, SphereCoordinates::directions));
   }

@@ -127,7 +127,12 @@ PointRecords las_points(const std::string& path, InputFile& file) {
           [header](const char* records, std::size_t count, double* heights) {
             header.decode<1, 2>(records, count, heights);
           },
-          [header](const char* record) { return header.is_withheld(record); }};
+          [header](const char* records, std::size_t count) {
+            std::size_t withheld = 0;
+            for (std::size_t k = 0; k < count; ++k)
+              withheld += header.is_withheld(records + k * header.record_bytes);
+            return withheld;
+          }};
 }
 
 }  // namespace

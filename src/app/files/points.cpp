@@ -39,17 +39,16 @@ Points read_records(const std::string& path, const Format& format, bool with_hei
   points.coordinates.reserve(2 * records.size);
   system::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
   points.coordinates.resize(2 * records.size);
-  records.read(file, 0, records.size, points.coordinates.data());
-  if (with_heights && records.decode_heights != nullptr) {
-    points.heights.resize(records.size);
-    records.decode_pieces(file, 0, records.size, records.decode_heights, 1, points.heights.data());
-  }
-  if (records.is_withheld != nullptr) {
-    const auto count = [&](const char* record, std::size_t n, double*) {
-      for (std::size_t k = 0; k < n; ++k, record += records.bytes)
-        points.withheld += records.is_withheld(record);
-    };
-    records.decode_pieces(file, 0, records.size, count, 0, nullptr);
+  if (records.decode == nullptr) {
+    records.read(file, 0, records.size, points.coordinates.data());
+  } else {
+    const bool has_heights = with_heights && records.decode_heights != nullptr;
+    if (has_heights) points.heights.resize(records.size);
+    records.for_pieces(file, 0, records.size, [&](const char* some, std::size_t count, std::size_t before) {
+      records.decode(some, count, &points.coordinates[2 * before]);
+      if (has_heights) records.decode_heights(some, count, &points.heights[before]);
+      if (records.count_withheld != nullptr) points.withheld += records.count_withheld(some, count);
+    });
   }
   check_finite(path, points);
   return points;
@@ -92,17 +91,19 @@ void write_pairs(OutputFile& file, const double* coordinates, const std::int32_t
 void PointRecords::read(const InputFile& file, std::uint64_t first, std::size_t count,
                         double* coordinates) const {
   if (decode == nullptr) return file.read_at(begin + first * bytes, count * bytes, coordinates);
-  decode_pieces(file, first, count, decode, 2, coordinates);
+  for_pieces(file, first, count, [&](const char* records, std::size_t some, std::size_t before) {
+    decode(records, some, coordinates + 2 * before);
+  });
 }
 
-void PointRecords::decode_pieces(const InputFile& file, std::uint64_t first, std::size_t count,
-                                 const Decode& decode_some, std::size_t columns, double* numbers) const {
+void PointRecords::for_pieces(const InputFile& file, std::uint64_t first, std::size_t count,
+                              const UsePiece& use) const {
   constexpr std::size_t kPiece = std::size_t{1} << 15;
   std::vector<char> records(std::min(count, kPiece) * bytes);
   for (std::size_t done = 0; done < count; done += kPiece) {
     const std::size_t piece = std::min(count - done, kPiece);
     file.read_at(begin + (first + done) * bytes, piece * bytes, records.data());
-    decode_some(records.data(), piece, numbers + columns * done);
+    use(records.data(), piece, done);
   }
 }
 

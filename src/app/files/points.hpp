@@ -31,14 +31,15 @@ struct PointRecords {
   using Decode = std::function<void(const char* records, std::size_t count, double* numbers)>;
   Decode decode = nullptr;          ///< to coordinates; empty if they are x and y as doubles
   Decode decode_heights = nullptr;  ///< empty if there are none
-  /// Whether a record is marked as not to be used; empty if none can be.
-  std::function<bool(const char* record)> is_withheld = nullptr;
+  /// How many records are marked as not to be used; empty if none can be.
+  std::function<std::size_t(const char* records, std::size_t count)> count_withheld = nullptr;
 
   /// Reads points [first, first + count) of the file.
   void read(const InputFile& file, std::uint64_t first, std::size_t count, double* coordinates) const;
-  /// Converts points [first, first + count) to `columns` numbers each.
-  void decode_pieces(const InputFile& file, std::uint64_t first, std::size_t count, const Decode& decode_some,
-                     std::size_t columns, double* numbers) const;
+  /// Calls use(records, count, how many were before) for the records of points [first, first + count), in
+  /// pieces.
+  using UsePiece = std::function<void(const char* records, std::size_t count, std::size_t before)>;
+  void for_pieces(const InputFile& file, std::uint64_t first, std::size_t count, const UsePiece& use) const;
 };
 
 /// Reads the points of a text that comes in pieces of whole lines. Throws Error(input) that names the line
