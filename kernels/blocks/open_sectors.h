@@ -14,13 +14,11 @@
 BEGIN_SHARED
 
 // States of an edge's left side that are not the place of an emitted triangle's corner.
-INTEGER_CONSTANT(OPEN, -1);          // a triangle that is not emitted
-INTEGER_CONSTANT(GHOST, -2);         // the outside, final
-INTEGER_CONSTANT(OPEN_GHOST, -3);    // the outside of this block's triangulation
-INTEGER_CONSTANT(UNSURE, -4);        // floating point could not tell whether the triangle is missing
-INTEGER_CONSTANT(UNSURE_GHOST, -5);  // the same of a ghost
+INTEGER_CONSTANT(OPEN, -1);        // a triangle that is not emitted
+INTEGER_CONSTANT(GHOST, -2);       // the outside, final
+INTEGER_CONSTANT(OPEN_GHOST, -3);  // the outside of this block's triangulation
 static inline int is_final(int state) { return state >= 0 || state == GHOST; }
-static inline int is_ghost(int state) { return state == GHOST || state == OPEN_GHOST || state == UNSURE_GHOST; }
+static inline int is_ghost(int state) { return state == GHOST || state == OPEN_GHOST; }
 
 // A direction from a vertex. What is asked of it is what lies beside it, counter-clockwise: a triangle, or the outside,
 // if this is the last edge in a vertex of the hull.

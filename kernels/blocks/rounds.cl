@@ -11,7 +11,8 @@
 //    around each set's points. frame_blocks, per block, finds the rectangle between the cuts. name_round_vertices
 //    numbers each vertex.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
-//    vertex, and notes the state of each edge's left side. emit_unsure decides exactly what the filters could not.
+//    vertex, and notes the state of each edge's left side. After the first round, emit_unsure, per pair of edges,
+//    decides exactly what the filters could not.
 // 3. link_triangles, per pair of edges, joins emitted triangles, also with those of rounds before.
 // 4. Unless each set has one triangulation: count_open, per vertex, counts what goes on; after a scan write_open writes
 //    the points and their open edges.
@@ -213,7 +214,8 @@ static inline int is_ghost_missing(const emission* m, int from, int to, int is_l
   return corner_beyond(m->listed[from], m->vertices[to], m->open_offsets, m->open_edges) != GHOST;
 }
 
-static inline void decide_ghost(const emission* m, const block_frame* frame, int e, int exactly) {
+// Emits the outside left of e if it is to be. Returns whether that takes exact arithmetic.
+static inline int decide_ghost(const emission* m, const block_frame* frame, int e, int exactly) {
   const int to = m->edges[e].to, from = m->edges[e ^ 1].to;
   const int is_line = is_outside(e ^ 1, m->edges, frame);
   // Of points on one line it is not known on which side others are.
@@ -223,10 +225,12 @@ static inline void decide_ghost(const emission* m, const block_frame* frame, int
   // If something is emitted, the set has triangles, and points on one line are what is left along its hull.
   const int is_set_on_line = is_line && (m->is_first || open_count(m, from) == 0);
   if (missing == 1) emit_hull_edge(m, to, from, is_set_on_line);
-  m->states[e] = missing == 1 ? GHOST : missing == UNDECIDED ? UNSURE_GHOST : OPEN_GHOST;
+  m->states[e] = missing == 1 ? GHOST : OPEN_GHOST;
+  return missing == UNDECIDED;
 }
 
-static inline void decide_triangle(const emission* m, const block_frame* frame, int e, int exactly) {
+// The same of the triangle left of e, an edge of its middle vertex.
+static inline int decide_triangle(const emission* m, const block_frame* frame, int e, int exactly) {
   const ring_edge there = m->edges[e], back = m->edges[e ^ 1];
   const int v = back.to, a = there.to, b = m->edges[there.next].to;
   const int is_final = is_circle_inside(frame, m->points[v], m->points[a], m->points[b]);
@@ -234,9 +238,9 @@ static inline void decide_triangle(const emission* m, const block_frame* frame, 
   if (missing == 1) {
     emit_triangle(m, e);
   } else {
-    m->states[e] = missing == UNDECIDED ? UNSURE : OPEN;
-    m->states[back.previous] = m->states[there.next ^ 1] = OPEN;
+    m->states[e] = m->states[back.previous] = m->states[there.next ^ 1] = OPEN;
   }
+  return missing == UNDECIDED;
 }
 
 // The triangle left of e belongs to the edge's origin, which is its middle vertex, if the edge to the right or to the
@@ -246,13 +250,16 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
   return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
 }
 
-// n pairs of edges.
+// n pairs of edges. unsure: by pair, a bit for each edge on whose left side emit_unsure decides; not in the first round,
+// in which all that is final is missing.
 kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
                            global const block_frame* restrict frames, global const coordinate2* restrict points,
                            global const ring_edge* restrict edges, global const coordinate2* all_points,
                            global const int* restrict indices, global int* restrict places, global int* states,
-                           global int* restrict hull_next, global int* restrict hull_previous) {
+                           global int* restrict hull_next, global int* restrict hull_previous,
+                           global uchar* restrict unsure) {
   const int k = get_global_id(0);
+  int undecided = 0;
   if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
   if (k < n && edges[2 * k].to != NO_VERTEX) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
@@ -260,12 +267,13 @@ kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int block
     const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
-        decide_ghost(&m, &frame, e, 0);
+        undecided |= decide_ghost(&m, &frame, e, 0) << (e - 2 * k);
       } else if (is_from_middle(e, edges, points)) {
-        decide_triangle(&m, &frame, e, 0);
+        undecided |= decide_triangle(&m, &frame, e, 0) << (e - 2 * k);
       }
     }
   }
+  if (k < n && !is_first) unsure[k] = (uchar)undecided;
 }
 
 // n pairs of edges.
@@ -273,17 +281,20 @@ kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, 
                         global const block_frame* restrict frames, global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
-                        global int* restrict hull_next, global int* restrict hull_previous) {
+                        global int* restrict hull_next, global int* restrict hull_previous,
+                        global const uchar* restrict unsure) {
   const int k = get_global_id(0);
-  for (int e = 2 * k; e < 2 * k + 2 && k < n; ++e) {
-    if (states[e] != UNSURE && states[e] != UNSURE_GHOST) continue;
+  if (k < n && unsure[k] != 0) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_next, hull_previous};
     const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
-    if (states[e] == UNSURE_GHOST) {
-      decide_ghost(&m, &frame, e, 1);
-    } else {
-      decide_triangle(&m, &frame, e, 1);
+    for (int e = 2 * k; e < 2 * k + 2; ++e) {
+      if ((unsure[k] >> (e - 2 * k) & 1) == 0) continue;
+      if (is_outside(e, edges, &frame)) {
+        decide_ghost(&m, &frame, e, 1);
+      } else {
+        decide_triangle(&m, &frame, e, 1);
+      }
     }
   }
 }

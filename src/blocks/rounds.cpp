@@ -86,6 +86,7 @@ struct Round {
   Rings rings;
   Buffer<cl_int> vertices{};  // by place in the blocks
   Buffer<cl_int> states{};    // by edge
+  Buffer<cl_uchar> unsure{};  // by pair of edges; in the first round of one pair
   Buffer<kernel::block_frame> frames{};
 
   // Whether each set has one triangulation.
@@ -175,7 +176,8 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
                                                    .places = emitted.places,
                                                    .states = round.states,
                                                    .hull_next = emitted.hull_next,
-                                                   .hull_previous = emitted.hull_previous});
+                                                   .hull_previous = emitted.hull_previous,
+                                                   .unsure = round.unsure});
 }
 
 // Memory for what is said of a round's triangulations, and the names of their vertices.
@@ -183,6 +185,7 @@ void begin_emission(Workspace& work, Round& round) {
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
+  round.unsure = work.scratch().allocate<cl_uchar>(round.is_first ? 1 : round.states.size() / 2);
   round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
   work.runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
                                                                .listed = blocks.source,
@@ -196,7 +199,7 @@ void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emit
   host::Runtime& runtime = work.runtime;
   frame(work, round, boxes, emitted);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
-  launch_emission<kernels::emit_unsure>(work, round, emitted);
+  if (!round.is_first) launch_emission<kernels::emit_unsure>(work, round, emitted);
   if (emitted.links.memory() == nullptr) return;
   runtime.map(round.states.size() / 2, kernels::link_triangles{.open_vertices = open_vertices(round),
                                                                .edges = round.rings.edges,
