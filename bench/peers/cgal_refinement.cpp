@@ -16,12 +16,12 @@ namespace flaunay::bench {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Vertex =
+using RefinedVertex =
     CGAL::Delaunay_mesh_vertex_base_2<Kernel,
                                       CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>>;
-using Constrained = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<Vertex, CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
-using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Constrained>;
+using Refinable = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<RefinedVertex, CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
+using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Refinable>;
 using Point = Kernel::Point_2;
 
 /// Squared sine of an angle. That of 20.7 degrees is the one with which CGAL is proven to end.
@@ -31,7 +31,7 @@ double bound_of(double min_angle) {
   return min_angle == kProven ? 0.125 : sine * sine;
 }
 
-void insert(Constrained& triangulation, const ConstrainedInput& input, std::size_t set) {
+void insert(Refinable& triangulation, const ConstrainedInput& input, std::size_t set) {
   const std::size_t first = input.points.offsets[set], last = input.points.offsets[set + 1];
   const std::vector<double>& xy = input.points.coordinates;
   std::vector<Point> points;
@@ -39,7 +39,7 @@ void insert(Constrained& triangulation, const ConstrainedInput& input, std::size
   for (std::size_t i = first; i < last; ++i) points.emplace_back(xy[2 * i], xy[2 * i + 1]);
   if (input.segments.empty()) {
     triangulation.insert(points.begin(), points.end());
-    std::vector<std::pair<Constrained::Vertex_handle, Constrained::Vertex_handle>> hull;
+    std::vector<std::pair<Refinable::Vertex_handle, Refinable::Vertex_handle>> hull;
     const auto begin = triangulation.incident_vertices(triangulation.infinite_vertex());
     auto at = begin;
     do {
@@ -58,7 +58,7 @@ void insert(Constrained& triangulation, const ConstrainedInput& input, std::size
 }
 
 /// Appends the mesh to those of the sets before.
-void append_mesh(const Constrained& triangulation, Refined& refined) {
+void append_mesh(const Refinable& triangulation, Refined& refined) {
   auto index = static_cast<std::int32_t>(refined.coordinates.size() / 2);
   for (const auto vertex : triangulation.finite_vertex_handles()) {
     vertex->info() = index++;
@@ -78,11 +78,11 @@ Refined refine(const ConstrainedInput& input, const Wanted& wanted) {
     std::vector<Point> seeds;
     for (std::size_t k = 0; k < holes[set].size(); k += 2)
       seeds.emplace_back(holes[set][k], holes[set][k + 1]);
-    Constrained triangulation;
+    Refinable triangulation;
     const double processors = processor_seconds();
     const Stopwatch watch;
     insert(triangulation, input, set);
-    CGAL::Delaunay_mesher_2<Constrained, Criteria> mesher(triangulation);
+    CGAL::Delaunay_mesher_2<Refinable, Criteria> mesher(triangulation);
     mesher.set_seeds(seeds.begin(), seeds.end());
     mesher.set_criteria(Criteria(bound_of(wanted.min_angle)));
     mesher.refine_mesh();
@@ -93,7 +93,7 @@ Refined refine(const ConstrainedInput& input, const Wanted& wanted) {
   return refined;
 }
 
-const bool kBuilt = (refine_by_cgal = refine, true);
+const bool kBuiltRefinement = (refine_by_cgal = refine, true);
 
 }  // namespace
 }  // namespace flaunay::bench

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -184,9 +185,19 @@ bool is_one_of(const char* const (&names)[N], const std::string& name) {
   return std::any_of(std::begin(names), std::end(names), [&](const char* one) { return name == one; });
 }
 
-template <typename T>
-bool is_nothing(const T& value) {
-  return value == T{};
+enum class Kind { other, handle, results };  // of an argument
+
+// That a function has refused a call in which nothing is wrong but an argument. count: that argument, if it is one.
+// status: what the function returned; none if that is nothing, as it should.
+void expect_refusal(std::optional<flaunay_status> status, const std::string& name, Kind kind, std::size_t count) {
+  const std::string message = flaunay_last_error();
+  EXPECT_TRUE(says(message, {count > 0 ? "too many" : "NULL"})) << message;
+  if (!status) return;
+  EXPECT_EQ(*status, count > 0 ? FLAUNAY_ERROR_INPUT : FLAUNAY_ERROR_USAGE) << message;
+  std::vector<std::string> words = words_for(name);
+  if (kind == Kind::handle) words = {"handle", "buffer"};
+  if (kind == Kind::results) words.emplace_back("results");
+  EXPECT_TRUE(says(message, words)) << message;
 }
 
 // Calls a function with one wrong argument at a time. parameters: as the header declares them.
@@ -227,33 +238,33 @@ class Sweep {
 
   template <std::size_t I, typename Wrong>
   void expect_refused(Wrong wrong, const std::string& name, std::size_t count) {
-    SCOPED_TRACE(function_ + ", " + name + " = " + std::to_string(count));
+    const auto trace = traced(name, count);
     using T = std::tuple_element_t<I, std::tuple<Arguments...>>;
-    std::tuple<Arguments...> all{good<Arguments>()...};
-    // The offsets of sets are wrong with any other number of points.
-    const auto leave_out = [&]<typename Other>(Other& other) {
-      if constexpr (std::is_same_v<Other, const std::size_t*>) other = name == "sets" ? other : nullptr;
-    };
-    std::apply([&](auto&... each) { (leave_out(each), ...); }, all);
+    std::tuple<Arguments...> all{good_beside<Arguments>(name)...};
     std::get<I>(all) = wrong;
     if constexpr (std::is_void_v<Result>) {
       std::apply(call_, all);
     } else if constexpr (std::is_same_v<Result, flaunay_status>) {
-      const flaunay_status status = std::apply(call_, all);
-      const std::string message = flaunay_last_error();
-      EXPECT_EQ(status, count > 0 ? FLAUNAY_ERROR_INPUT : FLAUNAY_ERROR_USAGE) << message;
-      EXPECT_TRUE(count > 0 ? says(message, {"too many"}) : says(message, {"NULL"})) << message;
-      std::vector<std::string> words = words_for(name);
-      if constexpr (std::is_pointer_v<T>) {
-        using Of = std::remove_pointer_t<T>;
-        if (std::is_pointer_v<Of>) words = {"handle", "buffer"};
-        if (std::is_arithmetic_v<Of> && !std::is_const_v<Of>) words.emplace_back("results");
-      }
-      EXPECT_TRUE(says(message, words)) << message;
+      using Of = std::remove_pointer_t<T>;
+      constexpr bool is_results = std::is_pointer_v<T> && std::is_arithmetic_v<Of> && !std::is_const_v<Of>;
+      expect_refusal(std::apply(call_, all), name,
+                     std::is_pointer_v<Of> ? Kind::handle : is_results ? Kind::results : Kind::other, count);
     } else {
-      EXPECT_TRUE(is_nothing(std::apply(call_, all)));
-      EXPECT_TRUE(says(flaunay_last_error(), {"NULL"})) << flaunay_last_error();
+      const bool is_nothing = std::apply(call_, all) == Result{};
+      EXPECT_TRUE(is_nothing);
+      expect_refusal(std::nullopt, name, Kind::other, count);
     }
+  }
+
+  // The offsets of sets are wrong with any other number of points.
+  template <typename T>
+  static T good_beside(const std::string& wrong) {
+    if (std::is_same_v<T, const std::size_t*> && wrong != "sets") return T{};
+    return good<T>();
+  }
+
+  testing::ScopedTrace traced(const std::string& name, std::size_t count) const {
+    return {__FILE__, __LINE__, function_ + ", " + name + " = " + std::to_string(count)};
   }
 
   std::string function_;
