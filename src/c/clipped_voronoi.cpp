@@ -20,7 +20,7 @@ struct flaunay_device_clipped_voronoi {
 
 namespace {
 
-template <typename Result>
+template <c::Is<DeviceClippedVoronoi> Result>
 auto& buffer_of(Result& cells, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceClippedVoronoi::name,
   static constexpr std::array kBuffers = {FLAUNAY_CLIPPED_VORONOI_ARRAYS(BUFFER)};

@@ -25,7 +25,7 @@ struct flaunay_device_constraints {
 
 namespace {
 
-template <typename Result>
+template <c::Is<DeviceConstraintEdges> Result>
 auto& buffer_of(Result& edges, unsigned part) {
   static constexpr std::array kBuffers = {&DeviceConstraintEdges::constrained,
                                           &DeviceConstraintEdges::piece_edges,

@@ -50,7 +50,7 @@ struct flaunay_device_rows {
 
 namespace {
 
-template <typename Result>
+template <c::Is<DeviceRows> Result>
 auto& buffer_of(Result& rows, unsigned part) {
   static constexpr std::array kBuffers = {&DeviceRows::triangles, &DeviceRows::neighbors,
                                           &DeviceRows::coordinates};

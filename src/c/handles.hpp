@@ -7,6 +7,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -71,6 +72,10 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
 /// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);
+
+/// A result of this type, or one that is not to be changed.
+template <typename T, typename Of>
+concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
 
 /// The buffer of one part, where bit k stands for the k-th of these members. Throws Error(usage), which names
 /// the result, for anything else.

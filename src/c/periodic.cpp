@@ -31,7 +31,7 @@ struct flaunay_periodic_locator {
 
 namespace {
 
-template <typename Result>
+template <c::Is<DevicePeriodicTriangulation> Result>
 auto& buffer_of(Result& periodic, unsigned part) {
 #define BUFFER(type, name, ...) &DevicePeriodicTriangulation::name,
   static constexpr std::array kBuffers = {FLAUNAY_PERIODIC_ARRAYS(BUFFER)};

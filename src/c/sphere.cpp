@@ -42,7 +42,7 @@ SphereCoordinates to_coordinates(int given) {
   return c::to_enum<SphereCoordinates>(given, FLAUNAY_SPHERE_DEGREES, "flaunay_sphere_coordinates");
 }
 
-template <typename Result>
+template <c::Is<DeviceSphericalTriangulation> Result>
 auto& buffer_of(Result& spherical, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceSphericalTriangulation::name,
   static constexpr std::array kBuffers = {FLAUNAY_SPHERICAL_ARRAYS(BUFFER)};

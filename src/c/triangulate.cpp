@@ -40,7 +40,7 @@ const std::vector<flaunay_mode_info>& modes() {
   return infos;
 }
 
-template <typename Result>
+template <c::Is<DeviceTriangulation> Result>
 auto& buffer_of(Result& triangulation, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceTriangulation::name,
   static constexpr std::array kBuffers = {FLAUNAY_TRIANGULATION_ARRAYS(BUFFER)};

@@ -23,7 +23,7 @@ struct flaunay_device_voronoi {
 
 namespace {
 
-template <typename Result>
+template <c::Is<DeviceVoronoi> Result>
 auto& buffer_of(Result& voronoi, unsigned part) {
 #define BUFFER(type, name, ...) &DeviceVoronoi::name,
   static constexpr std::array kBuffers = {FLAUNAY_VORONOI_ARRAYS(BUFFER)};

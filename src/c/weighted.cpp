@@ -36,15 +36,15 @@ flaunay_status flaunay_weighted_create(flaunay_triangulator* triangulator, const
 
 void flaunay_weighted_destroy(flaunay_weighted* weighted) { delete weighted; }
 
-#define COUNT(name, count)                                                                \
+#define WEIGHTED_COUNT(name, count)                                                                \
   size_t flaunay_weighted_##name##_count(const flaunay_weighted* weighted) {              \
     return read(weighted, [](const auto& handle) -> size_t { return handle.cpp.count; }); \
   }
-COUNT(point, representatives.size())
-COUNT(triangle, triangles.size() / 3)
-COUNT(hull_vertex, hull.size())
-COUNT(hidden, hidden.size())
-#undef COUNT
+WEIGHTED_COUNT(point, representatives.size())
+WEIGHTED_COUNT(triangle, triangles.size() / 3)
+WEIGHTED_COUNT(hull_vertex, hull.size())
+WEIGHTED_COUNT(hidden, hidden.size())
+#undef WEIGHTED_COUNT
 
 #define ACCESSOR(type, name)                                                                \
   const type* flaunay_weighted_##name(const flaunay_weighted* weighted) {                   \
