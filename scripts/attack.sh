@@ -6,6 +6,8 @@
 #     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
 #     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
 #     devices       10 minutes   all calls and kernels on every OpenCL runtime for CPUs that pip can install
+#     command        5 minutes   the tests of the command under the sanitizers
+#     packages       5 minutes   all of the library as a part of another project, installed as a static library
 #     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
 set -euo pipefail
@@ -37,6 +39,15 @@ segments() {
   ASAN_OPTIONS=detect_leaks=0 build/asan/tests/fuzz_constrained --seconds 300 --seed "$RANDOM"
 }
 
+command() {
+  build asan test_cli || return
+  ASAN_OPTIONS=detect_leaks=0 ctest --preset asan -R '^Command'
+}
+
+packages() {
+  build release all && ctest --preset release --label-regex nightly
+}
+
 tunings() {
   build release fuzz_triangulations && build/release/tests/fuzz_triangulations --tunings --seconds 600 --seed "$RANDOM"
 }
@@ -52,7 +63,7 @@ files() {
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments tunings devices files)
+all=(allocations threads segments command packages tunings devices files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

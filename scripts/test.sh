@@ -1,27 +1,49 @@
 #!/usr/bin/env bash
-# Builds and runs all tests. Needs only Debian 12: installs everything else first.
-#   scripts/test.sh           everything; the tests labelled asan once more under the sanitizers, and some fuzzing
-#                             the readers of files
-#   scripts/test.sh --quick   without the sanitizers, and without the tests labelled configurations, which check on other
-#                             devices, with other sizes and the like what others check already
+# Builds and runs the tests. Needs only Debian 12: installs everything else first.
+#   scripts/test.sh           all but those labelled nightly, which scripts/attack.sh runs; those labelled asan once more
+#                             under the sanitizers, and some fuzzing of the readers of files
+#   scripts/test.sh --quick   on the host alone, and the command: without MPI, benchmarks, packages, simulators, fuzzing, and
+#                             what is about devices
+#   scripts/test.sh --kernels FOLDER   what a change of kernels/FOLDER concerns: its suites on the host, and its calls on
+#                             the first device, in the release build; for daily work
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-quick=false
+# By folder of kernels, the program whose suites test them, and the call of `flaunay devices --test` that launches them.
+declare -A concerned=(
+  [blocks]='test_blocks sets' [call]='test_blocks sets' [constrained]='test_insertion constrained'
+  [flattened]='test_flattened modes' [interpolate]='test_queries interpolate' [locate]='test_queries queries'
+  [operations]='test_host sets' [periodic]='test_queries torus' [points]='test_blocks sets' [raster]='test_queries terrain'
+  [refinement]='test_refinement refine' [sphere]='test_queries sphere' [updates]='test_updates updates'
+  [voronoi]='test_queries voronoi'
+)
+quick=false folder=
 case "${1-}" in
   '') ;;
   --quick) quick=true ;;
+  --kernels) folder="${2-}" ;;&
   *)
-    echo "usage: scripts/test.sh [--quick]" >&2
-    exit 2
+    if [[ -z $folder || -z ${concerned[$folder]-} ]]; then
+      echo "usage: scripts/test.sh [--quick | --kernels FOLDER], where FOLDER is one of ${!concerned[*]}" >&2
+      exit 2
+    fi
     ;;
 esac
 
-scripts/install-deps.sh
-scripts/format.sh --check
-
 # What install-deps.sh has installed must not be missing.
 export FLAUNAY_TEST_ALL=1
+
+if [[ -n $folder ]]; then
+  read -r suites call <<<"${concerned[$folder]}"
+  [[ -e build/release/CMakeCache.txt ]] || cmake --preset release
+  cmake --build --preset release --target flaunay_cli "$suites"
+  export POCL_CACHE_DIR="${POCL_CACHE_DIR-$PWD/build/kernels}" FLAUNAY_CACHE_DIR="${FLAUNAY_CACHE_DIR-}"
+  FLAUNAY_TEST_DEVICE=host "build/release/tests/$suites" --gtest_brief=1
+  exec build/release/flaunay devices --test --device '#0' --points 300 --only "$call"
+fi
+
+scripts/install-deps.sh
+scripts/format.sh --check
 
 jobs="$(nproc)"
 build() {
@@ -29,15 +51,18 @@ build() {
   cmake --build --preset "$1"
 }
 
-build release -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
-if ! $quick; then
-  build asan
+if $quick; then
+  build release -DFLAUNAY_BENCH=OFF
+else
+  build release -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
+  # With the tests' objects of the build above: the library is what is to be sanitized.
+  build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release"
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
   # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
   scripts/fuzz.sh 20s readers
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
-some=()
-if $quick; then some=(--label-exclude configurations); fi
-ctest --preset release --no-tests=error -j "$jobs" "${some[@]}"
+left_out=nightly
+if $quick; then left_out='nightly|devices|oclgrind|fuzz|package'; fi
+ctest --preset release --no-tests=error -j "$jobs" --label-exclude "$left_out"

@@ -1,17 +1,32 @@
 # What tests share, and those that need no device: they are also built for other platforms (tests/platforms).
 set(TESTS ${PROJECT_SOURCE_DIR}/tests)
+set(FLAUNAY_TEST_OBJECTS ""
+    CACHE PATH "A build whose objects of tests this build links with its own libraries: they take long to compile")
 
-# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] SOURCES ... LIBRARIES ... [LABELS ...] [COST seconds]): a
+# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] SOURCES ... LIBRARIES ... [LABELS ...] [COST seconds]
+# [ENVIRONMENT setting]): a
 # GoogleTest program whose tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in
 # one process. UNITY: its files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops
-# take less time than optimising them; UNOPTIMISED: in every build. SMALL_WHEN_SANITIZED: only the Small suites in a
-# sanitized build, which is slow. NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its
+# take less time than optimising them; UNOPTIMISED: in every build. WHEN_SANITIZED filter: what of it
+# runs in a sanitized build, which is slow. NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its
 # Small suites, which reach the same code with the same kinds of input. ON_DEVICE filter: what of a NATIVE program is
 # about devices, as NAME.device. COST: about how long it takes; the longest begin first.
 function(flaunay_test NAME)
-  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;SMALL_WHEN_SANITIZED;NATIVE" "COST;ON_DEVICE" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;NATIVE" "COST;ON_DEVICE;ENVIRONMENT;WHEN_SANITIZED" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   list(TRANSFORM ARG_SOURCES PREPEND ${TESTS}/ REGEX "^[^/]")
+  if(FLAUNAY_TEST_OBJECTS)
+    file(STRINGS ${FLAUNAY_TEST_OBJECTS}/tests/${NAME}.objects ARG_SOURCES)
+  else()
+    file(GENERATE OUTPUT ${NAME}.objects CONTENT "$<JOIN:$<TARGET_OBJECTS:${NAME}>,\n>\n")
+  endif()
   add_executable(${NAME} ${ARG_SOURCES})
+  if(FLAUNAY_TEST_OBJECTS)
+    set_target_properties(${NAME} PROPERTIES LINKER_LANGUAGE CXX)
+    # The library first, so that the linker takes from it what both have of headers.
+    if(flaunay_core IN_LIST ARG_LIBRARIES)
+      target_link_options(${NAME} PRIVATE LINKER:--whole-archive $<TARGET_FILE:flaunay_core> LINKER:--no-whole-archive)
+    endif()
+  endif()
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${NAME} PRIVATE ${ARG_LIBRARIES} flaunay_options GTest::gtest_main $<TARGET_NAME_IF_EXISTS:OpenCL::OpenCL>
                                         $<$<BOOL:${CMAKE_CROSSCOMPILING}>:fmt::fmt>)
@@ -32,7 +47,9 @@ function(flaunay_test NAME)
   # An emulator takes long to begin.
   if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
     set(FILTER "*-*ChoosesDevices*")
-    if(FLAUNAY_SANITIZE AND (ARG_SMALL_WHEN_SANITIZED OR ARG_NATIVE))
+    if(FLAUNAY_SANITIZE AND ARG_WHEN_SANITIZED)
+      set(FILTER ${ARG_WHEN_SANITIZED})
+    elseif(FLAUNAY_SANITIZE AND ARG_NATIVE)
       set(FILTER "Small*")
     endif()
     add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1 --gtest_filter=${FILTER})
@@ -45,10 +62,13 @@ function(flaunay_test NAME)
     endif()
     if(ARG_ON_DEVICE AND NOT FLAUNAY_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
       add_test(NAME ${NAME}.device COMMAND ${NAME} --gtest_brief=1 --gtest_filter=${ARG_ON_DEVICE})
-      set_tests_properties(${NAME}.device PROPERTIES TIMEOUT 1800 COST 60)
+      set_tests_properties(${NAME}.device PROPERTIES LABELS devices TIMEOUT 1800 COST 60)
     endif()
   else()
-    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}")
+    if(NOT FLAUNAY_SANITIZE)
+      set(ARG_WHEN_SANITIZED "*")
+    endif()
+    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_WHEN_SANITIZED}" PROPERTIES LABELS "${ARG_LABELS}" ENVIRONMENT "${ARG_ENVIRONMENT}")
   endif()
 endfunction()
 
@@ -96,15 +116,22 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set_source_files_properties(${TESTS}/support/fixed_point_contracted.cpp PROPERTIES COMPILE_OPTIONS
                                                                             "-frounding-math;-mfma;-ffp-contract=fast;-O2")
 endif()
+# A library, so that its objects are sanitized.
+add_library(flaunay_fixed_point_readings STATIC EXCLUDE_FROM_ALL ${FIXED_POINT_READINGS})
+set_target_properties(flaunay_fixed_point_readings PROPERTIES UNITY_BUILD OFF)
+target_include_directories(flaunay_fixed_point_readings PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(flaunay_fixed_point_readings PUBLIC flaunay_core flaunay_test_support)
+target_compile_options(flaunay_fixed_point_readings PRIVATE $<$<CONFIG:Release>:-O1>)
 flaunay_test(
-  test_fixed_point WHOLE SMALL_WHEN_SANITIZED
+  test_fixed_point WHOLE
+  WHEN_SANITIZED Small*
   COST 10
   SOURCES geometry/fixed_certify_test.cpp geometry/fixed_point_test.cpp support/double_certificates.cpp
-          ${FIXED_POINT_READINGS}
-  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_test_support
+  LIBRARIES flaunay_fixed_point_readings flaunay_core flaunay_host_modes flaunay_io flaunay_test_support
   LABELS asan)
 flaunay_test(
   test_constrained UNITY
+  WHEN_SANITIZED -NastySegments.*:Constrained.EdgesOfOtherTriangulations:Constrained.OneSegmentThroughEverything:Split.Large*:Split.ManySegments
   SOURCES constrained/constrained_test.cpp constrained/pairs_test.cpp constrained/refinement_bounds_test.cpp
           constrained/split_test.cpp constrained/verify_test.cpp
   LIBRARIES flaunay_sequential_insertion flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support

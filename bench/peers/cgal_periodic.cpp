@@ -10,10 +10,10 @@ namespace flaunay::bench {
 namespace {
 
 Outcome run_periodic(const std::vector<double>& coordinates) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  using Traits = CGAL::Periodic_2_Delaunay_triangulation_traits_2<Kernel>;
+  using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Traits = CGAL::Periodic_2_Delaunay_triangulation_traits_2<Predicates>;
   using Triangulation = CGAL::Periodic_2_Delaunay_triangulation_2<Traits>;
-  std::vector<Kernel::Point_2> points;
+  std::vector<Predicates::Point_2> points;
   points.reserve(coordinates.size() / 2);
   for (std::size_t i = 0; i < coordinates.size(); i += 2)
     points.emplace_back(coordinates[i], coordinates[i + 1]);

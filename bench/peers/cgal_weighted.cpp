@@ -9,8 +9,8 @@ namespace flaunay::bench {
 namespace {
 
 Outcome run_weighted(const std::vector<double>& points, const std::vector<double>& weights) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  using Triangulation = CGAL::Regular_triangulation_2<Kernel>;
+  using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Triangulation = CGAL::Regular_triangulation_2<Predicates>;
   const Stopwatch watch;
   std::vector<Triangulation::Weighted_point> all;
   all.reserve(weights.size());

@@ -250,8 +250,8 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
   return precedes(v, points[edges[e].to], 0) != precedes(v, points[edges[edges[e].next].to], 0);
 }
 
-// n pairs of edges. unsure: by pair, a bit for each edge on whose left side emit_unsure decides; not in the first round,
-// in which all that is final is missing.
+// n pairs of edges. unsure: by pair, a bit for each edge on whose left side emit_unsure decides; not in the first
+// round, in which all that is final is missing.
 kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
                            global const block_frame* restrict frames, global const coordinate2* restrict points,
                            global const ring_edge* restrict edges, global const coordinate2* all_points,

@@ -187,9 +187,10 @@ bool is_one_of(const char* const (&names)[N], const std::string& name) {
 
 enum class Kind { other, handle, results };  // of an argument
 
-// That a function has refused a call in which nothing is wrong but an argument. count: that argument, if it is one.
-// status: what the function returned; none if that is nothing, as it should.
-void expect_refusal(std::optional<flaunay_status> status, const std::string& name, Kind kind, std::size_t count) {
+// That a function has refused a call in which nothing is wrong but an argument. count: that argument, if it
+// is one. status: what the function returned; none if that is nothing, as it should.
+void expect_refusal(std::optional<flaunay_status> status, const std::string& name, Kind kind,
+                    std::size_t count) {
   const std::string message = flaunay_last_error();
   EXPECT_TRUE(says(message, {count > 0 ? "too many" : "NULL"})) << message;
   if (!status) return;
@@ -248,7 +249,10 @@ class Sweep {
       using Of = std::remove_pointer_t<T>;
       constexpr bool is_results = std::is_pointer_v<T> && std::is_arithmetic_v<Of> && !std::is_const_v<Of>;
       expect_refusal(std::apply(call_, all), name,
-                     std::is_pointer_v<Of> ? Kind::handle : is_results ? Kind::results : Kind::other, count);
+                     std::is_pointer_v<Of> ? Kind::handle
+                     : is_results          ? Kind::results
+                                           : Kind::other,
+                     count);
     } else {
       const bool is_nothing = std::apply(call_, all) == Result{};
       EXPECT_TRUE(is_nothing);

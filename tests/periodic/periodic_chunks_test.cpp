@@ -14,6 +14,7 @@
 
 #include "flaunay/periodic.hpp"
 #include "tests/support/fixtures.hpp"
+#include "tests/support/sanitized.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::periodic {
@@ -146,6 +147,7 @@ TEST(PeriodicChunks, OfManySizes) {
   for (const Period& period : periods()) {
     for (const std::size_t n : {1, 2, 3, 4, 5, 7, 20, 150, 1000, 4000}) {
       for (const std::size_t chunk : {12, 50, 400}) {
+        if (testing::is_sanitized() && n > 10 * chunk) continue;
         SCOPED_TRACE(std::to_string(n) + " points in chunks of " + std::to_string(chunk));
         compare(uniform(n, period, n + chunk), period, in_chunks_of(chunk));
         if (HasFailure()) return;
@@ -181,7 +183,7 @@ TEST(PeriodicChunks, OfClustersAtTheBorder) {
     for (const double x : {0.0, 0.3}) {
       SCOPED_TRACE(width);
       Numbers around, corner;
-      for (int i = 0; i < 700; ++i) {
+      for (int i = 0; i < (testing::is_sanitized() ? 150 : 700); ++i) {
         const double a = random.unit(), b = random.unit();
         around.insert(around.end(), {x + width * (a * a - 0.5), width * (b * b - 0.5)});
         corner.insert(corner.end(), {x + width * a, width * b * a});

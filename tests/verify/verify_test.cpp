@@ -15,6 +15,7 @@
 #include "app/verify/exact.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace flaunay {
 namespace {
@@ -36,11 +37,7 @@ constexpr double kSmallestSubnormal = std::numeric_limits<double>::denorm_min();
 // Exact predicates
 
 /// The sanitizers are an order of magnitude slower, and need no large samples.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kSampleShare = 20;
-#else
-constexpr int kSampleShare = 1;
-#endif
+const int kSampleShare = testing::is_sanitized() ? 20 : 1;
 
 /// Four points to try a predicate on.
 using FourPoints = std::array<double, 8>;
