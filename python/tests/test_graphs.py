@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 import scipy.sparse.csgraph
 import scipy.spatial
+from conftest import grid
 
 import flaunay
-
-
-def grid(n):
-    return np.stack(np.meshgrid(np.arange(float(n)), np.arange(float(n))), axis=-1).reshape(-1, 2)
 
 
 SETS = {

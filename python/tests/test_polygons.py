@@ -70,36 +70,6 @@ def test_polygons_with_holes_beside_shapely(random):
     check(geometries, flaunay.polygons(geometries))
 
 
-def test_the_triangles_are_those_of_shapely(random):
-    if shapely.geos_version < (3, 10, 0) or not hasattr(shapely, "constrained_delaunay_triangles"):
-        pytest.skip("this Shapely has no constrained triangulation")
-    geometries = [with_holes(random) for _ in range(10)]
-    mesh = flaunay.polygons(geometries)
-    theirs = shapely.constrained_delaunay_triangles(geometries)
-
-    def corners(collection):
-        return {
-            frozenset(map(tuple, shapely.get_coordinates(part).tolist()))
-            for part in shapely.get_parts(collection)
-        }
-
-    for mine, other in zip(mesh.to_shapely(), theirs):
-        assert corners(mine) == corners(other) and len(corners(mine)) > 30
-
-
-def test_many_polygons_are_what_each_is_alone(random):
-    geometries = [with_holes(random, corners) for corners in (8, 50, 20)]
-    mesh = flaunay.polygons(geometries, neighbors=True)
-    for p, polygon in enumerate(geometries):
-        alone = flaunay.polygons(polygon, neighbors=True)
-        first, last = mesh.triangle_offsets[p : p + 2]
-        n = mesh.ring_offsets[mesh.polygon_offsets[p]]
-        assert as_set(mesh.triangles[first:last] - n) == as_set(alone.triangles)
-        beyond = mesh.neighbors[first:last]
-        assert ((beyond == -1) | ((beyond >= first) & (beyond < last))).all()
-        assert np.array_equal(mesh.polygon_of[first:last], np.full(last - first, p))
-
-
 def arrays_of(mesh):
     return mesh.points[mesh.triangles], mesh.polygon_of
 
@@ -321,17 +291,6 @@ def test_overlaps_of_a_map():
     assert flaunay.polygons(inside[::-1], map=True).polygon_areas.tolist() == [4, 32]
     with pytest.raises(flaunay.InputError):
         flaunay.polygons(inside, map=True, overlaps="error")
-
-
-def test_a_million_points_need_no_loop(random):
-    angles = np.linspace(0, 2 * np.pi, 50, endpoint=False)
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    one = np.concatenate([circle, circle / 2])
-    coordinates = (one + 4 * np.arange(2000)[:, None, None] * [1, 0]).reshape(-1, 2)
-    rings, outer = np.arange(0, len(coordinates) + 1, 50), np.arange(0, 4001, 2)
-    mesh = flaunay.polygons(coordinates, rings, outer)
-    assert (np.diff(mesh.triangle_offsets) == 100).all()
-    np.testing.assert_allclose(mesh.polygon_areas, mesh.polygon_areas[0], rtol=1e-9)
 
 
 # ---- Errors

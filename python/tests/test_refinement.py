@@ -2,24 +2,19 @@
 
 import pickle
 
+import conftest
 import numpy as np
 import pytest
-from conftest import areas
+from conftest import areas, circle, ring
 
 import flaunay
 
 SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4]]
-RING = [[0, 1], [1, 2], [2, 3], [3, 0]]
+RING = ring(4)
 
 
 def angles(mesh):
-    """Of each triangle at its corners, in degrees."""
-    corners = mesh.points[mesh.triangles]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    back = np.roll(corners, 1, axis=1) - corners
-    dot = (ahead * back).sum(axis=2)
-    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-    return np.degrees(np.arctan2(cross, dot))
+    return conftest.angles(mesh.points, mesh.triangles)
 
 
 def test_triangles_are_as_good_as_is_asked_for():
@@ -93,8 +88,7 @@ def test_a_function_of_places_for_many_domains():
 
 def test_smoothing():
     options = {"min_angle": 25, "max_area": 0.03}
-    wheel = np.stack([np.cos(np.arange(50) * np.pi / 25), np.sin(np.arange(50) * np.pi / 25)], axis=1)
-    rim = [[k, (k + 1) % 50] for k in range(50)]
+    wheel, rim = circle(50), ring(50)
     plain = flaunay.refine(wheel * 3, rim, **options)
     mesh = flaunay.refine(wheel * 3, rim, smoothing_steps=5, **options)
     report = mesh.refinement
