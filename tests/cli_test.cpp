@@ -88,6 +88,7 @@ Arguments joined(Arguments arguments, const Arguments& more) {
   return arguments;
 }
 
+using Indices = std::vector<std::int32_t>;
 using Rows = std::vector<std::array<std::int32_t, 3>>;
 
 /// The rows of an m x 3 array, sorted: their order is each mode's own.
@@ -560,18 +561,13 @@ TEST(CommandProgressTest, OneLineRewrittenAndClearedAtTheEnd) {
   EXPECT_EQ(output.substr(0, message).find('\n'), std::string::npos) << output;
 }
 
-TEST(CommandProgressTest, NothingInTheFirstHalfSecond) {
-  Environment environment = kNoPlatform;
-  environment["TERM"] = "xterm";
-  const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(0), environment);
-  EXPECT_EQ(output.rfind("flaunay: ", 0), 0u) << output;
-}
-
-TEST(CommandProgressTest, NothingOnADumbTerminal) {
-  Environment environment = kNoPlatform;
-  environment["TERM"] = "dumb";
-  const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(700), environment);
-  EXPECT_EQ(output.rfind("flaunay: ", 0), 0u) << output;
+TEST(CommandProgressTest, NothingInTheFirstHalfSecondNorOnADumbTerminal) {
+  for (const auto& [terminal, wait] : {std::pair("xterm", 0), {"dumb", 700}}) {
+    Environment environment = kNoPlatform;
+    environment["TERM"] = terminal;
+    const std::string output = terminal_output_of_slow_run(std::chrono::milliseconds(wait), environment);
+    EXPECT_EQ(output.rfind("flaunay: ", 0), 0u) << output;
+  }
 }
 
 // --------------------------------------------------------------------------------------------------- device
@@ -731,54 +727,35 @@ TEST_F(CommandTriangulateTest, ArraysOfASquareWithADuplicate) {
   EXPECT_EQ(neighbors.shape, "(2, 3)");
   EXPECT_EQ(hull.shape, "(4,)");
   EXPECT_EQ(duplicates.shape, "(5,)");
-  EXPECT_EQ(hull.values, (std::vector<std::int32_t>{0, 1, 2, 3}));
-  EXPECT_EQ(duplicates.values, (std::vector<std::int32_t>{0, 1, 2, 3, 1}));
+  EXPECT_EQ(hull.values, (Indices{0, 1, 2, 3}));
+  EXPECT_EQ(duplicates.values, (Indices{0, 1, 2, 3, 1}));
   // The four points are on a circle: a fan from the smallest, whatever the order of the rows.
   EXPECT_EQ(sorted_rows(path("t.npy")), (Rows{{0, 1, 2}, {0, 2, 3}}));
   expect_parts(outcome.out,
                {"5 points", "1 duplicate", "2 triangles", "4 hull vertices", "points per second"});
 }
 
-struct Degenerate {
-  const char* name;
-  const char* text;
-  std::vector<std::int32_t> hull;
-  std::vector<std::int32_t> representatives;
-};
-
 TEST_F(CommandTriangulateTest, DegenerateInputHasADefinedResult) {
-  const std::vector<Degenerate> cases = {
-      {"no points", "# none\n", {}, {}},
-      {"one point", "3 4\n", {0}, {0}},
-      {"two points", "3 4\n1 2\n", {1, 0}, {0, 1}},
-      {"two equal points", "3 4\n3 4\n", {0}, {0, 0}},
-      {"three points on a line", "2 2\n0 0\n1 1\n", {1, 2, 0}, {0, 1, 2}},
-      {"on a vertical line", "1 5\n1 -5\n1 0\n1 5\n", {1, 2, 0}, {0, 1, 2, 0}},
-      {"all equal", "7 7\n7 7\n7 7\n7 7\n7 7\n", {0}, {0, 0, 0, 0, 0}},
-      {"zeros of both signs", "0 0\n-0 0\n0 -0\n", {0}, {0, 0, 0}},
+  const std::vector<std::tuple<std::string, Indices, Indices>> cases = {
+      {"# none\n", {}, {}},
+      {"3 4\n", {0}, {0}},
+      {"1 5\n1 -5\n1 0\n1 5\n", {1, 2, 0}, {0, 1, 2, 0}},
+      {"0 0\n-0 0\n0 -0\n", {0}, {0, 0, 0}},
   };
-  for (const Degenerate& degenerate : cases) {
-    SCOPED_TRACE(degenerate.name);
-    const std::string input = write("points.xy", degenerate.text);
-    const Outcome outcome =
-        run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors", path("n.npy"), "--hull",
-                  path("h.npy"), "--duplicates", path("d.npy"), "-o", path("mesh.off")});
+  for (const auto& [text, hull, representatives] : cases) {
+    SCOPED_TRACE(text);
+    const std::string input = write("points.xy", text);
+    const Outcome outcome = run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors",
+                                      path("n.npy"), "--hull", path("h.npy"), "--duplicates", path("d.npy")});
     expect_parts(outcome.out, {"note: ", "0 triangles"});
     EXPECT_EQ(read_array(path("t.npy")).shape, "(0, 3)");
     EXPECT_EQ(read_array(path("n.npy")).shape, "(0, 3)");
-    EXPECT_EQ(read_array(path("h.npy")).values, degenerate.hull);
-    EXPECT_EQ(read_array(path("d.npy")).values, degenerate.representatives);
+    EXPECT_EQ(read_array(path("h.npy")).values, hull);
+    EXPECT_EQ(read_array(path("d.npy")).values, representatives);
     run_well({"verify", input, path("t.npy")}, kNoPlatform);
-  }
-}
-
-TEST_F(CommandTriangulateTest, EveryMeshFormatTakesNoTriangles) {
-  for (const char* text : {"# none\n", "3 4\n", "2 2\n0 0\n1 1\n"}) {
-    const std::string input = write("points.xy", text);
-    for (const char* ending : {".ele", ".off", ".ply", ".msh", ".vtu", ".obj", ".npy", ".svg"}) {
-      SCOPED_TRACE(text + std::string(ending));
-      run_well({"triangulate", input, "-o", path("mesh" + std::string(ending))});
-      EXPECT_TRUE(fs::exists(path("mesh" + std::string(ending))));
+    for (const std::string ending : {".ele", ".off", ".ply", ".msh", ".vtu", ".obj", ".npy", ".svg"}) {
+      run_well({"triangulate", input, "-o", path("mesh" + ending)});
+      EXPECT_TRUE(fs::exists(path("mesh" + ending)));
     }
   }
 }
@@ -957,7 +934,7 @@ TEST_F(CommandTriangulateTest, OtherSurfaces) {
   expect_parts(outcome.out, {"4 points, 1 duplicate, 6 triangles"});
   EXPECT_EQ(read_array(path("t.npy")).shape, "(6, 3)");
   EXPECT_EQ(read_array(path("o.npy")).shape, "(6, 6)");
-  EXPECT_EQ(read_array(path("d.npy")).values, (std::vector<std::int32_t>{0, 1, 0, 3}));
+  EXPECT_EQ(read_array(path("d.npy")).values, (Indices{0, 1, 0, 3}));
   for (const std::int32_t t : read_array(path("n.npy")).values) EXPECT_GE(t, 0);
   for (const std::int32_t step : read_array(path("o.npy")).values) EXPECT_LE(std::abs(step), 1);
   EXPECT_EQ(contents(path("p.xy")), "# x y\n0.5 0\n1 1\n0.5 0\n0 0\n");
@@ -992,14 +969,14 @@ TEST_F(CommandTriangulateTest, WeightedPoints) {
                 "--hull", path("hull.npy"), "--output", path("mesh.obj"), "--stats", path("s.json")});
   expect_parts(outcome.out, {"hidden points: 1"});
   EXPECT_EQ(read_array(path("t.npy")).shape, "(4, 3)");
-  EXPECT_EQ(read_array(path("h.npy")).values, (std::vector<std::int32_t>{4}));
-  EXPECT_EQ(read_array(path("hull.npy")).values, (std::vector<std::int32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(read_array(path("h.npy")).values, (Indices{4}));
+  EXPECT_EQ(read_array(path("hull.npy")).values, (Indices{0, 1, 2, 3}));
   EXPECT_EQ(json_of(path("s.json"))["triangles"], 4);
 }
 
 // --------------------------------------------------------------------------------------------------- chunks
 
-class CommandChunksTest : public CommandTest {
+class CommandChunksTest : public ArraysTest {
  protected:
   Arguments triangulate(const std::string& input, const Arguments& options) const {
     Arguments all = {"triangulate", input};
@@ -1104,13 +1081,10 @@ TEST_F(CommandChunksTest, WhatChunksCannotDoIsRefusedFirst) {
 
 TEST_F(CommandChunksTest, WrongInputAndOutput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> points(4000);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<double>(i * i % 997);
-  points.back() = nan;
-  const std::string last = write("last.npy", npy("<f8", "False", "(2000, 2)", bytes_of(points)));
-  const Arguments chunks = {"--chunk-points", "100"};
-  expect_error(kBadInput, {last + ": point 1999 is not finite"}, triangulate(last, chunks));
-  const std::string text = write("points.xy", "0 0\n1 0\n0 1x\n");
+  const std::string last = write_rows<double>("last.npy", {0, 0, 1, 0, 0, 1, 1, nan}, 2),
+                    text = write("points.xy", "0 0\n1 0\n0 1x\n");
+  const Arguments chunks = {"--chunk-points", "2"};
+  expect_error(kBadInput, {last + ": point 3 is not finite"}, triangulate(last, chunks));
   expect_error(kBadInput, {"points.xy", "line 3, column 3"}, triangulate(text, chunks));
   expect_error(kBadInput, {"missing.bin", "No such file"}, triangulate(path("missing.bin"), chunks));
   expect_error(kBadInput, {"scan.laz", "compressed"}, triangulate(write("scan.laz", "LASF"), chunks));
@@ -1489,8 +1463,8 @@ TEST_F(CommandConstraintsTest, SegmentsBesidePointsBecomeEdges) {
   expect_parts(outcome.out, {"3 segments, 3 constraint edges"});
   const Array edges = read_array(path("e.npy"));
   EXPECT_EQ(edges.shape, "(3, 2)");
-  EXPECT_EQ(edges.values, (std::vector<std::int32_t>{0, 1, 1, 2, 5, 6}));
-  EXPECT_EQ(read_array(path("s.npy")).values, (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(edges.values, (Indices{0, 1, 1, 2, 5, 6}));
+  EXPECT_EQ(read_array(path("s.npy")).values, (Indices{0, 0, 1}));
   const std::size_t triangles = sorted_rows(path("t.npy")).size();
   EXPECT_EQ(triangles, 6U);
   EXPECT_EQ(read_array(path("r.npy")).values, std::vector<std::int32_t>(triangles, 0));
@@ -1535,30 +1509,12 @@ TEST_F(CommandConstraintsTest, PointsAreAddedUntilTrianglesAreGood) {
   EXPECT_GT(report["rounds"], 0);
   EXPECT_GT(report["split_points"], 0);
   EXPECT_EQ(report["bad_triangles"]["kept"], 0);
-  // The points are beside the triangles, with the markers of their segments.
-  std::istringstream node(contents(path("b.node")));
-  std::size_t points = 0, dimension = 0, attributes = 0, markers = 0;
-  node >> points >> dimension >> attributes >> markers;
-  EXPECT_EQ(points, stats["points"].get<std::size_t>());
-  EXPECT_EQ(markers, 1U);
-  const std::vector<std::int32_t> found = read_array(path("m.npy")).values;
-  ASSERT_EQ(found.size(), points);
-  for (const std::int32_t marker : {7, 9, 0})
-    EXPECT_NE(std::count(found.begin() + 6, found.end(), marker), 0) << marker;
-  // An attribute per triangle: in region 1 there are more than 2 / 0.05.
-  std::istringstream ele(contents(path("b.ele")));
-  std::string line;
-  std::size_t of_first = 0, of_second = 0;
-  std::getline(ele, line);
-  while (std::getline(ele, line)) {
-    std::istringstream row(line);
-    std::vector<double> fields{std::istream_iterator<double>(row), std::istream_iterator<double>()};
-    ASSERT_GE(fields.size(), 5U);
-    ++(fields[4] == 1 ? of_first : of_second);
+  const Indices markers = read_array(path("m.npy")).values;
+  ASSERT_EQ(markers.size(), stats["points"].get<std::size_t>());
+  for (const std::int32_t marker : {7, 9, 0}) {
+    EXPECT_NE(std::count(markers.begin() + 6, markers.end(), marker), 0) << marker;
   }
-  EXPECT_GE(of_first, 80U);
-  EXPECT_GE(of_second, 8U);
-  EXPECT_LT(of_second, of_first / 2);
+  EXPECT_GE(stats["triangles"], 2 / 0.05 + 2 / 0.5);
 
   run_well({"verify", path("b.poly"), path("b.ele"), "--min-angle", "30", "--max-area", "0.5"}, kNoPlatform);
 
@@ -1656,30 +1612,13 @@ TEST_F(CommandConstraintsTest, TrianglesHaveTheAttributesOfTheirRegionsAndMarker
   const Outcome outcome =
       run_well({"triangulate", poly, "--crossings", "split", "-o", path("b.ele")}, kNoPlatform);
   EXPECT_EQ(outcome.out.find("note"), std::string::npos) << outcome.out;
-  std::istringstream ele(contents(path("b.ele"))), node(contents(path("b.node")));
-  std::size_t triangles = 0, columns = 0, attributes = 0, points = 0, dimensions = 0, markers = 0;
-  ele >> triangles >> columns >> attributes;
-  EXPECT_EQ(triangles, 6U);
-  EXPECT_EQ(attributes, 3U);
-  node >> points >> dimensions >> columns >> markers;
-  EXPECT_EQ(points, 7U);
-  ASSERT_EQ(markers, 1U);
-  std::vector<double> x(points), y(points);
-  std::vector<int> marks(points);
-  for (std::size_t i = 0, number = 0; i < points; ++i) node >> number >> x[i] >> y[i] >> marks[i];
-  EXPECT_EQ(marks, (std::vector<int>{7, 0, 0, 0, 9, 0, 20})) << "the common side has the smaller number";
-  for (std::size_t t = 0; t < triangles; ++t) {
-    std::size_t number = 0, a = 0, b = 0, c = 0;
-    double attribute = 0, region = 0, depth = 0;
-    ele >> number >> a >> b >> c >> attribute >> region >> depth;
-    const double middle_x = (x[a] + x[b] + x[c]) / 3, middle_y = (y[a] + y[b] + y[c]) / 3;
-    const bool is_above = middle_y > middle_x / 2;
-    EXPECT_EQ(attribute, middle_x < 4 ? (is_above ? 1.5 : 0) : is_above ? 0 : 2.5) << t;
-  }
   run_well({"triangulate", poly, "--crossings", "split", "--edge-markers", path("e.npy"), "--vertex-markers",
             path("v.npy"), "--triangle-attributes", path("a.npy"), "--constraint-edges", path("c.npy")},
            kNoPlatform);
-  EXPECT_EQ(read_array(path("v.npy")).values, marks);
+  EXPECT_EQ(read_array(path("v.npy")).values, (Indices{7, 0, 0, 0, 9, 0, 20}))
+      << "the common side has the smaller number";
+  // In each square, one of the region and one of none, on two sides of the segment.
+  expect_parts(contents(path("b.ele")), {"6 3 3\n", " 1.5 ", " 2.5 ", " 0 "});
   const std::string doubles = contents(path("a.npy"));
   expect_parts(doubles, {"'<f8', 'fortran_order': False, 'shape': (6,)"});
   const Array edges = read_array(path("c.npy")), edge_marks = read_array(path("e.npy"));
@@ -1720,7 +1659,7 @@ TEST_F(CommandConstraintsTest, AMapHasItsPolygonsAndKnowsThem) {
   const Outcome separate =
       run_well({"triangulate", map, "--separate", "--polygons", path("q.npy")}, kNoPlatform);
   expect_parts(separate.out, {"12 segments, 12 constraint edges, 2 sets"});
-  EXPECT_EQ(read_array(path("q.npy")).values, (std::vector<std::int32_t>{0, 0, 0, 0, 0, 0, 0, 0, 1, 1}));
+  EXPECT_EQ(read_array(path("q.npy")).values, (Indices{0, 0, 0, 0, 0, 0, 0, 0, 1, 1}));
 }
 
 // The z of the points of a file .obj.
@@ -1823,7 +1762,7 @@ TEST_F(CommandConstraintsTest, RingsMayHaveAnyDirection) {
                                      Arguments{"--fill", "winding", "--separate"}}) {
       for (const std::string& input : options.size() == 2 ? std::vector{map, mixed} : std::vector{map}) {
         EXPECT_DOUBLE_EQ(area(input, joined(options, {"--depths", path("d.npy")})), expected) << input;
-        const std::vector<std::int32_t> depths = read_array(path("d.npy")).values;
+        const Indices depths = read_array(path("d.npy")).values;
         EXPECT_EQ(depths, std::vector<std::int32_t>(depths.size(), 1));
         run_well({"verify", input, path("t.npy"), "--fill", options[1]}, kNoPlatform);
       }
@@ -1942,25 +1881,18 @@ TEST_F(CommandConstraintsTest, OptionsThatMakeNoSenseAreRefusedFirst) {
 
 TEST_F(CommandConstraintsTest, FilesWithErrorsAreNamed) {
   const std::string points = write("points.xy", "0 0\n4 0\n4 4\n0 4\n");
-  const auto segments = [&](const std::string& lines, const std::vector<std::string>& parts) {
-    expect_error(kBadInput, parts, {"triangulate", points, "--constraints", write("s.txt", lines)});
+  const auto named = [this](const std::vector<std::string>& parts, const Arguments& arguments) {
+    expect_error(kBadInput, parts, joined({"triangulate"}, arguments));
   };
-  segments("0 4\n", {"s.txt", "line 1", "index 4", "0 to 3"});
-  segments("0 2\n1 3\n", {"s.txt", "segments 0 (points 0 and 2) and 1 (points 1 and 3) cross", "(2, 2)"});
-  expect_error(kBadInput, {"none.npy", "No such file"},
-               {"triangulate", points, "--constraints", path("none.npy")});
-  expect_error(kBadInput, {"hole.poly", "hole 0", "in no triangle"},
-               {"triangulate", write("hole.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n0\n1\n0 5 5\n")});
-  expect_error(kBadInput, {"open.poly", "no closed curves at point 0"},
-               {"triangulate", write("open.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n1\n0 0 1\n0\n"), "--fill",
-                "even-odd"});
-  expect_error(
-      kBadInput, {"a.geojson", "coordinates[0][1] is [1]"},
-      {"triangulate",
-       write("a.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [1], [0, 1], [0, 0]]]})")});
-  expect_error(kBadInput, {"crossing.geojson", "cross"},
-               {"triangulate", write("crossing.geojson", R"({"type": "Polygon", "coordinates":
-                [[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]})")});
+  named({"s.txt", "segments 0 (points 0 and 2) and 1 (points 1 and 3) cross", "(2, 2)"},
+        {points, "--constraints", write("s.txt", "0 2\n1 3\n")});
+  named({"none.npy", "No such file"}, {points, "--constraints", path("none.npy")});
+  named({"hole.poly", "hole 0", "in no triangle"},
+        {write("hole.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n0\n1\n0 5 5\n")});
+  named({"open.poly", "no closed curves at point 0"},
+        {write("open.poly", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n1\n0 0 1\n0\n"), "--fill", "even-odd"});
+  named({"a.geojson", "coordinates[0][1] is [1]"},
+        {write("a.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [1], [0, 1], [0, 0]]]})")});
 }
 
 }  // namespace

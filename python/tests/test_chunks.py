@@ -105,13 +105,6 @@ def test_statistics(points):
     assert statistics["seconds"] > 0 and "distribute" in statistics["phases"]
 
 
-def test_what_is_not_wanted_is_none(points, tmp_path):
-    mesh = flaunay.triangulate_chunks(points, hull=tmp_path / "h.npy", neighbors=False, **SMALL)
-    assert mesh.triangles is None and mesh.neighbors is None and mesh.representatives is None
-    assert np.array_equal(mesh.hull, flaunay.triangulate(points).hull)
-    assert os.listdir(tmp_path) == ["h.npy"]
-
-
 def test_64_bits(points, tmp_path):
     paths = paths_in(tmp_path)
     del paths["hull"]
@@ -119,8 +112,8 @@ def test_64_bits(points, tmp_path):
     check_same(mesh, points)
     for name in IN_MEMORY:
         assert getattr(mesh, name).dtype == (np.float64 if name == "areas" else np.int64)
-    narrow = flaunay.triangulate_chunks(points, hull=True, index=32, **SMALL)
-    assert narrow.hull.dtype == np.int32
+    narrow = flaunay.triangulate_chunks(points, hull=True, index=32, neighbors=False, **SMALL)
+    assert narrow.hull.dtype == np.int32 and narrow.triangles is None and narrow.neighbors is None
 
 
 def test_float32(points, tmp_path):

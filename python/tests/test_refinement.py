@@ -5,7 +5,7 @@ import pickle
 import conftest
 import numpy as np
 import pytest
-from conftest import areas, circle, ring
+from conftest import circle, ring
 
 import flaunay
 
@@ -54,17 +54,6 @@ def test_all_entries_take_the_same_keywords():
     assert hull.areas.max() <= 0.2 and hull.areas.sum() == pytest.approx(16)
     assert flaunay.triangulate(SQUARE, RING).refinement is None
     assert flaunay.refine(SQUARE).refinement.added_points == 0
-
-
-def test_many_domains_in_one_call():
-    points = np.concatenate([np.array(SQUARE) + 10 * k for k in range(5)])
-    segments = np.concatenate([np.array(RING) + 4 * k for k in range(5)])
-    meshes = flaunay.refine(points, segments, offsets=np.arange(0, 21, 4), max_area=0.5)
-    assert len(meshes.triangle_offsets) == 6 and (np.diff(meshes.triangle_offsets) >= 32).all()
-    for k in range(5):
-        own = meshes.triangles[meshes.triangle_offsets[k] : meshes.triangle_offsets[k + 1]]
-        assert areas(meshes.points, own).sum() == pytest.approx(32)
-        assert (meshes.points[own] >= 10 * k).all() and (meshes.points[own] <= 10 * k + 4).all()
 
 
 def test_a_function_of_places_for_many_domains():

@@ -48,15 +48,6 @@ def test_the_regions_are_those_of_scipy(points):
         assert corners(mine, point) == corners(theirs, point)
 
 
-def test_cells_are_counter_clockwise_around_their_points(points):
-    vor = flaunay.Voronoi(points)
-    for point, region in enumerate(vor.regions):
-        assert (-1 in region) == vor.unbounded[point] == (point in vor.delaunay.hull)
-        if not vor.unbounded[point]:
-            x, y = (vor.vertices[region] - points[point]).T
-            assert (x * np.roll(y, -1) - y * np.roll(x, -1) > 0).all()
-
-
 def test_the_cell_of_a_duplicate_is_its_twins():
     vor = flaunay.Voronoi([[0, 0], [2, 0], [0, 2], [2, 2.5], [2, 0]])
     assert vor.point_region.tolist() == [0, 1, 2, 3, 1]

@@ -64,7 +64,7 @@ def test_weights_in_constrained_triangulations_and_without_triangles():
 def test_coordinates_in_very_slender_triangles_have_the_sum_one():
     rng = np.random.default_rng(0)
     inside = 0
-    for _ in range(400):
+    for _ in range(100):
         begin, along = rng.random(2), rng.random(2)
         corners = np.array([begin, begin + along, begin + along * rng.random()])
         corners[2] = np.nextafter(corners[2], rng.choice([-9, 9], 2))
@@ -75,7 +75,7 @@ def test_coordinates_in_very_slender_triangles_have_the_sum_one():
         inside += (triangles >= 0).sum()
         assert coordinates[triangles >= 0].sum(axis=1) == pytest.approx(1)
         assert (coordinates[triangles >= 0] >= 0).all()
-    assert inside > 100
+    assert inside > 25
 
 
 @pytest.mark.parametrize("method", ["sibson", "laplace"])
