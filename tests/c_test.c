@@ -1309,31 +1309,27 @@ static void test_raster(void) {
 
 static void test_sphere(void) {
   const double places[] = {0, 0, 90, 0, 0, 90, 0, -90, 0, 90}, values[] = {1, 2, 3, 4, 5};
-  const double queries[] = {10, 20, -100, -80};
+  const double queries[] = {10, 20, -100, -80}, other[] = {1, 0, 90, 0, 0, 90, 0, -90, 0, 90};
   const int degrees = FLAUNAY_SPHERE_DEGREES;
   flaunay_spherical *spherical = NULL, *none = NULL;
   OK(flaunay_spherical_create(triangulator, places, 5, NULL, 0, degrees, &spherical));
   REQUIRE(flaunay_spherical_point_count(spherical) == 5 && flaunay_spherical_triangle_count(spherical) == 4);
-  const int32_t* const triangles = flaunay_spherical_triangles(spherical);
-  const int32_t* const neighbors = flaunay_spherical_neighbors(spherical);
-  for (size_t c = 0; c < 12; ++c) CHECK(triangles[c] < 4 && neighbors[c] >= 0 && neighbors[c] < 4);
+  for (size_t c = 0; c < 12; ++c) {
+    CHECK(flaunay_spherical_triangles(spherical)[c] < 4 && flaunay_spherical_neighbors(spherical)[c] >= 0);
+  }
   CHECK(flaunay_spherical_representatives(spherical)[4] == 2);
   CHECK(flaunay_spherical_triangle_offsets(spherical)[1] == 4);
   CHECK(flaunay_spherical_places(spherical)[0] == 1 && isinf(flaunay_spherical_places(spherical)[6]));
   double directions[15] = {0};
   OK(flaunay_spherical_directions(spherical, directions));
   CHECK(directions[0] == 1 && directions[4] == 1 && directions[8] == 1 && directions[11] == -1);
-
-  const double other[] = {1, 0, 90, 0, 0, 90, 0, -90, 0, 90};
   OK(flaunay_spherical_verify(triangulator, spherical, places, degrees));
   CHECK(fails(flaunay_spherical_verify(triangulator, spherical, other, degrees), FLAUNAY_ERROR_INTERNAL,
               "point 0 has a wrong place"));
 
   flaunay_spherical_voronoi* voronoi = NULL;
   OK(flaunay_spherical_voronoi_create(triangulator, spherical, &voronoi));
-  double sum = 0;
-  for (size_t i = 0; i < 5; ++i) sum += flaunay_spherical_voronoi_areas(voronoi)[i];
-  CHECK(fabs(sum - 4 * acos(-1)) < 1e-12);
+  CHECK(fabs(total(flaunay_spherical_voronoi_areas(voronoi), 5) - 4 * acos(-1)) < 1e-12);
   CHECK(flaunay_spherical_voronoi_cell_offsets(voronoi)[5] == 12);
   CHECK(flaunay_spherical_voronoi_cells(voronoi)[0] >= 0);
   CHECK(fabs(flaunay_spherical_voronoi_centres(voronoi)[0]) <= 1);
@@ -1351,7 +1347,6 @@ static void test_sphere(void) {
           "2 is no flaunay_sphere_coordinates");
   WRONG_INPUT(flaunay_spherical_create(triangulator, (const double[]){0, 99}, 1, NULL, 0, degrees, &none),
               "latitude 99");
-  CHECK(none == NULL);
   flaunay_spherical_locator_destroy(locator);
   flaunay_spherical_voronoi_destroy(voronoi);
   flaunay_spherical_destroy(spherical);
@@ -1388,7 +1383,7 @@ static void test_weighted(void) {
 
 static void test_periodic(void) {
   enum { SIDE = 6, COUNT = SIDE * SIDE };
-  double places[2 * COUNT], areas[COUNT];
+  double places[2 * COUNT];
   for (size_t i = 0; i < COUNT; ++i) {
     places[2 * i] = (double)(i % SIDE);
     places[2 * i + 1] = (double)(i / SIDE) * 2 - 40;
@@ -1404,35 +1399,31 @@ static void test_periodic(void) {
   }
   CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
-  flaunay_clipped_voronoi* cells = NULL;
-  OK(flaunay_periodic_cells(triangulator, periodic, &cells));
-  for (size_t i = 0; i < COUNT; ++i) {
-    areas[i] = flaunay_clipped_voronoi_areas(cells)[i];
-    CHECK(fabs(areas[i] - 2) < 1e-12);
-  }
-  CHECK(flaunay_clipped_voronoi_vertex_count(cells) == 4 * COUNT);
-  flaunay_clipped_voronoi_destroy(cells);
   CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
   OK(flaunay_periodic_verify(triangulator, periodic));
+  flaunay_clipped_voronoi* cells = NULL;
+  OK(flaunay_periodic_cells(triangulator, periodic, &cells));
+  const double* const areas = flaunay_clipped_voronoi_areas(cells);
+  CHECK(flaunay_clipped_voronoi_vertex_count(cells) == 4 * COUNT && fabs(areas[7] - 2) < 1e-12);
   flaunay_periodic_locator* locator = NULL;
   OK(flaunay_periodic_locator_create(triangulator, periodic, &locator));
   const double query[] = {SIDE - 0.25, -0.5};
   int32_t found[] = {-2, -2};
   double value = 0;
-  CHECK(flaunay_periodic_locator_locate(locator, query, 1, found) == FLAUNAY_SUCCESS && found[0] >= 0);
+  OK(flaunay_periodic_locator_locate(locator, query, 1, found));
+  CHECK(found[0] >= 0);
   OK(flaunay_periodic_locator_nearest(locator, query, 1, found));
-  CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 &&
-        flaunay_periodic_places(periodic)[2 * found[0] + 1] == 0);
+  CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 && found[1] == -2);
   OK(flaunay_periodic_locator_interpolate(locator, areas, 1, query, 1, &value));
-  CHECK(fabs(value - 2) < 1e-12 && found[1] == -2);
+  CHECK(fabs(value - 2) < 1e-12);
   REFUSED(flaunay_periodic_locator_interpolate(locator, areas, 0, query, 1, &value), "columns");
+  flaunay_clipped_voronoi_destroy(cells);
   flaunay_periodic_locator_destroy(locator);
   flaunay_periodic_destroy(periodic);
   OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, &periodic));
   CHECK(flaunay_periodic_triangle_count(periodic) == 2 * COUNT - 2 * SIDE);
   REFUSED(flaunay_periodic_cells(triangulator, periodic, &cells), "cylinder");
   REFUSED(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), "period");
-  CHECK(none == NULL);
   flaunay_periodic_destroy(periodic);
 }
 
