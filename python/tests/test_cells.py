@@ -97,17 +97,6 @@ def test_relaxation_evens_out_areas(points):
     assert (once[has_cell] != points[has_cell]).any()
 
 
-def test_relaxation_step_by_step(points):
-    at = points
-    for _ in range(3):
-        cells = flaunay.Voronoi(at).clipped(BOX)
-        at = np.where(np.isnan(cells.centroids), at, cells.centroids)
-    assert (flaunay.relax(points, BOX, iterations=3) == at).all()
-    assert (flaunay.relax(points, BOX, iterations=0) == points).all()
-    with pytest.raises(flaunay.UsageError):
-        flaunay.relax(points, BOX, iterations=-1)
-
-
 def interrupted(call, seconds):
     """How long a call takes that Ctrl-C interrupts after so many seconds."""
     timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))

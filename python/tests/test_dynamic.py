@@ -6,7 +6,6 @@ import pickle
 
 import numpy as np
 import pytest
-import scipy.spatial
 from conftest import as_set, check_neighbors
 
 import flaunay
@@ -155,18 +154,6 @@ def test_other_modes_are_not_incremental(points):
         flaunay.Delaunay(points, incremental=True, mode="dwyer")
 
 
-def test_a_diagram_to_which_points_are_added(points):
-    voronoi = flaunay.Voronoi(points[:20], incremental=True, merge=True)
-    assert len(voronoi.regions) == 20
-    voronoi.add_points(points[20:40])
-    voronoi.add_points(points[40:], restart=True)
-    expected = flaunay.Voronoi(points, merge=True)
-    assert np.array_equal(voronoi.points, points)
-    assert sorted(voronoi.vertices.tolist()) == sorted(expected.vertices.tolist())
-    assert voronoi.ridge_dict.keys() == expected.ridge_dict.keys()
-    assert np.array_equal(voronoi.point_region, expected.point_region)
-
-
 def test_segments(random):
     square = np.array([[0, 0], [8, 0], [8, 8], [0, 8.0]])
     tri = flaunay.DynamicTriangulation(square, segments=[[0, 1], [1, 3]], device="host")
@@ -306,14 +293,3 @@ def test_handed_over_to_scipy(points):
     made = tri.to_scipy()
     queries = np.random.default_rng(3).random((50, 2)) * 12
     assert np.array_equal(made.find_simplex(queries), tri.find_simplex(queries))
-
-
-def test_as_scipy_adds_points(random):
-    chunks = np.split(random.random((40, 2)), [10, 15, 30])
-    mine = flaunay.Delaunay(chunks[0], incremental=True)
-    theirs = scipy.spatial.Delaunay(chunks[0], incremental=True)
-    for k, chunk in enumerate(chunks[1:]):
-        mine.add_points(chunk, restart=k == 1)
-        theirs.add_points(chunk, restart=k == 1)
-        assert as_set(mine.simplices) == as_set(theirs.simplices)
-        assert np.array_equal(mine.points, theirs.points)

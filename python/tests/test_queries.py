@@ -52,14 +52,6 @@ def test_nearest_of_several_is_the_first_by_coordinates():
     assert tri.nearest([1, 1]) == 1
 
 
-def test_interpolation_is_that_of_scipy(points, queries, random):
-    values = random.random((len(points), 3))
-    found = flaunay.Delaunay(points).interpolate(values, queries)
-    expected = scipy.interpolate.LinearNDInterpolator(points, values)(queries)
-    assert found.shape == expected.shape == (len(queries), 3) and found.dtype == np.float64
-    np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12)
-
-
 @pytest.mark.parametrize("most, wanted_calls", [(1 << 26, 1), (5000, 3), (1, 24)])
 def test_columns_are_interpolated_together(
     points, queries, random, monkeypatch, most, wanted_calls

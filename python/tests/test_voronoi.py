@@ -205,9 +205,3 @@ def test_arrays_are_read_only(points, merge):
             assert np.array_equal(getattr(other, name), getattr(vor, name))
             with pytest.raises(ValueError, match="read-only"):
                 getattr(other, name)[...] = 0
-
-
-def test_the_dictionary_of_ridges_is_that_of_scipy(points):
-    mine, theirs = flaunay.Voronoi(points).ridge_dict, scipy.spatial.Voronoi(points).ridge_dict
-    assert {tuple(sorted(pair)) for pair in mine} == {tuple(sorted(pair)) for pair in theirs}
-    assert all(type(ends) is list and len(ends) == 2 for ends in mine.values())
