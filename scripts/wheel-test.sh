@@ -65,14 +65,25 @@ fi
 for interpreter in "${interpreters[@]}"; do
   version="$("$interpreter" -c 'import sys; print("%d.%d" % sys.version_info[:2])')"
   environment="build/wheel-test/$version$extra"
+  pip=("$interpreter" -m pip --python "$environment/bin/python")
+  is_new=false
   if [[ ! -e $environment/made ]]; then
-    "$interpreter" -m venv --clear "$environment"
-    touch "$environment/made"
+    "$interpreter" -m venv --clear --without-pip "$environment"
+    is_new=true
   fi
-  pip=("$environment/bin/python" -m pip --disable-pip-version-check --quiet --no-input)
-  "${pip[@]}" install "$wheel$extra"
-  # What is installed of this version may be another build.
-  "${pip[@]}" install --force-reinstall --no-deps "$wheel"
+  # An interpreter without pip gets it in the environment, which takes longer.
+  if ! "${pip[@]}" --version >/dev/null 2>&1; then
+    "$environment/bin/python" -m ensurepip >/dev/null
+    pip=("$environment/bin/python" -m pip)
+  fi
+  pip+=(--disable-pip-version-check --quiet --no-input install)
+  if $is_new; then
+    "${pip[@]}" "$wheel$extra"
+    touch "$environment/made"
+  else
+    # What is installed of this version may be another build.
+    "${pip[@]}" --force-reinstall --no-deps "$wheel"
+  fi
   # From another folder, so that nothing of the source tree is found.
   python="$PWD/$environment/bin/python"
   check="$PWD/tests/wheel/check.py"

@@ -5,12 +5,12 @@ Each is called with the path of a picture in the folder PICTURES, of the program
 """
 
 import pathlib
-import subprocess
 import sys
 import time
 
 import matplotlib.image
 import numpy as np
+from programs import run
 
 # Text on an empty page has less than this part of pixels of other colours, and a single-coloured map fewer colours.
 DRAWN = 0.02
@@ -37,7 +37,7 @@ def main(programs, pictures):
         picture = pictures / f"{program.stem}.png"
         picture.unlink(missing_ok=True)
         started = time.monotonic()
-        status = subprocess.run([sys.executable, program, picture]).returncode
+        status = run(program, picture)
         wrong = f"ended with {status}" if status else problem(picture)
         print(f"{program.name}: {wrong or 'ok'}, {time.monotonic() - started:.1f} s", flush=True)
         failed = failed or wrong is not None

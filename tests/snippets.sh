@@ -58,7 +58,7 @@ run() {
       "${compile[@]}" -Wall -Wextra -Werror -I "$SOURCE/src/include" "$1" -o "$stem" "$LIBRARY" \
         "-Wl,-rpath,${LIBRARY%/*}" -lOpenCL -pthread && (cd "$folder/files" && "$stem") >"$stem.printed" || return
       ;;
-    python) (cd "$folder/files" && "$python" "$1") >"$stem.printed" || return ;;
+    python) [[ -e $stem.printed ]] || return ;;
     js) (cd "$folder/files" && node "$1") >"$stem.printed" || return ;;
     sh) (cd "$folder/files" && bash -euo pipefail "$1") >"$stem.printed" || return ;;
   esac
@@ -72,6 +72,9 @@ programs=("$folder"/*."$ending")
 if [[ ! -e ${programs[0]} ]]; then
   echo "snippets.sh: no programs in $*" >&2
   exit 1
+fi
+if [[ $language == python ]]; then
+  "$python" "$(dirname "${BASH_SOURCE[0]}")/programs.py" "$folder/files" "${programs[@]}"
 fi
 failed=0
 for program in "${programs[@]}"; do

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse.csgraph
+from conftest import circle
 
 import flaunay
 
@@ -179,19 +180,14 @@ def test_grids_of_rounded_coordinates_have_no_holes(x, y, step, dtype):
     assert len(np.unique(shape.delaunay.circumradii)) > 1
 
 
-def circle(radius, n):
-    angles = np.arange(n) * 2 * np.pi / n
-    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-
-
 def test_a_component_can_appear_when_all_points_are_covered():
     """A ring with three spits that point to its middle: their ends make a triangle before anything near it."""
     along = np.arange(1.1, 9.8, 0.1)
     widths = np.minimum(0.05, 0.1 * (along - 1))
     sides = [np.stack([along, y], axis=1) for y in (-widths, widths)]
     spit = np.concatenate([[[1, 0]], *sides])
-    spits = [spit @ np.array([[c, s], [-s, c]]) for c, s in circle(1, 3)]
-    points = np.concatenate([circle(10, 600), circle(9.9, 600), *spits])
+    spits = [spit @ np.array([[c, s], [-s, c]]) for c, s in circle(3)]
+    points = np.concatenate([circle(600, 10), circle(600, 9.9), *spits])
     shape = flaunay.alpha_shape(points)
     assert shape.alpha < 0.4 and len(shape.polygons()) == 1
     assert len(flaunay.alpha_shape(points, 1.2).polygons()) == 2

@@ -63,6 +63,7 @@ def test_arrays_of_numpy(points, tmp_path):
     assert same(np.asfortranarray(points), points)
     assert same(np.repeat(np.repeat(points, 3, axis=0), 2, axis=1)[::3, ::2], points)
     assert same(points[::-1], points[::-1].copy())
+    assert same(points[:, ::-1].copy()[:, ::-1], points) and same(points.view(np.matrix), points)
     assert same(points.tolist(), points) and same(list(points), points)
     assert same(tuple(map(tuple, points)), points)
     np.save(tmp_path / "points.npy", points)

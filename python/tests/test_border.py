@@ -3,6 +3,7 @@
 import flaunay
 import numpy as np
 import pytest
+from conftest import grid, ring
 from flaunay._border import Border
 
 COLUMNS = [
@@ -20,10 +21,9 @@ def tolerance(interpolator, value):
 def survey(count=20):
     """A rotated square of points at coordinates as of UTM, and places on its border."""
     turn = np.array([[0.8, 0.6], [-0.6, 0.8]])
-    steps = np.arange(count) * 10.0
-    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2) @ turn + [500_000.3, 5_000_000.7]
-    rim = np.stack([np.linspace(0, steps[-1], 333), np.zeros(333)], axis=1)
-    return grid, np.concatenate([rim, rim[:, ::-1]]) @ turn + [500_000.3, 5_000_000.7]
+    points = grid(count) * 10 @ turn + [500_000.3, 5_000_000.7]
+    rim = np.stack([np.linspace(0, 10 * (count - 1), 333), np.zeros(333)], axis=1)
+    return points, np.concatenate([rim, rim[:, ::-1]]) @ turn + [500_000.3, 5_000_000.7]
 
 
 @pytest.mark.parametrize("interpolator", COLUMNS)
@@ -41,7 +41,7 @@ def shapes(rng):
     angles = np.sort(rng.uniform(0, 2 * np.pi, 200))
     yield flaunay.Delaunay(rng.uniform(0, 1, (150, 2)))
     yield flaunay.Delaunay(np.column_stack([np.cos(angles) / 50, np.sin(angles)]))
-    yield flaunay.Delaunay(np.stack(np.meshgrid(range(20), range(3)), axis=-1).reshape(-1, 2))
+    yield flaunay.Delaunay(grid(20, 3))
     top = np.column_stack([np.linspace(0, 100, 50), np.ones(50)])
     yield flaunay.Delaunay(np.concatenate([[[0, 0], [100, 0]], top]))
     yield flaunay.Delaunay([[0, 0], [4, 0], [0, 4]])
@@ -71,8 +71,7 @@ def test_nearest_places_on_a_convex_border_are_those_of_all_edges():
 def test_nearest_places_on_any_border_in_parts(monkeypatch):
     rng = np.random.default_rng(2)
     corners = [[0, 0], [9, 0], [9, 9], [0, 9], [3, 3], [6, 3], [6, 6], [3, 6]]
-    rings = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4]]
-    mesh = flaunay.triangulate(corners, segments=rings, outside="holes")
+    mesh = flaunay.triangulate(corners, segments=ring(4, 4), outside="holes")
     queries = rng.uniform(-3, 12, (400, 2))
     queries = queries[mesh.find_simplex(queries) < 0]
     border = mesh._border
@@ -116,7 +115,7 @@ def test_values_are_continuous_at_the_border(interpolator):
 
 
 def test_long_edges_and_distances_leave_voids():
-    left = np.stack(np.meshgrid(range(4), range(4)), axis=-1).reshape(-1, 2)
+    left = grid(4)
     points = np.concatenate([left, left + [10, 0]])
     queries = [[1.5, 1.5], [6, 1.5], [11.5, 1.5], [3.5, 1], [-0.5, 1]]
     for interpolator in COLUMNS:

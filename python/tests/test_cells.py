@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+from conftest import circle, grid, turned
 
 import flaunay
 
@@ -96,17 +97,6 @@ def test_relaxation_evens_out_areas(points):
     assert (once[has_cell] != points[has_cell]).any()
 
 
-def test_relaxation_step_by_step(points):
-    at = points
-    for _ in range(3):
-        cells = flaunay.Voronoi(at).clipped(BOX)
-        at = np.where(np.isnan(cells.centroids), at, cells.centroids)
-    assert (flaunay.relax(points, BOX, iterations=3) == at).all()
-    assert (flaunay.relax(points, BOX, iterations=0) == points).all()
-    with pytest.raises(flaunay.UsageError):
-        flaunay.relax(points, BOX, iterations=-1)
-
-
 def interrupted(call, seconds):
     """How long a call takes that Ctrl-C interrupts after so many seconds."""
     timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
@@ -168,19 +158,6 @@ def test_polygons_of_any_size_go_either_way_around(size):
     assert len(one.vertices) and len(one.vertices) == len(other.vertices)
 
 
-def turned(points, angle):
-    return points @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-
-
-def lattice(n, m):
-    return np.stack(np.meshgrid(np.arange(n), np.arange(m)), -1).reshape(-1, 2).astype(float)
-
-
-def ring(n):
-    angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
-
-
 def building(angle, width, height):
     t, u = np.arange(0, width, 0.5)[:, None], np.arange(0, height, 0.5)[:, None]
     x, y = np.eye(2)
@@ -190,28 +167,22 @@ def building(angle, width, height):
 
 def degenerate_sets(random):
     """Points whose Voronoi vertices nearly coincide."""
-    yield turned(2 * lattice(2, 2) - 1, 0.001)
+    yield turned(2 * grid(2, 2) - 1, 0.001)
     for _ in range(12):
         shape, angle = random.integers(2, 20, 2), random.uniform(0, 7)
-        yield turned(lattice(*shape), angle) * random.uniform(0.1, 1e4) + random.uniform(
+        yield turned(grid(*shape), angle) * random.uniform(0.1, 1e4) + random.uniform(
             -1e4, 1e4, 2
         )
     for n in (5, 100, 500):
-        yield np.vstack([ring(n), [[0, 0]]])
-        yield 7 * ring(n) + [5e5, 5e6]
-        yield 0.01 * ring(n) + [5e5, 5e6]
+        yield np.vstack([circle(n), [[0, 0]]])
+        yield 7 * circle(n) + [5e5, 5e6]
+        yield 0.01 * circle(n) + [5e5, 5e6]
     houses = [
         building(*random.uniform((0, 5, 5), (3, 20, 20))) + [30 * k, 5.8e6] for k in range(10)
     ]
     yield np.concatenate(houses)
     # Points nearer to each other than corners are rounded.
     yield turned(np.stack([np.zeros(20), np.arange(20) * 1e-18], axis=1), 0.7)
-
-
-def check_coverage(shapely, polygons, area):
-    assert shapely.is_valid(polygons).all()
-    assert shapely.coverage_is_valid(polygons[~shapely.is_empty(polygons)])
-    assert shapely.union_all(polygons).area == pytest.approx(area, rel=1e-12)
 
 
 def test_rounded_polygons_are_valid_and_tile(random):
@@ -221,8 +192,11 @@ def test_rounded_polygons_are_valid_and_tile(random):
         low, high = low - (high - low).max() / 10, high + (high - low).max() / 10
         voronoi, bounds = flaunay.Voronoi(points), (*low, *high)
         cells, area = voronoi.clipped(bounds), np.prod(high - low)
-        check_coverage(shapely, cells.to_shapely(), area)
-        assert np.abs(shapely.area(cells.to_shapely()) - cells.areas).max() < 1e-7 * area
+        polygons = cells.to_shapely()
+        assert shapely.is_valid(polygons).all()
+        assert shapely.coverage_is_valid(polygons[~shapely.is_empty(polygons)])
+        assert shapely.union_all(polygons).area == pytest.approx(area, rel=1e-12)
+        assert np.abs(shapely.area(polygons) - cells.areas).max() < 1e-7 * area
         order = random.permutation(len(points))
         other = flaunay.Voronoi(points[order]).clipped(bounds)
         assert {c.tobytes() for c in other.vertices} == {c.tobytes() for c in cells.vertices}
@@ -241,10 +215,10 @@ def test_rounded_pieces_and_cells_on_a_torus_are_valid(random):
     for k in range(20):
         angle = 2 * np.pi * k / 999
         region = shapely.Polygon(turned(notched, angle))
-        cells = flaunay.Voronoi(turned(lattice(5, 5), angle)).pieces(region).to_shapely()
+        cells = flaunay.Voronoi(turned(grid(5, 5), angle)).pieces(region).to_shapely()
         assert shapely.is_valid(cells).all()
         assert shapely.union_all(cells).area == pytest.approx(region.area, rel=1e-12)
-        torus = flaunay.periodic(turned(lattice(6, 6), angle) / 6, (1, 1)).cells
+        torus = flaunay.periodic(turned(grid(6, 6), angle) / 6, (1, 1)).cells
         assert shapely.is_valid(torus.to_shapely()).all()
     # Images of corners are exact: each of 1,000 corners is in three cells.
     torus = flaunay.periodic(random.random((500, 2)), (1, 1)).cells

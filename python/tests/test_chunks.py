@@ -1,11 +1,9 @@
 """Triangulations in chunks: from and to files that are mapped into memory."""
 
-import multiprocessing
 import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 
 import numpy as np
@@ -43,12 +41,12 @@ def check_same(mesh, points):
     assert mesh.statistics["hull_vertices"] == len(expected.hull)
 
 
-def paths_in(folder):
-    return {name: folder / f"{name}.npy" for name in NAMES}
-
-
 NAMES = ("triangles", "neighbors", "hull", "representatives", "areas")
 IN_MEMORY = dict.fromkeys(NAMES, True)
+
+
+def paths_in(folder):
+    return {name: folder / f"{name}.npy" for name in NAMES}
 
 
 @pytest.fixture
@@ -95,22 +93,16 @@ def test_to_memory(points):
 
 
 def test_statistics(points):
-    statistics = flaunay.triangulate_chunks(points, **SMALL).statistics
+    two = {**SMALL, "devices": ["host", "host"]}
+    statistics = flaunay.triangulate_chunks(points, **two).statistics
     assert statistics["points"] == 6000 and statistics["duplicates"] == 100
     assert statistics["chunk_points"] == 500 and statistics["scratch_bytes"] >= 24 * 6000
     rounds = statistics["rounds"]
     assert len(rounds) >= 2 and rounds[0]["chunks"] >= 12
     assert sum(one["triangles"] for one in rounds) == statistics["triangles"]
     assert [one["points"] for one in rounds[1:]] == [one["handed_on"] for one in rounds[:-1]]
-    assert [one["device"] for one in statistics["devices"]] == ["host"]
+    assert [one["device"] for one in statistics["devices"]] == ["host", "host"]
     assert statistics["seconds"] > 0 and "distribute" in statistics["phases"]
-
-
-def test_what_is_not_wanted_is_none(points, tmp_path):
-    mesh = flaunay.triangulate_chunks(points, hull=tmp_path / "h.npy", neighbors=False, **SMALL)
-    assert mesh.triangles is None and mesh.neighbors is None and mesh.representatives is None
-    assert np.array_equal(mesh.hull, flaunay.triangulate(points).hull)
-    assert os.listdir(tmp_path) == ["h.npy"]
 
 
 def test_64_bits(points, tmp_path):
@@ -120,8 +112,8 @@ def test_64_bits(points, tmp_path):
     check_same(mesh, points)
     for name in IN_MEMORY:
         assert getattr(mesh, name).dtype == (np.float64 if name == "areas" else np.int64)
-    narrow = flaunay.triangulate_chunks(points, hull=True, index=32, **SMALL)
-    assert narrow.hull.dtype == np.int32
+    narrow = flaunay.triangulate_chunks(points, hull=True, index=32, neighbors=False, **SMALL)
+    assert narrow.hull.dtype == np.int32 and narrow.triangles is None and narrow.neighbors is None
 
 
 def test_float32(points, tmp_path):
@@ -146,6 +138,8 @@ def test_any_strides(points, random):
     ):
         assert not view.flags.c_contiguous or not view.flags.aligned
         check_same(flaunay.triangulate_chunks(view, **IN_MEMORY, **SMALL), view)
+    for given in [[0, 0], [4, 0], [0, 4]], np.array([[0, 0], [4, 0], [0, 4]], ">f8"):
+        assert flaunay.triangulate_chunks(given, triangles=True).triangles.tolist() == [[0, 1, 2]]
 
 
 def private_bytes():
@@ -171,13 +165,6 @@ def test_points_are_not_copied(tmp_path, dtype):
     assert used[0] - before < points.nbytes / 2
 
 
-def test_lists_and_other_numbers():
-    mesh = flaunay.triangulate_chunks([[0, 0], [4, 0], [4, 3], [0, 4]], **IN_MEMORY)
-    assert sorted(mesh.triangles.tolist()) == [[0, 1, 2], [0, 2, 3]]
-    big_endian = np.array([[0, 0], [4, 0], [0, 4]], ">f8")
-    assert flaunay.triangulate_chunks(big_endian, triangles=True).triangles.tolist() == [[0, 1, 2]]
-
-
 @pytest.mark.parametrize(
     "given", [np.empty((0, 2)), np.ones((1, 2)), np.ones((9, 2)), [[0, 0], [1, 1]]]
 )
@@ -188,18 +175,6 @@ def test_few_points_and_equal_ones(given, tmp_path):
         expected = flaunay.triangulate(given)
         assert np.array_equal(mesh.hull, expected.hull)
         assert np.array_equal(mesh.representatives, expected.representatives)
-
-
-def test_no_arrays():
-    assert flaunay.triangulate_chunks(np.empty((0, 2))).statistics["triangles"] == 0
-
-
-def test_several_devices(points):
-    mesh = flaunay.triangulate_chunks(
-        points, **IN_MEMORY, chunk_points=500, devices=["host", "host"]
-    )
-    check_same(mesh, points)
-    assert len(mesh.statistics["devices"]) == 2
 
 
 @pytest.mark.parametrize("memory", ["256M", "256 mb", 256 * 2**20, np.int64(2**28), "268435456"])
@@ -264,90 +239,26 @@ except KeyboardInterrupt:
     assert set(os.listdir(tmp_path)) <= {"points.npy", "t.npy"}
 
 
-def test_other_threads_go_on(points):
-    counted = 0
-    done = threading.Event()
-
-    def count():
-        nonlocal counted
-        while not done.wait(0.001):
-            counted += 1
-
-    thread = threading.Thread(target=count)
-    thread.start()
-    flaunay.triangulate_chunks(np.tile(points, (30, 1)) + np.arange(180000)[:, None], **SMALL)
-    done.set()
-    thread.join()
-    assert counted > 10
-
-
-def test_two_threads(points, tmp_path):
-    results = [None, None]
-
-    def work(k):
-        folder = tmp_path / str(k)
-        folder.mkdir()
-        results[k] = flaunay.triangulate_chunks(points + k, **paths_in(folder), **SMALL)
-
-    threads = [threading.Thread(target=work, args=(k,)) for k in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    for k in range(2):
-        check_same(results[k], points + k)
-
-
-def _in_child(points, queue):
-    try:
-        flaunay.triangulate_chunks(points, devices="#0")
-        refused = False
-    except flaunay.DeviceError as error:
-        refused = "forked" in str(error)
-    queue.put((refused, flaunay.triangulate_chunks(points, hull=True, chunk_points=500).hull))
-
-
-def test_in_a_forked_child(points):
-    flaunay.devices()  # uses OpenCL
-    context = multiprocessing.get_context("fork")
-    queue = context.Queue()
-    child = context.Process(target=_in_child, args=(points, queue))
-    child.start()
-    refused, hull = queue.get(timeout=60)
-    child.join()
-    assert refused and np.array_equal(hull, flaunay.triangulate(points).hull)
-
-
-@pytest.mark.parametrize(
-    "options, text",
-    [
-        ({"triangles": "t.bin"}, "triangles: 't.bin' must end in .npy"),
-        ({"triangles": b"t.npy"}, "triangles must be a path, True or None, not bytes"),
-        ({"hull": 3}, "hull must be a path, True or None, not int"),
-        ({"triangles": "t.npy", "hull": "./t.npy"}, "hull: './t.npy' is the file of triangles"),
-        ({"memory": "much"}, "no size such as 4G"),
-        ({"memory": "-1G"}, "no size such as 4G"),
-        ({"memory": "0.25G"}, "no size such as 4G"),
-        ({"memory": 0}, "memory must be from 1"),
-        ({"memory": "99999999999T"}, "memory must be from 1"),
-        ({"memory": 1.5}, "memory must be an integer"),
-        ({"memory": 1000}, "too little for chunks"),
-        ({"chunk_points": 0}, "chunk_points must be an integer from 1"),
-        ({"chunk_points": "9"}, "chunk_points must be an integer"),
-        ({"index": 16}, "index must be 32, 64 or None, not 16"),
-    ],
-)
-def test_bad_options(points, options, text, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(flaunay.UsageError) as raised:
-        flaunay.triangulate_chunks(points, **options)
-    assert text in str(raised.value)
-    assert os.listdir(tmp_path) == []
+WRONG = flaunay.UsageError
 
 
 @pytest.mark.parametrize(
     "options, kind, text",
     [
+        ({"triangles": "t.bin"}, WRONG, "triangles: 't.bin' must end in .npy"),
+        ({"triangles": b"t.npy"}, WRONG, "triangles must be a path, True or None, not bytes"),
+        ({"hull": 3}, WRONG, "hull must be a path, True or None, not int"),
+        ({"triangles": "t.npy", "hull": "./t.npy"}, WRONG, "hull: './t.npy' is the file of triangles"),
+        ({"memory": "much"}, WRONG, "no size such as 4G"),
+        ({"memory": "-1G"}, WRONG, "no size such as 4G"),
+        ({"memory": "0.25G"}, WRONG, "no size such as 4G"),
+        ({"memory": 0}, WRONG, "memory must be from 1"),
+        ({"memory": "99999999999T"}, WRONG, "memory must be from 1"),
+        ({"memory": 1.5}, WRONG, "memory must be an integer"),
+        ({"memory": 1000}, WRONG, "too little for chunks"),
+        ({"chunk_points": 0}, WRONG, "chunk_points must be an integer from 1"),
+        ({"chunk_points": "9"}, WRONG, "chunk_points must be an integer"),
+        ({"index": 16}, WRONG, "index must be 32, 64 or None, not 16"),
         ({"devices": "no such device"}, flaunay.DeviceError, "no such device"),
         ({"devices": 3}, TypeError, ""),
         ({"devices": [3]}, TypeError, "device must be a string"),
@@ -427,12 +338,18 @@ def scan(random):
     return given
 
 
-def whole_raster(scan, shape, bounds=None, **options):
-    """Of all triangles at once, each place at its highest value."""
+def highest_of(scan):
+    """The triangles of a scan, and the highest value of each place."""
     tri = flaunay.Delaunay(scan[:, :2])
     highest = np.full(len(scan), -np.inf)
     np.maximum.at(highest, tri.representatives, scan[:, 2])
-    return tri.raster(highest, shape, bounds, **options)
+    return tri, highest
+
+
+def whole_raster(scan, *shape, **options):
+    """Of all triangles at once."""
+    tri, highest = highest_of(scan)
+    return tri.raster(highest, *shape, **options)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -506,9 +423,7 @@ def test_a_raster_that_fails_leaves_what_was_there(tmp_path):
 
 
 def test_contours(scan):
-    tri = flaunay.Delaunay(scan[:, :2])
-    highest = np.full(len(scan), -np.inf)
-    np.maximum.at(highest, tri.representatives, scan[:, 2])
+    tri, highest = highest_of(scan)
     for options in ({}, {"max_edge": 1.5}):
         expected = tri.contours(highest, [60, 20], **options)
         made = flaunay.contour_chunks(scan[:, :2], scan[:, 2], [60, 20], **options, **SMALL)
@@ -561,18 +476,19 @@ def test_of_a_margin_that_was_too_small_the_files_end_in_time(random, tmp_path):
     assert os.path.getsize(results["corner_offsets"]) == 128 + 7998 * 6
 
 
-def test_wrong_periods(points, tmp_path):
-    with pytest.raises(flaunay.UsageError, match="period"):
-        flaunay.triangulate_chunks(points, period=(1, 0))
-    with pytest.raises(flaunay.UsageError, match="two lengths"):
-        flaunay.triangulate_chunks(points, period=(1, 2, 3))
-    with pytest.raises(flaunay.UsageError, match="no period"):
-        flaunay.triangulate_chunks(points, corner_offsets=True)
-    with pytest.raises(flaunay.UsageError, match="hull"):
-        flaunay.triangulate_chunks(points, hull=tmp_path / "hull.npy", period=(1, 1))
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"period": (1, 0)}, "period"),
+        ({"period": (1, 2, 3)}, "two lengths"),
+        ({"corner_offsets": True}, "no period"),
+        ({"hull": "hull.npy", "period": (1, 1)}, "hull"),
+    ],
+)
+def test_wrong_periods(points, options, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.triangulate_chunks(points, **options)
     with pytest.raises(flaunay.UsageError, match="shape"):
         flaunay.to_places([1, 2, 3], (1, 1))
-    points[17] = np.nan
-    with pytest.raises(flaunay.InputError, match="point 17 is not finite"):
-        flaunay.triangulate_chunks(points, period=(1, 1))
     assert os.listdir(tmp_path) == []

@@ -1,23 +1,12 @@
 """Queries in triangulations with constraints, against plain sequential twins with integers and fractions."""
 
-import os
 import pickle
-import subprocess
-import sys
 from fractions import Fraction
 
 import flaunay
 import numpy as np
 import pytest
-
-
-def orient(a, b, c):
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def plain_points(mesh):
-    """Coordinates as fractions, which are exact."""
-    return [(Fraction(x), Fraction(y)) for x, y in mesh.points.tolist()]
+from conftest import fractions, grid, orient, ring, uncrossed
 
 
 def located(mesh, points, q):
@@ -105,35 +94,6 @@ def sibson_weights(mesh, points, q):
     return {v: weight / total for v, weight in weights.items()}
 
 
-def crossing(points, segment, others):
-    a, b = (points[v] for v in segment)
-    for other in others:
-        c, d = (points[v] for v in other)
-        if set(segment) & set(other):
-            continue
-        sides = [orient(*three) for three in ((a, b, c), (a, b, d), (c, d, a), (c, d, b))]
-        if (sides[0] > 0) != (sides[1] > 0) or 0 in sides[:2]:
-            if (sides[2] > 0) != (sides[3] > 0) or 0 in sides[2:]:
-                return True
-    return False
-
-
-def random_segments(rng, points, most):
-    """Segments that do not cross."""
-    chosen = []
-    for _ in range(4 * most):
-        segment = rng.choice(len(points), 2, replace=False).tolist()
-        if tuple(points[segment[0]]) != tuple(points[segment[1]]) and not crossing(
-            points, segment, chosen
-        ):
-            chosen.append(segment)
-    return chosen[:most]
-
-
-def ring(first, count):
-    return [[first + i, first + (i + 1) % count] for i in range(count)]
-
-
 def star(rng, centre, count, large):
     """A ring about a centre with integer corners, in order of their angles."""
     angles = np.sort(rng.choice(360, count, replace=False)) * np.pi / 180
@@ -145,18 +105,17 @@ def mesh_of(kind, rng):
     """A triangulation with constraints of points with small integer coordinates."""
     if kind == "segments":
         points = rng.integers(0, 400, (60, 2))
-        return flaunay.triangulate(points, segments=random_segments(rng, points.tolist(), 25))
+        return flaunay.triangulate(points, segments=uncrossed(rng, points, 25))
     if kind == "grid":
-        points = np.stack(np.meshgrid(range(8), range(8)), axis=-1).reshape(-1, 2) * 4
-        return flaunay.triangulate(points, segments=random_segments(rng, points.tolist(), 12))
+        points = grid(8) * 4
+        return flaunay.triangulate(points, segments=uncrossed(rng, points, 12))
     if kind == "holes":
         outer, inner = star(rng, 500, 30, 500), star(rng, 500, 9, 60)
         others = rng.integers(300, 700, (20, 2))
         points = np.concatenate([outer, inner, others])
-        segments = ring(0, 30) + ring(30, 9)
-        return flaunay.triangulate(points, segments=segments, outside="holes")
+        return flaunay.triangulate(points, segments=ring(30, 9), outside="holes")
     if kind == "seeded holes":
-        points = np.stack(np.meshgrid(range(6), range(6)), axis=-1).reshape(-1, 2) * 10
+        points = grid(6) * 10
         hole = [[7, 10], [10, 28], [28, 25], [25, 7]]
         return flaunay.triangulate(points, segments=hole, holes=[[25, 25]])
     if kind == "map":
@@ -167,7 +126,7 @@ def mesh_of(kind, rng):
         return flaunay.polygons(squares, map=True, neighbors=True)
     assert kind == "refined"
     corners = star(rng, 500, 12, 500)
-    return flaunay.refine(corners, ring(0, 12), outside="holes", min_angle=25)
+    return flaunay.refine(corners, ring(12), outside="holes", min_angle=25)
 
 
 KINDS = ["segments", "grid", "holes", "seeded holes", "map", "refined"]
@@ -187,11 +146,10 @@ def queries_for(rng, mesh):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("seed", range(3))
-def test_triangles_are_those_of_the_twin(kind, seed):
-    rng = np.random.default_rng(seed)
+def test_triangles_are_those_of_the_twin(kind):
+    rng = np.random.default_rng(0)
     mesh = mesh_of(kind, rng)
-    points, queries = plain_points(mesh), queries_for(rng, mesh)
+    points, queries = fractions(mesh.points), queries_for(rng, mesh)
     want = [located(mesh, points, (Fraction(x), Fraction(y))) for x, y in queries.tolist()]
     assert len(set(want)) > 5
     assert (-1 in want) and max(want) >= 0
@@ -207,7 +165,7 @@ def test_triangles_are_those_of_the_twin(kind, seed):
 def test_natural_neighbours_are_those_of_the_twin(kind):
     rng = np.random.default_rng(7)
     mesh = mesh_of(kind, rng)
-    points, queries = plain_points(mesh), queries_for(rng, mesh)[:60]
+    points, queries = fractions(mesh.points), queries_for(rng, mesh)[:60]
     values = rng.uniform(-1, 1, len(points))
     found = flaunay.NaturalNeighborInterpolator(mesh, values)(queries)
     laplace = flaunay.NaturalNeighborInterpolator(mesh, mesh.points[:, 0], method="laplace")(queries)
@@ -228,24 +186,7 @@ def test_natural_neighbours_are_those_of_the_twin(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_linear_interpolation_is_that_in_the_triangles(kind):
-    rng = np.random.default_rng(8)
-    mesh = mesh_of(kind, rng)
-    queries = queries_for(rng, mesh)
-    values = rng.uniform(-1, 1, (len(mesh.points), 2))
-    found = flaunay.LinearInterpolator(mesh, values)(queries)
-    assert np.array_equal(found, mesh.interpolate(values, queries), equal_nan=True)
-    at = mesh.find_simplex(queries)
-    assert (np.isnan(found).all(axis=1) == (at < 0)).all()
-    for k in np.flatnonzero(at >= 0):
-        corners = mesh.triangles[at[k]]
-        matrix = np.vstack([mesh.points[corners].T, np.ones(3)])
-        weights = np.linalg.solve(matrix, [*queries[k], 1])
-        assert found[k] == pytest.approx(weights @ values[corners], abs=1e-8)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_clough_tocher_has_values_and_linear_functions(kind):
+def test_interpolation_has_values_and_linear_functions(kind):
     rng = np.random.default_rng(9)
     mesh = mesh_of(kind, rng)
     queries = queries_for(rng, mesh)
@@ -255,6 +196,9 @@ def test_clough_tocher_has_values_and_linear_functions(kind):
     inside = at >= 0
     assert plane[inside] == pytest.approx(queries[inside] @ [2.0, -3.0] + 1, abs=1e-3)
     values = rng.uniform(-1, 1, len(mesh.points))
+    linear = flaunay.LinearInterpolator(mesh, values)(queries)
+    assert np.array_equal(linear, mesh.interpolate(values, queries), equal_nan=True)
+    assert (np.isnan(linear) == (at < 0)).all()
     vertices = np.unique(mesh.triangles)
     there = flaunay.CloughTocherInterpolator(mesh, values)(mesh.points[vertices])
     assert there == pytest.approx(values[vertices], abs=1e-12)
@@ -263,7 +207,7 @@ def test_clough_tocher_has_values_and_linear_functions(kind):
 def test_gradients_are_of_edges_that_are_kept():
     # Two squares that share a corner only, with different slopes.
     points = [[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [4, 2], [4, 4], [2, 4], [3, 3]]
-    segments = ring(0, 4) + [[2, 5], [5, 6], [6, 7], [7, 2]]
+    segments = ring(4) + [[2, 5], [5, 6], [6, 7], [7, 2]]
     mesh = flaunay.triangulate(points, segments=segments, outside="holes")
     steep = np.where(np.arange(9) < 5, 1.0, 5.0) * (np.array(points)[:, 0] - 2)
     steep[2] = 0
@@ -271,7 +215,7 @@ def test_gradients_are_of_edges_that_are_kept():
     assert np.isfinite(smooth.grad).all()
     # The common corner has edges on both sides.
     assert 1.2 < smooth.grad[2, 0] < 4.8
-    lone = flaunay.triangulate([[0, 0], [4, 0], [0, 4], [9, 9], [9, 0]], segments=ring(0, 3), outside="holes")
+    lone = flaunay.triangulate([[0, 0], [4, 0], [0, 4], [9, 9], [9, 0]], segments=ring(3), outside="holes")
     assert np.isnan(flaunay.CloughTocherInterpolator(lone, np.arange(5.0)).grad[3:]).all()
 
 
@@ -304,57 +248,6 @@ def test_region_and_polygon_come_with_the_triangle():
     assert mesh.polygon_of[found].tolist() == [0, 1, 2]
 
 
-def pinwheel(arms, turn):
-    """Long segments around a centre, none of which points to it: visibility walks can go round and round."""
-    angles = np.arange(arms) * 2 * np.pi / arms
-    inner = np.column_stack([np.cos(angles), np.sin(angles)]) * 100
-    outer = np.column_stack([np.cos(angles + turn), np.sin(angles + turn)]) * 1000
-    points = np.rint(np.concatenate([inner, outer]) * 64)
-    return flaunay.triangulate(points, segments=[[i, arms + i] for i in range(arms)])
-
-
-WALKS = """
-import sys
-sys.path.insert(0, sys.argv[1])
-import numpy as np
-import test_constrained_queries as tests
-for kind in tests.KINDS:
-    for seed in range(3):
-        rng = np.random.default_rng(seed)
-        mesh = tests.mesh_of(kind, rng)
-        print(mesh.find_simplex(tests.queries_for(rng, mesh)).tolist())
-for turn in (-0.9, 0.9):
-    mesh = tests.pinwheel(12, turn)
-    print(mesh.find_simplex(np.random.default_rng(0).uniform(-64000, 64000, (3000, 2))).tolist())
-"""
-
-
-def test_straight_walks_find_the_same_triangles():
-    def answers(**environment):
-        run = subprocess.run(
-            [sys.executable, "-c", WALKS, os.path.dirname(__file__)],
-            env={**os.environ, **environment},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return run.stdout.splitlines()
-
-    usual = answers()
-    assert len(usual) == 3 * len(KINDS) + 2
-    assert answers(FLAUNAY_TUNING="walk_most=1") == usual
-    assert answers(FLAUNAY_DEVICE="host") == usual
-
-
-@pytest.mark.parametrize("turn", [-0.9, 0.9])
-def test_walks_end_in_a_pinwheel(turn):
-    mesh = pinwheel(12, turn)
-    points = plain_points(mesh)
-    queries = np.random.default_rng(0).uniform(-64000, 64000, (200, 2)).tolist()
-    want = [located(mesh, points, (Fraction(x), Fraction(y))) for x, y in queries]
-    assert mesh.find_simplex(queries).tolist() == want
-
-
 def test_points_that_were_added_have_values():
     mesh = flaunay.triangulate(
         [[0, 0], [4, 4], [0, 4], [4, 0]], segments=[[0, 1], [2, 3]], crossings="split"
@@ -369,7 +262,7 @@ def test_without_triangles_all_is_outside():
     line = flaunay.triangulate([[0, 0], [1, 1], [3, 3]], segments=[[0, 1]])
     assert line.find_simplex([[1, 1]]).tolist() == [-1]
     assert line.nearest([[2, 1.5]]).tolist() == [1]
-    nothing = flaunay.triangulate([[0, 0], [4, 0], [0, 4]], segments=ring(0, 3), holes=[[1, 1]])
+    nothing = flaunay.triangulate([[0, 0], [4, 0], [0, 4]], segments=ring(3), holes=[[1, 1]])
     assert len(nothing.triangles) == 0
     assert nothing.find_simplex([[1, 1]]).tolist() == [-1]
     assert np.isnan(nothing.interpolate([1, 2, 3], [[1, 1]])).all()

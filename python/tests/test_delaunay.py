@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 import scipy.spatial
-from conftest import areas, as_set, check_neighbors, triangulates_all
+from conftest import as_set, check_neighbors, grid
 
 import flaunay
 
@@ -14,38 +14,17 @@ import flaunay
 FOUR = np.array([[0, 0], [0, 1.1], [1, 0], [1, 1]])
 
 
-@pytest.mark.parametrize("n", [3, 4, 10, 100, 5000])
-@pytest.mark.parametrize("scale", [1e-9, 1, 1e9])
-def test_the_triangles_are_those_of_scipy(random, n, scale):
-    points = random.random((n, 2)) * scale
+@pytest.mark.parametrize("n", [3, 4, 1000])
+def test_the_triangles_are_those_of_scipy(random, n):
+    points = random.random((n, 2))
     mine, theirs = flaunay.Delaunay(points), scipy.spatial.Delaunay(points)
     assert as_set(mine.simplices) == as_set(theirs.simplices)
     assert as_set(mine.convex_hull) == as_set(theirs.convex_hull)
+    check_neighbors(mine.simplices, mine.neighbors)
+    assert (mine.simplices[mine.vertex_to_simplex] == np.arange(n)[:, None]).any(axis=1).all()
     assert mine.nsimplex == theirs.nsimplex and mine.npoints == n and mine.ndim == theirs.ndim == 2
     assert np.array_equal(mine.min_bound, theirs.min_bound)
     assert np.array_equal(mine.max_bound, theirs.max_bound)
-
-
-def test_neighbors_of_a_simplex_are_opposite_to_its_corners_as_in_scipy(random):
-    points = random.random((300, 2))
-    for tri in flaunay.Delaunay(points), scipy.spatial.Delaunay(points):
-        check_neighbors(tri.simplices, tri.neighbors)
-
-
-def test_simplices_are_counter_clockwise_and_begin_with_the_smallest_index(random):
-    points = random.random((1000, 2))
-    tri = flaunay.Delaunay(points)
-    assert (areas(points, tri.simplices) > 0).all()
-    assert (tri.simplices[:, 0] == tri.simplices.min(axis=1)).all()
-
-
-def test_the_example_of_scipys_documentation():
-    tri = flaunay.Delaunay(FOUR)
-    assert as_set(tri.simplices) == {(0, 2, 3), (0, 1, 3)}
-    # "Triangle 0 is the only neighbor of triangle 1, and it's opposite to vertex 1 of triangle 1".
-    shared = [tri.simplices[t, list(tri.neighbors[t]).index(1 - t)] for t in range(2)]
-    assert sorted(shared) == [1, 2]
-    assert np.array_equal(tri.points, FOUR)
 
 
 def test_types_and_shapes_are_those_of_scipy(random):
@@ -58,55 +37,13 @@ def test_types_and_shapes_are_those_of_scipy(random):
     assert mine.min_bound.shape == mine.max_bound.shape == (2,)
 
 
-def test_the_neighbours_of_vertices_are_those_of_scipy(random):
-    points = random.random((500, 2))
-    mine = flaunay.Delaunay(points).vertex_neighbor_vertices
-    theirs = scipy.spatial.Delaunay(points).vertex_neighbor_vertices
-    assert mine[0].dtype == mine[1].dtype == np.int32
-    for k in range(len(points)):
-        neighbors, other = (
-            indices[starts[k] : starts[k + 1]] for starts, indices in (mine, theirs)
-        )
-        assert neighbors.tolist() == sorted(other.tolist())
-
-
-def test_vertex_to_simplex_names_a_simplex_that_has_the_vertex(random):
-    tri = flaunay.Delaunay(random.random((500, 2)))
-    simplices = tri.simplices[tri.vertex_to_simplex]
-    assert (simplices == np.arange(500)[:, None]).any(axis=1).all()
-
-
 def test_the_hull_is_a_ring_of_edges_with_the_points_on_them():
     # 3 x 3 points: the hull has all but the one in the middle.
-    x, y = np.meshgrid(np.arange(3.0), np.arange(3.0))
-    tri = flaunay.Delaunay(np.stack([x.ravel(), y.ravel()], axis=1))
-    assert tri.hull.tolist() == [0, 1, 2, 5, 8, 7, 6, 3]
-    assert tri.convex_hull.tolist() == [
-        [0, 1],
-        [1, 2],
-        [2, 5],
-        [5, 8],
-        [8, 7],
-        [7, 6],
-        [6, 3],
-        [3, 0],
-    ]
-    theirs = scipy.spatial.Delaunay(tri.points)
-    assert as_set(tri.convex_hull) == as_set(theirs.convex_hull)
-
-
-def test_duplicates_are_coplanar_as_in_scipy():
-    # scipy.spatial.Delaunay's documentation of coplanar has such points: the last is there twice.
-    points = np.array([[0, 0], [0, 1], [1, 0], [1, 1], [1, 1]], dtype=float)
-    mine, theirs = flaunay.Delaunay(points), scipy.spatial.Delaunay(points)
-    assert mine.coplanar.dtype == theirs.coplanar.dtype
-    assert {mine.coplanar[0, 0], mine.coplanar[0, 2]} == {3, 4}
-    assert {theirs.coplanar[0, 0], theirs.coplanar[0, 2]} == {3, 4}
-    assert mine.coplanar[:, [0, 2]].tolist() == [[4, 3]]
-    assert 3 in mine.simplices[mine.coplanar[0, 1]]
-    assert mine.representatives.tolist() == [0, 1, 2, 3, 3]
-    assert mine.vertex_to_simplex[4] == mine.vertex_to_simplex[3]
-    assert len(np.unique(mine.simplices)) == 4
+    tri = flaunay.Delaunay(grid(3))
+    around = [0, 1, 2, 5, 8, 7, 6, 3]
+    assert tri.hull.tolist() == around
+    assert tri.convex_hull.tolist() == [list(ends) for ends in zip(around, [*around[1:], 0])]
+    assert as_set(tri.convex_hull) == as_set(scipy.spatial.Delaunay(tri.points).convex_hull)
 
 
 def test_many_duplicates(random):
@@ -118,18 +55,9 @@ def test_many_duplicates(random):
     point, simplex, equal = tri.coplanar.T
     assert np.array_equal(points[point], points[equal])
     assert (tri.simplices[simplex] == equal[:, None]).any(axis=1).all()
+    assert np.array_equal(tri.vertex_to_simplex[point], tri.vertex_to_simplex[equal])
     indptr, _ = tri.vertex_neighbor_vertices
     assert (np.diff(indptr)[point] == 0).all()
-
-
-@pytest.mark.parametrize("n", [2, 7, 40])
-def test_grids_are_triangulated_whole(n):
-    x, y = np.meshgrid(np.arange(n, dtype=float), np.arange(n, dtype=float))
-    points = np.stack([x.ravel(), y.ravel()], axis=1)
-    tri = flaunay.Delaunay(points)
-    assert tri.nsimplex == 2 * (n - 1) ** 2
-    assert (areas(points, tri.simplices) == 1).all()
-    check_neighbors(tri.simplices, tri.neighbors)
 
 
 @pytest.mark.parametrize(
@@ -157,14 +85,6 @@ def test_points_without_triangles_are_no_error(points, hull):
     assert len(tri.coplanar) == n - len(hull)
     assert (tri.coplanar[:, 1] == -1).all()
     assert np.isnan(tri.min_bound).all() == (n == 0)
-
-
-def test_where_qhull_loses_points_none_is_lost():
-    # Two points that differ in the last place, and one far away.
-    points = np.array([[0, 0], [1, 0], [0, 1], [0.3, 0.3], [np.nextafter(0.3, 1), 0.3], [1e9, 1e9]])
-    tri = flaunay.Delaunay(points)
-    assert len(np.unique(tri.simplices)) == 6 and len(tri.coplanar) == 0
-    assert triangulates_all(points, tri.simplices, tri.hull, tri.representatives)
 
 
 def test_points_are_a_copy(random):

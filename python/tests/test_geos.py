@@ -2,29 +2,20 @@
 
 import numpy as np
 import pytest
+from conftest import circle, grid, ring, turned
 
 import flaunay
 
 shapely = pytest.importorskip("shapely", minversion="2.0")
 
 
-def turned(points, angle):
-    c, s = np.cos(angle), np.sin(angle)
-    return points @ np.array([[c, s], [-s, c]])
-
-
-def lattice(n):
-    return np.stack(np.meshgrid(np.arange(n), np.arange(n)), axis=-1).reshape(-1, 2).astype(float)
-
-
 def degenerate_sets(random):
     """Points whose triangles at the hull, or everywhere, are thinner than rounding, or have ties."""
     for angle in (0.001, 0.3, 0.7):
         for offset in (0, 5.8e6):
-            yield turned(lattice(20), angle) + offset
-    yield np.round([7, 45] + lattice(20) / 10, 10)
-    angles = np.linspace(0, 2 * np.pi, 200, endpoint=False)
-    yield 7 * np.stack([np.cos(angles), np.sin(angles)], axis=1) + [5e5, 5e6]
+            yield turned(grid(20), angle) + offset
+    yield np.round([7, 45] + grid(20) / 10, 10)
+    yield circle(200, 7, [5e5, 5e6])
     x = np.sort(random.random(200))
     yield np.stack([x, 0.37 * x + random.integers(-1, 2, 200) * 2.0**-54], axis=1)
     points = random.random((200, 2))
@@ -47,7 +38,7 @@ def test_contours_are_simple(random):
 
 
 def test_contours_do_not_depend_on_the_scale():
-    points = turned(lattice(12), 0.3)
+    points = turned(grid(12), 0.3)
     values = np.arange(144) * 7 % 10 % 6
     lines = flaunay.Delaunay(points).contours(values, np.arange(0, 6, 0.5)).points
     for factor in (2.0**-900, 2.0**-300, 2.0**900):
@@ -94,8 +85,8 @@ def check_triangles(points, triangles, neighbors):
 def test_refined_and_split_meshes(random, offset, angle):
     # Houses with courtyards, turned, of which some overlap.
     corners = np.array([[0, 0], [9, 0], [9, 7], [0, 7], [2, 2], [6, 2], [6, 4], [2, 4]])
-    rings = np.array([[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4]])
-    places = 8 * lattice(3)
+    rings = np.array(ring(4, 4))
+    places = 8 * grid(3)
     segments = np.concatenate([rings + 8 * k for k in range(len(places))])
     for apart in (1.4, 1):
         houses = np.concatenate([corners + place for place in places * [apart, 1]])

@@ -6,20 +6,17 @@ import numpy as np
 import pytest
 import scipy.sparse.csgraph
 import scipy.spatial
+from conftest import grid
 
 import flaunay
 
 
-def grid(n):
-    return np.stack(np.meshgrid(np.arange(float(n)), np.arange(float(n))), axis=-1).reshape(-1, 2)
-
-
 SETS = {
-    "random": lambda random: random.random((300, 2)),
+    "random": lambda random: random.random((150, 2)),
     "grid": lambda random: grid(12),
     "turned grid": lambda random: grid(12) @ np.array([[0.6, 0.8], [-0.8, 0.6]]),
     "duplicates": lambda random: random.integers(0, 6, (100, 2)),
-    "float32": lambda random: random.random((300, 2)).astype(np.float32),
+    "float32": lambda random: random.random((150, 2)).astype(np.float32),
     "triangle": lambda random: np.array([[0, 0], [4, 0], [0, 3]]),
     "line": lambda random: np.array([[3, 3], [1, 1], [2, 2], [0, 0], [1, 1]]),
     "point": lambda random: np.array([[3, 3]]),

@@ -114,16 +114,6 @@ def test_of_a_triangulation(scattered, method):
         ours(ScipyDelaunay(points), values)
 
 
-@pytest.mark.parametrize("method", CLASSES)
-def test_points_have_their_values(method):
-    rng = np.random.default_rng(5)
-    points = np.vstack([rng.integers(0, 9, (60, 2)), rng.integers(0, 9, (20, 2))]).astype(float)
-    values = rng.random((80, 3))
-    ours, _ = CLASSES[method]
-    interpolator = ours(points, values)
-    np.testing.assert_array_equal(interpolator(points), values[interpolator.tri.representatives])
-
-
 @pytest.mark.parametrize("points", [[], [[1, 2]], [[0, 0], [1, 1]], [[0, 0], [1, 1], [3, 3]]])
 def test_without_triangles(points):
     points = np.asarray(points, float).reshape(-1, 2)
@@ -286,7 +276,7 @@ def test_what_fills_can_be_assigned(kind):
     assert interpolator([[9, 9]]) == [2j]
     with pytest.raises(flaunay.UsageError, match="fill_value is complex"):
         interpolator.values = [1, 2, 3]
-    assert interpolator([[0, 0]]) == [1j]
+    assert interpolator([[0, 0]]) == [1j] and interpolator([[np.inf, 0]]) == [2j]
 
 
 def test_given_gradients_are_for_the_values_they_came_with():

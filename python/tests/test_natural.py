@@ -8,38 +8,6 @@ import pytest
 import flaunay
 
 METHODS = ("sibson", "laplace")
-ERROR = 2.0**-36
-
-
-def weight_by_area(points: np.ndarray, query: np.ndarray, i: int) -> float:
-    """What share of the query's Voronoi cell is nearest to point i, by counting."""
-    grid = np.stack(np.meshgrid(*2 * [np.linspace(-1, 2, 601)]), axis=-1).reshape(-1, 2)
-    distances = ((grid[:, None] - points) ** 2).sum(axis=2)
-    taken = ((grid - query) ** 2).sum(axis=1) < distances.min(axis=1)
-    return float((distances[taken].argmin(axis=1) == i).mean())
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_linear_functions_are_exact(method: str) -> None:
-    random = np.random.default_rng(1)
-    points, queries = random.random((500, 2)), random.random((2000, 2))
-    values = np.stack([points @ [3, -2] + 1, points[:, 0]], axis=1)
-    result = flaunay.NaturalNeighborInterpolator(points, values, method)(queries)
-    is_inside = flaunay.Delaunay(points).find_simplex(queries) >= 0
-    assert (np.isnan(result).any(axis=1) == ~is_inside).all()
-    expected = np.stack([queries @ [3, -2] + 1, queries[:, 0]], axis=1)
-    assert np.abs(result - expected)[is_inside].max() < 5 * ERROR
-
-
-def test_weights_of_sibson_are_areas() -> None:
-    points = np.array([[0.0, 0.0], [1.0, 0.1], [0.1, 1.0], [1.0, 1.1], [0.6, 0.4]])
-    query = np.array([0.5, 0.55])
-    weights = flaunay.NaturalNeighborInterpolator(points, np.eye(5))(query)[0]
-    assert abs(weights.sum() - 1) < 1e-12
-    for i in range(5):
-        assert abs(weights[i] - weight_by_area(points, query, i)) < 0.01
-
-
 @pytest.mark.parametrize("method", METHODS)
 def test_points_and_hull(method: str) -> None:
     points = np.array([[0, 0], [4, 0], [0, 4], [4, 4], [1, 2]])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import circle, grid, ring
 
 import flaunay
 
@@ -79,9 +80,7 @@ def test_points_without_triangles_are_drawn_too(points, axes):
 
 
 def test_an_alpha_shape_is_an_area_with_holes_lines_and_dots(axes):
-    angles = np.linspace(0, 2 * np.pi, 41)[:-1]
-    rings = [r * np.stack([np.cos(angles), np.sin(angles)], axis=1) for r in (1, 1.2)]
-    points = np.concatenate([*rings, [[2, 0], [2.2, 0], [3, 0]]])
+    points = np.concatenate([circle(40), circle(40, 1.2), [[2, 0], [2.2, 0], [3, 0]]])
     patch, lines, dots = flaunay.alpha_shape(points, 0.2).plot(axes, facecolor="red", alpha=1)
     assert len(lines.get_segments()) == 1 and dots.get_xydata().tolist() == [[3, 0]]
     assert patch in axes.patches and lines in axes.collections and dots in axes.lines
@@ -140,8 +139,7 @@ def test_without_bounds_all_points_are_in_sight(random, axes):
 
 @pytest.mark.parametrize("merge", [False, True])
 def test_edges_without_length_are_not_drawn(axes, merge):
-    grid = np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0)), axis=-1).reshape(-1, 2)
-    lines = flaunay.Voronoi(grid, merge=merge).plot(axes, bounds=(0, 0, 4, 4))
+    lines = flaunay.Voronoi(grid(5), merge=merge).plot(axes, bounds=(0, 0, 4, 4))
     lengths = [np.abs(end - start).sum() for start, end in lines.get_segments()]
     assert len(lengths) == 40 and sum(lengths) == 32 and min(lengths) == 0.5
 
@@ -164,17 +162,6 @@ def test_bounds_that_are_none_are_refused(axes, bounds):
         flaunay.Voronoi([[0, 0], [1, 0], [0, 1]]).plot(axes, bounds=bounds)
 
 
-def test_many_triangles_are_drawn_fast(random, axes):
-    import time
-
-    tri = flaunay.Delaunay(random.random((50_000, 2)))
-    started = time.process_time()
-    tri.plot(axes, linewidth=0.1)
-    assert not is_blank(axes)
-    # Measured 0.8 s; one artist for each triangle would take a minute.
-    assert time.process_time() - started < 20
-
-
 def test_endless_ridges_of_points_near_a_line_go_outwards(axes):
     """The centre of the hull cannot tell where that is, since it is rounded."""
     points = [[3, 1 + 3 * 2.0**-52], [7, 1], [8, 1 + 2 * 2.0**-52]]
@@ -184,7 +171,7 @@ def test_endless_ridges_of_points_near_a_line_go_outwards(axes):
 
 
 FRAME = [[0, 0], [6, 0], [6, 6], [0, 6], [2, 2], [4, 2], [4, 4], [2, 4], [9, 3]]
-SIDES = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4]]
+SIDES = ring(4, 4)
 
 
 def test_constraints_are_drawn_strongly_and_what_is_outside_is_not(axes):

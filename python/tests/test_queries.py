@@ -3,7 +3,6 @@
 import copy
 import pickle
 from concurrent.futures import ThreadPoolExecutor
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -34,14 +33,6 @@ def test_find_simplex_finds_what_scipy_finds(points, queries):
     )
 
 
-def test_the_example_of_scipys_documentation():
-    tri = flaunay.Delaunay([[0, 0], [0, 1.1], [1, 0], [1, 1]])
-    found = tri.find_simplex([(0.1, 0.2), (1.5, 0.5), (0.5, 1.05)])
-    assert found[1] == -1
-    assert set(tri.simplices[found[0]]) == {0, 2, 3} or set(tri.simplices[found[0]]) == {0, 1, 3}
-    assert set(tri.simplices[found[2]]) == {0, 1, 3}
-
-
 @pytest.mark.parametrize(
     "shape", [(2,), (1, 2), (0, 2), (5, 2), (3, 4, 2), (3, 0, 2), (2, 1, 3, 2)]
 )
@@ -56,29 +47,9 @@ def test_any_leading_shape(points, random, shape):
     assert isinstance(tri.find_simplex(xi), np.ndarray)
 
 
-def test_a_vertex_is_in_the_first_of_its_simplices(points):
-    tri = flaunay.Delaunay(points)
-    assert np.array_equal(tri.find_simplex(points), tri.vertex_to_simplex)
-
-
-def test_nearest_is_the_nearest(points, queries):
-    tri = flaunay.Delaunay(points)
-    expected = scipy.spatial.cKDTree(points).query(queries)[1]
-    found = tri.nearest(queries)
-    assert found.dtype == np.int32 and np.array_equal(found, expected)
-
-
 def test_nearest_of_several_is_the_first_by_coordinates():
     tri = flaunay.Delaunay([[2, 0], [0, 0], [0, 2], [2, 2], [0, 0]])
     assert tri.nearest([1, 1]) == 1
-
-
-def test_interpolation_is_that_of_scipy(points, queries, random):
-    values = random.random((len(points), 3))
-    found = flaunay.Delaunay(points).interpolate(values, queries)
-    expected = scipy.interpolate.LinearNDInterpolator(points, values)(queries)
-    assert found.shape == expected.shape == (len(queries), 3) and found.dtype == np.float64
-    np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12)
 
 
 @pytest.mark.parametrize("most, wanted_calls", [(1 << 26, 1), (5000, 3), (1, 24)])
@@ -115,13 +86,6 @@ def test_queries_of_every_type_and_layout(points, queries):
     single = queries.astype(np.float32)
     assert np.array_equal(tri.find_simplex(single), tri.find_simplex(single.astype(float)))
     assert tri.find_simplex([[0, 0]]) == -1
-
-
-def test_float32_triangulations(points, queries):
-    single = flaunay.Delaunay(points.astype(np.float32))
-    double = flaunay.Delaunay(points.astype(np.float32).astype(float))
-    assert np.array_equal(single.find_simplex(queries), double.find_simplex(queries))
-    assert np.array_equal(single.nearest(queries), double.nearest(queries))
 
 
 @pytest.mark.parametrize(
@@ -176,16 +140,10 @@ def test_magnitudes_that_are_too_different_are_no_less_an_error(points):
             ask([[np.nan, 1], [1e-200, 0]])
 
 
-def test_brute_force_finds_the_same(points, queries):
-    tri = flaunay.Delaunay(points)
-    assert np.array_equal(
-        tri.find_simplex(queries, True), tri.find_simplex(queries, bruteforce=False)
-    )
-
-
 def test_tolerance(points, queries):
     tri, theirs = flaunay.Delaunay(points), scipy.spatial.Delaunay(points)
     exact = tri.find_simplex(queries)
+    assert np.array_equal(exact, tri.find_simplex(queries, True))
     assert np.array_equal(tri.find_simplex(queries, tol=0), exact)
     # A little beyond the edges of the hull.
     start, end = points[tri.convex_hull].transpose(1, 0, 2)
@@ -280,41 +238,16 @@ def test_queries_from_two_threads(points, queries):
             assert np.array_equal(found, expected)
 
 
-def test_many_triangulations_come_and_go(points, queries):
-    for k in range(20):
-        tri = flaunay.Delaunay(points[k:])
-        assert (tri.nearest(points[k:]) == np.arange(len(points) - k)).all()
-
-
-def nearest_by_brute_force(points, query, k):
-    """Indices in their order, by exact arithmetic."""
-
-    def order(i):
-        x, y = (Fraction(points[i, axis]) - Fraction(query[axis]) for axis in (0, 1))
-        return x * x + y * y, points[i, 0], points[i, 1], i
-
-    return sorted(range(len(points)), key=order)[:k]
-
-
-@pytest.mark.parametrize("kind", ["uniform", "grid", "circle"])
-def test_several_nearest_points(random, kind):
-    points = random.random((60, 2))
-    if kind == "grid":
-        points = random.integers(0, 4, (60, 2)) / 10
-    if kind == "circle":
-        angles = random.integers(0, 8, 60) * (np.pi / 4)
-        points = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    queries = np.concatenate([points[:9], random.random((20, 2)) * 2 - 1, np.zeros((1, 2))])
-    tri = flaunay.Delaunay(points)
-    for k in (1, 4, 70):
+def test_several_nearest_points(points, queries):
+    tri, tree = flaunay.Delaunay(points), scipy.spatial.cKDTree(points)
+    for k in (1, 4, 401):
         distances, found = tri.nearest(queries, k=k, return_distances=True)
-        assert found.dtype == np.int32 and found.shape == distances.shape == (30, k)
-        for row, query in zip(found, queries):
-            assert row.tolist() == nearest_by_brute_force(points, query, k) + [-1] * (k - 60)
-        theirs, _ = scipy.spatial.cKDTree(points).query(queries, k=range(1, k + 1))
-        np.testing.assert_allclose(distances, theirs, rtol=1e-14, atol=0)
+        expected, indices = tree.query(queries, k=range(1, k + 1))
+        assert found.dtype == np.int32 and np.array_equal(found, np.where(indices < 400, indices, -1))
+        np.testing.assert_allclose(distances, expected, rtol=1e-14, atol=0)
         assert np.array_equal(found, tri.nearest(queries, k=k))
-    assert np.array_equal(tri.nearest(queries, k=1)[:, 0], tri.nearest(queries))
+    alone = tri.nearest(queries)
+    assert alone.dtype == np.int32 and np.array_equal(tri.nearest(queries, k=1)[:, 0], alone)
 
 
 def test_a_bound_of_distances(points, queries):

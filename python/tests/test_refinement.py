@@ -2,24 +2,19 @@
 
 import pickle
 
+import conftest
 import numpy as np
 import pytest
-from conftest import areas
+from conftest import circle, ring
 
 import flaunay
 
 SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4]]
-RING = [[0, 1], [1, 2], [2, 3], [3, 0]]
+RING = ring(4)
 
 
 def angles(mesh):
-    """Of each triangle at its corners, in degrees."""
-    corners = mesh.points[mesh.triangles]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    back = np.roll(corners, 1, axis=1) - corners
-    dot = (ahead * back).sum(axis=2)
-    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-    return np.degrees(np.arctan2(cross, dot))
+    return conftest.angles(mesh.points, mesh.triangles)
 
 
 def test_triangles_are_as_good_as_is_asked_for():
@@ -61,17 +56,6 @@ def test_all_entries_take_the_same_keywords():
     assert flaunay.refine(SQUARE).refinement.added_points == 0
 
 
-def test_many_domains_in_one_call():
-    points = np.concatenate([np.array(SQUARE) + 10 * k for k in range(5)])
-    segments = np.concatenate([np.array(RING) + 4 * k for k in range(5)])
-    meshes = flaunay.refine(points, segments, offsets=np.arange(0, 21, 4), max_area=0.5)
-    assert len(meshes.triangle_offsets) == 6 and (np.diff(meshes.triangle_offsets) >= 32).all()
-    for k in range(5):
-        own = meshes.triangles[meshes.triangle_offsets[k] : meshes.triangle_offsets[k + 1]]
-        assert areas(meshes.points, own).sum() == pytest.approx(32)
-        assert (meshes.points[own] >= 10 * k).all() and (meshes.points[own] <= 10 * k + 4).all()
-
-
 def test_a_function_of_places_for_many_domains():
     points = np.concatenate([np.array(SQUARE) + 10 * k for k in range(3)])
     segments = np.concatenate([np.array(RING) + 4 * k for k in range(3)])
@@ -93,8 +77,7 @@ def test_a_function_of_places_for_many_domains():
 
 def test_smoothing():
     options = {"min_angle": 25, "max_area": 0.03}
-    wheel = np.stack([np.cos(np.arange(50) * np.pi / 25), np.sin(np.arange(50) * np.pi / 25)], axis=1)
-    rim = [[k, (k + 1) % 50] for k in range(50)]
+    wheel, rim = circle(50), ring(50)
     plain = flaunay.refine(wheel * 3, rim, **options)
     mesh = flaunay.refine(wheel * 3, rim, smoothing_steps=5, **options)
     report = mesh.refinement

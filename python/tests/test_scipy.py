@@ -5,7 +5,6 @@ import sys
 
 import numpy as np
 import pytest
-import scipy.interpolate
 import scipy.spatial
 from conftest import as_set
 
@@ -61,19 +60,6 @@ def test_what_is_lifted_is_as_in_scipy(points, queries):
     assert mine.good.dtype == theirs.good.dtype and np.array_equal(mine.good, theirs.good)
 
 
-def test_transforms_are_barycentric_as_in_scipy(points):
-    tri = flaunay.Delaunay(points)
-    theirs = scipy.spatial._qhull._get_barycentric_transforms(
-        points, np.array(tri.simplices), np.finfo(float).eps
-    )
-    assert tri.transform.shape == theirs.shape == (tri.nsimplex, 3, 2)
-    np.testing.assert_allclose(tri.transform, theirs, rtol=1e-9)
-    corners = points[tri.simplices]
-    for k in range(3):
-        first = np.einsum("ijk,ik->ij", tri.transform[:, :2], corners[:, k] - tri.transform[:, 2])
-        np.testing.assert_allclose(first, np.tile(np.eye(3)[k, :2], (tri.nsimplex, 1)), atol=1e-9)
-
-
 def test_transforms_of_thin_triangles_are_nan():
     points = np.array([[0, 0], [1, 1e-14], [2, 0], [1, 1.0]])
     tri = flaunay.Delaunay(points)
@@ -111,19 +97,6 @@ def test_scipy_finds_simplices_in_it(points, queries):
         assert np.array_equal(copy.find_simplex(queries), expected)
         assert np.array_equal(copy.find_simplex(queries, bruteforce=True), expected)
         assert np.array_equal(scipy.spatial.tsearch(copy, queries), expected)
-
-
-@pytest.mark.parametrize("columns", [1, 3])
-@pytest.mark.parametrize(
-    "interpolator",
-    [scipy.interpolate.LinearNDInterpolator, scipy.interpolate.CloughTocher2DInterpolator],
-)
-def test_scipy_interpolates_in_it(points, queries, random, interpolator, columns):
-    values = random.random((len(points), columns))
-    found = interpolator(flaunay.Delaunay(points).to_scipy(), values)(queries)
-    expected = interpolator(points, values)(queries)
-    assert np.isfinite(found).any()
-    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8)
 
 
 def test_float32_and_duplicates(points, queries):

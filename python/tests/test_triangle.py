@@ -1,23 +1,13 @@
 """The calls of the package triangle. Numbers without an explanation are what that package returns."""
 
+import conftest
 import numpy as np
 import pytest
-from conftest import areas, as_set, check_neighbors
+from conftest import areas, as_set, check_neighbors, circle, ring
 
 import flaunay
 import flaunay.triangle as tr
 from flaunay import _calls
-
-
-def ring(*sizes):
-    """Segments of closed curves, of so many points each."""
-    starts = np.cumsum((0, *sizes))
-    return [[a + k, a + (k + 1) % n] for a, n in zip(starts, sizes) for k in range(n)]
-
-
-def circle(n, radius, centre=(0, 0)):
-    turns = np.arange(n) * 2 * np.pi / n
-    return np.stack([np.cos(turns), np.sin(turns)], axis=1) * radius + centre
 
 
 BOX = {
@@ -45,11 +35,7 @@ SPIRAL = {"vertices": np.hstack([np.cos(TURNS), np.sin(TURNS)]) * (1 + TURNS)}
 
 
 def angles(mesh):
-    corners = mesh["vertices"][mesh["triangles"]]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    back = np.roll(corners, 1, axis=1) - corners
-    cross = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
-    return np.degrees(np.arctan2(cross, (ahead * back).sum(axis=2)))
+    return conftest.angles(mesh["vertices"], mesh["triangles"])
 
 
 def sizes(mesh):

@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from conftest import fractions, orient
 from flaunay._calls import angles, circumradii, turns
 
 
@@ -38,23 +39,18 @@ def triples(request, random):
         return [(a, b, third(a, b, random)) for third in THIRDS]
 
 
+def rational(*arrays):
+    return zip(*map(fractions, arrays))
+
+
 def found(measure, *corners):
     """What is found about triangles that have these corners."""
     indices = np.arange(3 * len(corners[0]), dtype=np.int32)
     return measure(np.concatenate(corners), indices.reshape(3, -1).T).tolist()
 
 
-def rational(*arrays):
-    for row in zip(*(array.tolist() for array in arrays)):
-        yield [tuple(map(Fraction, point)) for point in row]
-
-
 def dot(a, b, c):
     return (a[0] - c[0]) * (b[0] - c[0]) + (a[1] - c[1]) * (b[1] - c[1])
-
-
-def cross(a, b, c):
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def sign(number):
@@ -71,7 +67,7 @@ def test_signs_are_those_of_rational_numbers(triples):
         ]
         assert found(angles, *corners) == expected
         seen.update(*expected)
-        assert found(turns, *corners) == [sign(cross(*row)) for row in rows]
+        assert found(turns, *corners) == [sign(orient(*row)) for row in rows]
     assert seen >= {-1, 1}
 
 
@@ -88,30 +84,31 @@ def test_right_angles_are_zero():
         assert found(angles, a[row], b[row], third[row])[0][0] > 0
 
 
+def check_radius(radius, p, q, r):
+    """Exact to 45 bits, or beyond all doubles, or subnormal, which have fewer bits."""
+    area = orient(p, q, r)
+    if area == 0:
+        assert radius == np.inf
+        return
+    squares = [dot(s, s, t) for s, t in ((p, q), (q, r), (r, p))]
+    expected = squares[0] * squares[1] * squares[2] / (4 * area * area)
+    if radius == np.inf:
+        assert expected > Fraction(1.7e308) ** 2
+    elif radius > 1e-290:
+        # Of squares, the error is twice as large.
+        assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)
+
+
 def test_circumradii_are_exact_to_45_bits(triples):
     for a, b, c in triples:
-        for radius, (p, q, r) in zip(found(circumradii, a, b, c), rational(a, b, c)):
-            area = cross(p, q, r)
-            if area == 0:
-                assert radius == np.inf
-                continue
-            squares = [dot(s, s, t) for s, t in ((p, q), (q, r), (r, p))]
-            expected = squares[0] * squares[1] * squares[2] / (4 * area * area)
-            if radius == np.inf:
-                assert expected > Fraction(1.7e308) ** 2
-            # What is subnormal has fewer bits.
-            elif radius > 1e-290:
-                # Of squares, the error is twice as large.
-                assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)
+        for radius, corners in zip(found(circumradii, a, b, c), rational(a, b, c)):
+            check_radius(radius, *corners)
 
 
 def test_circumradii_of_triangles_thinner_than_twice_the_precision():
     """On a line but for rounding, at magnitudes so different that also differences are rounded."""
     x = np.array([[6e9, 1.4e-4, 1.6e-11], [1.7e-6, 2.3e20, 0.7], [3e-12, 5e13, 1.1]])
     a, b, c = (np.stack([x[:, k] / 7, x[:, k] * 3 / 7], axis=1) for k in range(3))
-    for radius, (p, q, r) in zip(found(circumradii, a, b, c), rational(a, b, c)):
-        area = cross(p, q, r)
-        assert area != 0
-        squares = [dot(s, s, t) for s, t in ((p, q), (q, r), (r, p))]
-        expected = squares[0] * squares[1] * squares[2] / (4 * area * area)
-        assert abs(Fraction(radius) ** 2 / expected - 1) < Fraction(2, 2**45)
+    for radius, corners in zip(found(circumradii, a, b, c), rational(a, b, c)):
+        assert orient(*corners) != 0 and 1e-290 < radius < np.inf
+        check_radius(radius, *corners)

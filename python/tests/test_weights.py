@@ -1,23 +1,20 @@
 """Barycentric coordinates, and weights as sparse matrices."""
 
+import conftest
 import flaunay
 import numpy as np
 import pytest
-from fractions import Fraction
+from conftest import fractions, orient, ring
 
 
 def exact(corners, q):
-    (a, b, c), q = [[Fraction(x) for x in p] for p in corners], [Fraction(x) for x in q]
-
-    def area(p, r, s):
-        return (r[0] - p[0]) * (s[1] - p[1]) - (r[1] - p[1]) * (s[0] - p[0])
-
-    return [float(area(*three) / area(a, b, c)) for three in ((q, b, c), (q, c, a), (q, a, b))]
+    a, b, c, q = fractions([*corners, q])
+    return [float(orient(*three) / orient(a, b, c)) for three in ((q, b, c), (q, c, a), (q, a, b))]
 
 
 def test_coordinates_are_those_of_fractions():
     rng = np.random.default_rng(0)
-    grid = np.stack(np.meshgrid(range(6), range(6)), axis=-1).reshape(-1, 2) + [5e5, 4e6]
+    grid = conftest.grid(6) + [5e5, 4e6]
     for points in (rng.random((60, 2)), grid, rng.random((60, 2)) * 1e-150, rng.random((60, 2)) * 1e150):
         interpolate = flaunay.LinearInterpolator(points, points[:, 0])
         low, high = points.min(axis=0), points.max(axis=0)
@@ -54,10 +51,8 @@ def test_weights_times_values_interpolate():
 
 def test_weights_in_constrained_triangulations_and_without_triangles():
     pytest.importorskip("scipy.sparse")
-    ring = [[0, 1], [1, 2], [2, 0]]
     corners = [[0, 0], [9, 0], [0, 9], [1, 1], [4, 1], [1, 4]]
-    segments = ring + [[a + 3, b + 3] for a, b in ring]
-    mesh = flaunay.triangulate(corners, segments=segments, outside="holes")
+    mesh = flaunay.triangulate(corners, segments=ring(3, 3), outside="holes")
     interpolate = flaunay.LinearInterpolator(mesh, mesh.points[:, 0])
     queries = [[2, 2], [5, 1], [1, 1]]
     found = interpolate.weights(queries) @ mesh.points
@@ -69,7 +64,7 @@ def test_weights_in_constrained_triangulations_and_without_triangles():
 def test_coordinates_in_very_slender_triangles_have_the_sum_one():
     rng = np.random.default_rng(0)
     inside = 0
-    for _ in range(400):
+    for _ in range(100):
         begin, along = rng.random(2), rng.random(2)
         corners = np.array([begin, begin + along, begin + along * rng.random()])
         corners[2] = np.nextafter(corners[2], rng.choice([-9, 9], 2))
@@ -80,7 +75,7 @@ def test_coordinates_in_very_slender_triangles_have_the_sum_one():
         inside += (triangles >= 0).sum()
         assert coordinates[triangles >= 0].sum(axis=1) == pytest.approx(1)
         assert (coordinates[triangles >= 0] >= 0).all()
-    assert inside > 100
+    assert inside > 25
 
 
 @pytest.mark.parametrize("method", ["sibson", "laplace"])
@@ -88,7 +83,7 @@ def test_coordinates_in_very_slender_triangles_have_the_sum_one():
 def test_weights_of_natural_neighbours(method, is_constrained):
     sparse = pytest.importorskip("scipy.sparse")
     rng = np.random.default_rng(2)
-    grid = np.stack(np.meshgrid(range(5), range(5)), axis=-1).reshape(-1, 2) / 4
+    grid = conftest.grid(5) / 4
     points = np.concatenate([rng.random((100, 2)), grid, grid[:3]])
     queries = np.concatenate([points, rng.uniform(-0.1, 1.1, (200, 2)), [[np.nan, 0], [9, 9]]])
     segments = [[100, 124], [105, 119]]

@@ -353,86 +353,57 @@ TEST(SmallArguments, InStructsOfC) {
   expect_all_refused({
       {"segments",
        [&](std::size_t count) {
-         flaunay_constraints given{};
-         given.segments = array_for(count, kTriangles);
-         given.segment_count = counted(count);
-         constrained(given);
+         constrained({.segments = array_for(count, kTriangles), .segment_count = counted(count)});
        }},
       {"segments",
        [&](std::size_t count) {
-         flaunay_constraints given{};
-         given.segments = array_for(count, kTriangles);
-         given.segment_count = counted(count);
+         const flaunay_constraints given = {.segments = array_for(count, kTriangles),
+                                            .segment_count = counted(count)};
          flaunay_dynamic* dynamic = nullptr;
          throw_error_of(flaunay_dynamic_create(triangulator(), kPoints, kCount, &given, nullptr, &dynamic));
        }},
       {"holes",
        [&](std::size_t count) {
-         flaunay_constraints given{};
-         given.holes = array_for(count, kPoints);
-         given.hole_count = counted(count);
-         constrained(given);
+         constrained({.holes = array_for(count, kPoints), .hole_count = counted(count)});
        }},
       {"seeds",
        [&](std::size_t count) {
-         flaunay_constraints given{};
-         given.seeds = array_for(count, kPoints);
-         given.seed_attributes = kPoints;
-         given.seed_count = counted(count);
-         constrained(given);
+         constrained(
+             {.seeds = array_for(count, kPoints), .seed_attributes = kPoints, .seed_count = counted(count)});
        }},
       {"triangles of the mesh",
        [&](std::size_t count) {
-         flaunay_given_triangles mesh{};
-         mesh.triangles = array_for(count, kTriangles);
-         mesh.areas = kPoints;
-         mesh.count = counted(count);
-         flaunay_refinement refinement{};
-         refinement.mesh = &mesh;
-         flaunay_constraints given{};
-         given.refinement = &refinement;
-         constrained(given);
+         const flaunay_given_triangles mesh = {
+             .triangles = array_for(count, kTriangles), .count = counted(count), .areas = kPoints};
+         const flaunay_refinement refinement = {.mesh = &mesh};
+         constrained({.refinement = &refinement});
        }},
       {"rings",
        [&](std::size_t count) {
-         flaunay_polygons given{};
-         given.coordinates = kPoints;
-         given.ring_offsets = array_for(count, kOffsets);
-         given.ring_count = counted(count);
-         of_polygons(given);
+         of_polygons({.coordinates = kPoints,
+                      .ring_offsets = array_for(count, kOffsets),
+                      .ring_count = counted(count)});
        }},
       {"devices",
        [&](std::size_t count) {
          const char* const host[] = {"host", "host", "host"};
-         flaunay_chunk_options given{};
-         given.devices = array_for(count, host);
-         given.device_count = counted(count);
-         chunks(given);
+         chunks({.devices = array_for(count, host), .device_count = counted(count)});
        }},
       {"triangulators",
        [&](std::size_t count) {
          flaunay_triangulator* const own[] = {triangulator(), triangulator(), triangulator()};
-         flaunay_chunk_options given{};
-         given.triangulators = array_for(count, own);
-         given.triangulator_count = counted(count);
-         chunks(given);
+         chunks({.triangulators = array_for(count, own), .triangulator_count = counted(count)});
        }},
       {"events",
        [&](std::size_t count) {
          const cl_event none[kCount] = {};
-         flaunay_enqueue given{};
-         given.wait_for = array_for(count, none);
-         given.wait_for_count = counted(count);
+         const flaunay_enqueue given = {.wait_for = array_for(count, none), .wait_for_count = counted(count)};
          throw_error_of(
              flaunay_dynamic_rows_device(good<flaunay_dynamic*>(), &given, good<flaunay_device_rows*>()));
        }},
       {"points of breaklines",
        [&](std::size_t count) {
-         flaunay_breaklines given{};
-         given.coordinates = array_for(count, kPoints);
-         given.values = kPoints;
-         given.count = counted(count);
-         lines(given);
+         lines({.coordinates = array_for(count, kPoints), .values = kPoints, .count = counted(count)});
        }},
       {"breaklines",
        [&](std::size_t count) {
@@ -441,10 +412,7 @@ TEST(SmallArguments, InStructsOfC) {
        }},
       {"segments of breaklines",
        [&](std::size_t count) {
-         flaunay_breaklines given{};
-         given.segments = array_for(count, kTriangles);
-         given.segment_count = counted(count);
-         lines(given);
+         lines({.segments = array_for(count, kTriangles), .segment_count = counted(count)});
        }},
   });
   for (const std::size_t count : kHuge) {
@@ -471,12 +439,10 @@ TEST(SmallArguments, InStructsOfC) {
 
 TEST(SmallArguments, OfStreamsAndChunks) {
   const auto strided = [](std::size_t count) {
-    flaunay_strided_points points{};
-    points.coordinates = array_for(count, kPoints);
-    points.count = counted(count);
-    points.point_stride = 2 * sizeof(double);
-    points.coordinate_stride = sizeof(double);
-    return points;
+    return flaunay_strided_points{.coordinates = array_for(count, kPoints),
+                                  .count = counted(count),
+                                  .point_stride = 2 * sizeof(double),
+                                  .coordinate_stride = sizeof(double)};
   };
   expect_all_refused(
       {

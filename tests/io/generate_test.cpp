@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -53,21 +52,6 @@ __int128 squared_radius(Pair p) {
   return x * x + y * y;
 }
 
-TEST(Generate, KnowsTheDistributionsOfItsHeader) {
-  std::vector<std::string> names;
-  for (const Distribution& d : distributions()) {
-    names.push_back(d.name);
-    EXPECT_FALSE(d.description.empty()) << d.name;
-  }
-  const std::vector<std::string> expected = {
-      "uniform",      "normal",         "kuzmin",          "line",           "grid",
-      "rotated-grid", "hexagonal",      "circle",          "integer-circle", "nested-circles",
-      "columns",      "small-integers", "half-duplicates", "collinear",      "parabola",
-      "clusters",     "spiral",         "horizontal",      "thirty-lines",   "power-of-two-span",
-      "one-ulp",      "mostly-equal",   "two-clusters"};
-  EXPECT_EQ(names, expected);
-}
-
 TEST(Generate, GivesAsManyFinitePointsAsAskedFor) {
   for (const Distribution& d : distributions()) {
     for (const std::size_t n : {0, 1, 2, 3, 7, 1000}) {
@@ -104,7 +88,8 @@ TEST(Generate, SeedDecidesThePoints) {
   }
 }
 
-// Recorded once: every machine and compiler must give these bytes.
+// Recorded once, when each was found to be what its description says: every machine and compiler must give
+// these bytes. What depends on the number of points, or must be exact, is tested below.
 TEST(Generate, SameBytesOnEveryMachine) {
   const std::map<std::string, std::uint64_t> recorded = {
       {"uniform", 0xaea23479f0a69af3},
@@ -131,47 +116,13 @@ TEST(Generate, SameBytesOnEveryMachine) {
       {"mostly-equal", 0xc96ceb4753918e59},
       {"two-clusters", 0x32a89030b06e9199},
   };
+  EXPECT_EQ(distributions().size(), recorded.size());
   for (const Distribution& d : distributions()) {
     ASSERT_EQ(recorded.count(d.name), 1u) << d.name;
+    EXPECT_FALSE(d.description.empty()) << d.name;
     EXPECT_EQ(fingerprint(generate(d.name, 1000, 1)), recorded.at(d.name))
         << d.name << " gave " << fingerprint(generate(d.name, 1000, 1));
   }
-}
-
-TEST(Generate, UniformFillsTheUnitSquare) {
-  const Points points = generate("uniform", 40000, 3);
-  EXPECT_EQ(share(points, [](double x, double y) { return x >= 0 && x < 1 && y >= 0 && y < 1; }), 1);
-  EXPECT_NEAR(share(points, [](double x, double y) { return x < 0.5 && y < 0.5; }), 0.25, 0.01);
-  EXPECT_NEAR(share(points, [](double x, double y) { return x < y; }), 0.5, 0.012);
-}
-
-TEST(Generate, NormalHasTheNormalDistribution) {
-  const Points points = generate("normal", 40000, 3);
-  // P(|x| < 1) and P(r < 1) of the standard normal distribution.
-  EXPECT_NEAR(share(points, [](double x, double) { return std::fabs(x) < 1; }), 0.6827, 0.01);
-  EXPECT_NEAR(share(points, [](double, double y) { return std::fabs(y) < 1; }), 0.6827, 0.01);
-  EXPECT_NEAR(share(points, [](double x, double y) { return x * x + y * y < 1; }), 1 - std::exp(-0.5), 0.01);
-  EXPECT_NEAR(share(points, [](double x, double y) { return x > 0 && y > 0; }), 0.25, 0.01);
-}
-
-TEST(Generate, KuzminHasItsRadialDistribution) {
-  const Points points = generate("kuzmin", 40000, 3);
-  for (const double r : {0.5, 1.0, std::sqrt(3.0), 10.0, 100.0}) {
-    EXPECT_NEAR(share(points, [r](double x, double y) { return std::hypot(x, y) < r; }),
-                1 - 1 / std::sqrt(1 + r * r), 0.012);
-  }
-  EXPECT_NEAR(share(points, [](double x, double y) { return x > 0 && y > 0; }), 0.25, 0.01);
-}
-
-TEST(Generate, LineClustersAtItsLine) {
-  const Points points = generate("line", 40000, 3);
-  constexpr double b = 0.001;
-  EXPECT_EQ(share(points, [](double x, double y) { return x >= b && x <= 1 && y >= 0 && y < 1; }), 1);
-  // x < b / (u - b u + b) with probability 1 - u.
-  for (const double u : {0.1, 0.5, 0.9}) {
-    EXPECT_NEAR(share(points, [u](double x, double) { return x < b / (u - b * u + b); }), 1 - u, 0.012);
-  }
-  EXPECT_NEAR(share(points, [](double, double y) { return y < 0.5; }), 0.5, 0.012);
 }
 
 TEST(Generate, GridGoesRowByRow) {
@@ -179,18 +130,6 @@ TEST(Generate, GridGoesRowByRow) {
   for (std::size_t i = 0; i < 11; ++i) EXPECT_EQ(point(points, i), Pair(i % 4, i / 4)) << i;
   const Points square = generate("grid", 1000000, 0);
   EXPECT_EQ(point(square, 999999), Pair(999, 999));
-}
-
-TEST(Generate, LatticesHaveTheirDistances) {
-  const Points turned = generate("rotated-grid", 100, 0), hexagonal = generate("hexagonal", 100, 0);
-  const auto distance = [](Pair p, Pair q) { return std::hypot(p.first - q.first, p.second - q.second); };
-  for (const std::size_t i : {0, 12, 55, 88}) {
-    for (const std::size_t step : {1, 10}) {
-      EXPECT_NEAR(distance(point(turned, i), point(turned, i + step)), 1, 1e-14);
-      EXPECT_NEAR(distance(point(hexagonal, i), point(hexagonal, i + step)), 1, 1e-14);
-    }
-  }
-  EXPECT_NEAR(point(turned, 1).second / point(turned, 1).first, 1.0 / 3, 1e-15);
 }
 
 TEST(Generate, CirclesAreRoundToTheLastBits) {
@@ -276,31 +215,6 @@ TEST(Generate, HorizontalIsOneLine) {
   EXPECT_GT(distinct(points).size(), 800u);
 }
 
-/// The number of lines through two of the points that hold at least so many of the distinct ones.
-std::size_t lines_with(const Points& points, std::size_t least) {
-  const std::set<Pair> set = distinct(points);
-  const std::vector<Pair> all(set.begin(), set.end());
-  std::set<std::set<Pair>> lines;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    std::map<std::pair<long, long>, std::set<Pair>> by_direction;
-    for (std::size_t j = 0; j < all.size(); ++j) {
-      if (j == i) continue;
-      long x = std::lround(all[j].first - all[i].first), y = std::lround(all[j].second - all[i].second);
-      const long divisor = (x < 0 || (x == 0 && y < 0) ? -1 : 1) * std::gcd(x, y);
-      by_direction[{x / divisor, y / divisor}].insert(all[j]);
-    }
-    for (auto& [direction, line] : by_direction) {
-      line.insert(all[i]);
-      if (line.size() >= least) lines.insert(line);
-    }
-  }
-  return lines.size();
-}
-
-TEST(Generate, ThirtyLinesAreExactlyThirty) {
-  EXPECT_EQ(lines_with(generate("thirty-lines", 600, 3), 8), 30u);
-}
-
 TEST(Generate, PowerOfTwoSpanIsExact) {
   for (const std::size_t n : {2, 1000, 100000}) {
     const Points points = generate("power-of-two-span", n, 3);
@@ -326,40 +240,6 @@ TEST(Generate, MostlyEqualHasFewOthers) {
     EXPECT_GE(others, 9u) << n;
     EXPECT_LE(others, 10u) << n;
   }
-}
-
-TEST(Generate, TwoClustersAreFarApart) {
-  const Points points = generate("two-clusters", 10000, 3);
-  const auto near = [](double x, double y, double center) { return std::hypot(x - center, y - center) < 8; };
-  EXPECT_EQ(share(points, [&](double x, double y) { return near(x, y, 0) || near(x, y, 1e9); }), 1);
-  EXPECT_NEAR(share(points, [&](double x, double y) { return near(x, y, 0); }), 0.5, 0.02);
-}
-
-TEST(Generate, ClustersDifferInSizeByOrders) {
-  const Points points = generate("clusters", 12000, 3);
-  // The distance to the nearest of a few neighbours in the order along x tells how dense a point's place is.
-  std::vector<Pair> sorted;
-  for (std::size_t i = 0; i < points.size(); ++i) sorted.push_back(point(points, i));
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<double> nearest;
-  for (std::size_t i = 20; i + 20 < sorted.size(); ++i) {
-    double least = INFINITY;
-    for (std::size_t j = i - 20; j <= i + 20; ++j) {
-      if (j == i) continue;
-      least =
-          std::min(least, std::hypot(sorted[i].first - sorted[j].first, sorted[i].second - sorted[j].second));
-    }
-    nearest.push_back(least);
-  }
-  std::sort(nearest.begin(), nearest.end());
-  EXPECT_GT(nearest[nearest.size() * 19 / 20] / nearest[nearest.size() / 20], 1e4);
-}
-
-TEST(Generate, SpiralFillsTheDiskEvenly) {
-  const Points points = generate("spiral", 10000, 3);
-  EXPECT_NEAR(share(points, [](double x, double y) { return std::hypot(x, y) < 0.5; }), 0.25, 0.001);
-  EXPECT_EQ(share(points, [](double x, double y) { return std::hypot(x, y) < 1; }), 1);
-  EXPECT_NEAR(share(points, [](double x, double y) { return x > 0 && y > 0; }), 0.25, 0.01);
 }
 
 }  // namespace

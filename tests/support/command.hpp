@@ -50,6 +50,12 @@ inline void write_file(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
+inline void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(text.find(part), std::string::npos) << "no \"" << part << "\" in: " << text;
+  }
+}
+
 /// The environment of a child: this one's, with changes.
 class ChildEnvironment {
  public:
@@ -199,9 +205,7 @@ class CommandTest : public testing::Test {
         << "more than one message: " << outcome.err;
     EXPECT_EQ(outcome.err.find("internal"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find('\n') + 1, outcome.err.size()) << "not one line: " << outcome.err;
-    for (const std::string& part : parts) {
-      EXPECT_NE(outcome.err.find(part), std::string::npos) << "no \"" << part << "\" in: " << outcome.err;
-    }
+    expect_parts(outcome.err, parts);
     EXPECT_EQ(files(), before);
   }
 
