@@ -1,11 +1,15 @@
-// What no whole triangulation shows of the stages: hulls that need many rounds, and broken invariants.
+// What no whole triangulation shows of the stages: what later steps mend, hulls that need many rounds, and
+// broken invariants.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
+#include "launchers/flattened/border.cl.hpp"
 #include "tests/flattened/support.hpp"
 
 namespace flaunay::flattened {
@@ -103,6 +107,105 @@ TEST(Quickhull, BalancesAfterManyRounds) {
     EXPECT_GT(rounds, 64);   // so the balanced ones were met
     EXPECT_LT(rounds, 100);  // and were fewer
     hulls.expect_strict(paths, {all});
+  });
+}
+
+/// Points below a chord, on it and above it, which later steps would tell apart, too: in the plane, and
+/// projected from a circle about a point of the cut.
+TEST(SmallHullDepth, IsDecidedExactly) {
+  under_each_tuning([](Runtime& runtime) {
+    PlanarHulls hulls(
+        runtime,
+        {{{0, 0}}, {{4, 4}}, {{2, 1}}, {{2, 2}}, {{2, 3}}, {{4, -3}}, {{3, 4}}, {{4, 0}}, {{5, 0}}, {{6, 0}}},
+        6);
+    hulls.level.axis = testing::upload(runtime, std::vector<cl_int>{2, 2, 2, 0, 0, 0});
+    const Paths chords = hulls.upload({{0, 1}, {0, 1}, {0, 1}, {5, 6}, {5, 6}, {5, 6}});
+    const auto ids = testing::upload(runtime, std::vector<cl_int>{2, 3, 4, 7, 8, 9});
+    const auto first = testing::upload(runtime, std::vector<cl_int>{0, 2, 4, 6, 8, 10});
+    for (const cl_uchar keep_on : {0, 1}) {
+      const auto flags = testing::upload(runtime, std::vector<cl_uchar>(6, 2));
+      decide_depths(hulls.call.work, hulls.table, hulls.level, chords, ids, first, 6, keep_on != 0, flags);
+      EXPECT_EQ(testing::download(runtime, flags, 6), (std::vector<cl_uchar>{1, keep_on, 0, 1, keep_on, 0}));
+    }
+    const auto flags =
+        testing::upload(runtime, std::vector<cl_uchar>{1, 2, 1, 1, 2, 1, 1, 2, 1, 1, 2, 1, 1, 2, 1, 1, 7, 1});
+    const Paths paths = hulls.upload({{0, 2, 1}, {0, 3, 1}, {0, 4, 1}, {5, 7, 6}, {5, 8, 6}, {5, 9, 6}});
+    decide_vertices(hulls.call.work, hulls.table, hulls.level, paths, flags);
+    // What is decided already stays.
+    EXPECT_EQ(testing::download(runtime, flags, 18),
+              (std::vector<cl_uchar>{1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 0, 1, 1, 7, 1}));
+  });
+}
+
+/// The ends of the lower and of the upper hull, of which the hull stages would also mend others.
+TEST(Borders, SetEndsAreTheLowestOfTheOutermostColumns) {
+  under_each_tuning([](Runtime& runtime) {
+    FixtureRandom random(28);
+    for (const int values : {1, 3, 50}) {
+      Call call(runtime);
+      const auto offsets = random_offsets(500, 15, random);
+      const Coordinates coordinates = coarse_points(offsets.back(), values, random);
+      std::vector<std::int32_t> representatives(offsets.back());
+      const PointTable table = ingest(call.work, coordinates.data(), offsets, representatives.data());
+      // Ids are in the order of (x, y).
+      const auto points = call.read(table.points, table.count);
+      const auto ids = call.read(table.set_offsets, table.sets + 1);
+      std::vector<cl_int> first_ends, last_ends;
+      for (std::size_t s = 0; s < table.sets; ++s) {
+        const cl_int low = ids[s], high = ids[s + 1];
+        cl_int last_of_first = low, first_of_last = high - 1;
+        while (last_of_first + 1 < high && points[last_of_first + 1].s[0] == points[low].s[0])
+          ++last_of_first;
+        while (first_of_last > low && points[first_of_last - 1].s[0] == points[high - 1].s[0])
+          --first_of_last;
+        const bool is_empty = low == high;
+        first_ends.insert(first_ends.end(), {is_empty ? -1 : low, is_empty ? -1 : high - 1});
+        last_ends.insert(last_ends.end(), {is_empty ? -1 : first_of_last, is_empty ? -1 : last_of_first});
+      }
+      const auto axis = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      const auto cuts = testing::guarded<cl_double>(runtime, 2 * table.sets);
+      const auto first = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      const auto last = testing::guarded<cl_int>(runtime, 2 * table.sets);
+      runtime.map(table.sets, kernels::set_ends{.offsets = table.set_offsets,
+                                                .points = table.points,
+                                                .axis = axis,
+                                                .cut = cuts,
+                                                .first_end = first,
+                                                .last_end = last});
+      EXPECT_TRUE(same(testing::download(runtime, first, 2 * table.sets), first_ends));
+      EXPECT_TRUE(same(testing::download(runtime, last, 2 * table.sets), last_ends));
+    }
+  });
+}
+
+/// Where the regions of sets begin; a set of neither points nor corners is none.
+TEST(SmallChildren, AreLaidOut) {
+  under_each_tuning([](Runtime& runtime) {
+    FixtureRandom random(35);
+    for (const std::size_t sets : {1, 2, 12, 300}) {
+      Call call(runtime);
+      std::vector<cl_int> points, corners, region, point_offsets{0}, corner_offsets{0}, retired_offsets{0};
+      for (std::size_t s = 0; s < sets; ++s) {
+        for (std::vector<cl_int>* sizes : {&points, &corners})
+          sizes->push_back(static_cast<cl_int>(std::max<std::int64_t>(0, random.integer(-4, 9))));
+        const bool goes_on = points[s] > 0;
+        std::vector<cl_int>& offsets = goes_on ? corner_offsets : retired_offsets;
+        const auto number = static_cast<cl_int>(offsets.size()) - 1;
+        region.push_back(goes_on ? number : -1 - number);
+        if (goes_on) point_offsets.push_back(point_offsets.back() + points[s]);
+        if (goes_on || corners[s] > 0) offsets.push_back(offsets.back() + corners[s]);
+      }
+      Level next;
+      RetiredRegions retired;
+      const Children placed = place_sets(call.work, sets, testing::upload(runtime, points),
+                                         testing::upload(runtime, corners), next, retired);
+      EXPECT_TRUE(same(call.read(placed.region, sets), region));
+      ASSERT_EQ(next.regions, point_offsets.size() - 1);
+      ASSERT_EQ(retired.regions, retired_offsets.size() - 1);
+      EXPECT_TRUE(same(call.read(next.point_offsets, next.regions + 1), point_offsets));
+      EXPECT_TRUE(same(call.read(next.corner_offsets, next.regions + 1), corner_offsets));
+      EXPECT_TRUE(same(call.read(retired.offsets, retired.regions + 1), retired_offsets));
+    }
   });
 }
 
