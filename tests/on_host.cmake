@@ -77,13 +77,6 @@ add_library(flaunay_test_support STATIC ${TESTS}/support/reference.cpp)
 target_include_directories(flaunay_test_support PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(flaunay_test_support PUBLIC flaunay_options gmpxx gmp)
 
-# The twin of the insertion of segments.
-add_library(flaunay_sequential_insertion STATIC
-            ${TESTS}/constrained/sequential/constraints.cpp ${TESTS}/constrained/sequential/insert.cpp
-            ${TESTS}/constrained/sequential/mesh.cpp ${TESTS}/constrained/sequential/polygon.cpp)
-target_include_directories(flaunay_sequential_insertion PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
-target_link_libraries(flaunay_sequential_insertion PUBLIC flaunay_core PRIVATE flaunay_format)
-
 # The points that the fuzzer of the triangulation makes, and how it shrinks those that fail.
 add_library(flaunay_fuzz STATIC ${TESTS}/fuzz/degenerate.cpp ${TESTS}/fuzz/minimise.cpp)
 target_include_directories(flaunay_fuzz PUBLIC ${PROJECT_SOURCE_DIR})
@@ -134,7 +127,7 @@ flaunay_test(
   WHEN_SANITIZED -NastySegments.*:Constrained.EdgesOfOtherTriangulations:Constrained.OneSegmentThroughEverything:Split.Large*:Split.ManySegments
   SOURCES constrained/constrained_test.cpp constrained/pairs_test.cpp constrained/refinement_bounds_test.cpp
           constrained/split_test.cpp constrained/verify_test.cpp
-  LIBRARIES flaunay_sequential_insertion flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
+  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
   LABELS asan)
 flaunay_test(
   test_io UNOPTIMISED

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "blocks/codes.h"
 #include "blocks/halving.h"
 #include "blocks/limits.h"
@@ -19,7 +20,6 @@
 #include "mesh/records.h"
 #include "predicates/bounds.h"
 #include "tests/blocks/support.hpp"
-#include "tests/support/exact_points.hpp"
 
 namespace flaunay::blocks {
 namespace {
@@ -69,15 +69,16 @@ struct Solution {
 
   /// The edges between two triangles whose vertices are on one circle, each counted twice.
   std::size_t ties() const {
-    const testing::ExactPoints exact(g.vertices);
+    ExactPredicates exact;
     std::size_t ties = 0;
     for (cl_int v = 0; v < g.offsets.back(); ++v) {
       const std::vector<cl_int> around = ring(v);
       for (std::size_t k = 0; k < around.size(); ++k) {
         const cl_int right = around[k], middle = around[(k + 1) % around.size()],
                      left = around[(k + 2) % around.size()];
-        ties += exact.orient(v, right, middle) > 0 && exact.orient(v, middle, left) > 0 &&
-                exact.in_circle(v, right, middle, left) == 0;
+        const double *const p = g.point(v).s, *const r = g.point(right).s, *const m = g.point(middle).s,
+                            *const l = g.point(left).s;
+        ties += exact.orient2d(p, r, m) > 0 && exact.orient2d(p, m, l) > 0 && exact.incircle(p, r, m, l) == 0;
       }
     }
     return ties;

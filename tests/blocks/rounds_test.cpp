@@ -1,4 +1,4 @@
-// Rounds of blocks: the same bytes as merging, and what a round's steps write against plain loops.
+// Rounds of blocks: the same bytes as merging.
 #include "blocks/rounds.hpp"
 
 #include <gtest/gtest.h>
@@ -17,6 +17,7 @@
 #include "launchers/blocks/rounds.cl.hpp"
 #include "statistics/phases.hpp"
 #include "tests/blocks/support.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/stalling.hpp"
 #include "tests/support/test_kernels.hpp"
 
@@ -346,19 +347,13 @@ TEST(Rounds, WalksThatDoNotMeetAreAnError) {
     tuning.block_points = block_points;
     tuning.round_points = round_points;
     runtime->set_sizes(std::make_shared<Tuning>(tuning));
-    try {
+    testing::expect_error(ErrorKind::internal, {"walks along a seam"}, [&] {
       run_blocks(*runtime, points, {0, 900});
-      FAIL() << "no error";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::internal);
-      EXPECT_NE(std::string(error.what()).find("walks along a seam"), std::string::npos) << error.what();
-    }
+    });
   }
 }
 
-// -----------------------------------------------------------------------------------------------------------
-// Kernels against plain loops
-
+/// Boxes that are too large make rounds longer, but change no result.
 TEST(SmallRounds, BoxesOfSetsAreJoined) {
   Runtime& runtime = Runtimes::get("rounds");
   const Arena::Scope scope(runtime.arena());
@@ -393,38 +388,6 @@ TEST(SmallRounds, BoxesOfSetsAreJoined) {
     EXPECT_EQ(found[first].low.y, all.low.y) << s;
     EXPECT_EQ(found[first].high.x, all.high.x) << s;
     EXPECT_EQ(found[first].high.y, all.high.y) << s;
-  }
-}
-
-/// Chains of any length: each element finds the last one of its chain, and how far away it is.
-TEST(SmallRounds, HullsAreRanked) {
-  Runtime& runtime = Runtimes::get("rounds");
-  const Arena::Scope scope(runtime.arena());
-  FixtureRandom random(21);
-  std::vector<cl_int2> ahead, expected;
-  for (const std::size_t length : {1, 2, 3, 64, 65, 100}) {
-    std::vector<std::size_t> order(length);
-    for (std::size_t k = 0; k < length; ++k) order[k] = ahead.size() + k;
-    random.shuffle(order);
-    ahead.resize(ahead.size() + length);
-    expected.resize(ahead.size());
-    const auto last = static_cast<cl_int>(order.back());
-    for (std::size_t k = 0; k < length; ++k) {
-      const bool is_last = k + 1 == length;
-      ahead[order[k]] = {{is_last ? last : static_cast<cl_int>(order[k + 1]), is_last ? 0 : 1}};
-      expected[order[k]] = {{last, static_cast<cl_int>(length - 1 - k)}};
-    }
-  }
-  const std::size_t n = ahead.size();
-  auto from = testing::upload(runtime, ahead), to = testing::guarded<cl_int2>(runtime, n);
-  for (std::size_t reach = 1; reach < 100; reach *= 2) {
-    runtime.map(n, kernels::rank_hull{.from = from, .to = to});
-    std::swap(from, to);
-  }
-  const auto found = testing::download(runtime, from, n);
-  for (std::size_t k = 0; k < n; ++k) {
-    EXPECT_EQ(found[k].s[0], expected[k].s[0]) << k;
-    EXPECT_EQ(found[k].s[1], expected[k].s[1]) << k;
   }
 }
 

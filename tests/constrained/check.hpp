@@ -86,7 +86,7 @@ inline std::vector<std::vector<Edge>> expected_edges(const Coordinates& points,
   return all;
 }
 
-/// That segments map to the edges that they consist of, and each edge is listed once.
+/// That segments map to the edges that they consist of, and each edge is listed once, in the right order.
 inline void expect_edges(const std::vector<std::vector<Edge>>& expected,
                          const ConstrainedTriangulation& result) {
   ASSERT_EQ(result.piece_edges.size(), 2 * expected.size());
@@ -103,6 +103,19 @@ inline void expect_edges(const std::vector<std::vector<Edge>>& expected,
     EXPECT_TRUE(listed.emplace(result.constraint_edges[e], result.constraint_edges[e + 1]).second);
   }
   EXPECT_EQ(all, listed);
+  // Chains of edges that follow each other on segments, in the order of their first edges.
+  std::vector<bool> follows(result.constraint_edges.size() / 2, false);
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    for (std::int32_t e = result.piece_edges[2 * s] + 1; e < result.piece_edges[2 * s + 1]; ++e)
+      follows[static_cast<std::size_t>(e)] = true;
+  }
+  Edge last{-1, -1};
+  for (std::size_t e = 0; e < follows.size(); ++e) {
+    if (follows[e]) continue;
+    const Edge edge{result.constraint_edges[2 * e], result.constraint_edges[2 * e + 1]};
+    EXPECT_LT(last, edge);
+    last = edge;
+  }
 }
 
 /// That the triangles are a triangulation of the same points with the same border as the Delaunay

@@ -1,4 +1,4 @@
-// All segments at once, on a device or natively: the same bytes and the same errors as one after the other.
+// Segments on a device and natively, with sizes of all kinds: the same bytes and the same errors.
 //
 // Suites named Small... have tiny inputs, for devices and sanitizers.
 #include "tests/support/device.hpp"
@@ -17,7 +17,6 @@
 #include "geometry/magnitudes.hpp"
 #include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
-#include "tests/constrained/sequential/insert.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
@@ -66,12 +65,13 @@ Outcome outcome_of(const Constrain& constrain) {
   return outcome;
 }
 
-/// Returns whether there was an error, which must be the same for both.
-bool expect_as_twin(const Coordinates& points, const std::vector<std::size_t>& offsets,
-                    const Segments& segments) {
+/// The definition, and the same with every tuning. Returns whether there was an error, which must be the
+/// same, too.
+bool expect_right(const Coordinates& points, const std::vector<std::size_t>& offsets,
+                  const Segments& segments) {
   const Triangulation delaunay = delaunay_of(points, offsets);
-  const Outcome expected =
-      outcome_of([&] { return sequential::constrain(points.data(), offsets, delaunay, segments); });
+  const Outcome expected = outcome_of([&] { return insert(points, offsets, delaunay, segments); });
+  if (expected.error.empty()) expect_canonical(points, delaunay, expected.result);
   Options options;
   options.halfedges = true;
   Triangulation halfedges;
@@ -103,8 +103,8 @@ bool expect_as_twin(const Coordinates& points, const std::vector<std::size_t>& o
   return !expected.error.empty();
 }
 
-bool expect_as_twin(const Coordinates& points, const Segments& segments) {
-  return expect_as_twin(points, {0, points.size() / 2}, segments);
+bool expect_right(const Coordinates& points, const Segments& segments) {
+  return expect_right(points, {0, points.size() / 2}, segments);
 }
 
 TEST(SmallInsertion, RandomSegmentsInSmallBoxes) {
@@ -115,7 +115,7 @@ TEST(SmallInsertion, RandomSegmentsInSmallBoxes) {
     const int side = static_cast<int>(random.integer(1, 7));
     const Coordinates points = random_integer_points(n, side, static_cast<std::uint64_t>(round));
     const auto count = static_cast<std::size_t>(random.integer(0, 6));
-    errors += expect_as_twin(points, random_segments(random, n, count));
+    errors += expect_right(points, random_segments(random, n, count));
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
   EXPECT_GT(errors, 10);
@@ -125,7 +125,7 @@ TEST(SmallInsertion, RandomSegmentsInSmallBoxes) {
 TEST(SmallInsertion, EdgesOfOtherTriangulations) {
   for (int round = 0; round < 8; ++round) {
     const Coordinates points = random_integer_points(40, 3 + 8 * round, static_cast<std::uint64_t>(round));
-    expect_as_twin(points, edges_of_stretched(points, std::ldexp(1.0, round - 4), 1 + round % 3, 1));
+    expect_right(points, edges_of_stretched(points, std::ldexp(1.0, round - 4), 1 + round % 3, 1));
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }
@@ -135,7 +135,7 @@ TEST(SmallInsertion, CavitiesThatStop) {
   Coordinates points = random_integer_points(80, 12, 1);
   for (double& c : points) c += 0x1p40;
   const Segments segments = edges_of_stretched(points, 8, 1, 1);
-  expect_as_twin(points, segments);
+  expect_right(points, segments);
   if (tests_native() || tunings().size() == 1) return;
   call::Engine& engine = Engines::get("small");
   const std::vector<std::size_t> offsets = {0, points.size() / 2};
@@ -161,8 +161,8 @@ TEST(SmallInsertion, LongWalks) {
     }
     Segments segments = edges_of_stretched(points, std::ldexp(1.0, 4 * round - 8), 2, 1);
     segments.insert(segments.begin(), {0, 1});
-    expect_as_twin(points, segments);
-    expect_as_twin(points, {1, 0});
+    expect_right(points, segments);
+    expect_right(points, {1, 0});
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }
@@ -180,7 +180,7 @@ TEST(SmallInsertion, SegmentsThroughPoints) {
                              : random.integer(0, rows - 1) * columns + segments.back() % columns;
       segments.push_back(static_cast<std::int32_t>(place));
     }
-    expect_as_twin(grid_points(columns, rows), segments);
+    expect_right(grid_points(columns, rows), segments);
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }
@@ -190,7 +190,7 @@ TEST(SmallInsertion, SeveralSets) {
   // Without segments in sets on lines, no segment has several edges.
   for (const bool with_lines : {true, false}) {
     const SetsWithSegments all = several_sets(20, with_lines);
-    EXPECT_FALSE(expect_as_twin(all.points, all.offsets, all.segments));
+    EXPECT_FALSE(expect_right(all.points, all.offsets, all.segments));
   }
 }
 
@@ -198,8 +198,8 @@ TEST(SmallInsertion, AllMagnitudes) {
   FixtureRandom random(7);
   for (const double factor : {0x1p-1000, 0x1p-600, 0x1p600, 0x1p1000}) {
     const Coordinates points = scaled(random_integer_points(30, 9, 1), factor);
-    expect_as_twin(points, edges_of_stretched(points, 4, 2, 1));
-    expect_as_twin(points, random_segments(random, 30, 3));
+    expect_right(points, edges_of_stretched(points, 4, 2, 1));
+    expect_right(points, random_segments(random, 30, 3));
   }
 }
 
@@ -222,21 +222,21 @@ TEST(SmallInsertion, SpansOfFixedPoint) {
       SCOPED_TRACE(std::to_string(bits) + " bits, times " + std::to_string(factor));
       const Coordinates points = scaled(wide_points(random, 40, bits), factor);
       ASSERT_EQ(geometry::bits_of(geometry::inspect(points.data(), 0, 40)), bits);
-      expect_as_twin(points, edges_of_stretched(points, 0x1p-4, 2, 1));
-      expect_as_twin(points, random_segments(random, 40, 3));
+      expect_right(points, edges_of_stretched(points, 0x1p-4, 2, 1));
+      expect_right(points, random_segments(random, 40, 3));
     }
   }
 }
 
 TEST(SmallInsertion, Errors) {
   const Coordinates points = {0, 0, 4, 4, 0, 4, 4, 0, 10, 10};
-  EXPECT_TRUE(expect_as_twin(points, {4, 4, 3, 2, 0, 1}));
-  EXPECT_TRUE(expect_as_twin(points, {0, 1, 2, 5}));
-  EXPECT_TRUE(expect_as_twin(points, {0, 2, -1, 3}));
+  EXPECT_TRUE(expect_right(points, {4, 4, 3, 2, 0, 1}));
+  EXPECT_TRUE(expect_right(points, {0, 1, 2, 5}));
+  EXPECT_TRUE(expect_right(points, {0, 2, -1, 3}));
   const Coordinates two = {0, 0, 1, 0, 0, 1, 5, 5, 6, 5, 5, 6};
-  EXPECT_TRUE(expect_as_twin(two, {0, 3, 6}, {0, 1, 2, 3}));
-  EXPECT_FALSE(expect_as_twin(two, {0, 3, 6}, {0, 2, 3, 5}));
-  EXPECT_FALSE(expect_as_twin({}, {}));
+  EXPECT_TRUE(expect_right(two, {0, 3, 6}, {0, 1, 2, 3}));
+  EXPECT_FALSE(expect_right(two, {0, 3, 6}, {0, 2, 3, 5}));
+  EXPECT_FALSE(expect_right({}, {}));
 }
 
 TEST(Insertion, RandomSegmentsInSmallBoxes) {
@@ -247,7 +247,7 @@ TEST(Insertion, RandomSegmentsInSmallBoxes) {
     const auto n = static_cast<std::size_t>(random.integer(0, 24));
     const int side = static_cast<int>(random.integer(1, 9));
     const Coordinates points = random_integer_points(n, side, static_cast<std::uint64_t>(round));
-    expect_as_twin(points, random_segments(random, n, static_cast<std::size_t>(random.integer(0, 8))));
+    expect_right(points, random_segments(random, n, static_cast<std::size_t>(random.integer(0, 8))));
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }
@@ -260,8 +260,8 @@ TEST(Insertion, EdgesOfOtherTriangulations) {
       for (const double factor : factors) {
         SCOPED_TRACE(fixture.name + ", n = " + std::to_string(n) + ", factor " + std::to_string(factor));
         const Coordinates points = fixture.make(n, 2);
-        EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, factor, 1, n)));
-        EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, factor, 5, n)));
+        EXPECT_FALSE(expect_right(points, edges_of_stretched(points, factor, 1, n)));
+        EXPECT_FALSE(expect_right(points, edges_of_stretched(points, factor, 5, n)));
         ASSERT_FALSE(HasFailure());
       }
     }
@@ -272,7 +272,7 @@ TEST(Insertion, Files) {
   for (const std::string& file : data_files()) {
     SCOPED_TRACE(file);
     const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
-    EXPECT_FALSE(expect_as_twin(points, edges_of_stretched(points, 16, 2, 1)));
+    EXPECT_FALSE(expect_right(points, edges_of_stretched(points, 16, 2, 1)));
   }
 }
 
@@ -285,7 +285,7 @@ TEST(Insertion, OneSegmentThroughEverything) {
     const double height = 1 + random.unit();
     points.insert(points.end(), {i + 0.25 * random.unit(), i % 2 ? height : -height});
   }
-  EXPECT_FALSE(expect_as_twin(points, {0, 1}));
+  EXPECT_FALSE(expect_right(points, {0, 1}));
 }
 
 TEST(Insertion, StarsAndOverlaps) {
@@ -300,11 +300,11 @@ TEST(Insertion, StarsAndOverlaps) {
     spans.insert(spans.end(), {(i - 1) / 2, n - 1 - (i - 1) / 3});
     few.insert(few.end(), {i - 1, std::min(n - 1, i + 9)});
   }
-  EXPECT_FALSE(expect_as_twin(star, rays));
+  EXPECT_FALSE(expect_right(star, rays));
   for (const bool with_others : {false, true}) {
     if (with_others) line.insert(line.end(), {0, double(n), double(n), 0});
-    EXPECT_FALSE(expect_as_twin(line, spans));
-    EXPECT_FALSE(expect_as_twin(line, few));
+    EXPECT_FALSE(expect_right(line, spans));
+    EXPECT_FALSE(expect_right(line, few));
   }
 }
 
@@ -319,7 +319,7 @@ TEST(Insertion, StarAcrossTriangles) {
     points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
     rays.insert(rays.end(), {0, i});
   }
-  EXPECT_FALSE(expect_as_twin(points, rays));
+  EXPECT_FALSE(expect_right(points, rays));
 }
 
 }  // namespace

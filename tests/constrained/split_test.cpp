@@ -18,6 +18,7 @@
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/integer_points.hpp"
 
@@ -739,15 +740,10 @@ TEST(SmallSplit, SeveralSets) {
 
 TEST(SmallSplit, Errors) {
   const Coordinates points = {0, 0, 4, 4, 0, 4, 4, 0, 1, 0, 1, 4, 8, 8};
-  const auto message = [&points](const Segments& segments,
-                                 const constrained::SplitLimits& limits) -> std::string {
-    try {
+  const auto message = [&points](const Segments& segments, const constrained::SplitLimits& limits) {
+    return error_of(ErrorKind::input, [&] {
       split(points.data(), {0, points.size() / 2}, segments, limits);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input);
-      return error.what();
-    }
-    return "no error";
+    });
   };
   EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {8}),
             "splitting segments makes more than 8 pieces, for which memory or 32-bit indices do not suffice");

@@ -19,7 +19,6 @@
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/native.hpp"
 #include "tests/constrained/segments.hpp"
-#include "tests/constrained/sequential/insert.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/reference.hpp"
@@ -605,15 +604,13 @@ SegmentInput moved(SegmentInput input, double factor) {
   return input;
 }
 
-// The twin, the brute-force definition and the checker agree.
+// The library, the brute-force definition and the checker agree.
 void expect_right(const SegmentInput& input) {
   const std::vector<std::size_t> offsets = {0, input.points.size() / 2};
   const Triangulation delaunay = delaunay_of(input.points, offsets);
-  const sequential::Result result =
-      sequential::constrain(input.points.data(), offsets, delaunay, input.segments);
+  const ConstrainedTriangulation result = insert(input.points, offsets, delaunay, input.segments);
   expect_edges(expected_edges(input.points, offsets, delaunay, input.segments), result);
   expect_canonical(input.points, delaunay, result);
-  EXPECT_EQ(result.repeated_polygons, 0u);
   EXPECT_EQ(Case(input.points, input.segments).verify().problem, "");
 }
 

@@ -25,7 +25,7 @@
 #include "flaunay/flaunay.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
-#include "tests/constrained/sequential/insert.hpp"
+#include "tests/constrained/native.hpp"
 #include "tests/fuzz/minimise.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/fuzz/segments.hpp"
@@ -198,7 +198,7 @@ struct Outcome {
 
 Outcome constrain(const Flat& all, const Triangulation& delaunay, const Segments& segments) {
   try {
-    return {"", sequential::constrain(all.points.data(), all.offsets, delaunay, segments)};
+    return {"", testing::insert(all.points, all.offsets, delaunay, segments)};
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input) throw;
     return {error.what(), std::nullopt};
@@ -317,8 +317,8 @@ class Devices {
     }
   }
 
-  /// Whether the public call has the result of the twin for the same Delaunay triangulation: natively, and if
-  /// asked for also by OpenCL, with sizes by which few segments are many groups and rounds.
+  /// Whether the public call has the result of the insertion alone: natively, and if asked for also by
+  /// OpenCL, with sizes by which few segments are many groups and rounds.
   std::string compare(const Flat& all, bool with_opencl) {
     for (const Tuned& tuned : all_) {
       if (tuned.is_opencl && !with_opencl) continue;
@@ -397,13 +397,11 @@ class Devices {
       const ConstrainedTriangulation result =
           triangulator.constrained(all.points.data(), all.offsets, constraints, constrained_options);
       if (!expected.result) return "has a result instead of the error: " + expected.error;
-      if (result.constrained != expected.result->constrained)
-        return "its marks of constraints differ from the twin's";
-      if (result.triangles != expected.result->triangles) return "its triangles differ from the twin's";
-      if (result.neighbors != expected.result->neighbors) return "its neighbours differ from the twin's";
-      if (result.constraint_edges != expected.result->constraint_edges)
-        return "its edges differ from the twin's";
-      if (result.piece_edges != expected.result->piece_edges) return "its pieces differ from the twin's";
+      if (result.constrained != expected.result->constrained) return "its marks of constraints differ";
+      if (result.triangles != expected.result->triangles) return "its triangles differ";
+      if (result.neighbors != expected.result->neighbors) return "its neighbours differ";
+      if (result.constraint_edges != expected.result->constraint_edges) return "its edges differ";
+      if (result.piece_edges != expected.result->piece_edges) return "its pieces differ";
       return "";
     } catch (const Error& error) {
       if (error.what() == expected.error) return "";

@@ -1,10 +1,9 @@
-// Cut trees, those of the device against those of the host, and these against their twin.
+// Cut trees of the device against their twin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,71 +14,21 @@
 namespace flaunay::points {
 namespace {
 
-void check_tree(const std::vector<cl_double2>& samples, int depth) {
-  const TreeTwin twin = testing::tree_twin(samples, depth);
-  std::vector<cl_double2> changed = samples;
-  const CutTree tree = cut_tree(changed, depth);
-  ASSERT_EQ(tree.depth, depth);
-  ASSERT_EQ(tree.nodes.size(), twin.nodes.size());
-  TreeTwin found;
-  found.depth = depth;
-  found.nodes.resize(1);
-  for (std::size_t k = 1; k < tree.nodes.size(); ++k) {
-    EXPECT_EQ(tree.nodes[k].turn != 0, twin.nodes[k].axis != 0) << "node " << k;
-    found.nodes.push_back(testing::decoded(tree.nodes[k]));
-    EXPECT_EQ(found.nodes[k].axis, twin.nodes[k].axis) << "node " << k;
-    for (const int c : {0, 1}) {
-      EXPECT_EQ(found.nodes[k].pivot.s[c], twin.nodes[k].pivot.s[c]) << "node " << k;
-      EXPECT_FALSE(found.nodes[k].pivot.s[c] == 0 && std::signbit(found.nodes[k].pivot.s[c])) << "node " << k;
-    }
-  }
-  // Samples that all differ spread evenly.
-  std::set<std::pair<double, double>> places;
-  std::vector<std::size_t> leaves(std::size_t{1} << depth);
-  for (const cl_double2& p : samples) {
-    places.emplace(p.s[0], p.s[1]);
-    ++leaves[static_cast<std::size_t>(found.leaf(p))];
-  }
-  if (places.size() < samples.size()) return;
-  const auto [least, most] = std::minmax_element(leaves.begin(), leaves.end());
-  EXPECT_GE(*least, samples.size() >> depth);
-  EXPECT_LE(*most, (samples.size() + leaves.size() - 1) >> depth);
-}
-
-TEST(SmallCutTree, CutsSamplesInHalvesAcrossTheLongerRange) {
-  for (const int depth : {0, 1, 2, 5}) {
-    for (const std::size_t size : {std::size_t{1} << depth, samples_for(depth), samples_for(depth) + 5}) {
-      SCOPED_TRACE(std::to_string(size) + " samples, depth " + std::to_string(depth));
-      check_tree(points_of(make_fixture("uniform", size, 1)), depth);
-      for (const auto& [name, points] : awkward(size, 2)) {
-        SCOPED_TRACE(name);
-        check_tree(points_of(points), depth);
-      }
-    }
-  }
-}
-
-TEST(CutTree, CutsSamplesInHalvesAcrossTheLongerRange) {
-  for (const testing::Fixture& fixture : testing::all_fixtures()) {
-    SCOPED_TRACE(fixture.name);
-    check_tree(points_of(fixture.make(samples_for(7), 3)), 7);
-  }
-}
-
 TEST(SmallCutTree, AxisIsThatOfTheLongerInterquartileRange) {
+  const auto axis_of = [](const auto& all) { return testing::tree_twin(all, 1).nodes[1].axis; };
   // A few far points do not count: the range between the quarters does.
   std::vector<cl_double2> samples{{{-1000, 1}}, {{1000, 2}}};
   for (int i = 0; i < 14; ++i) samples.push_back({{i * 0.25, static_cast<double>(i)}});
-  EXPECT_TRUE(cut_tree(samples, 1).nodes[1].turn != 0);
+  EXPECT_EQ(axis_of(samples), 1);
   for (cl_double2& p : samples) std::swap(p.s[0], p.s[1]);
-  EXPECT_FALSE(cut_tree(samples, 1).nodes[1].turn != 0);
+  EXPECT_EQ(axis_of(samples), 0);
   std::vector<cl_double2> square{{{0, 0}}, {{1, 1}}, {{2, 2}}, {{3, 3}}};
-  EXPECT_FALSE(cut_tree(square, 1).nodes[1].turn != 0);
+  EXPECT_EQ(axis_of(square), 0);
 }
 
 TEST(SmallCutTree, SamplesComeFromEqualParts) {
   for (const int depth : {1, 3, 6}) {
-    const std::size_t samples = samples_for(depth);
+    const std::size_t samples = testing::samples_for(depth);
     for (const std::size_t n :
          {std::size_t{2}, samples - 1, samples, samples + 1, 10 * samples + 7, 1000 * samples}) {
       const std::vector<cl_int> indices = sample_indices(n, depth);
@@ -120,7 +69,7 @@ struct HostTrees {
   std::size_t first_sample = 0, first_node = 0;  ///< of the set at hand
 };
 
-/// A set's tree against that which the host makes of the same samples.
+/// A set's tree against the twin of the same samples.
 void check_device_tree(const Coordinates& coordinates, int depth, std::size_t samples_per_leaf,
                        const HostTrees& found) {
   std::vector<cl_double2> expected, samples;
@@ -129,12 +78,15 @@ void check_device_tree(const Coordinates& coordinates, int depth, std::size_t sa
     samples.push_back(found.samples[found.first_sample + samples.size()]);
   }
   EXPECT_TRUE(same(samples, expected));
-  const CutTree tree = cut_tree(expected, depth);  // and brings them to the order of leaves
+  const TreeTwin tree = testing::tree_twin(expected, depth);
   for (std::size_t k = 1; k < tree.nodes.size(); ++k) {
-    const kernel::cut_node &node = found.nodes[found.first_node + k], &twin = tree.nodes[k];
+    const kernel::cut_node& node = found.nodes[found.first_node + k];
+    const kernel::cut_node twin = testing::node_of(tree.nodes[k].pivot, tree.nodes[k].axis);
     ASSERT_TRUE(node.major == twin.major && node.minor == twin.minor && node.turn == twin.turn)
         << "node " << k;
   }
+  expected.clear();
+  for (const auto& leaf : tree.leaves) expected.insert(expected.end(), leaf.begin(), leaf.end());
   for (const std::size_t order : {std::size_t{0}, found.samples.size()}) {
     std::vector<cl_double2> by_leaf;
     std::vector<bool> is_there(samples.size());

@@ -9,6 +9,7 @@
 
 #include "launchers/points/distribute_tiles.cl.hpp"
 #include "tests/points/support.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/ingest_twin.hpp"
 #include "tuning/tuning.hpp"
 
@@ -64,14 +65,10 @@ TEST(SmallDistribute, BadInputIsRefused) {
     Call call(runtime);
     std::vector<cl_int> representatives(coordinates.size() / 2);
     const auto output = runtime.output(representatives);
-    try {
+    return testing::error_of(ErrorKind::input, [&] {
       *make_blocks(call.work, runtime.view(coordinates.data(), coordinates.size()),
                    {0, coordinates.size() / 2}, output);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input);
-      return std::string(error.what());
-    }
-    return std::string();
+    });
   };
   EXPECT_NE(message({0, 0, 1, 0, 0, std::nan(""), HUGE_VAL, 0}).find("point 2 is not finite"),
             std::string::npos);

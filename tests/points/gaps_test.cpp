@@ -73,12 +73,12 @@ class GapTwin {
     Samples low, high;
     if (samples.empty()) {
       ++met_.empty;
-      nodes[node] = testing::cut_tree_detail::node_of({{0, 0}}, 0);
+      nodes[node] = testing::node_of({{0, 0}}, 0);
     } else {
       const Gap gap = widest_gap(sorted, half_size);
       const Samples& along = sorted[gap.axis];
       std::size_t split = along.size() / 2;
-      nodes[node] = testing::cut_tree_detail::node_of(along[split], gap.axis);
+      nodes[node] = testing::node_of(along[split], gap.axis);
       if (gap.extent > 0) {
         const double begin = at(along[gap.first], gap.axis), middle = begin + 0.5 * gap.extent;
         const double cut = middle > begin ? middle : begin + gap.extent;

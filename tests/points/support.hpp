@@ -36,8 +36,6 @@ using host::Runtime;
 using testing::BlocksTwin;
 using testing::comes_first;
 using testing::Coordinates;
-using testing::cut_tree;
-using testing::CutTree;
 using testing::FixtureRandom;
 using testing::HostRings;
 using testing::make_fixture;
@@ -45,7 +43,6 @@ using testing::MeshTwin;
 using testing::RingCheck;
 using testing::same;
 using testing::sample_indices;
-using testing::samples_for;
 using testing::spread_indices;
 using testing::TreeTwin;
 

@@ -32,6 +32,7 @@ struct TreeTwin {
   };
   int depth = 0;
   std::vector<Node> nodes;
+  std::vector<std::vector<cl_double2>> leaves;  ///< the samples of each
 
   int leaf(const cl_double2& p) const {
     int node = 1;
@@ -66,6 +67,7 @@ inline TreeTwin tree_twin(const std::vector<cl_double2>& samples, int depth) {
     parts[2 * k].assign(part.begin(), middle);
     parts[2 * k + 1].assign(middle, part.end());
   }
+  tree.leaves.assign(parts.begin() + static_cast<std::ptrdiff_t>(tree.nodes.size()), parts.end());
   return tree;
 }
 

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "mesh/records.h"
 #include "tests/support/distribute_twin.hpp"
-#include "tests/support/exact_points.hpp"
 
 namespace flaunay::testing {
 
@@ -143,7 +143,6 @@ class RingCheck {
         first_edge_(static_cast<cl_int>(kEdgesPerPoint) * first_),
         last_edge_(static_cast<cl_int>(kEdgesPerPoint) * last_),
         vertices_(g.vertices_of(first_block_, last_block_)),
-        exact_(std::vector<cl_double2>(g.vertices.begin() + first_, g.vertices.begin() + last_)),
         is_canonical_(is_canonical) {}
 
   std::string run() {
@@ -172,7 +171,9 @@ class RingCheck {
   void fail(const char* what, const Values&... values) {
     if (what_.empty()) what_ = fmt::format(fmt::runtime(what), values...);
   }
-  int orient(cl_int a, cl_int b, cl_int c) const { return exact_.orient(a - first_, b - first_, c - first_); }
+  int orient(cl_int a, cl_int b, cl_int c) {
+    return exact_.orient2d(g_.point(a).s, g_.point(b).s, g_.point(c).s);
+  }
   bool outside(cl_int e) const { return outside_[static_cast<std::size_t>(e - first_edge_)]; }
   bool owns(cl_int e) const {
     const cl_int next = g_.along_face(e);
@@ -348,7 +349,7 @@ class RingCheck {
     for (cl_int e = first_edge_; e < last_edge_; e += 2) {
       if (!g_.used(e) || outside(e) || outside(e ^ 1)) continue;
       const cl_int a = g_.from(e), b = g_.to(e), c = g_.to(g_.along_face(e)), d = g_.to(g_.along_face(e ^ 1));
-      const int side = exact_.in_circle(a - first_, b - first_, c - first_, d - first_);
+      const int side = exact_.incircle(g_.point(a).s, g_.point(b).s, g_.point(c).s, g_.point(d).s);
       if (side > 0) return fail("vertex {} is in the circle across edge {}", d, e);
       if (side < 0 || !is_canonical_) continue;
       const cl_int first = ends_twin(g_, {a, b, c, d})[0];
@@ -359,7 +360,7 @@ class RingCheck {
   const HostRings& g_;
   cl_int first_block_, last_block_, first_, last_, first_edge_, last_edge_;
   std::vector<cl_int> vertices_;
-  ExactPoints exact_;
+  ExactPredicates exact_;
   bool is_canonical_;
   std::size_t used_ = 0;
   std::vector<bool> outside_;

@@ -1,9 +1,5 @@
 #include "tests/constrained/sequential/mesh.hpp"
 
-#include <algorithm>
-#include <array>
-#include <numeric>
-
 #include "geometry/halfedges.hpp"
 
 namespace flaunay::sequential {
@@ -78,7 +74,6 @@ ConstrainedMesh::ConstrainedMesh(const Predicates& predicates, const Point* poin
       twins_(delaunay.triangles.size(), -1),
       constraints_(delaunay.triangles.size(), -1),
       out_(point_count, -1),
-      replaced_(delaunay.triangles.size() / 3, 0),
       polygons_(predicates, points),
       side_of_(delaunay.triangles.size(), -1) {
   Options options;
@@ -88,14 +83,6 @@ ConstrainedMesh::ConstrainedMesh(const Predicates& predicates, const Point* poin
   geometry::write_halfedges(options, adjacency);
   twins_.swap(adjacency.halfedges);
   for (std::size_t h = 0; h < triangles_.size(); ++h) out_[triangles_[h]] = static_cast<std::int32_t>(h);
-}
-
-bool ConstrainedMesh::depart(std::int32_t from, std::int32_t to, Departure& departure) const {
-  StarSearch forward(*this, from, to), backward(*this, to, from);
-  while (true) {
-    if (forward.step(departure)) return false;
-    if (backward.step(departure)) return true;
-  }
 }
 
 Departure ConstrainedMesh::depart_from(std::int32_t from, std::int32_t to) const {
@@ -136,11 +123,6 @@ std::int32_t ConstrainedMesh::follow(std::int32_t from, std::int32_t to, std::in
   }
 }
 
-void ConstrainedMesh::constrain(std::int32_t halfedge, std::int32_t constraint) {
-  constraints_[halfedge] = constraint;
-  if (twins_[halfedge] >= 0) constraints_[twins_[halfedge]] = constraint;
-}
-
 void ConstrainedMesh::retriangulate(const Cavity& cavity, std::int32_t constraint) {
   sides_.clear();
   read_sides(cavity.left);
@@ -152,7 +134,6 @@ void ConstrainedMesh::retriangulate(const Cavity& cavity, std::int32_t constrain
   for (const Cavity::Border* border : {&cavity.left, &cavity.right}) {
     for (const std::int32_t h : border->sides) side_of_[h] = -1;
   }
-  for (const std::int32_t t : cavity.rows) replaced_[t] = 1;
 
   const std::int32_t* row = cavity.rows.data();
   chain_ = cavity.left.vertices;
@@ -160,7 +141,7 @@ void ConstrainedMesh::retriangulate(const Cavity& cavity, std::int32_t constrain
   chain_.assign(cavity.right.vertices.rbegin(), cavity.right.vertices.rend());
   const std::int32_t right = fill(chain_, static_cast<std::int32_t>(sides_.size()) - 1, -1, row);
   join(left, right);
-  constrain(left, constraint);
+  for (const std::int32_t h : {left, right}) constraints_[h] = constraint;
   for (const Side& side : sides_) {
     join(side.halfedge, side.twin < -1 ? sides_[-2 - side.twin].halfedge : side.twin);
     constraints_[side.halfedge] = side.constraint;
@@ -215,47 +196,6 @@ std::int32_t ConstrainedMesh::put(std::int32_t row, std::int32_t a, std::int32_t
 void ConstrainedMesh::join(std::int32_t a, std::int32_t b) {
   twins_[a] = b;
   if (b >= 0) twins_[b] = a;
-}
-
-void ConstrainedMesh::write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors,
-                            std::vector<std::uint8_t>& constrained) const {
-  const auto rows = static_cast<std::int32_t>(triangles_.size() / 3);
-  // Where the smallest vertex of a row is.
-  const auto first_corner = [this](std::int32_t t) {
-    const auto corner = triangles_.begin() + 3 * t;
-    return static_cast<std::int32_t>(std::min_element(corner, corner + 3) - triangles_.begin());
-  };
-  struct Replaced {
-    std::array<std::int32_t, 3> corners;
-    std::int32_t row;
-  };
-  std::vector<Replaced> replaced;
-  for (std::int32_t t = 0; t < rows; ++t) {
-    if (!replaced_[t]) continue;
-    const std::int32_t h = first_corner(t);
-    replaced.push_back({{triangles_[h], triangles_[next_halfedge(h)], triangles_[previous_halfedge(h)]}, t});
-  }
-  std::sort(replaced.begin(), replaced.end(),
-            [](const Replaced& a, const Replaced& b) { return a.corners < b.corners; });
-  std::vector<std::int32_t> place(static_cast<std::size_t>(rows));
-  std::iota(place.begin(), place.end(), 0);
-  std::size_t next = 0;
-  for (std::int32_t t = 0; t < rows; ++t) {
-    if (replaced_[t]) place[replaced[next++].row] = t;
-  }
-
-  triangles.resize(triangles_.size());
-  neighbors.resize(triangles_.size());
-  constrained.resize(triangles_.size());
-  for (std::int32_t t = 0; t < rows; ++t) {
-    std::int32_t h = first_corner(t);
-    for (std::int32_t to = 3 * place[t], end = to + 3; to < end; ++to, h = next_halfedge(h)) {
-      triangles[to] = triangles_[h];
-      const std::int32_t opposite = next_halfedge(h), twin = twins_[opposite];
-      neighbors[to] = twin < 0 ? -1 : place[twin / 3];
-      constrained[to] = constraints_[opposite] >= 0;
-    }
-  }
 }
 
 }  // namespace flaunay::sequential

@@ -35,13 +35,7 @@ class ConstrainedMesh {
   ConstrainedMesh(const geometry::Predicates& predicates, const geometry::Point* points,
                   std::size_t point_count, const Triangulation& delaunay);
 
-  /// Whether the vertex is in a triangle; in collinear sets none is.
-  bool has_triangles(std::int32_t vertex) const { return out_[vertex] >= 0; }
-
-  /// Finds how the segment between two vertices leaves either of them, whichever is sooner found. Returns
-  /// whether that is the second one. O(the smaller of the numbers of their edges).
-  bool depart(std::int32_t from, std::int32_t to, Departure& departure) const;
-  /// Finds how the segment leaves the first one.
+  /// Finds how the segment between two vertices leaves the first one.
   Departure depart_from(std::int32_t from, std::int32_t to) const;
 
   /// Follows the segment from a departure that crosses to the next vertex on it, and returns that. crossed:
@@ -49,20 +43,9 @@ class ConstrainedMesh {
   std::int32_t follow(std::int32_t from, std::int32_t to, std::int32_t halfedge, Cavity& cavity,
                       std::vector<std::int32_t>& crossed) const;
 
-  /// The constraint of the edge; -1 if it has none.
-  std::int32_t constraint(std::int32_t halfedge) const { return constraints_[halfedge]; }
-  /// Makes an edge a constraint.
-  void constrain(std::int32_t halfedge, std::int32_t constraint);
   /// Replaces the triangles of a cavity that crosses no constraints by those of the canonical triangulation
   /// with the edge from its first to its last vertex, which becomes a constraint.
   void retriangulate(const Cavity& cavity, std::int32_t constraint);
-
-  /// The triangles, those opposite to their vertices, and whether a constraint is between, as in
-  /// ConstrainedTriangulation. Rows that were not replaced are as before; the others are in ascending order.
-  void write(std::vector<std::int32_t>& triangles, std::vector<std::int32_t>& neighbors,
-             std::vector<std::uint8_t>& constrained) const;
-
-  const PolygonTriangulator& polygons() const { return polygons_; }
 
  private:
   class StarSearch;
@@ -83,7 +66,6 @@ class ConstrainedMesh {
   std::vector<std::int32_t> triangles_, twins_;
   std::vector<std::int32_t> constraints_;  // per half-edge
   std::vector<std::int32_t> out_;          // per vertex, a half-edge from it
-  std::vector<char> replaced_;             // per row
   PolygonTriangulator polygons_;
 
   // Of retriangulate: sides of the left border, then of the right one; per half-edge the side, or -1.
