@@ -413,7 +413,9 @@ TEST_F(BenchTest, DerivedIsBesideATriangulation) {
     expect_times(row);
     EXPECT_GT(row.value("of_triangulate", 0.0), 0) << row;
   }
-  if (cgal) EXPECT_LT(record["answers"][0].value("largest_difference", 1.0), 1e-9);
+  if (cgal) {
+    EXPECT_LT(record["answers"][0].value("largest_difference", 1.0), 1e-9);
+  }
 }
 
 TEST_F(BenchTest, OtherSurfacesAndWeightedPointsAreBesideCgal) {
@@ -452,7 +454,9 @@ TEST_F(BenchTest, RefinementIsBesideOthers) {
   EXPECT_EQ(rows["flaunay"], 7u);
   EXPECT_EQ(rows["flaunay, 1 thread"], 7u);
   // CGAL has the points at the first angle alone.
-  if (rows.count("cgal") > 0) EXPECT_EQ(rows["cgal"], 2u);
+  if (rows.count("cgal") > 0) {
+    EXPECT_EQ(rows["cgal"], 2u);
+  }
 }
 
 TEST_F(BenchTest, TuningsAreBesideEachOther) {
@@ -644,7 +648,9 @@ TEST_F(PredictionTest, OfEveryMachine) {
   for (const auto& file : fs::directory_iterator(script("machines"))) {
     const auto machine = json_of(file.path().string());
     for (const auto& [key, value] : machine.items()) {
-      if (value.is_object()) EXPECT_GT(value.value("source", "").size(), 5u) << file.path() << " " << key;
+      if (value.is_object()) {
+        EXPECT_GT(value.value("source", "").size(), 5u) << file.path() << " " << key;
+      }
     }
     const auto result = predicted(record, "--measured --machine " + file.path().stem().string());
     EXPECT_TRUE(result.value("predicted", false));
@@ -750,7 +756,9 @@ TEST_F(PaperTest, CountsAreRecorded) {
       expect_spread(row, key);
       EXPECT_GT(row[key][1].get<double>(), 0) << key;
     }
-    if (row["algorithm"] == "dwyer") EXPECT_EQ(row["over_dwyer"][0], 1);
+    if (row["algorithm"] == "dwyer") {
+      EXPECT_EQ(row["over_dwyer"][0], 1);
+    }
     if (row["n"] != 512) continue;
     double sum = 0;
     for (const char* key : {"sorting", "cuts", "hull", "merge", "split", "endgame"}) {

@@ -89,7 +89,7 @@ flaunay_test(
   LIBRARIES flaunay_fuzz flaunay_core flaunay_host_modes flaunay_verify flaunay_test_support
   LABELS asan)
 flaunay_test(
-  test_host_modes
+  test_host_modes UNITY
   SOURCES dwyer/dwyer_test.cpp
           geometry/areas_test.cpp
           geometry/mesh_test.cpp
@@ -102,6 +102,8 @@ flaunay_test(
           verify/verify_test.cpp
   LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
   LABELS asan)
+# It has kernels' text with types of its own.
+set_source_files_properties(${TESTS}/statistics/counting_test.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 # The predicates in fixed point, as several devices would compute them.
 set(FIXED_POINT_READINGS ${TESTS}/support/fixed_point_direct.cpp ${TESTS}/support/fixed_point_contracted.cpp)
 set_source_files_properties(${FIXED_POINT_READINGS} PROPERTIES COMPILE_OPTIONS -frounding-math)
@@ -130,7 +132,7 @@ flaunay_test(
   LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
   LABELS asan)
 flaunay_test(
-  test_io UNOPTIMISED
+  test_io UNITY UNOPTIMISED
   SOURCES io/io_test.cpp io/generate_test.cpp io/map_test.cpp io/stream_test.cpp
   LIBRARIES flaunay_io flaunay_core fmt::fmt nlohmann_json::nlohmann_json
   LABELS asan)

@@ -36,7 +36,7 @@ flaunay_status flaunay_weighted_create(flaunay_triangulator* triangulator, const
 
 void flaunay_weighted_destroy(flaunay_weighted* weighted) { delete weighted; }
 
-#define WEIGHTED_COUNT(name, count)                                                                \
+#define WEIGHTED_COUNT(name, count)                                                       \
   size_t flaunay_weighted_##name##_count(const flaunay_weighted* weighted) {              \
     return read(weighted, [](const auto& handle) -> size_t { return handle.cpp.count; }); \
   }

@@ -25,7 +25,7 @@
 #include "files/scratch.hpp"
 #include "tests/io/folder.hpp"
 
-namespace flaunay::io {
+namespace flaunay::io::streams {
 namespace {
 
 using Values = std::vector<double>;
@@ -531,4 +531,4 @@ TEST_F(MeshStreamTest, AFailedWriteLeavesOldOutputs) {
 #endif
 
 }  // namespace
-}  // namespace flaunay::io
+}  // namespace flaunay::io::streams

@@ -20,7 +20,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
 
-namespace flaunay::testing {
+namespace flaunay::testing::regions {
 namespace {
 
 using research::Partition;
@@ -443,4 +443,4 @@ TEST(SolveRegions, FirstFailureIsReported) {
 }
 
 }  // namespace
-}  // namespace flaunay::testing
+}  // namespace flaunay::testing::regions

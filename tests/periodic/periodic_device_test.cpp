@@ -19,7 +19,7 @@
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
-namespace flaunay::testing {
+namespace flaunay::testing::tori {
 namespace {
 
 using Offsets = std::vector<std::size_t>;
@@ -224,4 +224,4 @@ TEST(SmallPeriodicOnDevice, PointsThatAreNotFiniteAreNamed) {
 }
 
 }  // namespace
-}  // namespace flaunay::testing
+}  // namespace flaunay::testing::tori

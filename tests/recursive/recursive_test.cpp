@@ -16,7 +16,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
 
-namespace flaunay::testing {
+namespace flaunay::testing::recursion {
 namespace {
 
 using research::Component;
@@ -397,4 +397,4 @@ TEST(RecursiveCounts, PruneSavesOnKuzmin) {
 }
 
 }  // namespace
-}  // namespace flaunay::testing
+}  // namespace flaunay::testing::recursion

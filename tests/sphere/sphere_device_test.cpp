@@ -15,7 +15,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
-namespace flaunay::testing {
+namespace flaunay::testing::spheres {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -148,4 +148,4 @@ TEST(SmallSphereOnDevice, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace flaunay::testing
+}  // namespace flaunay::testing::spheres
