@@ -302,6 +302,19 @@ TEST(Gradients, EveryFixture) {
   }
 }
 
+/// Each set has units of its own.
+TEST(SmallGradients, SetsOfEveryScale) {
+  Case both = make_case(make_fixture("uniform", 40, 3), 1, 4);
+  const std::size_t n = both.size();
+  std::vector<double> tiny = both.points, values = values_for(n);
+  for (double& x : tiny) x = std::ldexp(x, -400);
+  both.add(tiny, {});
+  both.triangulate();
+  values.insert(values.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n));
+  const std::vector<double> found = gradients_of("own", both, values, 1);
+  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_EQ(found[2 * n + i], std::ldexp(found[i], 400)) << i;
+}
+
 /// A linear function's gradients are found as they are, however few iterations are made beyond those needed.
 TEST(SmallGradients, OfALinearFunction) {
   const Case input = make_case(make_fixture("uniform", 60, 3), 1, 4);
