@@ -302,17 +302,21 @@ TEST(Gradients, EveryFixture) {
   }
 }
 
-/// Each set has units of its own.
+/// Sets that do not fit one scale have units of their own.
 TEST(SmallGradients, SetsOfEveryScale) {
-  Case both = make_case(make_fixture("uniform", 40, 3), 1, 4);
-  const std::size_t n = both.size();
-  std::vector<double> tiny = both.points, values = values_for(n);
-  for (double& x : tiny) x = std::ldexp(x, -400);
-  both.add(tiny, {});
+  const std::vector<double> points = make_fixture("uniform", 40, 3);
+  std::vector<double> values;
+  Case both;
+  for (const int shift : {-500, 500}) {
+    std::vector<double> scaled = points;
+    for (double& x : scaled) x = std::ldexp(x, shift);
+    both.add(scaled, {});
+    for (const double value : values_for(points.size() / 2)) values.push_back(value);
+  }
   both.triangulate();
-  values.insert(values.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n));
   const std::vector<double> found = gradients_of("own", both, values, 1);
-  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_EQ(found[2 * n + i], std::ldexp(found[i], 400)) << i;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(std::ldexp(found[points.size() + i], 1000), found[i]) << i;
 }
 
 /// A linear function's gradients are found as they are, however few iterations are made beyond those needed.

@@ -194,7 +194,7 @@ std::vector<Case> cases() {
   all.push_back({"equator", kDegrees, equator});
   all.push_back({"meridian with both poles", kDegrees, meridian});
   all.push_back({"half a meridian", kDegrees, half_meridian});
-  // Points on a circle through the pole, on one side of the others: an edge of the hull in the plane, in both directions.
+  // Points on a circle through the pole, beside another one: an edge of the hull, in both directions.
   for (const double longitude : {0.0, 180.0}) {
     Numbers beside = half_meridian;
     beside.insert(beside.end(), {longitude, 0.0});
