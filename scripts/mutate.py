@@ -138,7 +138,7 @@ FAULTS = [Fault(*each) for each in [
     ("lent-memory", "host/memory/arena.cpp",
      "blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};",
      "blocks_[0] = {memory, begin, offset + bytes - begin, 0};",
-     "a difference below 0", "test_embedding SmallEmbedding.*"),
+     "a difference below 0", "test_host SmallArena.*"),
     ("reclaimable-memory", "host/memory/memory_left_posix.cpp",
      "limit(left, difference(*most, difference(*used, reclaimable)),", "limit(left, difference(*most, *used),",
      "a forgotten term", "test_host SmallSystemMemory.*"),

@@ -77,6 +77,12 @@ TEST_F(SmallArena, UsesBuffersAgain) {
   EXPECT_LE(arena.held_bytes(), 2 * held);
 }
 
+TEST_F(SmallArena, LentMemoryMayEndBeforeItsFirstBuffer) {
+  arena_.lend(allocate_memory(runtime_.memory(), 4096), 1, 2);
+  EXPECT_THROW(arena_.allocate<cl_uint>(1), DeviceError);
+  arena_.lend(nullptr, 0, 0);
+}
+
 TEST_F(SmallArena, ReusedBuffersOutliveTheirArena) {
   Buffer<cl_uint> kept;
   {
