@@ -237,6 +237,15 @@ FAULTS = [Fault(*each) for each in [
      "a wrong dtype", "python test_graphs.py"),
 ]]
 
+# Which of these no run has shown to be found yet: their tests are those that should. The tests named beside
+# contours-at-borders and moved-ends did not find them.
+UNPROVEN = set("""
+    tile-starts group-scan scan-spans distinct-halves joined-boxes first-of-fan wedges-of-corners smoothed-edges
+    rounded-proposals frozen-edges rows-beside-flips smallest-of-two nearest-of-two plain-polygons seam-records
+    rows-of-the-cap pool-size stale-kernels stable-sort contours-at-borders communicators finished-points memory-status
+    rotated-flags moved-ends heights-outside edges-beside-places
+""".split())
+
 
 class Copy:
     """The source in another folder, with a build of its own."""
@@ -371,6 +380,7 @@ def main():
         outcome = "" if arguments.list else prove(copy, fault, fine)
         outcomes[fault.name] = outcome
         seconds = "" if arguments.list else f"{time.time() - begin:5.0f} s  "
+        outcome = outcome or ("not yet" if fault.name in UNPROVEN else "")
         print(f"{fault.name:20}  {seconds}{outcome:9}  {fault.kind}; {fault.file}; {fault.finder}", flush=True)
     if not arguments.list:
         found = sum(outcome == "found" for outcome in outcomes.values())
