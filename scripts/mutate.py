@@ -169,7 +169,7 @@ FAULTS = [Fault(*each) for each in [
      "a missed check for null", "test_arguments SmallArguments.InStructsOfC"),
     ("memory-status", "src/c/errors.cpp",
      "    return FLAUNAY_ERROR_MEMORY;\n", "    return FLAUNAY_ERROR_INPUT;\n",
-     "a wrong kind of error", "c_test"),
+     "a wrong kind of error", "test_allocations SmallAllocations.OfTheInterfaceForC"),
     ("lost-batches", "src/call/dynamic.cpp",
      "      points.roll_back();\n      is_lost = true;\n", "      points.roll_back();\n",
      "again: errors in the middle of a batch", "test_updates SmallUpdates.*"),
@@ -241,8 +241,8 @@ FAULTS = [Fault(*each) for each in [
 # contours-at-borders and moved-ends did not find them.
 UNPROVEN = set("""
     tile-starts group-scan scan-spans distinct-halves joined-boxes first-of-fan wedges-of-corners smoothed-edges
-    rounded-proposals frozen-edges rows-beside-flips smallest-of-two nearest-of-two plain-polygons seam-records
-    rows-of-the-cap pool-size stale-kernels stable-sort contours-at-borders communicators finished-points memory-status
+    rounded-proposals frozen-edges rows-beside-flips smallest-of-two nearest-of-two seam-records
+    rows-of-the-cap stale-kernels stable-sort contours-at-borders finished-points
     rotated-flags moved-ends heights-outside edges-beside-places
 """.split())
 
