@@ -237,9 +237,9 @@ def test_tables_and_columns_of_arrow(points):
         for others in [True, None, False], ["a", "b", "c"]:
             with pytest.raises(flaunay.UsageError, match="values must be real numbers, not object"):
                 tri.interpolate(kind(others), [[0, 0]])
-    nulls = arrow.array([[0.0, 1.0], None, [1.0, 1.0]], arrow.list_(arrow.float64(), 2))
-    with pytest.raises(flaunay.UsageError, match="points have nulls"):
-        flaunay.Delaunay(nulls)
+    for nulls in [[0.0, 1.0], None, [1.0, 1.0]], [[0.0, 1.0], [0.0, None], [1.0, 1.0]]:
+        with pytest.raises(flaunay.UsageError, match="points have nulls"):
+            flaunay.Delaunay(arrow.array(nulls, arrow.list_(arrow.float64(), 2)))
 
 
 # ---- Results in the caller's arrays

@@ -66,6 +66,13 @@ def test_nearest_places_on_a_convex_border_are_those_of_all_edges():
             _, _, distances = tri._border.nearest(queries)
             want = [nearest_place(ends[:, 0], ends[:, 1], q) for q in queries]
             assert distances == pytest.approx(want, rel=1e-9, abs=1e-12)
+        # Beside a corner, on lines that are perpendicular to its edges, either of them may be the nearest.
+        along = ends[:, 1] - ends[:, 0]
+        out = np.column_stack([along[:, 1], -along[:, 0]]) * 1e-9
+        queries = np.concatenate([ends[:, 0] + out, ends[:, 1] + out])
+        queries = queries[tri.find_simplex(queries) < 0]
+        want = [nearest_place(ends[:, 0], ends[:, 1], q) for q in queries]
+        assert tri._border.nearest(queries)[2] == pytest.approx(want, rel=1e-9, abs=0)
 
 
 def test_nearest_places_on_any_border_in_parts(monkeypatch):

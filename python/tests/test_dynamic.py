@@ -226,6 +226,15 @@ def test_copies_of_few_points():
         assert one.insert([[5, 5]]).first_point == len(points)
 
 
+def test_copies_of_the_smallest_points():
+    places = np.array([[1, 1], [0, 0], [3, 0], [3, 3], [0, 3]]) * 2.0**-1074
+    tri = flaunay.DynamicTriangulation(places, [[2, 3]], device="host")
+    tri.remove([0])
+    one = copy.copy(tri)
+    assert np.array_equal(one.points, tri.points, equal_nan=True)
+    assert as_set(one.triangulation().triangles) == as_set(tri.triangulation().triangles)
+
+
 def test_copies_of_large_points():
     far = np.finfo(np.float64).max
     tri = flaunay.DynamicTriangulation([[far, 0], [0, far], [-far, 0], [0, 0]], device="host")

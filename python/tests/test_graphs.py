@@ -54,6 +54,12 @@ def test_edges_have_their_triangles(tri):
     assert tri.edge_simplices.shape == tri.edges.shape
 
 
+def test_edges_of_many_points_have_their_triangles(random):
+    tri = flaunay.Delaunay(random.random((50000, 2)))
+    ends = tri.edges[:, None, :] == tri.simplices[tri.edge_simplices[:, 1], :, None]
+    assert ends.any(axis=1).all()
+
+
 def test_lengths_are_distances(tri):
     points = tri.points.astype(np.float64)
     expected = [np.linalg.norm(points[i] - points[j]) for i, j in tri.edges]

@@ -140,6 +140,9 @@ def test_text_in_columns(scan, tmp_path):
             assert flaunay.terrain(path, resolution=2, columns=columns).raster.tobytes() == expected
     np.savetxt(path, scan, fmt="%.2f", delimiter=", ", header="x, y, z", comments="")
     assert flaunay.terrain(path, resolution=2).raster.tobytes() == expected
+    np.savetxt(path, scan[:, ::-1], fmt="%.2f", delimiter=",", header="z,y,x", comments="")
+    for columns in ("x", "y", "z"), (2, 1, 0):
+        assert flaunay.terrain(path, resolution=2, columns=columns).raster.tobytes() == expected
     for line, message in (
         ("1,4 2,7 1,7\n", "semicolons"),
         ("1,4;2,7;1.5\n", "decimal"),
@@ -214,6 +217,10 @@ def test_scans_have_the_decimal_numbers(scan, tmp_path, suffix):
     made = flaunay.terrain(tmp_path, resolution=2)
     assert {tuple(p) for p in made.mesh.points} == {tuple(p) for p in scan[:, :2]}
     assert made.raster.tobytes() == flaunay.terrain(scan, resolution=2).raster.tobytes()
+    # An offset that is no multiple of the scale.
+    between = write_las(tmp_path / f"c.{suffix}", scan + 0.005, offsets=(500000.005, 4500000.005, 0.005))
+    points = flaunay.terrain(between, resolution=2).mesh.points
+    np.testing.assert_allclose(points, scan[:, :2] + 0.005, rtol=0, atol=1e-8)
 
 
 def test_classes_and_returns(scan, tmp_path):

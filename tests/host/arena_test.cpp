@@ -77,6 +77,25 @@ TEST_F(SmallArena, UsesBuffersAgain) {
   EXPECT_LE(arena.held_bytes(), 2 * held);
 }
 
+TEST_F(SmallArena, HoldsTwiceWhatWasInUseAtOnce) {
+  Arena arena(memory_for(ArrayMemory::reused));
+  constexpr std::size_t kUnit = std::size_t{1} << 20;
+  const auto use = [&](const std::vector<std::size_t>& sizes) {
+    const Arena::Scope scope(arena);
+    std::vector<Buffer<cl_uchar>> buffers;
+    for (const std::size_t size : sizes) buffers.push_back(arena.allocate<cl_uchar>(size * kUnit));
+  };
+  use({2, 2, 2, 2});
+  for (const std::size_t size : {3, 4, 5, 6, 7}) use({size});
+  EXPECT_LE(arena.held_bytes(), 16 * kUnit);
+}
+
+TEST_F(SmallArena, LentMemoryMayEndBeforeItsFirstBuffer) {
+  arena_.lend(allocate_memory(runtime_.memory(), 4096), 1, 2);
+  EXPECT_THROW(arena_.allocate<cl_uint>(1), DeviceError);
+  arena_.lend(nullptr, 0, 0);
+}
+
 TEST_F(SmallArena, ReusedBuffersOutliveTheirArena) {
   Buffer<cl_uint> kept;
   {

@@ -73,8 +73,8 @@ TEST(SmallProgramCache, IgnoresDamagedAndForeignFiles) {
   }
   write(file, whole + "x");
   EXPECT_FALSE(cache.load("key"));
-  // A file of another key, as if its name had been changed.
-  cache.store("another key", "another program");
+  // A file of another key, as if its name had been changed; its key and program are as long.
+  cache.store("kez", "another");
   for (const fs::path& path : files_in(folder.path())) {
     if (path != file) fs::rename(path, file);
   }

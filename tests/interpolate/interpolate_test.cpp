@@ -302,6 +302,23 @@ TEST(Gradients, EveryFixture) {
   }
 }
 
+/// Sets that do not fit one scale have units of their own.
+TEST(SmallGradients, SetsOfEveryScale) {
+  const std::vector<double> points = make_fixture("uniform", 40, 3);
+  std::vector<double> values;
+  Case both;
+  for (const int shift : {-500, 500}) {
+    std::vector<double> scaled = points;
+    for (double& x : scaled) x = std::ldexp(x, shift);
+    both.add(scaled, {});
+    for (const double value : values_for(points.size() / 2)) values.push_back(value);
+  }
+  both.triangulate();
+  const std::vector<double> found = gradients_of("own", both, values, 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(std::ldexp(found[points.size() + i], 1000), found[i]) << i;
+}
+
 /// A linear function's gradients are found as they are, however few iterations are made beyond those needed.
 TEST(SmallGradients, OfALinearFunction) {
   const Case input = make_case(make_fixture("uniform", 60, 3), 1, 4);

@@ -212,6 +212,12 @@ TEST(SmallRaster, TrianglesWithLongEdgesHaveNoPixels) {
       expect_right(terrain, grid, pixels, longest);
     }
   }
+  // Of pixels between a triangle that has none and one that does, whichever side is whose.
+  for (const double side : {-1.0, 1.0}) {
+    const Terrain kite = make_terrain({0, 0, 0, 4, side, 2, -10 * side, 2}, {0, 4, 2, 2});
+    EXPECT_EQ(rasterized(testing::triangulator(), kite, {0, 1, 1, 1, 3, 1}, 5),
+              (std::vector<double>{1, 2, 3}));
+  }
 }
 
 TEST(SmallRaster, ACornerWithoutWeightDoesNotCount) {

@@ -194,6 +194,12 @@ std::vector<Case> cases() {
   all.push_back({"equator", kDegrees, equator});
   all.push_back({"meridian with both poles", kDegrees, meridian});
   all.push_back({"half a meridian", kDegrees, half_meridian});
+  // Points on a circle through the pole, beside another one: an edge of the hull, in both directions.
+  for (const double longitude : {0.0, 180.0}) {
+    Numbers beside = half_meridian;
+    beside.insert(beside.end(), {longitude, 0.0});
+    all.push_back({"half a meridian and a point", kDegrees, beside});
+  }
   all.push_back({"cap in the north", kDirections, cap});
   all.push_back({"cap in the south", kDirections, far_cap});
   far_cap.insert(far_cap.end(), {0, 0, -3});

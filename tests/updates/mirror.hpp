@@ -228,7 +228,10 @@ class Mirror {
       work();
     } catch (const Interrupted&) {
       if (checks_between) {
+        // Known before the rows are there.
+        const std::size_t rows = mesh.row_count();
         rows_ = rows_of(mesh.rows());
+        EXPECT_EQ(rows, mesh.row_count());
         check();
       }
       EXPECT_NO_THROW(work());

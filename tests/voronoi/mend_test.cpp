@@ -16,6 +16,7 @@
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
+#include "voronoi/plain_polygon.h"
 
 namespace flaunay::voronoi {
 namespace {
@@ -76,6 +77,17 @@ void expect_same_cells(const ClippedVoronoi& all, std::size_t first, std::size_t
   EXPECT_TRUE(same(part(all.vertices, at(first), at(end)), alone.vertices));
   for (std::size_t i = first; i <= end; ++i)
     EXPECT_EQ(all.offsets[i] - all.offsets[first], alone.offsets[i - first]);
+}
+
+TEST(SmallMend, PolygonsThatGoAroundTwiceAreNotPlain) {
+  for (const int rounds : {1, 2}) {
+    std::vector<double> corners;
+    for (int k = 0; k < 5; ++k) {
+      const double angle = 2 * M_PI * k * rounds / 5;
+      corners.insert(corners.end(), {std::cos(angle), std::sin(angle)});
+    }
+    EXPECT_EQ(kernel::is_plain_polygon(kernel::double2{0, 0}, 0, 5, corners.data()), rounds == 1 ? 1 : 0);
+  }
 }
 
 TEST(SmallMend, ASetDependsOnNoOther) {

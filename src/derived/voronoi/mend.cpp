@@ -7,6 +7,7 @@
 
 #include "arithmetic/coordinates.h"
 #include "geometry/for_each.hpp"
+#include "geometry/predicates.hpp"
 #include "operations/prefetch.h"
 #include "predicates/bounds.h"
 #include "voronoi/plain_polygon.h"
