@@ -23,10 +23,10 @@ with open("pyproject.toml", "rb") as file:
 print("numpy==" + numpy.__version__)')
   ((${#packages[@]} > 1))
   # What triangulations are handed over to, in versions for the system's NumPy, and what flaunay.terrain reads and
-  # writes files by. The tests of PyVista and Gmsh run where these are installed: they are large. attrs: affine, which rasterio
-  # needs, does not work with the system's. What is imported is compiled then.
+  # writes files by. The tests of PyVista and Gmsh run where these are installed: they are large. attrs: affine, which
+  # rasterio needs, does not work with the system's. What is imported is compiled then.
   "${pip[@]}" install --quiet --no-compile --upgrade "${packages[@]}" meshio networkx scikit-fem shapely geopandas \
-    mypy "laspy[lazrs]" rasterio pyogrio attrs
+    mypy "laspy[lazrs]" rasterio pyogrio attrs "pyarrow==17.0.0"
   cp scripts/python-test.sh "$environment/made"
 fi
 settings=()
