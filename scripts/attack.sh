@@ -7,6 +7,7 @@
 #     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
 #     devices       10 minutes   all calls and kernels on every OpenCL runtime for CPUs that pip can install
 #     command        5 minutes   the tests of the command under the sanitizers
+#     benchmarks     4 minutes   the benchmarks and the script for a GPU, on little input
 #     packages       5 minutes   all of the library as a part of another project, installed as a static library
 #     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
@@ -16,7 +17,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build() {
   local preset="$1"
   shift
-  cmake --preset "$preset" && cmake --build --preset "$preset" --target "$@"
+  # As presets are by themselves: scripts/test.sh sets these.
+  cmake --preset "$preset" -DFLAUNAY_COMMAND=ON -DFLAUNAY_TEST_OBJECTS= && cmake --build --preset "$preset" --target "$@"
 }
 
 allocations() {
@@ -44,6 +46,11 @@ command() {
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan -R '^Command'
 }
 
+benchmarks() {
+  cmake --preset release -DFLAUNAY_BENCH=ON && build release all || return
+  ctest --preset release -R '^(Bench|Prediction|Paper)Test|^scripts.gpu'
+}
+
 packages() {
   build release all && ctest --preset release --label-regex nightly
 }
@@ -63,7 +70,7 @@ files() {
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments command packages tunings devices files)
+all=(allocations threads segments command benchmarks packages tunings devices files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Builds and runs the tests. Needs only Debian 12: installs everything else first.
-#   scripts/test.sh           all but those labelled nightly, which scripts/attack.sh runs; those labelled asan once more
-#                             under the sanitizers, and some fuzzing of the readers of files
-#   scripts/test.sh --quick   on the host alone, and the command: without MPI, benchmarks, packages, simulators, fuzzing, and
-#                             what is about devices
+#   scripts/test.sh           all but those of benchmarks and those labelled nightly, which scripts/attack.sh runs; those
+#                             labelled asan once more under the sanitizers, and some fuzzing of the readers of files
+#   scripts/test.sh --quick   on the host alone, and the command: without MPI, packages, simulators, fuzzing, and what is
+#                             about devices
 #   scripts/test.sh --kernels FOLDER   what a change of kernels/FOLDER concerns: its suites on the host, and its calls on
 #                             the first device, in the release build; for daily work
 set -euo pipefail
@@ -54,7 +54,7 @@ build() {
 if $quick; then
   build release -DFLAUNAY_BENCH=OFF
 else
-  build release -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
+  build release -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
   # With the tests' objects of the build above: the library is what is to be sanitized.
   build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release"
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the

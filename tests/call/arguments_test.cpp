@@ -30,6 +30,7 @@
 #include "flaunay/sphere.hpp"
 #include "flaunay/terrain.hpp"
 #include "flaunay/weighted.hpp"
+#include "tests/support/errors.hpp"
 
 namespace flaunay {
 namespace {
@@ -297,24 +298,14 @@ const T* array_for(std::size_t count, const T* array) {
 }
 std::size_t counted(std::size_t count) { return count == kNull ? kCount : count; }
 
-void expect_error(ErrorKind kind, const std::vector<std::string>& words, const std::function<void()>& call) {
-  try {
-    call();
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    for (const std::string& word : words) EXPECT_TRUE(says(error.what(), {word})) << error.what();
-  }
-}
-
 void expect_all_refused(const std::vector<Case>& cases, std::size_t most = 0) {
   for (const Case& one : cases) {
     SCOPED_TRACE(one.word);
-    expect_error(ErrorKind::usage, {one.word, "NULL"}, [&] { one.call(kNull); });
+    testing::expect_error(ErrorKind::usage, {one.word, "NULL"}, [&] { one.call(kNull); });
     for (const std::size_t count : kHuge) {
       if (count <= most) continue;
       SCOPED_TRACE(count);
-      expect_error(ErrorKind::input, {one.word, "too many"}, [&] { one.call(count); });
+      testing::expect_error(ErrorKind::input, {one.word, "too many"}, [&] { one.call(count); });
     }
   }
 }
@@ -423,15 +414,15 @@ TEST(SmallArguments, InStructsOfC) {
     given.ring_count = 1;
     given.polygon_offsets = kOffsets;
     given.polygon_count = count;
-    expect_error(ErrorKind::input, {"polygons", "too many"}, [&] { of_polygons(given); });
+    testing::expect_error(ErrorKind::input, {"polygons", "too many"}, [&] { of_polygons(given); });
     given.polygon_count = 1;
     given.part_offsets = kOffsets;
     given.part_count = count;
-    expect_error(ErrorKind::input, {"parts", "too many"}, [&] { of_polygons(given); });
+    testing::expect_error(ErrorKind::input, {"parts", "too many"}, [&] { of_polygons(given); });
     flaunay_interpolation_options columns{};
     columns.columns = count;
     double result = 0;
-    expect_error(ErrorKind::input, {"columns", "too many"}, [&] {
+    testing::expect_error(ErrorKind::input, {"columns", "too many"}, [&] {
       throw_error_of(flaunay_locator_gradients(good<flaunay_locator*>(), kPoints, &columns, &result));
     });
   }
@@ -582,7 +573,7 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
   for (const std::size_t count : kHuge) {
     for (const std::size_t queries : {std::size_t{0}, kCount}) {
       const auto refused = [&](const std::function<void()>& call) {
-        expect_error(ErrorKind::input, {"columns", "too many"}, call);
+        testing::expect_error(ErrorKind::input, {"columns", "too many"}, call);
       };
       refused([&] { on_sphere.interpolate(kPoints, count, kPoints, queries, degrees); });
       refused([&] { on_torus.interpolate(kPoints, count, kPoints, queries); });
@@ -646,8 +637,8 @@ TEST(SmallArguments, UnknownEnumerators) {
   for (const auto& one : cases) {
     for (const int value : {-1, 77}) {
       SCOPED_TRACE(one.name);
-      expect_error(ErrorKind::usage, {std::to_string(value) + " is no " + one.name},
-                   [&] { one.call(value); });
+      testing::expect_error(ErrorKind::usage, {std::to_string(value) + " is no " + one.name},
+                            [&] { one.call(value); });
     }
   }
 }
@@ -666,12 +657,12 @@ TEST(SmallArguments, PlacesThatAreNone) {
       SphericalTriangulation changed = sphere;
       changed.places[i] = wrong;
       const std::string place = "place " + std::to_string(i / 2);
-      expect_error(ErrorKind::usage, {place}, [&] { SphereLocator(used, changed); });
-      expect_error(ErrorKind::usage, {place}, [&] { voronoi_on_sphere(used, changed); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { SphereLocator(used, changed); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { voronoi_on_sphere(used, changed); });
       PeriodicTriangulation moved = torus;
       moved.places[i] = wrong;
-      expect_error(ErrorKind::usage, {place}, [&] { PeriodicLocator(used, moved); });
-      expect_error(ErrorKind::usage, {place}, [&] { periodic_cells(used, moved); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { PeriodicLocator(used, moved); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { periodic_cells(used, moved); });
     }
   }
 }
@@ -679,7 +670,7 @@ TEST(SmallArguments, PlacesThatAreNone) {
 TEST(SmallArguments, PeriodsThatAreNone) {
   Triangulator used("host");
   for (const double wrong : {0.0, -1.0, 1e271, 1e-272, std::numeric_limits<double>::quiet_NaN()}) {
-    expect_error(ErrorKind::usage, {"2^900", "1.2e-271", "8.4e270"}, [&] {
+    testing::expect_error(ErrorKind::usage, {"2^900", "1.2e-271", "8.4e270"}, [&] {
       triangulate_periodic(used, kPoints, kCount, {wrong, 1});
     });
   }

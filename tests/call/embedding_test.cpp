@@ -22,6 +22,7 @@
 #include "flaunay/result_arrays.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/embedded.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/opencl_calls.hpp"
 #include "tests/support/reference.hpp"
@@ -80,18 +81,6 @@ void expect_same(const DeviceTriangulation& result, const Triangulation& expecte
     using Element = typename std::decay_t<decltype(array)>::Element;
     EXPECT_TRUE(same(embedder().download<Element>(memory, values.size(), queue), values)) << array.name;
   });
-}
-
-void expect_error(ErrorKind kind, const std::vector<std::string>& parts, const std::function<void()>& work) {
-  try {
-    work();
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    for (const std::string& part : parts) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
-  }
 }
 
 void expect_usage_error(const std::vector<std::string>& parts, const std::function<void()>& work) {
@@ -1110,13 +1099,9 @@ TEST(SmallConstrainedOnDevice, CrossingSegmentsAreNamed) {
   const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
   DeviceTriangulation mesh;
   DeviceConstraintEdges edges;
-  try {
+  expect_error(ErrorKind::input, "segments 0", [&] {
     embedded().constrained({memory.get(), 4}, {ends.get(), 2}, mesh, edges);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    EXPECT_NE(std::string(error.what()).find("segments 0"), std::string::npos) << error.what();
-  }
+  });
 }
 
 TEST(SmallRelaxOnDevice, IsThatOfTheHost) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "large/chunks/run.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/stalling.hpp"
@@ -325,13 +326,7 @@ void expect_error(Coordinates points, const ErrorKind kind, const std::string& t
                   const Plan& plan = small_plan(50)) {
   ArrayPoints source(points.data(), points.size() / 2);
   VectorSink sink;
-  try {
-    run(source, nullptr, sink, plan, {solver()}, {});
-    FAIL() << "no error; expected " << text;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
-  }
+  testing::expect_error(kind, text, [&] { run(source, nullptr, sink, plan, {solver()}, {}); });
 }
 
 TEST(Chunks, ThatAreWrongAreRefused) {

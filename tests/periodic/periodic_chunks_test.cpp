@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "flaunay/periodic.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -250,17 +251,6 @@ TEST(PeriodicChunks, GoToArrays) {
   EXPECT_EQ(0u, none.triangles);
 }
 
-template <typename Work>
-void expect_error(ErrorKind kind, const std::string& text, const Work& work) {
-  try {
-    work();
-    FAIL() << "no error; expected " << text;
-  } catch (const Error& error) {
-    EXPECT_EQ(kind, error.kind());
-    EXPECT_NE(std::string::npos, std::string(error.what()).find(text)) << error.what();
-  }
-}
-
 TEST(PeriodicChunks, RefuseWrongInput) {
   Numbers points = uniform(100, {}, 2);
   const auto triangulate = [&](const Period& period, const ChunkOptions& options = in_chunks_of(50)) {
@@ -268,27 +258,27 @@ TEST(PeriodicChunks, RefuseWrongInput) {
     GrowingSink sink;
     triangulate_periodic_chunks(source, period, sink, options);
   };
-  expect_error(ErrorKind::usage, "period", [&] { triangulate({1, -1}); });
-  expect_error(ErrorKind::usage, "period", [&] { triangulate({kNone, kNone}); });
-  expect_error(ErrorKind::usage, "2^30", [&] { triangulate({1, 1e10}); });
-  expect_error(ErrorKind::usage, "hull", [&] {
+  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate({1, -1}); });
+  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate({kNone, kNone}); });
+  testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulate({1, 1e10}); });
+  testing::expect_error(ErrorKind::usage, "hull", [&] {
     std::vector<std::int32_t> hull(100);
     triangulate_periodic_chunks(points.data(), 100, {},
                                 MeshArrays<std::int32_t>{nullptr, nullptr, hull.data()}, nullptr);
   });
   ChunkOptions options = in_chunks_of(50);
   options.memory_bytes = 1000;
-  expect_error(ErrorKind::usage, "memory", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::usage, "memory", [&] { triangulate({}, options); });
   options.memory_bytes = (128 << 20) + 480;
-  expect_error(ErrorKind::input, "more than 10 images", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::input, "more than 10 images", [&] { triangulate({}, options); });
   options = in_chunks_of(50);
   options.progress = [](const std::string& stage, int, double) {
     if (stage == "images") throw Error(ErrorKind::usage, "enough");
   };
-  expect_error(ErrorKind::usage, "enough", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::usage, "enough", [&] { triangulate({}, options); });
   points[150] = std::nan("");
-  expect_error(ErrorKind::input, "point 75 is not finite", [&] { triangulate({}); });
-  expect_error(ErrorKind::usage, "pointer to them is NULL", [&] {
+  testing::expect_error(ErrorKind::input, "point 75 is not finite", [&] { triangulate({}); });
+  testing::expect_error(ErrorKind::usage, "pointer to them is NULL", [&] {
     triangulate_periodic_chunks(nullptr, 5, {}, MeshArrays<std::int32_t>{}, nullptr, in_chunks_of(50));
   });
 }

@@ -15,6 +15,7 @@
 #include "flaunay/device_memory.hpp"
 #include "flaunay/periodic.hpp"
 #include "tests/support/embedded.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -35,16 +36,6 @@ Enqueue on_own() {
   Enqueue enqueue;
   enqueue.queue = embedder().queue();
   return enqueue;
-}
-
-void expect_error(ErrorKind kind, const std::string& part, const std::function<void()>& work) {
-  try {
-    work();
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 void expect_same(const DevicePeriodicTriangulation& found, const PeriodicTriangulation& expected) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
@@ -496,17 +497,6 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
   EXPECT_NE("", verify_periodic(testing::triangulator(), square));
 }
 
-template <typename Work>
-void expect_refusal(ErrorKind kind, const char* part, const Work& work) {
-  try {
-    work();
-    FAIL() << "no error: " << part;
-  } catch (const Error& error) {
-    EXPECT_EQ(kind, error.kind());
-    EXPECT_NE(std::string::npos, std::string(error.what()).find(part)) << error.what();
-  }
-}
-
 // Against the diagram of nine copies in the plane.
 TEST(Periodic, CellsAreThoseOfThePlane) {
   const Period period{2, 0.75};
@@ -556,31 +546,33 @@ TEST(Periodic, CellsAreThoseOfThePlane) {
 
 TEST(Periodic, ErrorsSayWhatIsWrong) {
   const Numbers few = {0.5, 0.5, 0.2, 0.1};
-  expect_refusal(ErrorKind::input, "point 1 is not finite", [] { triangulated({1, 1, HUGE_VAL, 0}, {}); });
+  testing::expect_error(ErrorKind::input, "point 1 is not finite", [] {
+    triangulated({1, 1, HUGE_VAL, 0}, {});
+  });
   for (const Period& period :
        {Period{0, 1}, Period{1, -1}, Period{HUGE_VAL, HUGE_VAL}, Period{std::nan(""), 1}}) {
-    expect_refusal(ErrorKind::usage, "the period", [&] { triangulated(few, period); });
+    testing::expect_error(ErrorKind::usage, "the period", [&] { triangulated(few, period); });
   }
-  expect_refusal(ErrorKind::usage, "cells on a cylinder", [&] {
+  testing::expect_error(ErrorKind::usage, "cells on a cylinder", [&] {
     periodic_cells(testing::triangulator(), triangulated(few, {1, HUGE_VAL}));
   });
   PeriodicTriangulation mesh = triangulated(few, {});
   PeriodicLocator locator(testing::triangulator(), mesh);
   const Numbers lost = {0, HUGE_VAL};
-  expect_refusal(ErrorKind::input, "query 0 is not finite", [&] { locator.nearest(lost.data(), 1); });
-  expect_refusal(ErrorKind::usage, "one set", [&] {
+  testing::expect_error(ErrorKind::input, "query 0 is not finite", [&] { locator.nearest(lost.data(), 1); });
+  testing::expect_error(ErrorKind::usage, "one set", [&] {
     PeriodicLocator(testing::triangulator(),
                     triangulate_periodic(testing::triangulator(), few.data(), {0, 1, 2}, {}));
   });
   std::swap(mesh.triangles[1], mesh.triangles[2]);
-  expect_refusal(ErrorKind::usage, "not those of a triangulation",
-                 [&] { PeriodicLocator(testing::triangulator(), mesh); });
-  expect_refusal(ErrorKind::usage, "not those of a triangulation",
-                 [&] { periodic_cells(testing::triangulator(), mesh); });
+  testing::expect_error(ErrorKind::usage, "not those of a triangulation",
+                        [&] { PeriodicLocator(testing::triangulator(), mesh); });
+  testing::expect_error(ErrorKind::usage, "not those of a triangulation",
+                        [&] { periodic_cells(testing::triangulator(), mesh); });
   mesh.triangles[0] = 7;
-  expect_refusal(ErrorKind::usage, "not those of a triangulation",
-                 [&] { PeriodicLocator(testing::triangulator(), mesh); });
-  expect_refusal(ErrorKind::usage, "2^30", [&] { triangulated(few, {1, 0x1p31}); });
+  testing::expect_error(ErrorKind::usage, "not those of a triangulation",
+                        [&] { PeriodicLocator(testing::triangulator(), mesh); });
+  testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulated(few, {1, 0x1p31}); });
   EXPECT_TRUE(triangulated({}, {}).triangles.empty());
 }
 

@@ -19,6 +19,7 @@
 
 #include "flaunay/terrain.hpp"
 #include "tests/locate/support.hpp"
+#include "tests/support/errors.hpp"
 
 namespace flaunay::raster {
 namespace {
@@ -236,41 +237,30 @@ TEST(SmallRaster, NothingGivesNothing) {
   EXPECT_TRUE(trace_contours(on_host(), empty.view(), nullptr, {1}).heights.empty());
 }
 
-template <typename Work>
-void expect_error(ErrorKind kind, const char* part, const Work& work) {
-  try {
-    work();
-    FAIL() << "no error: " << part;
-  } catch (const Error& error) {
-    EXPECT_EQ(kind, error.kind());
-    EXPECT_NE(std::string::npos, std::string(error.what()).find(part)) << error.what();
-  }
-}
-
 TEST(SmallRaster, ErrorsSayWhatIsWrong) {
   Terrain terrain = make_terrain({0, 0, 1, 0, 0, 1}, {1, 2, 3});
   const auto with = [&](const RasterGrid& grid, double max_edge = 9) {
     return [&terrain, grid, max_edge] { rasterized(testing::triangulator(), terrain, grid, max_edge); };
   };
-  expect_error(ErrorKind::usage, "dx", with({0, 0, 0, 1, 2, 2}));
-  expect_error(ErrorKind::usage, "positive", with({0, 0, -1, 1, 2, 2}));
-  expect_error(ErrorKind::usage, "x = nan", with({std::nan(""), 0, 1, 1, 2, 2}));
-  expect_error(ErrorKind::usage, "rows", with({0, 0, 1, 1, std::size_t{1} << 31, 0}));
-  expect_error(ErrorKind::usage, "max_edge", with({0, 0, 1, 1, 2, 2}, -1));
-  expect_error(ErrorKind::input, "too small", with({1e6, 0, 1e-12, 1, 2, 2}));
-  expect_error(ErrorKind::input, "too fine", with({0, 0, 0x1p-520, 1, 2, 2}));
+  testing::expect_error(ErrorKind::usage, "dx", with({0, 0, 0, 1, 2, 2}));
+  testing::expect_error(ErrorKind::usage, "positive", with({0, 0, -1, 1, 2, 2}));
+  testing::expect_error(ErrorKind::usage, "x = nan", with({std::nan(""), 0, 1, 1, 2, 2}));
+  testing::expect_error(ErrorKind::usage, "rows", with({0, 0, 1, 1, std::size_t{1} << 31, 0}));
+  testing::expect_error(ErrorKind::usage, "max_edge", with({0, 0, 1, 1, 2, 2}, -1));
+  testing::expect_error(ErrorKind::input, "too small", with({1e6, 0, 1e-12, 1, 2, 2}));
+  testing::expect_error(ErrorKind::input, "too fine", with({0, 0, 0x1p-520, 1, 2, 2}));
   terrain.mesh.triangles[1] = 3;
-  expect_error(ErrorKind::usage, "triangle 0", with({0, 0, 1, 1, 2, 2}));
-  expect_error(ErrorKind::usage, "triangle 0",
-               [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), {1.5}); });
+  testing::expect_error(ErrorKind::usage, "triangle 0", with({0, 0, 1, 1, 2, 2}));
+  testing::expect_error(ErrorKind::usage, "triangle 0",
+                        [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), {1.5}); });
   terrain.mesh.triangles[1] = 1;
   terrain.mesh.neighbors[0] = 1;
-  expect_error(ErrorKind::usage, "triangle 0", with({0.5, 0.5, 1, 1, 1, 1}));
+  testing::expect_error(ErrorKind::usage, "triangle 0", with({0.5, 0.5, 1, 1, 1, 1}));
   terrain.points[0] = std::nan("");
-  expect_error(ErrorKind::input, "point 0", with({0, 0, 1, 1, 2, 2}));
+  testing::expect_error(ErrorKind::input, "point 0", with({0, 0, 1, 1, 2, 2}));
   for (const std::vector<double>& heights : {std::vector<double>{1, 1}, {2, 1}, {std::nan("")}}) {
-    expect_error(ErrorKind::usage, "heights",
-                 [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), heights); });
+    testing::expect_error(ErrorKind::usage, "heights",
+                          [&] { trace_contours(on_host(), terrain.view(), terrain.values.data(), heights); });
   }
 }
 
@@ -752,8 +742,8 @@ TEST(RasterInChunks, BreaklinesThatCrossAreNamed) {
                        {corners.data(), zeros.data(), 4, segments.data(), segments.size() / 2});
     };
   };
-  expect_error(ErrorKind::input, "segments 0", with({0, 1, 2, 3}));
-  expect_error(ErrorKind::usage, "segment", with({0, 4}));
+  testing::expect_error(ErrorKind::input, "segments 0", with({0, 1, 2, 3}));
+  testing::expect_error(ErrorKind::usage, "segment", with({0, 4}));
 }
 
 TEST(Contours, LeaveOutValuesThatAreNotFinite) {

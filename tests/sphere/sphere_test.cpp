@@ -18,6 +18,7 @@
 
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/plane.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
@@ -455,40 +456,32 @@ TEST(Sphere, LinearFunctionsInSpaceAreInterpolated) {
   }
 }
 
-template <typename Work>
-void expect_failure(ErrorKind kind, const char* part, const Work& work) {
-  try {
-    work();
-    FAIL() << "no error: " << part;
-  } catch (const Error& error) {
-    EXPECT_EQ(kind, error.kind());
-    EXPECT_NE(std::string::npos, std::string(error.what()).find(part)) << error.what();
-  }
-}
-
 TEST(Sphere, ErrorsSayWhatIsWrong) {
-  expect_failure(ErrorKind::input, "point 1: the latitude 90.5", [] {
+  testing::expect_error(ErrorKind::input, "point 1: the latitude 90.5", [] {
     triangulated({0, 0, 7, 90.5}, kDegrees);
   });
-  expect_failure(ErrorKind::input, "point 1 is the vector 0", [] {
+  testing::expect_error(ErrorKind::input, "point 1 is the vector 0", [] {
     triangulated({0, 0, 7, 0, 0, 0}, kDirections);
   });
-  expect_failure(ErrorKind::input, "point 0 is not finite", [] { triangulated({HUGE_VAL, 0}, kDegrees); });
-  expect_failure(ErrorKind::usage, "NULL",
-                 [] { triangulate_sphere(testing::triangulator(), nullptr, 3, kDegrees); });
-  expect_failure(ErrorKind::usage, "offsets", [] {
+  testing::expect_error(ErrorKind::input, "point 0 is not finite", [] {
+    triangulated({HUGE_VAL, 0}, kDegrees);
+  });
+  testing::expect_error(ErrorKind::usage, "NULL",
+                        [] { triangulate_sphere(testing::triangulator(), nullptr, 3, kDegrees); });
+  testing::expect_error(ErrorKind::usage, "offsets", [] {
     const double points[] = {1, 2, 3, 4};
     triangulate_sphere(testing::triangulator(), points, {1, 2}, kDegrees);
   });
   SphericalTriangulation mesh = triangulated(random_directions(9, 1), kDirections);
   SphereLocator locator(testing::triangulator(), mesh);
   const double query[] = {0, 100};
-  expect_failure(ErrorKind::input, "query 0: the latitude 100", [&] { locator.nearest(query, 1, kDegrees); });
+  testing::expect_error(ErrorKind::input, "query 0: the latitude 100",
+                        [&] { locator.nearest(query, 1, kDegrees); });
   mesh.neighbors[4] = (mesh.neighbors[4] + 1) % 14;
-  expect_failure(ErrorKind::usage, "triangulation on the sphere",
-                 [&] { voronoi_on_sphere(testing::triangulator(), mesh); });
-  expect_failure(ErrorKind::usage, "triangulation on the sphere",
-                 [&] { SphereLocator(testing::triangulator(), mesh); });
+  testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
+                        [&] { voronoi_on_sphere(testing::triangulator(), mesh); });
+  testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
+                        [&] { SphereLocator(testing::triangulator(), mesh); });
 }
 
 TEST(Sphere, ManyPointsHaveAllTriangles) {
@@ -715,7 +708,7 @@ TEST(Sphere, VerifyFindsWhatIsWrong) {
       id = static_cast<std::int32_t>((static_cast<std::size_t>(id) + 1 + c % 60) % 70);
       EXPECT_NE("", problem_of(wrong, points, kDirections)) << i;
     }
-    expect_failure(ErrorKind::usage, "triangulation on the sphere", [&] {
+    testing::expect_error(ErrorKind::usage, "triangulation on the sphere", [&] {
       Mesh wrong = right;
       wrong.neighbors.pop_back();
       problem_of(wrong, points, kDirections);

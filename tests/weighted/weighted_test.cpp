@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "predicates/power.h"
+#include "tests/support/errors.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::weighted {
@@ -178,18 +179,6 @@ WeightedPoints random_points(std::mt19937& random, std::size_t n, double share) 
     points.add(x, y, unit(random) * share / static_cast<double>(n));
   }
   return points;
-}
-
-template <typename Work>
-void expect_failed(ErrorKind kind, const std::vector<std::string>& parts, const Work& work) {
-  try {
-    work();
-    ADD_FAILURE() << "no error: " << parts.back();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    for (const std::string& part : parts)
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 class WeightedTest : public ::testing::Test {
@@ -524,21 +513,21 @@ TEST_F(WeightedTest, WrongWeightsAreNamed) {
     const Numbers weights = {0, weight, 0};
     triangulate_weighted(triangulator_, points.data(), weights.data(), 3);
   };
-  expect_failed(ErrorKind::input, {"point 1 has a weight that is not finite"}, [&] { with(NAN); });
-  expect_failed(ErrorKind::input, {"point 1 has a weight", "too large"}, [&] { with(1e300); });
-  expect_failed(ErrorKind::input, {"point 1 has a weight", "too fine"}, [&] { with(1e-300); });
-  expect_failed(ErrorKind::usage, {"weights", "NULL"},
-                [&] { triangulate_weighted(triangulator_, points.data(), nullptr, 3); });
+  testing::expect_error(ErrorKind::input, {"point 1 has a weight that is not finite"}, [&] { with(NAN); });
+  testing::expect_error(ErrorKind::input, {"point 1 has a weight", "too large"}, [&] { with(1e300); });
+  testing::expect_error(ErrorKind::input, {"point 1 has a weight", "too fine"}, [&] { with(1e-300); });
+  testing::expect_error(ErrorKind::usage, {"weights", "NULL"},
+                        [&] { triangulate_weighted(triangulator_, points.data(), nullptr, 3); });
   with(0x1p490);
   const Numbers weights = {0, 1, 2};
   Options options;
   options.neighbors = false;
   const WeightedTriangulation mesh =
       triangulate_weighted(triangulator_, points.data(), weights.data(), 3, options);
-  expect_failed(ErrorKind::usage, {"neighbours"}, [&] {
+  testing::expect_error(ErrorKind::usage, {"neighbours"}, [&] {
     power_cells(triangulator_, points.data(), weights.data(), 3, mesh, points.data(), 3);
   });
-  expect_failed(ErrorKind::usage, {"not one of these points"}, [&] {
+  testing::expect_error(ErrorKind::usage, {"not one of these points"}, [&] {
     power_cells(triangulator_, points.data(), weights.data(), 2, mesh, points.data(), 3);
   });
 }
