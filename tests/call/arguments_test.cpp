@@ -268,7 +268,7 @@ class Sweep {
     return good<T>();
   }
 
-  testing::ScopedTrace traced(const std::string& name, std::size_t count) const {
+  ::testing::ScopedTrace traced(const std::string& name, std::size_t count) const {
     return {__FILE__, __LINE__, function_ + ", " + name + " = " + std::to_string(count)};
   }
 
