@@ -22,16 +22,16 @@ inline std::string error_of(ErrorKind kind, const std::function<void()>& call) {
   return "no error";
 }
 
-/// Parts of a text: one, or several in braces.
-struct Parts : std::vector<std::string> {
+/// What a text is to have: one phrase, or several in braces.
+struct Phrases : std::vector<std::string> {
   using vector::vector;
-  Parts(const std::vector<std::string>& parts) : vector(parts) {}
-  Parts(const char* part) : vector{part} {}
-  Parts(const std::string& part) : vector{part} {}
+  Phrases(const std::vector<std::string>& parts) : vector(parts) {}
+  Phrases(const char* part) : vector{part} {}
+  Phrases(const std::string& part) : vector{part} {}
 };
 
 /// That a call throws an error of this kind, whose text has these parts.
-inline void expect_error(ErrorKind kind, const Parts& parts, const std::function<void()>& call) {
+inline void expect_error(ErrorKind kind, const Phrases& parts, const std::function<void()>& call) {
   const std::string text = error_of(kind, call);
   EXPECT_NE(text, "no error");
   for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << text;
