@@ -1,5 +1,5 @@
-// Whether this program runs with the address sanitizer, which is slower and has memory of its own. The objects of tests
-// may be those of a build without it.
+// Whether this program runs with the address sanitizer, which is slower and has memory of its own. The
+// objects of tests may be those of a build without it.
 #pragma once
 
 #ifdef __ELF__
