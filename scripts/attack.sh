@@ -6,7 +6,7 @@
 #     segments       5 minutes   random segments under the sanitizers of addresses and undefined behaviour
 #     tunings       10 minutes   sets of up to 100,000 points, with sizes of GPUs and in both arithmetics
 #     devices       10 minutes   all calls and kernels on every OpenCL runtime for CPUs that pip can install
-#     command        5 minutes   the tests of the command under the sanitizers
+#     sanitizers     5 minutes   the tests of the command under those of addresses and undefined behaviour
 #     benchmarks     4 minutes   the benchmarks and the script for a GPU, on little input
 #     packages       5 minutes   all of the library as a part of another project, installed as a static library
 #     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
@@ -41,7 +41,7 @@ segments() {
   ASAN_OPTIONS=detect_leaks=0 build/asan/tests/fuzz_constrained --seconds 300 --seed "$RANDOM"
 }
 
-command() {
+sanitizers() {
   build asan test_cli || return
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan -R '^Command'
 }
@@ -70,7 +70,7 @@ files() {
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments command benchmarks packages tunings devices files)
+all=(allocations threads segments sanitizers benchmarks packages tunings devices files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

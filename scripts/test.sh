@@ -17,17 +17,19 @@ declare -A concerned=(
   [refinement]='test_refinement refine' [sphere]='test_queries sphere' [updates]='test_updates updates'
   [voronoi]='test_queries voronoi'
 )
+usage() {
+  echo "usage: scripts/test.sh [--quick | --kernels FOLDER], where FOLDER is one of ${!concerned[*]}" >&2
+  exit 2
+}
 quick=false folder=
 case "${1-}" in
   '') ;;
   --quick) quick=true ;;
-  --kernels) folder="${2-}" ;;&
-  *)
-    if [[ -z $folder || -z ${concerned[$folder]-} ]]; then
-      echo "usage: scripts/test.sh [--quick | --kernels FOLDER], where FOLDER is one of ${!concerned[*]}" >&2
-      exit 2
-    fi
+  --kernels)
+    folder="${2-}"
+    [[ -n $folder && -n ${concerned[$folder]-} ]] || usage
     ;;
+  *) usage ;;
 esac
 
 # What install-deps.sh has installed must not be missing.

@@ -3,16 +3,21 @@ set(TESTS ${PROJECT_SOURCE_DIR}/tests)
 set(FLAUNAY_TEST_OBJECTS ""
     CACHE PATH "A build whose objects of tests this build links with its own libraries: they take long to compile")
 
-# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] SOURCES ... LIBRARIES ... [LABELS ...] [COST seconds]
-# [ENVIRONMENT setting]): a
-# GoogleTest program whose tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in
-# one process. UNITY: its files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops
-# take less time than optimising them; UNOPTIMISED: in every build. WHEN_SANITIZED filter: what of it
-# runs in a sanitized build, which is slow. NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its
-# Small suites, which reach the same code with the same kinds of input. ON_DEVICE filter: what of a NATIVE program is
-# about devices, as NAME.device. COST: about how long it takes; the longest begin first.
+# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] [NATIVE] SOURCES ... LIBRARIES ... [LABELS ...]
+#              [COST seconds] [ENVIRONMENT setting] [ON_DEVICE filter] [WHEN_SANITIZED filter]): a GoogleTest program whose
+# tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in one process. UNITY: its
+# files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops take less time than
+# optimising them; UNOPTIMISED: in every build. WHEN_SANITIZED: what of it runs in a sanitized build, which is slow.
+# NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its Small suites, which reach the
+# same code with the same kinds of input. ON_DEVICE: what of a NATIVE program is about devices, as NAME.device. COST: about
+# how long it takes; the longest begin first.
 function(flaunay_test NAME)
   cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;NATIVE" "COST;ON_DEVICE;ENVIRONMENT;WHEN_SANITIZED" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  if(NOT FLAUNAY_SANITIZE)
+    set(ARG_WHEN_SANITIZED "")
+  elseif(ARG_NATIVE)
+    set(ARG_WHEN_SANITIZED "Small*")
+  endif()
   list(TRANSFORM ARG_SOURCES PREPEND ${TESTS}/ REGEX "^[^/]")
   if(FLAUNAY_TEST_OBJECTS)
     file(STRINGS ${FLAUNAY_TEST_OBJECTS}/tests/${NAME}.objects ARG_SOURCES)
@@ -47,10 +52,8 @@ function(flaunay_test NAME)
   # An emulator takes long to begin.
   if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
     set(FILTER "*-*ChoosesDevices*")
-    if(FLAUNAY_SANITIZE AND ARG_WHEN_SANITIZED)
+    if(ARG_WHEN_SANITIZED)
       set(FILTER ${ARG_WHEN_SANITIZED})
-    elseif(FLAUNAY_SANITIZE AND ARG_NATIVE)
-      set(FILTER "Small*")
     endif()
     add_test(NAME ${NAME} COMMAND ${NAME} --gtest_brief=1 --gtest_filter=${FILTER})
     set_tests_properties(${NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 1800)
@@ -65,10 +68,8 @@ function(flaunay_test NAME)
       set_tests_properties(${NAME}.device PROPERTIES LABELS devices TIMEOUT 1800 COST 60)
     endif()
   else()
-    if(NOT FLAUNAY_SANITIZE)
-      set(ARG_WHEN_SANITIZED "*")
-    endif()
-    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_WHEN_SANITIZED}" PROPERTIES LABELS "${ARG_LABELS}" ENVIRONMENT "${ARG_ENVIRONMENT}")
+    gtest_discover_tests(${NAME} DISCOVERY_TIMEOUT 60 TEST_FILTER "${ARG_WHEN_SANITIZED}"
+                         PROPERTIES LABELS "${ARG_LABELS}" ENVIRONMENT "${ARG_ENVIRONMENT}")
   endif()
 endfunction()
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Tests of the package, each for one run of CTest (tests/CMakeLists.txt):
 #
-#   package.sh install | symbols | header | find_package | mpi | pkg_config | subdirectory | part | static | without_opencl
+#   package.sh install | symbols | header | find_package | mpi | pkg_config | subdirectory | whole_subdirectory | static |
+#              without_opencl
 #
 # In the environment: SOURCE, BUILD and VERSION of flaunay, WORK (a folder to work in), CMAKE, CC and CXX.
 # WORK/prefix is what install installs, the only thing that find_package and pkg_config know of flaunay; static tests
-# the installation that part leaves in WORK/static.
+# the installation that whole_subdirectory leaves in WORK/static.
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -125,7 +126,7 @@ case "$1" in
     uses_installed "$WORK/pkg_config"
     ;;
 
-  subdirectory | part)
+  subdirectory | whole_subdirectory)
     # As a part of another project: configured, with some of it compiled; or all of it, which takes minutes.
     configure "$WORK/subdirectory" -DFLAUNAY_SOURCE="$SOURCE" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
       -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
