@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -51,6 +52,17 @@ void append_with_includes(const std::string& name, std::set<std::string>& seen, 
   }
 }
 
+bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Whether a name occurs in a text as a whole word.
+bool names(const std::string& text, const std::string& name) {
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || !is_of_name(text[at - 1])) && (end == text.size() || !is_of_name(text[end]))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string kernel_source(const std::string& file) {
@@ -58,6 +70,16 @@ std::string kernel_source(const std::string& file) {
   std::string source;
   append_with_includes(file + ".cl", seen, source);
   return source;
+}
+
+std::string used_options(const std::string& options, const std::string& source) {
+  std::istringstream words(options);
+  std::string used;
+  for (std::string word; words >> word;) {
+    if (word.compare(0, 2, "-D") == 0 && !names(source, word.substr(2, word.find('=') - 2))) continue;
+    used += (used.empty() ? "" : " ") + word;
+  }
+  return used;
 }
 
 // What a copy of a compiled program needs at most, the driver's own work included.
@@ -70,15 +92,15 @@ const boost::compute::program* Programs::find(const std::string& file, const std
 
 const boost::compute::program* Programs::make(const std::string& file, const std::string& options,
                                               const std::function<void()>& before_compiling) {
-  const std::string source = kernel_source(file);
+  const std::string source = kernel_source(file), used = used_options(options, source);
   // Everything that a compiled program depends on.
-  const std::string key = fmt::format("{}\n{}\n{}\n{}", FLAUNAY_VERSION, identity_, options, source);
+  const std::string key = fmt::format("{}\n{}\n{}\n{}", FLAUNAY_VERSION, identity_, used, source);
   const ProgramCache cache(default_cache_folder());
   boost::compute::program program;
-  if (const auto binary = cache.load(key)) program = made_of(*binary, options);
+  if (const auto binary = cache.load(key)) program = made_of(*binary, used);
   if (program.get() == nullptr) {
     if (before_compiling) before_compiling();
-    program = compiled(file, source, options);
+    program = compiled(file, source, used);
     // Some drivers end the process if there is no memory for the copy.
     const bool is_kept = !cache.folder().empty() && address_space_left().bytes >= kSpaceForBinaries;
     if (const std::string binary = is_kept ? binary_of(program) : ""; !binary.empty()) {

@@ -16,6 +16,10 @@ namespace flaunay::host {
 /// Throws DeviceError if there is no such file.
 std::string kernel_source(const std::string& file);
 
+/// Options of the compiler without the macros that the text of a program does not name: if others have other
+/// values, it is the same program, which is compiled and kept once.
+std::string used_options(const std::string& options, const std::string& source);
+
 class Programs {
  public:
   Programs(boost::compute::context context, boost::compute::device device, std::string identity)
@@ -23,8 +27,9 @@ class Programs {
 
   /// The program of a file, compiled with these options; null if there is none yet.
   const boost::compute::program* find(const std::string& file, const std::string& options) const;
-  /// Makes it. before_compiling: called before it is compiled from its source, if set. Throws DeviceError
-  /// with the compiler's messages if that fails.
+  /// Makes it; macros that its text does not name are left out of the options. before_compiling: called
+  /// before it is compiled from its source, if set. Throws DeviceError with the compiler's messages if that
+  /// fails.
   const boost::compute::program* make(const std::string& file, const std::string& options,
                                       const std::function<void()>& before_compiling);
   bool empty() const { return programs_.empty(); }

@@ -215,6 +215,14 @@ TEST(KernelPath, OneMoreCodeOfARoomChangesNoOtherRoomsPrograms) {
   }
 }
 
+TEST(SmallPrograms, OptionsThatATextDoesNotNameAreLeftOut) {
+  EXPECT_EQ(used_options("-cl-std=CL1.2 -DA=1 -DB -DAB=2 -DC", "#if AB > A_B\n_A (C)"),
+            "-cl-std=CL1.2 -DAB=2 -DC");
+  const std::string sizes = "-DSORT_BITS=4 -DSMALL_REGION=48";
+  EXPECT_EQ(used_options(sizes, kernel_source("operations/sort")), "-DSORT_BITS=4");
+  EXPECT_EQ(used_options(sizes, kernel_source("flattened/endgame")), "-DSMALL_REGION=48");
+}
+
 TEST(KernelPath, WithoutItTheKernelsAreEmbedded) {
   const ScopedEnvironment path("FLAUNAY_KERNEL_PATH", nullptr);
   EXPECT_TRUE(contains(kernel_source("operations/scan"), "scan_reduce_"));
