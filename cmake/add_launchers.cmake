@@ -88,6 +88,8 @@ function(flaunay_use_launchers LIBRARY TARGET)
   if(EMSCRIPTEN)
     # The rest of a module is compiled for its size.
     list(APPEND OPTIONS -O3)
+  elseif(FLAUNAY_SANITIZE)
+    list(APPEND OPTIONS -O1)
   endif()
   set_property(SOURCE ${SOURCES} PROPERTY COMPILE_OPTIONS ${OPTIONS})
 endfunction()

@@ -8,7 +8,9 @@
 #     devices       10 minutes   all calls and kernels on every OpenCL runtime for CPUs that pip can install
 #     sanitizers     5 minutes   the tests of the command under those of addresses and undefined behaviour
 #     benchmarks     4 minutes   the benchmarks and the script for a GPU, on little input
-#     packages       5 minutes   all of the library as a part of another project, installed as a static library
+#     nightly        6 minutes   the tests with that label: fuzzers of the library, CGAL's triangulations, all of the
+#                                library as a part of another project, installed as a static library
+#     readers        2 minutes   random bytes in files of all formats
 #     files          3 minutes   files of all formats in chunks, and over ranks of MPI, compared with runs in memory
 # Fails if an attack found something, and says what.
 set -euo pipefail
@@ -51,8 +53,12 @@ benchmarks() {
   ctest --preset release -R '^(Bench|Prediction|Paper)Test|^scripts.gpu'
 }
 
-packages() {
-  build release all && ctest --preset release --label-regex nightly
+nightly() {
+  build release all nightly && ctest --preset release --label-regex nightly
+}
+
+readers() {
+  scripts/fuzz.sh 120s readers
 }
 
 tunings() {
@@ -70,7 +76,7 @@ files() {
     --mpi 'mpirun --allow-run-as-root --oversubscribe -x FLAUNAY_THREADS=1 -n 3 build/release/flaunay-mpi'
 }
 
-all=(allocations threads segments sanitizers benchmarks packages tunings devices files)
+all=(allocations threads segments sanitizers benchmarks nightly readers tunings devices files)
 attacks=("$@")
 if [[ $# == 0 ]]; then attacks=("${all[@]}"); fi
 for attack in "${attacks[@]}"; do

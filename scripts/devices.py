@@ -39,7 +39,7 @@ TOGETHER = "Intel's CPU runtime"
 # What devices lack, as tests/support/poor_device.c has it, with the sizes of launches.
 SMALL_BUFFER, BYTES_PER_POINT, MORE_THAN_FITS = 134217728, 72, 2000000
 LIMITS = f"no-int64-atomics local=16384 group=64 buffer={SMALL_BUFFER} address-bits=32"
-POOR = [(f"no-fp64 {LIMITS}", "gpu"), (LIMITS, "gpu:32")]
+POOR = [(f"no-fp64 {LIMITS}", "gpu"), (LIMITS, "gpu:32,fetch_ahead=6144")]
 # As a device compiles that has what OpenCL 1.2 requires, and addresses of 32 bits. Warnings tell of literals of type
 # double.
 CLANG = ["clang-14", "-x", "cl", "-target", "spir-unknown-unknown", "-fsyntax-only", "-Werror", "-Xclang",

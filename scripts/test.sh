@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Builds and runs the tests. Needs only Debian 12: installs everything else first.
 #   scripts/test.sh           all but those of benchmarks and those labelled nightly, which scripts/attack.sh runs; those
-#                             labelled asan once more under the sanitizers, and some fuzzing of the readers of files
-#   scripts/test.sh --quick   on the host alone, and the command: without MPI, packages, simulators, fuzzing, and what is
-#                             about devices
+#                             labelled asan once more under the sanitizers
+#   scripts/test.sh --quick   on the host alone, and the command: without MPI, packages, simulators, and what is about
+#                             devices
 #   scripts/test.sh --kernels FOLDER   what a change of kernels/FOLDER concerns: its suites on the host, and its calls on
 #                             the first device, in the release build; for daily work
 set -euo pipefail
@@ -62,9 +62,8 @@ else
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
   # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
-  scripts/fuzz.sh 20s readers
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
 left_out=nightly
-if $quick; then left_out='nightly|devices|oclgrind|fuzz|package'; fi
+if $quick; then left_out='nightly|devices|oclgrind|package'; fi
 ctest --preset release --no-tests=error -j "$jobs" --label-exclude "$left_out"

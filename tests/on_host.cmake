@@ -3,16 +3,19 @@ set(TESTS ${PROJECT_SOURCE_DIR}/tests)
 set(FLAUNAY_TEST_OBJECTS ""
     CACHE PATH "A build whose objects of tests this build links with its own libraries: they take long to compile")
 
-# flaunay_test(NAME [WHOLE] [UNITY] [BRIEF | UNOPTIMISED] [NATIVE] SOURCES ... LIBRARIES ... [LABELS ...]
+# What only tests labelled nightly need.
+add_custom_target(nightly)
+
+# flaunay_test(NAME [WHOLE] [UNITY] [OPTIMISED] [NATIVE] [NIGHTLY] SOURCES ... LIBRARIES ... [LABELS ...]
 #              [COST seconds] [ENVIRONMENT setting] [ON_DEVICE filter] [WHEN_SANITIZED filter]): a GoogleTest program whose
 # tests CTest runs one by one; or with WHOLE, for those that share a device and its kernels, in one process. UNITY: its
-# files share a namespace, and are compiled together. BRIEF: in a sanitized build, its own loops take less time than
-# optimising them; UNOPTIMISED: in every build. WHEN_SANITIZED: what of it runs in a sanitized build, which is slow.
+# files share a namespace, and are compiled together. OPTIMISED: its own loops take longer than optimising them. NIGHTLY:
+# scripts/attack.sh builds and runs it. WHEN_SANITIZED: what of it runs in a sanitized build, which is slow.
 # NATIVE: on the host, whose kernels are those of devices; in a sanitized build only its Small suites, which reach the
 # same code with the same kinds of input. ON_DEVICE: what of a NATIVE program is about devices, as NAME.device. COST: about
 # how long it takes; the longest begin first.
 function(flaunay_test NAME)
-  cmake_parse_arguments(ARG "WHOLE;UNITY;BRIEF;UNOPTIMISED;NATIVE" "COST;ON_DEVICE;ENVIRONMENT;WHEN_SANITIZED" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;UNITY;OPTIMISED;NATIVE;NIGHTLY" "COST;ON_DEVICE;ENVIRONMENT;WHEN_SANITIZED" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT FLAUNAY_SANITIZE)
     set(ARG_WHEN_SANITIZED "")
   elseif(ARG_NATIVE)
@@ -27,10 +30,10 @@ function(flaunay_test NAME)
   add_executable(${NAME} ${ARG_SOURCES})
   if(FLAUNAY_TEST_OBJECTS)
     set_target_properties(${NAME} PROPERTIES LINKER_LANGUAGE CXX)
-    # The library first, so that the linker takes from it what both have of headers.
-    if(flaunay_core IN_LIST ARG_LIBRARIES)
-      target_link_options(${NAME} PRIVATE LINKER:--whole-archive $<TARGET_FILE:flaunay_core> LINKER:--no-whole-archive)
-    endif()
+  endif()
+  # The library first, so that the linker takes from it what both have of headers: optimised, and sanitized.
+  if(flaunay_core IN_LIST ARG_LIBRARIES AND NOT CMAKE_CROSSCOMPILING)
+    target_link_options(${NAME} PRIVATE LINKER:--whole-archive $<TARGET_FILE:flaunay_core> LINKER:--no-whole-archive)
   endif()
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${NAME} PRIVATE ${ARG_LIBRARIES} flaunay_options GTest::gtest_main $<TARGET_NAME_IF_EXISTS:OpenCL::OpenCL>
@@ -42,12 +45,14 @@ function(flaunay_test NAME)
   endif()
   # Compiling the tests takes longer than what their own loops take; the library that they test is as users have it.
   # Members that tests leave out are zero.
-  target_compile_options(${NAME} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-missing-field-initializers)
-  if(ARG_UNOPTIMISED OR (FLAUNAY_SANITIZE AND ARG_BRIEF))
-    target_compile_options(${NAME} PRIVATE -O0)
-  endif()
+  target_compile_options(${NAME} PRIVATE $<IF:$<BOOL:${ARG_OPTIMISED}>,-O1,-O0> -Wno-missing-field-initializers)
   if(NOT ARG_UNITY)
     set_target_properties(${NAME} PROPERTIES UNITY_BUILD OFF)
+  endif()
+  if(ARG_NIGHTLY)
+    list(APPEND ARG_LABELS nightly)
+    set_target_properties(${NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_dependencies(nightly ${NAME})
   endif()
   # An emulator takes long to begin.
   if(ARG_WHOLE OR CMAKE_CROSSCOMPILING)
@@ -85,7 +90,7 @@ target_link_libraries(flaunay_fuzz PUBLIC flaunay_io PRIVATE fmt::fmt)
 
 # Without a device.
 flaunay_test(
-  test_fuzz BRIEF
+  test_fuzz
   SOURCES fuzz/minimise_test.cpp
   LIBRARIES flaunay_fuzz flaunay_core flaunay_host_modes flaunay_verify flaunay_test_support
   LABELS asan)
@@ -119,7 +124,7 @@ target_include_directories(flaunay_fixed_point_readings PRIVATE ${PROJECT_SOURCE
 target_link_libraries(flaunay_fixed_point_readings PUBLIC flaunay_core flaunay_test_support)
 target_compile_options(flaunay_fixed_point_readings PRIVATE $<$<CONFIG:Release>:-O1>)
 flaunay_test(
-  test_fixed_point WHOLE
+  test_fixed_point WHOLE OPTIMISED
   WHEN_SANITIZED Small*
   COST 10
   SOURCES geometry/fixed_certify_test.cpp geometry/fixed_point_test.cpp support/double_certificates.cpp
@@ -133,13 +138,13 @@ flaunay_test(
   LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
   LABELS asan)
 flaunay_test(
-  test_io UNITY UNOPTIMISED
+  test_io UNITY
   SOURCES io/io_test.cpp io/generate_test.cpp io/map_test.cpp io/stream_test.cpp
   LIBRARIES flaunay_io flaunay_core fmt::fmt nlohmann_json::nlohmann_json
   LABELS asan)
 if(FLAUNAY_GDAL)
   flaunay_test(
-    test_geotiff UNOPTIMISED
+    test_geotiff
     SOURCES io/geotiff_test.cpp
     LIBRARIES flaunay_io fmt::fmt GDAL::GDAL)
 endif()
@@ -165,7 +170,7 @@ list(TRANSFORM DECLARATIONS REPLACE ".* \\*?(flaunay_[a-z_]+)\\((.*)\\)" "FUNCTI
 list(JOIN DECLARATIONS "\n" DECLARATIONS)
 file(CONFIGURE OUTPUT functions/flaunay_functions.inc CONTENT "${DECLARATIONS}\n" @ONLY)
 flaunay_test(
-  test_arguments UNOPTIMISED
+  test_arguments
   SOURCES call/arguments_test.cpp
   LIBRARIES flaunay::flaunay
   LABELS asan)

@@ -881,8 +881,8 @@ TEST(SmallLocate, ValuesThatAreNotFinite) {
 }
 
 /// Checked where it is checked without the twins, which would take too long.
-TEST(Locate, AMillionQueries) {
-  const std::size_t n = 1000000;
+TEST(Locate, HundredsOfThousandsOfQueries) {
+  const std::size_t n = 200000;
   FixtureRandom random(21);
   Case input;
   Coordinates queries;
