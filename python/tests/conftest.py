@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -137,3 +138,13 @@ def copy_behind_a_gate(array, values):
     complete = cl.command_execution_status.COMPLETE
     threading.Timer(0.2, lambda: gate.set_status(complete)).start()
     return copied
+
+
+def is_only_held_here(event):
+    """Whether nobody else holds an event that is complete. A driver's thread may do so for a moment longer."""
+    import pyopencl as cl
+
+    until = time.monotonic() + 10
+    while event.get_info(cl.event_info.REFERENCE_COUNT) > 1 and time.monotonic() < until:
+        time.sleep(0.01)
+    return event.get_info(cl.event_info.REFERENCE_COUNT) == 1

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from conftest import copy_behind_a_gate, run_python
+from conftest import copy_behind_a_gate, is_only_held_here, run_python
 
 import flaunay
 
@@ -159,7 +159,7 @@ def test_arrays_know_the_event_that_they_are_there_after(random, queue):
     for array in points, result.triangles, *(getattr(result, name) for name in ALL):
         assert result.event in array.events
     queue.finish()
-    assert result.event.get_info(cl.event_info.REFERENCE_COUNT) == 1
+    assert is_only_held_here(result.event)
 
 
 def test_kernels_work_on_results_that_outlive_what_they_came_from(random, queue):

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from conftest import copy_behind_a_gate, run_python
+from conftest import copy_behind_a_gate, is_only_held_here, run_python
 
 import flaunay
 
@@ -415,8 +415,7 @@ def test_arrays_know_the_event(case, queue):
     for array in dual.vertices, dual.cells, dual.cell_offsets, dual.unbounded, case.tri.triangles:
         assert dual.event in array.events
     queue.finish()
-    assert event.get_info(cl.event_info.REFERENCE_COUNT) == 1
-    assert dual.event.get_info(cl.event_info.REFERENCE_COUNT) == 1
+    assert is_only_held_here(event) and is_only_held_here(dual.event)
 
 
 def test_answers_outlive_all_else_in_any_order(random, queue):
