@@ -149,7 +149,7 @@ TEST(Chunks, OfFixtures) {
     SCOPED_TRACE(fixture.name);
     for (const std::size_t n : {1, 2, 3, 7, 60, 400, 1500}) {
       for (const std::size_t chunk_points : {5, 12, 50}) {
-        if (n > (testing::is_sanitized() ? 5 : 50) * chunk_points) continue;
+        if (n > (testing::is_sanitized() ? 5 : 30) * chunk_points) continue;
         SCOPED_TRACE(std::to_string(n) + " points, " + std::to_string(chunk_points) + " a chunk");
         compare(fixture.make(n, n), small_plan(chunk_points));
         if (n <= 400) compare(fixture.make(n, n), small_plan(chunk_points, 99));
