@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Proves that the tests find faults: puts each fault of a list into a copy of the source, and demands that a test fails.
+"""Shows that tests find faults: puts each fault of a list into a copy of the source, and demands that a test fails.
 
   mutate.py                  all faults, which takes hours
   mutate.py NAME...          these alone
 
-The copy and its build are in build/mutants, so that a later run compiles little, and the source is never changed. The
-test of each fault must pass without the fault, and fail with it. What commands print is in build/mutants/build/mutate.log.
+The copy and its build are in build/mutants: a later run compiles little, and the source is never changed. The test of
+each fault must pass without it, and fail with it. What commands print is in build/mutants/build/mutate.log.
 Exit code: 0 if all were found, otherwise 1. Tests of Python run with that of scripts/python-test.sh, or $PYTHON.
 
 To add a fault, add a line to FAULTS: a name, the file, a text that is there exactly once, what it becomes, the kind of
@@ -79,6 +79,7 @@ FAULTS = [Fault(*each) for each in [
     ("seeds-in-range", "kernels/constrained/seeds.cl",
      "h < last && seeds[h].x <= most.x; ++h", "h < last && seeds[h].x < most.x; ++h",
      "< for <=", "test_domains SmallDomains.*:SmallCarried.*"),
+    # No test finds these three and rotated-flags yet: those named are the ones that should.
     ("smoothed-edges", "kernels/refinement/moves.h",
      "  if (!(shortest >= rules.min_edge)) return 0;\n", "",
      "again: moves that make edges too short", "test_refinement Small*"),
@@ -119,7 +120,7 @@ FAULTS = [Fault(*each) for each in [
      "images that are missing at ends", "test_queries Periodic.CylindersHaveTwoEnds:Periodic.TrianglesAreThoseOfAllImages"),
     ("rows-of-periods", "kernels/periodic/fold.cl",
      "      periods[6 * (int64)row + 2 * k + 1] = is_inside ? 0 : (uchar)periods_up(image[from]);\n", "",
-     "again: a member without a value", "test_queries Periodic.TrianglesAreThoseOfAllImages"),
+     "again: a member without a value", "test_embedding SmallPeriodicOnDevice.*"),
     ("rows-of-the-cap", "kernels/sphere/cap.cl",
      "const int shift = is_planar ? sums[s] - plane_sums[s] : 0;", "const int shift = 0;",
      "sets that have each other's rows", "test_embedding SmallSphereOnDevice.*"),
@@ -307,10 +308,11 @@ def passes_pytest(tests):
     package, headers = COPY / "build/package/flaunay", COPY / "src/include/flaunay"
     shutil.rmtree(package, ignore_errors=True)
     shutil.copytree(COPY / "python/flaunay", package)
-    shutil.copy(BUILD / "libflaunay.so", package)
+    shutil.copy(BUILD / "src/libflaunay.so", package)
     return call([sys.executable, COPY / "python/declare.py", headers / "flaunay.h", headers / "result_arrays.hpp",
                  package / "_declarations.py"]) and call(
-        [PYTHON, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *(COPY / "python/tests" / test for test in tests)],
+        [PYTHON, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
+         *(COPY / "python/tests" / test for test in tests)],
         {"PYTHONPATH": str(package.parent), "PYTHONDONTWRITEBYTECODE": "1"})
 
 
