@@ -275,7 +275,7 @@ def call(command, environment=None, cwd=COPY):
             return False
         finally:
             with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+                os.killpg(process.pid, signal.SIGTERM)
 
 
 def make(finder):
