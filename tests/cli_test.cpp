@@ -1726,6 +1726,9 @@ TEST_F(CommandConstraintsTest, MeshesInSpaceHaveTheHeightsOfTheInput) {
     if (y == 1 + x / 2) {
       EXPECT_NEAR(found[i], 1.5 * x, 1e-12) << "the line that comes first";
     }
+    if (x == 4 && y == 4) {
+      EXPECT_EQ(found[i], 6) << "beyond all heights, that of the nearest one";
+    }
     EXPECT_TRUE(found[i] >= 0 && found[i] <= 9) << found[i];
   }
 }

@@ -310,6 +310,13 @@ def main(folder):
         np.testing.assert_allclose(at[[0, -1], 0], 500050, atol=1e-6)
         np.testing.assert_allclose(np.linalg.norm(np.diff(at, axis=0), axis=1).sum(), 20 * np.pi, rtol=0.01)
 
+    # A piece is inside, even if a corner of the boundary is just as high as its middle.
+    slope = npy("slope.npy", [[0, 0, 0], [4, 0, 4], [0, 4, 0], [4, 4, 4]])
+    half.write_text('{"type": "Polygon", "coordinates": [[[1, 1], [2.5, -0.5], [4, 1], [2.5, 2.5], [1, 1]]]}')
+    assert run(slope, "--resolution", 1, "-o", lines, "--boundary", half, "--contours", 2).returncode == 0
+    (feature,) = json.loads(lines.read_text())["features"]
+    assert sorted(y for _, y in feature["geometry"]["coordinates"]) == [0, 2]
+
     # Nothing goes there and back where both ways cross the boundary at the same rounded place.
     map_of_notch, turned_lattice = notch()
     half.write_text(json.dumps(map_of_notch))

@@ -103,10 +103,8 @@ static inline int code_on_path(path_vertex* v, int before_id, double2 before, in
     if (narrow == UNDECIDED) return CODE_UNDECIDED;
     first_in = second_in = !narrow;
   } else {
-    const int starts_on_edge = a == EDGE_NEXT || a == EDGE_PREVIOUS;
-    const int own_side = next_first ? EDGE_RIGHT : EDGE_LEFT;
-    first_in = starts_on_edge || b != (next_first ? EDGE_NEXT : EDGE_PREVIOUS);
-    second_in = starts_on_edge && b == own_side;
+    first_in = b != (next_first ? EDGE_NEXT : EDGE_PREVIOUS);
+    second_in = b == (next_first ? EDGE_RIGHT : EDGE_LEFT);
   }
   const int next_in = next_first ? first_in : second_in;
   const int previous_in = next_first ? second_in : first_in;

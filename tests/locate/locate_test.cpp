@@ -733,6 +733,8 @@ TEST(SmallLocate, FixedPointIsFull) {
   // Of one place, whose middle is as near to all corners, and beside it.
   input.add({0, 0, 1, 0, 0, 1, 1, 1, -large, 0, large, 0},
             {0.5, 0.5, 0.5, 0.5 - 0x1p-50, 0.5 + 0x1p-50, 0.5, 0.5, 0.25, 0.25, 0.5, 0.5, 1, 1, 0.5});
+  // The nearest place of the grid is the last one of the four.
+  input.add({0, 0, -1, 0, 0, -1, -1, -1, -large, 0, large, 0}, {-0.5, -0.5, -0.5, 0, 0, -0.5});
   // On one line.
   input.add({-large, 1, 0, 1, 1, 1, 2, 1, large, 1},
             {0.5, 0.5, 0.5 + 0x1p-40, 0, 1.5 - 0x1p-40, 7, 0x1p100, 3});

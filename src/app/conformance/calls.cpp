@@ -297,6 +297,22 @@ void updates(Triangulator& triangulator, std::size_t n, Arrays& results) {
   add_state("removed", mesh.remove(numbers.data(), numbers.size()));
   add(results, "result", mesh.triangulation());
 
+  // The inner points of a grid move a little: many edges flip, side by side.
+  const auto side = static_cast<std::int32_t>(std::sqrt(static_cast<double>(n)));
+  Coordinates grid;
+  numbers.clear();
+  moved.clear();
+  for (std::int32_t k = 0; k < side * side; ++k) {
+    const std::int32_t x = k % side, y = k / side;
+    grid.insert(grid.end(), {static_cast<double>(x), static_cast<double>(y)});
+    if (x == 0 || y == 0 || x == side - 1 || y == side - 1) continue;
+    numbers.push_back(k);
+    moved.insert(moved.end(), {x + (k * 7 % 5 - 2) / 64.0, y + (k * 11 % 7 - 3) / 64.0});
+  }
+  DynamicTriangulation shaken(triangulator, grid.data(), grid.size() / 2);
+  results.add("flipped", shaken.move(numbers.data(), moved.data(), numbers.size()).made_corners);
+  add(results, "shaken", shaken.triangulation());
+
   const Scene given = scene(n / 2);
   DynamicTriangulation with_segments(triangulator, given.points.data(), given.points.size() / 2,
                                      constraints_of(given.rings));
@@ -327,7 +343,7 @@ void voronoi(Triangulator& triangulator, std::size_t n, Arrays& results) {
 Coordinates queries_of(const Coordinates& points) {
   Coordinates queries = points;
   for (std::size_t k = 2; k < points.size(); ++k) queries.push_back(points[k] / 2 + points[k - 2] / 2);
-  queries.insert(queries.end(), {-3, 0.125, 1e30, -1e30});
+  queries.insert(queries.end(), {-3, 0.125, 1e18, -1e18});
   return queries;
 }
 
