@@ -280,24 +280,27 @@ class Small {
     std::partial_sum(counts_.begin(), counts_.end(), counts_.begin());
     sorted_.resize(lows_.size());
     for (const Low& low : lows_) sorted_[counts_[low.from]++] = low;
+    const auto is_less = [](const Low& one, const Low& other) { return one.to < other.to; };
     for (auto first = sorted_.begin(), end = first; first != sorted_.end(); first = end) {
       while (end != sorted_.end() && end->from == first->from) ++end;
-      if (end - first > 1)
-        std::sort(first, end, [](const Low& one, const Low& other) { return one.to < other.to; });
+      if (end - first == 2 && is_less(first[1], first[0])) std::swap(first[0], first[1]);
+      if (end - first > 2) std::sort(first, end, is_less);
     }
     result_->constraint_edges.resize(2 * lows_.size());
     result_->edge_segments.resize(lows_.size());
     std::int32_t* ends = result_->constraint_edges.data();
     std::int32_t number = 0;
+    const auto add = [&](std::int32_t from, std::int32_t to, Pair& numbered) {
+      *ends++ = from;
+      *ends++ = to;
+      result_->edge_segments[number] = numbered.segment;
+      numbered.number = number++;
+      return numbered.next;
+    };
     for (const Low& first : sorted_) {
       if (pair(first.edge).follows) continue;
-      for (int low = first.edge; low != NO_EDGE; low = pair(low).next) {
-        Pair& numbered = pair(low);
-        *ends++ = id_at(origin(low));
-        *ends++ = id_at(edges_[low].to);
-        result_->edge_segments[number] = numbered.segment;
-        numbered.number = number++;
-      }
+      int low = add(first.from, first.to, pair(first.edge));
+      while (low != NO_EDGE) low = add(id_at(origin(low)), id_at(edges_[low].to), pair(low));
     }
     Ids& ranges = result_->piece_edges;
     for (std::size_t k = 0; k < ranges.size(); k += 2) {
