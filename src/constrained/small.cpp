@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "blocks/rows.h"
@@ -46,15 +45,15 @@ class Small {
   }
 
  private:
-  // What is known of both directions of a constraint edge.
+  // What is known of both directions of a constraint edge. weight: the number of its segments, or if
+  // directions count, of those in the direction of the first half less the others. number: its own, and then,
+  // if a region is entered over it, that of the region.
   struct Pair {
     std::int32_t segment = kNone;  // the first one that has it
-    std::int32_t weight = 0;  // of its segments: how many, or if directions count, less those the other way
+    std::int32_t weight = 0;
     std::int32_t next = NO_EDGE;  // the edge that follows on a segment
-    std::int32_t number =
-        kNone;             // among constraint edges; of an edge over which a region is entered: the region
+    std::int32_t number = kNone;
     bool follows = false;  // whether there is an edge before it on a segment
-    bool is_new = false;   // whether it is no edge without segments
   };
   struct Region {
     std::int32_t from, level, potential;  // from: the region it is entered from, or none
@@ -540,8 +539,8 @@ class Small {
   std::vector<Pair> pairs_;
   Ids vertex_of_;  // by point, if that is its own representative
   std::vector<Low> lows_, sorted_;
-  std::vector<std::pair<std::int32_t, std::int32_t>>
-      covers_;  // segments and edges in their direction, if curves count
+  // Segments and their edges, in their direction, if curves count.
+  std::vector<std::pair<std::int32_t, std::int32_t>> covers_;
   Ids crossed_, lefts_, rights_;
   std::vector<std::pair<int, int>> chords_;
   Ids counts_;
