@@ -123,10 +123,15 @@ static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed
   return elements;
 }
 
-// Sorts elements, whose places stand in [0, n), by the order of the axis; those of equal points stay in their order.
-// Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at worst.
+// So few are sorted by insertion alone: a digit has more values than there are points.
+#define INSERTED_POINTS 12
+
+// Sorts elements, whose places stand in [0, n) and whose keys are equal, by the order of the axis; those of equal
+// points stay in their order. Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at
+// worst.
 static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
                                        GLOBAL const coordinate2* points, int axis) {
+  if (n <= INSERTED_POINTS && sort_ties(elements, n, points, axis)) return elements;
   GLOBAL keyed* sorted = n > ONE_DIGIT_POINTS ? sort_coarsely(elements, spare, n, points, axis, 2)
                                               : sort_coarsely(elements, spare, n, points, axis, 1);
   if (sort_ties(sorted, n, points, axis)) return sorted;

@@ -301,7 +301,8 @@ def _with_offsets(
 
 
 def _check_increasing(offsets: Offsets, name: str) -> None:
-    if len(offsets) and (offsets[0] != 0 or (np.diff(offsets) < 0).any()):
+    # np.diff takes several times as long for few.
+    if len(offsets) and (offsets[0] != 0 or (offsets[1:] < offsets[:-1]).any()):
         raise UsageError(f"{name} must begin with 0 and not decrease")
 
 

@@ -122,8 +122,9 @@ void write_outcome(Outcome outcome, std::size_t n, const Scratch& s, Triangulati
 
 }  // namespace
 
-void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
-               Triangulation& result) {
+std::optional<points::SmallRings> small_rings(const double* coordinates,
+                                              const std::vector<std::size_t>& offsets,
+                                              Triangulation& result) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
   const geometry::SetScalings scalings =
       geometry::set_scalings(coordinates, offsets, [coordinates](std::size_t first, std::size_t last) {
@@ -156,7 +157,7 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                   undecided)) {
     MeshSizes sizes = sort_line(s, n, result);
     write_outcome({std::move(sizes), undecided}, n, s, result);
-    return;
+    return {};
   }
 
   const auto edges = sized(s.edges, kernel::EDGES_PER_VERTEX * n);
@@ -223,22 +224,6 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
   std::exclusive_scan(s.first_rows.data(), s.first_rows.data() + n + 1, s.first_rows.data(), cl_uint{0});
   MeshSizes sizes = mesh_sizes(s.set_blocks, s.distinct, s.walked, s.first_rows[n]);
 
-  const bool with_corners = options.neighbors || options.halfedges;
-  const std::size_t rows = 3 * sizes.triangles();
-  host::run_chunk_natively(pairs, kernels::write_triangles{.with_corners = with_corners,
-                                                           .points = vertices,
-                                                           .source = source,
-                                                           .edges = edges,
-                                                           .first_rows = first_rows,
-                                                           .triangles = result_of(result.triangles, rows)});
-  if (options.neighbors) {
-    map_natively(pairs,
-                 kernels::write_neighbors{.edges = edges, .neighbors = result_of(result.neighbors, rows)});
-  }
-  if (options.halfedges) {
-    map_natively(pairs,
-                 kernels::write_halfedges{.edges = edges, .halfedges = result_of(result.halfedges, rows)});
-  }
   s.hull_offsets.assign(sizes.hull_offsets.begin(), sizes.hull_offsets.end());
   map_natively(sets, kernels::write_hulls{.set_blocks = set_blocks,
                                           .solved = solved,
@@ -248,6 +233,37 @@ void run_small(const double* coordinates, const std::vector<std::size_t>& offset
                                           .offsets = here(s.hull_offsets),
                                           .hull = result_of(result.hull, sizes.hull_vertices())});
   write_outcome({std::move(sizes), counts[kernel::RINGS_UNDECIDED]}, n, s, result);
+  return points::SmallRings{scalings.bounds,
+                            n,
+                            reinterpret_cast<const kernel::double2*>(s.vertices.data()),
+                            s.source.data(),
+                            s.edges.data(),
+                            s.vertex_edge.data(),
+                            s.first_rows.data()};
+}
+
+void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
+               Triangulation& result) {
+  if (!small_rings(coordinates, offsets, result)) return;
+  Scratch& s = host::of_thread<Scratch>();
+  const std::size_t pairs = kernel::PAIRS_PER_VERTEX * offsets.back();
+  const auto edges = here(s.edges);
+  const bool with_corners = options.neighbors || options.halfedges;
+  const std::size_t rows = 3 * result.triangle_offsets.back();
+  host::run_chunk_natively(pairs, kernels::write_triangles{.with_corners = with_corners,
+                                                           .points = here(s.vertices),
+                                                           .source = here(s.source),
+                                                           .edges = edges,
+                                                           .first_rows = here(s.first_rows),
+                                                           .triangles = result_of(result.triangles, rows)});
+  if (options.neighbors) {
+    map_natively(pairs,
+                 kernels::write_neighbors{.edges = edges, .neighbors = result_of(result.neighbors, rows)});
+  }
+  if (options.halfedges) {
+    map_natively(pairs,
+                 kernels::write_halfedges{.edges = edges, .halfedges = result_of(result.halfedges, rows)});
+  }
 }
 
 }  // namespace flaunay::blocks

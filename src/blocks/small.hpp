@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "points/rings.hpp"
 
 namespace flaunay::blocks {
 
@@ -15,5 +17,10 @@ namespace flaunay::blocks {
 /// O(n log n).
 void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,
                Triangulation& result);
+
+/// Does what run_small does before it writes triangles, neighbours and half-edges. Returns nothing if all is
+/// done, since the points of a single set are on one line.
+std::optional<points::SmallRings> small_rings(const double* coordinates,
+                                              const std::vector<std::size_t>& offsets, Triangulation& result);
 
 }  // namespace flaunay::blocks

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "blocks/small.hpp"
 #include "call/areas.hpp"
 #include "call/domains.hpp"
 #include "call/given_mesh.hpp"
@@ -15,10 +16,12 @@
 #include "call/triangulate.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
+#include "constrained/small.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
 #include "host/memory/system_memory.hpp"
+#include "host/opencl/device.hpp"
 
 namespace flaunay {
 namespace {
@@ -38,7 +41,11 @@ void check(const Constraints& constraints, const ConstrainedOptions& options) {
                    refinement.seed_areas != nullptr,
                "seeds have neither attributes nor areas: both pointers are null");
   check_array(refinement.mesh.triangles, refinement.mesh.count, "triangles of the mesh", kMostIndexed / 3);
-  call::check_refinement(refinement, constraints.seed_count);
+  const bool has_bounds = refinement.min_angle != 0 || refinement.max_area != 0 ||
+                          refinement.seed_areas != nullptr || refinement.mesh.areas != nullptr ||
+                          refinement.min_edge != kDefaultMinEdge;
+  // For small polygons, the sine of no angle takes long.
+  if (has_bounds) call::check_refinement(refinement, constraints.seed_count);
 }
 
 // The coordinates of n points and of those that splitting added. Empty if there are none of these.
@@ -65,11 +72,52 @@ Options plain_options(const ConstrainedOptions& options) {
   return plain;
 }
 
+// Whether all stages are done on the calling thread.
+bool stays_here(const call::Implementation& self, const std::vector<std::size_t>& offsets,
+                const Constraints& constraints, const Options& options) {
+  const Tuning& tuning = self.host_tuning();
+  return !self.is_named() && !options.profile && call::are_small(tuning, offsets) &&
+         offsets.back() + constraints.segment_count <= tuning.host_points;
+}
+
+// Does what the stages do with small sets, on the calling thread. Nothing if it does not pay or errors are to
+// be told.
+std::optional<ConstrainedTriangulation> constrain_small(
+    const call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
+    const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
+  if (self.host_tuning().segment_steps == 0) return {};
+  const statistics::Phases phases(options);
+  phases.progress("triangulate", 0);
+  double begin = host::now();
+  std::optional<ConstrainedTriangulation> result(std::in_place);
+  const auto rings = blocks::small_rings(coordinates, offsets, *result);
+  if (!rings) return {};
+  end_phase("triangulate", std::exchange(begin, host::now()), result->statistics);
+  constrained::SmallRequest wanted{request.rules};
+  wanted.has_depths = request.needs_depths();
+  wanted.labels = request.labels;
+  wanted.neighbors = options.neighbors || options.halfedges;
+  wanted.most_steps = self.host_tuning().segment_steps;
+  if (wanted.has_depths) wanted.curves = request.curves;
+  if (!constrained::constrain_small(*rings, offsets, constraints, wanted, *result)) return {};
+  result->statistics.device = host::kHostName;
+  end_phase("constrain", begin, result->statistics);
+  phases.progress("output", 1);
+  return result;
+}
+
 // Triangulates sets with segments. All triangles are kept, without labels; there are neighbours.
+// may_be_small: whether constrain_small has not been tried.
 ConstrainedTriangulation constrain(call::Implementation& self, const double* coordinates,
                                    const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                                   const ConstrainedOptions& options) {
+                                   const ConstrainedOptions& options, bool may_be_small = true) {
   const Options plain = plain_options(options);
+  if (may_be_small && stays_here(self, offsets, constraints, options)) {
+    ConstrainedOptions wanted = options;
+    wanted.neighbors = true;
+    if (auto small = constrain_small(self, coordinates, offsets, constraints, wanted, {}))
+      return *std::move(small);
+  }
   ConstrainedTriangulation result;
   static_cast<Triangulation&>(result) =
       call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
@@ -180,6 +228,13 @@ std::vector<std::size_t> group_segments(const std::vector<call::Group>& groups,
   return first;
 }
 
+// What comes after all stages.
+void end_small(call::Implementation& self, const double* coordinates, const Constraints& constraints,
+               std::size_t n, const ConstrainedOptions& options, ConstrainedTriangulation& result) {
+  carry_markers(constraints, n, result);
+  finish(self, coordinates, options, result);
+}
+
 // All stages of a group of sets on the calling thread, for segments [first, end).
 ConstrainedTriangulation constrain_group(call::Implementation& self, const double* coordinates,
                                          const call::Group& group, const Constraints& constraints,
@@ -201,25 +256,29 @@ ConstrainedTriangulation constrain_group(call::Implementation& self, const doubl
     curves = constrained::part_of(*request.curves, first, end);
     of_group.curves = &curves;
   }
-  call::Engine& engine = call::Engine::of_thread();
-  ConstrainedTriangulation result;
-  static_cast<Triangulation&>(result) =
-      call::triangulate_small({points, nullptr, n}, group.offsets, plain_options(options));
-  *call::insert_segments_on(engine, points, group.offsets, own, options, result);
-  carry_markers(own, n, result);
-  if (request.needs_depths())
-    call::apply_domains_on(engine, engine, points, group.offsets, own, of_group, result);
-  finish(self, points, options, result);
-  return result;
+  auto small = constrain_small(self, points, group.offsets, own, options, of_group);
+  if (!small) {
+    call::Engine& engine = call::Engine::of_thread();
+    static_cast<Triangulation&>(small.emplace()) =
+        call::triangulate_small({points, nullptr, n}, group.offsets, plain_options(options));
+    *call::insert_segments_on(engine, points, group.offsets, own, options, *small);
+    if (request.needs_depths())
+      call::apply_domains_on(engine, engine, points, group.offsets, own, of_group, *small);
+  }
+  end_small(self, points, own, n, options, *small);
+  return *std::move(small);
+}
+
+// Whether groups of sets need to know of no others.
+bool can_be_grouped(const Constraints& constraints, const ConstrainedOptions& options) {
+  return constraints.hole_count == 0 && constraints.seed_count == 0 && options.refinement.mesh.count == 0 &&
+         !options.profile && options.crossings != Crossings::split;
 }
 
 // Nothing if there are no groups, or if there is an error.
 std::optional<ConstrainedTriangulation> constrain_by_groups(
     call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
     const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
-  const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
-  const bool has_mesh = options.refinement.mesh.count > 0;
-  if (has_places || has_mesh || options.profile || options.crossings == Crossings::split) return {};
   if (!self.is_named() && offsets.back() <= self.host_tuning().host_points) return {};
   call::Engine& engine = self.for_host_memory();
   const std::vector<call::Group> groups = call::groups_of(engine, offsets);
@@ -249,21 +308,31 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
     first.neighbors = true;
     first.halfedges = first.areas = false;
   }
-  auto grouped = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
-  if (grouped && !is_refined) return *std::move(grouped);
-  ConstrainedTriangulation result = grouped ? *std::move(grouped)
-                                    : options.crossings == Crossings::split
-                                        ? constrain_split(self, coordinates, offsets, constraints, first)
-                                        : constrain(self, coordinates, offsets, constraints, first);
+  const bool can_be_at_once = can_be_grouped(constraints, first);
+  const bool is_small =
+      can_be_at_once && !request.polygons && stays_here(self, offsets, constraints, options);
+  std::optional<ConstrainedTriangulation> at_once;
+  if (is_small) {
+    at_once = constrain_small(self, coordinates, offsets, constraints, first, request);
+    if (at_once) end_small(self, coordinates, constraints, offsets.back(), first, *at_once);
+  } else if (can_be_at_once) {
+    at_once = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
+  }
+  if (at_once && !is_refined) return *std::move(at_once);
+  ConstrainedTriangulation result =
+      at_once ? *std::move(at_once)
+      : options.crossings == Crossings::split
+          ? constrain_split(self, coordinates, offsets, constraints, first)
+          : constrain(self, coordinates, offsets, constraints, first, !is_small);
   double begin = host::now();
   std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
   const auto points = [&] { return all.empty() ? coordinates : all.data(); };
   Ids seeds;
-  if (!grouped) seeds = call::apply_domains(self, points(), offsets, constraints, request, result);
+  if (!at_once) seeds = call::apply_domains(self, points(), offsets, constraints, request, result);
   std::vector<double> areas;
   if (mesh != nullptr) areas = mesh->leave(points(), result, seeds);
   if (is_refined) {
-    if (!grouped) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
+    if (!at_once) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
     call::refine(self, points(), offsets, options, seeds, areas, result);
     all = with_added(coordinates, offsets.back(), result.added_points);
   }

@@ -110,15 +110,6 @@ HostPoints part_of(const HostPoints& points, const Group& group) {
           points.narrow == nullptr ? nullptr : points.narrow + first, group.offsets.back()};
 }
 
-// Whether the sets are triangulated on the calling thread.
-bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
-  if (offsets.back() > tuning.host_points) return false;
-  for (std::size_t s = 1; s < offsets.size(); ++s) {
-    if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
-  }
-  return true;
-}
-
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
                                                const std::vector<std::size_t>& offsets,
                                                const Options& options,
@@ -213,6 +204,14 @@ Triangulation empty_result(Engine& self, std::size_t sets) {
   result.triangle_offsets.assign(sets + 1, 0);
   result.hull_offsets.assign(sets + 1, 0);
   return result;
+}
+
+bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
+  if (offsets.back() > tuning.host_points) return false;
+  for (std::size_t s = 1; s < offsets.size(); ++s) {
+    if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
+  }
+  return true;
 }
 
 Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,

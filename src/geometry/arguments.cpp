@@ -32,7 +32,7 @@ std::size_t check_columns(std::size_t columns, std::size_t rows) {
 }
 
 void check_enumerator(int value, int last, const char* type) {
-  expect(value >= 0 && value <= last, fmt::format("{} is no {}", value, type));
+  if (value < 0 || value > last) throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, type));
 }
 
 void check_offsets(const std::vector<std::size_t>& offsets) {
@@ -42,8 +42,9 @@ void check_offsets(const std::vector<std::size_t>& offsets) {
 
 void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n) {
   check_offsets(offsets);
-  expect(offsets.back() == n,
-         fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n));
+  if (offsets.back() == n) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n));
 }
 
 }  // namespace flaunay

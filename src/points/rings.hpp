@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "arithmetic/language.h"
 #include "host/runtime.hpp"
 #include "mesh/records.h"
+#include "predicates/records.h"
 
 namespace flaunay::points {
 
@@ -22,6 +24,19 @@ struct Rings {
   std::size_t undecided = 0;                 ///< predicates that were evaluated exactly
   std::size_t ties = 0;                      ///< how many of them found cocircular points
   std::size_t ties_left = 0;                 ///< how many of these left edges as they were
+};
+
+/// Those of small sets in memory of the calling thread, which its next call uses. Vertices of a set follow
+/// each other. An edge with the outside on its left has the complement of the next edge.
+struct SmallRings {
+  kernel::filter_bounds bounds;
+  std::size_t vertices = 0;         ///< as many as points; those without an edge are duplicates, or alone
+  const kernel::double2* points{};  ///< by vertex, scaled
+  const cl_int* source{};           ///< by vertex its point
+  kernel::ring_edge* edges{};
+  cl_int* vertex_edge{};
+  const cl_uint*
+      first_rows{};  ///< by vertex its first triangle (blocks/mesh.cl), and the number of triangles
 };
 
 }  // namespace flaunay::points

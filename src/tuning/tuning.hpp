@@ -87,6 +87,10 @@ struct Tuning : host::Sizes {
   /// groups.
   std::size_t group_points = 0;
 
+  /// The calling thread inserts the segments of small sets one after the other in so many steps per point and
+  /// segment; those that take more are left to the kernels. 0: all are.
+  std::size_t segment_steps = 0;
+
   /// The largest number of points of a chunk, of those that do not fit memory, as a rule.
   std::size_t chunk_points = 1;
 

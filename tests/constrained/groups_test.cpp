@@ -1,5 +1,5 @@
-// Calls on many small sets, whose groups threads compute by themselves: the same bytes as of all sets
-// together.
+// Calls on many small sets, whose groups threads compute by themselves, and on one, which the calling thread
+// computes segment by segment: the same bytes as of all sets together and of passes over all segments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "blocks/small.hpp"
+#include "constrained/small.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/segments.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/same.hpp"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::testing {
 namespace {
@@ -217,6 +220,158 @@ TEST(SmallGroups, ErrorsAreThoseOfAllSets) {
   Coordinates infinite = points;
   infinite[200] = HUGE_VAL;
   expect_same_error(infinite, crossing);
+}
+
+// The calling thread alone, and what it is to be like.
+struct HereAndTogether {
+  Triangulator together = host("group_points=0"), here = [] {
+    const ScopedEnvironment unnamed("FLAUNAY_DEVICE", nullptr);
+    return Triangulator();
+  }();
+
+  // Either the same arrays, or the same error.
+  template <typename Call>
+  bool compare(const Call& call) {
+    const std::string expected = error_of(together, call);
+    EXPECT_EQ(error_of(here, call), expected);
+    if (expected == "no error") expect_same_arrays(call(here), call(together));
+    return expected == "no error";
+  }
+  bool compare(const SegmentInput& input, const ConstrainedOptions& options) {
+    Constraints constraints;
+    constraints.segments = input.segments.data();
+    constraints.segment_count = input.segments.size() / 2;
+    return compare([&](Triangulator& triangulator) {
+      return triangulator.constrained(input.points.data(), input.points.size() / 2, constraints, options);
+    });
+  }
+  template <typename Input>
+  void compare_all(const Input& input) {
+    with_all_options([&](ConstrainedOptions options) {
+      for (const FillRule rule : {FillRule::nesting, FillRule::even_odd, FillRule::winding}) {
+        for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
+          options.fill_rule = rule;
+          options.outside = outside;
+          compare(input, options);
+        }
+      }
+    });
+  }
+};
+
+// Whether rings are changed, and nothing is left to the passes.
+bool is_done_here(const SegmentInput& input) {
+  const std::vector<std::size_t> offsets = {0, input.points.size() / 2};
+  Constraints constraints;
+  constraints.segments = input.segments.data();
+  constraints.segment_count = input.segments.size() / 2;
+  ConstrainedTriangulation result;
+  const auto rings = blocks::small_rings(input.points.data(), offsets, result);
+  constrained::SmallRequest request;
+  request.most_steps = native_tuning()->segment_steps;
+  return !rings || constrained::constrain_small(*rings, offsets, constraints, request, result);
+}
+
+TEST(SmallSets, OfHardSegments) {
+  HereAndTogether by;
+  for (const NastySegments& nasty : nasty_segments()) {
+    for (const int n : {8, 60}) {
+      SCOPED_TRACE(nasty.name + " " + std::to_string(n));
+      const SegmentInput input = nasty.make(n, static_cast<std::uint64_t>(n));
+      // Gift-wrapping brushes takes too many steps.
+      EXPECT_TRUE(is_done_here(input) || nasty.name == "brush");
+      by.compare_all(input);
+      by.compare_all(duplicated(input, 1));
+    }
+  }
+}
+
+// Edges of stretched triangulations, which leave few edges as they were; curves along them; segments that
+// mostly cross, on grids of few points, of which many are on lines and circles.
+TEST(SmallSets, OfRandomSegments) {
+  HereAndTogether by;
+  int crossing = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    FixtureRandom random(seed);
+    const auto n = static_cast<std::size_t>(random.integer(0, 60));
+    SegmentInput input;
+    input.points = random_integer_points(n, random.integer(1, 9), seed);
+    input.segments = edges_of_stretched(input.points, seed % 2 == 0 ? 7 : 0.2, 1 + seed % 4, seed);
+    by.compare_all(input);
+    Coordinates stretched = input.points;
+    for (std::size_t i = 0; i < stretched.size(); i += 2) stretched[i] *= 5;
+    input.segments = random_curves(delaunay_of(stretched, {0, n}), random, 1 + static_cast<int>(seed % 5));
+    by.compare_all(input);
+    input.segments = random_segments(random, n, static_cast<std::size_t>(random.integer(1, 6)));
+    ConstrainedOptions options;
+    crossing += by.compare(input, options) ? 0 : 1;
+    options.crossings = Crossings::split;
+    by.compare(input, options);
+    if (n > 0) input.segments.push_back(0);
+    if (n > 0) input.segments.push_back(seed % 2 == 0 ? -1 : static_cast<std::int32_t>(n));
+    by.compare(input, options);
+  }
+  EXPECT_GT(crossing, 10);
+}
+
+// Holes, seeds and markers.
+TEST(SmallSets, OfPlacesAndMarkers) {
+  HereAndTogether by;
+  const SegmentInput input = nasty_segments()[11].make(100, 1);
+  const double places[] = {0.1, 0.2, 0.01, 0.02}, attributes[] = {3, 4};
+  const std::vector<std::int32_t> markers(input.points.size() + input.segments.size(), 7);
+  Constraints constraints;
+  constraints.segments = input.segments.data();
+  constraints.segment_count = input.segments.size() / 2;
+  constraints.segment_markers = constraints.point_markers = markers.data();
+  for (const std::size_t holes : {0U, 1U}) {
+    constraints.holes = places;
+    constraints.hole_count = holes;
+    constraints.seeds = places + 2;
+    constraints.seed_attributes = attributes;
+    constraints.seed_count = 1 - holes;
+    EXPECT_TRUE(by.compare([&](Triangulator& triangulator) {
+      return triangulator.constrained(input.points.data(), input.points.size() / 2, constraints);
+    }));
+  }
+}
+
+// Rings along the triangles of a grid's triangulation, as borders, holes and parts in any order.
+TEST(SmallSets, OfPolygons) {
+  HereAndTogether by;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    FixtureRandom random(seed);
+    const Coordinates grid = random_integer_points(14, 4, seed);
+    const Segments curves = random_curves(delaunay_of(grid, {0, 14}), random, 2);
+    Coordinates points;
+    Polygons polygons;
+    polygons.ring_offsets = polygons.part_offsets = polygons.polygon_offsets = {0};
+    for (std::size_t i = 0; i < curves.size(); i += 6) {
+      for (std::size_t k = 0; k < 6; k += 2) {
+        const double* const p = &grid[2 * static_cast<std::size_t>(curves[i + k])];
+        points.insert(points.end(), {p[0], p[1]});
+      }
+      polygons.ring_offsets.push_back(points.size() / 2);
+      const std::size_t rings = polygons.ring_offsets.size() - 1;
+      const auto end = random.integer(0, 4);
+      if (end < 3 || i + 6 == curves.size()) polygons.part_offsets.push_back(rings);
+      if (end == 0 || i + 6 == curves.size()) polygons.polygon_offsets.push_back(rings);
+    }
+    polygons.coordinates = points.data();
+    with_all_options([&](const ConstrainedOptions& all) {
+      PolygonOptions options;
+      static_cast<ConstrainedOptions&>(options) = all;
+      options.map = seed % 4 == 0;
+      for (const FillRule rule : {FillRule::even_odd, FillRule::winding}) {
+        options.fill_rule = rule;
+        options.outside = seed % 3 == 0 ? Outside::keep : Outside::holes;
+        EXPECT_TRUE(
+            by.compare([&](Triangulator& triangulator) { return triangulator.polygons(polygons, options); }));
+      }
+    });
+  }
 }
 
 }  // namespace

@@ -292,6 +292,7 @@ class Devices {
   Devices() {
     add("host", "");
     add("host", "small");
+    add("", "");                               // small sets on the calling thread, segment by segment
     add("#0", "gpu:32,chain_wrapped_most=5");  // takes some milliseconds per case
     add("#0", "gpu:32,chain_wrapped_most=5,fixed_point=1");
     // Kernels are compiled now, since that takes longer than a case may.
@@ -381,7 +382,7 @@ class Devices {
 
   void add(const std::string& device, const std::string& tuning) {
     const testing::ScopedEnvironment environment("FLAUNAY_TUNING", tuning.c_str());
-    all_.push_back({fmt::format("device {} tuned '{}'", device, tuning), device != "host",
+    all_.push_back({fmt::format("device {} tuned '{}'", device, tuning), device == "#0",
                     std::make_unique<Triangulator>(device)});
   }
 

@@ -71,18 +71,6 @@ Tree make_tree(const ConstrainedTriangulation& mesh, const Ids& regions, std::si
   return tree;
 }
 
-// What segments of a curve do to those who enter a region: how many of them they cross from right to left,
-// less those the other way.
-struct Step {
-  std::int32_t curve, amount;
-};
-
-// The steps into each region.
-struct Steps {
-  Ids offsets;
-  std::vector<Step> steps;
-};
-
 class Coverage {
  public:
   Coverage(const double* coordinates, const ConstrainedTriangulation& mesh, const Tree& tree)
@@ -93,7 +81,8 @@ class Coverage {
     find_edges(tree);
   }
 
-  Steps steps(const std::int32_t* segments, const Ids& curves) const {
+  // Adds the steps into each region.
+  void write_steps(const std::int32_t* segments, const Ids& curves, Entrances& into) const {
     std::vector<std::pair<std::int32_t, Step>> all;
     for (std::size_t s = 0; s < curves.size(); ++s) {
       const std::int32_t a = mesh_.representatives[segments[2 * s]],
@@ -116,14 +105,7 @@ class Coverage {
         }
       }
     }
-    Steps grouped;
-    grouped.offsets.assign(following_.size() + 1, 0);
-    for (const auto& [region, step] : all) ++grouped.offsets[region + 1];
-    std::partial_sum(grouped.offsets.begin(), grouped.offsets.end(), grouped.offsets.begin());
-    grouped.steps.resize(all.size());
-    Ids place(grouped.offsets.begin(), grouped.offsets.end() - 1);
-    for (const auto& [region, step] : all) grouped.steps[place[region]++] = step;
-    return grouped;
+    group_steps(all, into);
   }
 
  private:
@@ -306,14 +288,20 @@ Curves curves_of_polygons(const std::vector<std::size_t>& offsets) {
   return curves;
 }
 
-MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh, const Ids& regions,
-                    std::size_t count, const std::int32_t* segments, const Curves& curves, FillRule rule,
-                    Overlaps overlaps) {
-  const Tree tree = make_tree(mesh, regions, count);
-  const Steps into = Coverage(coordinates, mesh, tree).steps(segments, curves.of_segments);
+void group_steps(const std::vector<std::pair<std::int32_t, Step>>& all, Entrances& into) {
+  into.offsets.assign(into.from.size() + 1, 0);
+  for (const auto& [region, step] : all) ++into.offsets[region + 1];
+  std::partial_sum(into.offsets.begin(), into.offsets.end(), into.offsets.begin());
+  into.steps.resize(all.size());
+  Ids place(into.offsets.begin(), into.offsets.end() - 1);
+  for (const auto& [region, step] : all) into.steps[place[region]++] = step;
+}
+
+MapLabels label_regions(const Entrances& into, const Curves& curves, FillRule rule, Overlap& overlap) {
+  const std::size_t count = into.from.size();
   Ids first_child(count + 1, -1), sibling(count, -1);
-  for (auto r = tree.order.rbegin(); r != tree.order.rend(); ++r) {
-    const std::int32_t parent = tree.entries[*r].from;
+  for (auto r = into.order.rbegin(); r != into.order.rend(); ++r) {
+    const std::int32_t parent = into.from[*r];
     std::int32_t& first = first_child[parent < 0 ? count : static_cast<std::size_t>(parent)];
     sibling[*r] = std::exchange(first, *r);
   }
@@ -324,17 +312,15 @@ MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& m
     }
   };
   MapLabels labels{Ids(count, -1), Ids(count, 0)};
-  auto first_overlap = static_cast<std::int32_t>(count);
-  std::pair<std::int32_t, std::int32_t> overlapping;
+  overlap.region = static_cast<std::int32_t>(count);
   // Depth first: down to the first child, else on to the next sibling, of the region or of one above it.
   for (std::int32_t r = first_child[count]; r >= 0;) {
     step(r, 1);
     const std::map<std::int32_t, std::int32_t>& in = around.polygons();
     labels.depths[r] = static_cast<std::int32_t>(in.size());
     if (!in.empty()) labels.polygons[r] = in.begin()->first;
-    if (in.size() > 1 && r < first_overlap) {
-      first_overlap = r;
-      overlapping = {in.begin()->first, std::next(in.begin())->first};
+    if (in.size() > 1 && r < overlap.region) {
+      overlap = {r, {in.begin()->first, std::next(in.begin())->first}};
     }
     if (first_child[r] >= 0) {
       r = first_child[r];
@@ -343,12 +329,25 @@ MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& m
     while (r >= 0) {
       step(r, -1);
       if (sibling[r] >= 0) break;
-      r = tree.entries[r].from;
+      r = into.from[r];
     }
     if (r >= 0) r = sibling[r];
   }
-  if (overlaps == Overlaps::error && first_overlap < static_cast<std::int32_t>(count)) {
-    throw_overlap(mesh, regions, first_overlap, overlapping);
+  return labels;
+}
+
+MapLabels label_map(const double* coordinates, const ConstrainedTriangulation& mesh, const Ids& regions,
+                    std::size_t count, const std::int32_t* segments, const Curves& curves, FillRule rule,
+                    Overlaps overlaps) {
+  const Tree tree = make_tree(mesh, regions, count);
+  Entrances into;
+  into.order = tree.order;
+  for (const Entry& entry : tree.entries) into.from.push_back(entry.from);
+  Coverage(coordinates, mesh, tree).write_steps(segments, curves.of_segments, into);
+  Overlap overlap;
+  MapLabels labels = label_regions(into, curves, rule, overlap);
+  if (overlaps == Overlaps::error && overlap.region < static_cast<std::int32_t>(count)) {
+    throw_overlap(mesh, regions, overlap.region, overlap.polygons);
   }
   return labels;
 }

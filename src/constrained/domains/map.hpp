@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "flaunay/constrained.hpp"
@@ -31,6 +32,27 @@ Curves curves_of(const Rings& rings);
 Curves part_of(const Curves& curves, std::size_t first, std::size_t end);
 /// For each polygon one curve that has all of its segments. offsets: those of polygons.
 Curves curves_of_polygons(const std::vector<std::size_t>& offsets);
+
+/// How many times segments of a curve are crossed from right to left, less those the other way.
+struct Step {
+  std::int32_t curve, amount;
+};
+/// Regions that are entered one after the other, each from another one or from outside, over one edge.
+struct Entrances {
+  std::vector<std::int32_t> from;     ///< by region: the one it is entered from; -1: the outside
+  std::vector<std::int32_t> order;    ///< all regions, each after the one it is entered from
+  std::vector<std::int32_t> offsets;  ///< region r is entered by the steps [offsets[r], offsets[r + 1])
+  std::vector<Step> steps{};
+};
+/// Adds steps, each with the region that it leads into.
+void group_steps(const std::vector<std::pair<std::int32_t, Step>>& all, Entrances& into);
+/// Goes through the regions, and labels each by the polygons around it. rule: of the inside of a curve.
+/// overlap: gets the first region in several polygons, or the number of regions, and two of these polygons.
+struct Overlap {
+  std::int32_t region = 0;
+  std::pair<std::int32_t, std::int32_t> polygons{};
+};
+MapLabels label_regions(const Entrances& into, const Curves& curves, FillRule rule, Overlap& overlap);
 
 /// Goes through all regions from outside, each time over one edge, whose segments lead into polygons or out
 /// of them. mesh: complete. regions: by triangle; count: their number. segments: 2 points per segment. rule:
