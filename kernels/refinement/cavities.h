@@ -29,9 +29,17 @@ static inline double2 point_at(const seen_mesh* mesh, int corner) { return mesh-
 static inline int neighbor_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].neighbor[corner % 3]; }
 static inline int edge_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].edge[corner % 3]; }
 
-// The number of the corner that is opposite to a neighbour, and the corner.
+// The number of the corner that is opposite to a neighbour, and the corner. Without branches, since they could not be
+// predicted. Others may change the row's other neighbours meanwhile, which is no matter.
+#ifdef __cplusplus
+#define neighbor_meanwhile(at) __atomic_load_n(at, __ATOMIC_RELAXED)
+#else
+#define neighbor_meanwhile(at) (*(at))
+#endif
 static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
-  return row->neighbor[0] == neighbor ? 0 : row->neighbor[1] == neighbor ? 1 : 2;
+  const int is_first = neighbor_meanwhile(&row->neighbor[0]) == neighbor,
+            is_second = neighbor_meanwhile(&row->neighbor[1]) == neighbor;
+  return 2 - is_second - 2 * is_first;
 }
 static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + number_facing(&mesh->rows[row], neighbor);
@@ -41,7 +49,6 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4
-#define ROWS_SOON 2
 FETCHING void fetch_row(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
   fetch(&mesh->rows[row]);
@@ -55,7 +62,7 @@ FETCHING void fetch_corners(const seen_mesh* mesh, int row) {
 }
 FETCHING void fetch_neighbors(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
-  for (int k = 0; k < 3; ++k) fetch_row(mesh, max(0, mesh->rows[row].neighbor[k]));
+  for (int k = 0; k < 3; ++k) fetch_row(mesh, max(0, neighbor_meanwhile(&mesh->rows[row].neighbor[k])));
 #endif
 }
 

@@ -10,24 +10,20 @@
 
 BEGIN_SHARED
 
-// Tours a cavity, or one side of it, claims its rows, and lists them as far as there is room. Returns the number of its
-// sides, or 0 if a vertex at one is nearer to p than a distance, squared, and adds to the number of rows.
-static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, double distance, uint claim,
-                             GLOBAL volatile uint* claims, GLOBAL int* cavity, int room, int* count) {
-  int sides = 0, is_near = 0;
+// Tours a cavity, or one side of it, and claims its rows. Returns the number of its sides.
+static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 p, uint claim,
+                             GLOBAL volatile uint* claims) {
+  int sides = 0;
   cavity_tour tour;
   start_tour(&tour, start, end);
   for (int next = ~row_of(end); next != NO_MORE; next = next_in_tour(&tour, mesh, p)) {
     if (next < 0) {
       atomic_min(&claims[~next], claim);
-      if (*count < room) cavity[*count] = ~next;
-      ++*count;
     } else {
       ++sides;
-      is_near |= distance > 0.0 && squared_distance(p, point_at(mesh, next_halfedge(next))) < distance;
     }
   }
-  return is_near ? 0 : sides;
+  return sides;
 }
 
 // What was found of a cavity so far.

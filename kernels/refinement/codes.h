@@ -21,22 +21,39 @@ INTEGER_CONSTANT(EXCUSED_KEPT, 4);
 INTEGER_CONSTANT(EXCUSED_FROZEN, 5);
 INTEGER_CONSTANT(EXCUSED_LIMIT, 6);
 
-// What becomes of a proposal: one of the reasons from EXCUSED_MIN_EDGE on, or one of these.
-INTEGER_CONSTANT(PROPOSAL_OPEN, 16);
-INTEGER_CONSTANT(PROPOSAL_BLOCKED, 17);  // a constraint is split nearby, which goes first
-INTEGER_CONSTANT(PROPOSAL_LOSES, 18);    // to a better one
-INTEGER_CONSTANT(PROPOSAL_INSERTS, 19);  // its point
-INTEGER_CONSTANT(PROPOSAL_SPLITS, 20);   // the constraints that its point encroaches
+// What becomes of a triangle or a constraint that a block takes up: one of these, or a reason why nothing is done.
+INTEGER_CONSTANT(TASK_DONE, 0);
+INTEGER_CONSTANT(TASK_ASIDE, 16);   // until the next phase, since it concerns triangles of other blocks
+INTEGER_CONSTANT(TASK_SPLITS, 17);  // constraints are split first
+INTEGER_CONSTANT(TASK_FULL, 18);    // the lists of the work-item are too small
+// What is to be done with a row: mend it; split the constraint opposite to a corner, since an angle encroaches it; or,
+// with the number of the corner added, since the point of a bad triangle does.
+INTEGER_CONSTANT(TASK_MEND, -1);
+INTEGER_CONSTANT(TASK_WANTED, 4);
+// What is known of a row: why it was refused, one of EXCUSED_; and what is still to be done.
+INTEGER_CONSTANT(ROW_REFUSED, 7);
+INTEGER_CONSTANT(ROW_BAD, 8);
+INTEGER_CONSTANT(ROW_SPLITS, 16);  // for corner 0, and so on
+INTEGER_CONSTANT(ROW_ALL_SPLITS, 112);
+INTEGER_CONSTANT(ROW_NEW, 128);  // not tested yet for the area that is asked for there
+// What rows are for the order in the end.
+INTEGER_CONSTANT(ROW_KEPT, 1);
+INTEGER_CONSTANT(ROW_MADE, 2);
+// Why a launch ends before all blocks are done.
+INTEGER_CONSTANT(NEEDS_ROWS, 1);
+INTEGER_CONSTANT(NEEDS_ROOM, 2);
+INTEGER_CONSTANT(NEEDS_STEPS, 4);
+// Counters of a phase: blocks taken, rows and vertices in chunks, what a launch needs, points inserted.
+INTEGER_CONSTANT(COUNT_BLOCKS, 0);
+INTEGER_CONSTANT(COUNT_ROWS, 1);
+INTEGER_CONSTANT(COUNT_VERTICES, 2);
+INTEGER_CONSTANT(COUNT_NEEDS, 3);
+INTEGER_CONSTANT(COUNTERS_OF_PHASE, 4);
 
-// What becomes of a point in a step.
+// What becomes of a point that is inserted into a triangulation that changes.
 INTEGER_CONSTANT(POINT_WAITS, 0);
 INTEGER_CONSTANT(POINT_INSERTED, 1);
 INTEGER_CONSTANT(POINT_DROPPED, 2);  // there is a point in its place, or its constraint cannot be split there
-INTEGER_CONSTANT(POINT_REFUSED, 3);  // for its constraint, others of the same round are too near
-
-// How a proposal must not be beaten: where its triangle is, and beside it; or in all of its cavity and around that.
-INTEGER_CONSTANT(RULE_NEIGHBORS, 0);
-INTEGER_CONSTANT(RULE_RING, 1);
 
 // What the areas are given for.
 INTEGER_CONSTANT(AREAS_NONE, 0);
@@ -49,8 +66,6 @@ INTEGER_CONSTANT(STAYS, 0);
 // The star of a vertex without triangles.
 INTEGER_CONSTANT(NO_STAR, 0x7fffffff);
 
-// The key of a row that is not bad, or whose badness is not known yet.
-#define NO_KEY 0xffffffffffffffffUL
 // A row that was not claimed. Claims are above the last ones of all steps before.
 #define UNCLAIMED_ROW 0xffffffffu
 // A row without a triangle, in the place of its first corner.

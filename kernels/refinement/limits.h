@@ -6,8 +6,15 @@
 
 BEGIN_SHARED
 
-// A row may have so many constraints.
-INTEGER_CONSTANT(SLOTS_PER_ROW, 3);
+// Tasks are done in the order of classes, those of a class in their order.
+INTEGER_CONSTANT(TASK_CLASSES, 2048);
+// Rows and vertices are handed out in chunks.
+INTEGER_CONSTANT(ROWS_PER_CHUNK, 128);
+INTEGER_CONSTANT(VERTICES_PER_CHUNK, 64);
+// The number of a leaf in what is known of a vertex; the phase is above it.
+INTEGER_CONSTANT(LEAF_BITS, 20);
+// Lists have so many places more than `room`.
+INTEGER_CONSTANT(SPARE_ROOM, 8);
 
 END_SHARED
 

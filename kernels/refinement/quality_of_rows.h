@@ -106,23 +106,25 @@ static inline uint64 hash_with(uint64 hash, double2 p) {
   return mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.y));
 }
 
-// Triangles that are too large come first, the largest one first; then those with the shortest sides. Equal ones are
-// ordered by hashes: in the order of coordinates, long chains of them would wait for each other.
-static inline uint64 key_of(const ordered_triangle* triangle, int is_large) {
+// A key for an order of triangles that does not depend on how they are stored: the squared length of the shortest side,
+// of which a double has more digits, and a hash.
+static inline uint64 key_of(const ordered_triangle* triangle) {
   const double2* const p = triangle->point;
-  uint first;
-  if (is_large) {
-    const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
-    first = 0x7fffffffu - (uint)(as_ulong(fabs(area)) >> 33);
-  } else {
-    const int k = opposite_to_shortest(p);
-    first = 0x80000000u | (uint)(as_ulong(squared_distance(p[(k + 1) % 3], p[(k + 2) % 3])) >> 33);
-  }
+  const int k = opposite_to_shortest(p);
   uint64 hash = 0;
-  for (int k = 0; k < 3; ++k) hash = hash_with(hash, p[k]);
-  return (uint64)first << 32 | hash >> 32;
+  for (int j = 0; j < 3; ++j) hash = hash_with(hash, p[j]);
+  return (as_ulong(squared_distance(p[(k + 1) % 3], p[(k + 2) % 3])) >> 31 << 32) | hash >> 32;
 }
-static inline int is_key_of_large(uint64 key) { return (int)(key >> 63 == 0); }
+// That squared length, less some digits.
+static inline double square_in_key(uint64 key) { return as_double(key >> 32 << 31); }
+// Whether one triangle comes before another: 1, or -1; 0 if they are the same. For equal keys.
+static inline int order_by_corners(const ordered_triangle* a, const ordered_triangle* b) {
+  for (int k = 0; k < 3; ++k) {
+    if (comes_before(a->point[k], b->point[k])) return 1;
+    if (comes_before(b->point[k], a->point[k])) return -1;
+  }
+  return 0;
+}
 
 static inline split_place place_of_constraint(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
                                               GLOBAL const int* ends, refinement_rules rules) {
@@ -157,12 +159,13 @@ static inline double scaled_height(const seen_mesh* mesh, int corner) {
 // two thirds of its length, that all vertices are farther than 1.03 smallest edges from that.
 #define FAR_CORNER 1.5
 
-// Of a constraint or a part of one, opposite to a corner: whether it may be split, EXCUSED_NOT, or why not. Where a
-// corner is nearer to it than points may be to each other, the triangle is between constraints that are straight but
-// for rounding, and splits would go on to make more of them.
-static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
-                                GLOBAL const int* ends, refinement_rules rules) {
+// Of a constraint or a part of one, opposite to a corner: whether it may be split as far as the triangles beside it
+// tell, EXCUSED_NOT, or why not; *is_far: whether no vertex can be too near to the point that splits it. Where a corner
+// is nearer to it than points may be to each other, the triangle is between constraints that are straight but for
+// rounding, and splits would go on to make more of them.
+static inline int why_not_split_here(const seen_mesh* mesh, int corner, refinement_rules rules, int* is_far) {
   const int edge = edge_at(mesh, corner);
+  *is_far = 0;
   if (edge & EDGE_KEPT) return EXCUSED_KEPT;
   if (edge & EDGE_FROZEN) return EXCUSED_FROZEN;
   const double length =
@@ -172,7 +175,15 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const 
   double height = scaled_height(mesh, corner);
   if (beyond >= 0) height = fmin(height, scaled_height(mesh, corner_facing(mesh, beyond, row_of(corner))));
   if (height < rules.min_edge * length) return EXCUSED_FROZEN;
-  if (length >= rules.long_edge && height >= FAR_CORNER * rules.min_edge * length) return EXCUSED_NOT;
+  *is_far = length >= rules.long_edge && height >= FAR_CORNER * rules.min_edge * length;
+  return EXCUSED_NOT;
+}
+
+static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const edge_place* places,
+                                GLOBAL const int* ends, refinement_rules rules) {
+  int is_far;
+  const int reason = why_not_split_here(mesh, corner, rules, &is_far);
+  if (reason != EXCUSED_NOT || is_far) return reason;
   return is_split_crowded(mesh, corner, places, ends, rules) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 

@@ -26,34 +26,72 @@ ASSERT_SIZE(edge_place, 24);
 
 // What is asked for, and what else is the same for all triangles; docs/refinement.md.
 typedef struct {
-  double squared_sine;                   // of the smallest angle
-  double off_centre;                     // how far off-centres are from the shortest edge
-  double squared_cosine;                 // of the angle under which a point encroaches an edge; 0: conforming
-  double area;                           // the largest, or 0
-  double min_edge;                       // squared
-  double long_edge;                      // six times as long, squared; infinite if rounding could matter
-  double coarse;                         // new coordinates below it are multiples of its last binary place
-  int area_kind, rule, waits, vertices;  // vertices: those of the input
+  double squared_sine;    // of the smallest angle
+  double off_centre;      // how far off-centres are from the shortest edge
+  double squared_cosine;  // of the angle under which a point encroaches an edge; 0: conforming
+  double area;            // the largest, or 0
+  double min_edge;        // squared
+  double long_edge;       // six times as long, squared; infinite if rounding could matter
+  double coarse;          // new coordinates below it are multiples of its last binary place
+  int area_kind;
+  int has_apexes;          // whether there are any
+  int has_given;           // whether triangles of one region may have different areas, by the mesh that was given
+  int vertices;            // those of the input
+  int least_class, spare;  // see class_of
 } refinement_rules;
-ASSERT_SIZE(refinement_rules, 72);
+ASSERT_SIZE(refinement_rules, 80);
 
-// A point that is to mend a triangle. start: the corner at which a tour of its cavity begins. hit: the corner opposite
-// to the constraint that is in the way, or -1. count: rows in the cavity; splits: constraints that it encroaches.
+// A phase. Triangles that are too large act if they exceed the area that is wanted by the factor `level`, or in a
+// scaffold if their circumradius exceeds that of their leaf. room: of the lists of each work-item; most: a block
+// inserts at most so many points; steps: a launch takes so many of each block.
 typedef struct {
-  double x, y;
-  int row, start, hit, count, splits, spare;
-} proposal;
-ASSERT_SIZE(proposal, 40);
+  double level;
+  uint number;
+  int is_whole, segments_only, is_scaffold, blocks, first_block, most, room, row_room, vertex_room, steps, spare;
+} refinement_phase;
+ASSERT_SIZE(refinement_phase, 56);
 
-// A point that is inserted: its vertex; where its cavity begins, and the proposal that knows its rows, or -1; the ends
-// of the constraint that it splits, or -1. rank: the smallest goes first. count: rows in the cavity; seen: the step
-// before which they were found.
+// A node of the tree of cuts: places below a cut along an axis, 0 or 1, belong to the node `child`, the others to the
+// one after it. A leaf has the axis -1 and its number for a child.
 typedef struct {
-  int vertex, corner, known;
-  uint rank;
-  int from, to, count, first_row, seen;
-} insertion;
-ASSERT_SIZE(insertion, 36);
+  double at;
+  int axis, child;
+} block_cut;
+ASSERT_SIZE(block_cut, 16);
+
+// What a block has to do: a row as it was when it had this count of changes, and what is to be done with it. next: the
+// place of the next one of its class, or one of the free places, plus 1; 0: none.
+typedef struct {
+  int row, changed, task, next;
+} block_task;
+ASSERT_SIZE(block_task, 16);
+
+// What a block begins with: a row, its key, what is to be done with it, and the class of that. turn: for an order of
+// what is to be done with one row.
+typedef struct {
+  uint64 key;
+  int row, task, tier, turn;
+} first_task;
+ASSERT_SIZE(first_task, 24);
+
+// A side of a cavity that is dug: the two ends of the edge, seen from the point, the squares of their distances and
+// their cross product. edge: the row inside times 4, with the number of the corner opposite; from: the first end.
+typedef struct {
+  double bx, by, bl, cx, cy, cl, bc;
+  int edge, from;
+} dug_side;
+ASSERT_SIZE(dug_side, 64);
+
+// Where a work-item is in its block, so that it can go on when there is more room. block: less than 0 without one.
+// free_task: the first free place in the list of tasks, plus 1; used_tasks: how many places were used. retry: a row
+// that waits for the splits of constraints that it wants. rows and vertices: what is left of the last chunks.
+typedef struct {
+  uint64 classes[32];
+  uint groups;
+  int block, inserted, used_tasks, free_task, free_count, retry, retry_changed, retry_class, retry_inserted,
+      retry_aside, retry_reason, row, row_end, vertex, vertex_end;
+} block_state;
+ASSERT_SIZE(block_state, 320);
 
 // A side of a cavity: the vertex at its beginning, what is beyond it and which corner there is opposite, whether it
 // must stay, and the parent of the row inside. Also one of the rows of the new triangles, which has nothing to do with

@@ -5,7 +5,7 @@
 // is spoiled: corners of triangles that would turn over or be bad stay. apply_moves. find_moved: triangles that have
 // other shapes. find_flips, claim_flips, decide_flips and flip, after a sort by the keys of edges, until there are
 // none: edges that are not Delaunay are replaced by the other diagonals (Lawson, 1977), by keys, since triangles
-// inherit from those before. forget_changed and list_changed: what the rounds that follow test.
+// inherit from those before. forget_changed: what is tested again.
 
 #include "refinement/arguments.h"
 #include "refinement/flips.h"
@@ -115,6 +115,16 @@ kernel void find_flips(int n, uint pass, REFINED_MESH(), global const uint* rest
   }
 }
 
+// The keys of n edges, opposite to corners: hashes of their ends, whichever side they are seen from.
+kernel void keys_of_edges(int n, global const int* restrict corners, REFINED_MESH(), global uint64* restrict keys) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    const double2 a = point_at(&mesh, next_halfedge(corners[i])), b = point_at(&mesh, previous_halfedge(corners[i]));
+    keys[i] = comes_before(a, b) ? hash_with(hash_with(0, a), b) : hash_with(hash_with(0, b), a);
+  }
+}
+
 // n edges, in the order of their keys, by which they claim their rows.
 kernel void claim_flips(int n, global const int* restrict corners, global const mesh_row* restrict rows,
                         global volatile uint* restrict claims) {
@@ -161,27 +171,16 @@ kernel void flip(int n, uint next_pass, global const int* restrict corners, glob
 
 // n rows: what is known of those that were changed is forgotten, as if they had just been made.
 kernel void forget_changed(int n, global const uint* restrict changes, global mesh_row* restrict rows,
-                           global uint64* restrict row_keys, global uchar* restrict refused,
-                           global uchar* restrict is_changed) {
+                           global uchar* restrict states) {
   const int row = get_global_id(0);
   if (row < n) {
     const int has_changed = changes[row] != 0;
-    is_changed[row] = (uchar)has_changed;
-    if (has_changed) {
-      row_keys[row] = NO_KEY;
-      refused[row] = EXCUSED_NOT;
-    }
+    if (has_changed) states[row] = ROW_NEW;
     for (int k = 0; k < 3 && rows[row].corner[0] != NO_TRIANGLE; ++k) {
       const int edge = rows[row].edge[k], beyond = rows[row].neighbor[k];
       if (edge >= 0 && (has_changed || (beyond >= 0 && changes[beyond] != 0))) rows[row].edge[k] = edge & ~EDGE_FROZEN;
     }
   }
-}
-
-kernel void list_changed(int n, global const int* restrict positions, global const mesh_row* restrict rows,
-                         global int2* restrict made) {
-  const int i = get_global_id(0);
-  if (i < n) made[i] = VECTOR(int2, positions[i], rows[positions[i]].corner[0]);
 }
 
 #endif

@@ -100,15 +100,14 @@ kernel void claim_around(int n, uint first, global const int* restrict list, LIV
     const uint claim = first + of.rank;
     of = place_in_row(&mesh, of, find_row(&mesh, row_of(of.corner), p), p);
     uint size = 0;
-    int count = 0;
     if (of.found >= 0) {
       states[list[i]] = POINT_DROPPED;
     } else if (of.edge >= 0) {
       const int row = row_of(of.corner), other = corner_facing(&mesh, neighbor_at(&mesh, of.corner), row);
-      size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, 0.0, claim, claims, 0, 0, &count) +
-             (uint)claim_tour(&mesh, next_halfedge(other), other, p, 0.0, claim, claims, 0, 0, &count);
+      size = (uint)claim_tour(&mesh, next_halfedge(of.corner), of.corner, p, claim, claims) +
+             (uint)claim_tour(&mesh, next_halfedge(other), other, p, claim, claims);
     } else {
-      size = (uint)claim_tour(&mesh, of.corner, of.corner, p, 0.0, claim, claims, 0, 0, &count);
+      size = (uint)claim_tour(&mesh, of.corner, of.corner, p, claim, claims);
     }
     of.count = (int)size - 2;
     placed[list[i]] = of;

@@ -39,16 +39,17 @@ bool once_in(FixtureRandom& random, std::int64_t times) { return random.integer(
 /// What is asked for. Of edges and regions it depends on coordinates alone, so that domains can be shrunk.
 struct Demands {
   Refinement wanted;
-  std::uint64_t kept_salt = 0;  ///< decides which edges are kept; 0: none
-  double region_area = 0;       ///< regions have areas around this; 0: any
+  std::uint64_t kept_salt = 0;                        ///< decides which edges are kept; 0: none
+  double region_area = 0;                             ///< regions have areas around this; 0: any
+  std::size_t block = constrained::kRefinementBlock;  ///< bad triangles per block
 
   std::string text() const {
     return fmt::format(
         "min_angle {}, max_area {}, areas_at {}, min_edge {}, most_points {}, most_rounds {}, "
-        "conforming {}, smoothing_steps {}, kept_salt {}, region_area {}",
+        "conforming {}, smoothing_steps {}, kept_salt {}, region_area {}, block {}",
         wanted.min_angle, wanted.max_area, static_cast<bool>(wanted.areas_at), wanted.min_edge,
         wanted.most_points, wanted.most_rounds, wanted.conforming, wanted.smoothing_steps, kept_salt,
-        region_area);
+        region_area, block);
   }
 };
 
@@ -85,6 +86,7 @@ Demands any_demands(FixtureRandom& random, const DomainToRefine& domain) {
   wanted.conforming = once_in(random, 8);
   if (once_in(random, 4)) wanted.smoothing_steps = static_cast<std::size_t>(random.integer(1, 4));
   if (once_in(random, 6)) demands.kept_salt = static_cast<std::uint64_t>(random.integer(1, 1 << 30));
+  if (once_in(random, 2)) demands.block = std::size_t{1} << random.integer(0, 7);
   return demands;
 }
 
@@ -307,22 +309,23 @@ class RefinementFuzzer : public Fuzzer {
       return "";
     }
     try {
-      const RefinedMesh refined = constrained::refine(*native_[0], mesh, demands.wanted);
+      const RefinedMesh refined = constrained::refine(*native_[0], mesh, demands.wanted, demands.block);
       count(refined);
       std::string problem = testing::what_is_wrong(mesh, refined, demands.wanted);
       if (problem.empty()) problem = verified(domain, refined, demands);
       if (!problem.empty()) return problem;
       for (std::size_t i = 1; with != Runtimes::one && i < native_.size(); ++i) {
-        if (!are_same(constrained::refine(*native_[i], mesh, demands.wanted), refined))
+        if (!are_same(constrained::refine(*native_[i], mesh, demands.wanted, demands.block), refined))
           return fmt::format("differs on native runtime {}", i);
       }
       for (std::size_t i = 0; with == Runtimes::all && i < devices_.size(); ++i) {
         start_check();
-        if (!are_same(constrained::refine(*devices_[i], mesh, demands.wanted), refined))
+        if (!are_same(constrained::refine(*devices_[i], mesh, demands.wanted, demands.block), refined))
           return fmt::format("differs on device runtime {}", i);
       }
       const testing::OwnedMesh other = testing::shuffled(mesh, 1);
-      const RefinedMesh from_other = constrained::refine(*native_[0], other.mesh, demands.wanted);
+      const RefinedMesh from_other =
+          constrained::refine(*native_[0], other.mesh, demands.wanted, demands.block);
       if (!(testing::ByCoordinates(other.mesh, from_other) == testing::ByCoordinates(mesh, refined)))
         return "differs for shuffled input";
       if (mesh.largest_areas.empty() && mesh.kept_edges.empty())

@@ -3,22 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
+#include <optional>
 #include <utility>
 
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
+#include "constrained/refinement/cuts.hpp"
 #include "constrained/refinement/smooth.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "host/launch/vector_operations.hpp"
-#include "launchers/refinement/insert.cl.hpp"
-#include "launchers/refinement/propose.cl.hpp"
+#include "launchers/refinement/blocks.cl.hpp"
 #include "launchers/refinement/tests.cl.hpp"
 #include "points/download.hpp"
 #include "predicates/quality.h"
@@ -41,15 +41,24 @@ using host::Arena;
 using host::Buffer;
 using kernel::double2;
 using kernel::edge_place;
-using kernel::insertion;
 using kernel::mesh_row;
-using kernel::proposal;
-using kernel::star_side;
 
-// Up to this angle, bad triangles wait for better neighbours; above the second one, a point must hold all
-// rows around its cavity. Measured: docs/refinement.md.
-constexpr double kWaitsUpTo = 30, kRingAbove = 32;
-constexpr std::size_t kMostWithoutWaiting = 4000;
+// A block inserts at most so many points per bad triangle in a phase, which is a part of the result.
+constexpr std::size_t kMostPerTriangle = 16;
+// A phase that adds fewer points than this part of its bad triangles makes the blocks of the next one larger.
+constexpr double kLeastProgress = 0.1;
+// One bad triangle in so many decides where the plane is cut: in the first phase, which cuts in medians, and
+// later.
+constexpr std::size_t kFirstSample = 8, kLaterSample = 4;
+// Areas go down in levels, each so many times smaller than the one before; the next one begins when this part
+// of a level is left.
+constexpr double kLevelStep = 16, kLevelRest = 0.1;
+// Triangles with a circumradius above this part of the size of their block are cut before.
+constexpr double kScaffold = 0.5;
+// Blocks at once, on devices; natively, as many as threads. The lists of each have so many places at first.
+constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
+// Where loops of a work-item must be short, a launch takes so many steps of each block.
+constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
 constexpr double kSmoothedAngle = 20;
 // The smallest edge unless the caller has one: 2^-40 of the larger side of the bounding box, or 2^-48 of the
@@ -58,25 +67,27 @@ constexpr double kSmoothedAngle = 20;
 constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -48, kFineOfLargest = -45;
 // New coordinates have no binary places below that of the largest coordinate by so many.
 constexpr int kBinaryPlaces = 200;
-// The rows of cavities with at most so many are kept in lists. On average there are four, but in empty
-// polygons many more: lists get longer if more than a part of all cavities does not fit.
-constexpr int kFewestListed = 12, kMostListed = 96;
-constexpr std::size_t kPartUnlisted = 16;
-// Rows that a thread writes to the result at once.
-constexpr std::size_t kPartOfRows = std::size_t{1} << 14;
 // Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
 
 // The mesh. Arrays have room for more.
 struct Arrays {
   Buffer<mesh_row> rows{};
-  Buffer<cl_ulong> keys{};
-  Buffer<cl_uint> claims{}, visits{};
-  Buffer<cl_uchar> refused{};
+  Buffer<cl_uchar> states{};
   Buffer<cl_double> areas{};
   Buffer<cl_double2> points{};
   Buffer<edge_place> places{};
-  Buffer<cl_int> bad{}, next_bad{};  // rows
+  Buffer<cl_int> cells{};    // the phase and the leaf of vertices
+  Buffer<cl_int2> births{};  // the blocks that made them, and their numbers there
+};
+
+// The lists of work-items.
+struct Lists {
+  Buffer<cl_int> heads{}, tails{}, cavities{};
+  Buffer<kernel::block_task> tasks{};
+  Buffer<kernel::dug_side> stacks{};
+  Buffer<kernel::star_side> sides{};
+  Buffer<kernel::first_task> firsts{};
 };
 
 // What an array holds: where it is, if kernels run natively, or else a copy.
@@ -95,10 +106,10 @@ class Here {
   const T* values_;
 };
 
-class Rounds {
+class Refining {
  public:
-  Rounds(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted)
-      : runtime_(runtime), arena_(runtime.arena()), mesh_(mesh), wanted_(wanted) {
+  Refining(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted, std::size_t block)
+      : runtime_(runtime), arena_(runtime.arena()), mesh_(mesh), wanted_(wanted), block_(block) {
     scale();
     set_rules();
   }
@@ -107,49 +118,40 @@ class Rounds {
     upload();
     if (!wanted_.is_wanted() && mesh_.largest_areas.empty()) return result();
     mend(false);
+    if (wanted_.smoothing_steps > 0) put_in_order();
     if (wanted_.smoothing_steps > 0) measure_before_smoothing();
     for (std::size_t step = 0; step < wanted_.smoothing_steps && !is_at_limit(); ++step) {
       smooth_once();
       mend(true);
+      put_in_order();
     }
-    if (is_at_limit()) find_areas();
     return result();
   }
 
  private:
   bool is_at_limit() const { return report_.rounds >= wanted_.most_rounds || added_ >= wanted_.most_points; }
 
-  // Makes rounds as long as they help. has_moved: whether constraints may have thawed before.
+  // Makes phases as long as they help. has_moved: whether constraints may have thawed before.
   void mend(bool has_moved) {
     bool may_thaw = has_moved;
     do {
       const std::size_t before = added_;
-      make_rounds();
+      find_areas();
+      test(true);
+      make_phases(true);
+      test(false);
+      make_phases(false);
       may_thaw |= added_ > before;
     } while (!is_at_limit() && std::exchange(may_thaw, false) && retry_frozen());
   }
 
-  void make_rounds() {
-    while (made_count_ + bad_count_ > 0 && !is_at_limit()) {
-      const std::size_t before = tried_;
-      Arena::Scope scope(arena_);
-      if (!make_round()) break;
-      if (tried_ > before) ++report_.rounds;
-    }
-  }
-
-  // Constraints that could not be split beside flat triangles may be since these changed. Tests
-  // triangles that were refused for such a constraint again; returns whether there are some.
+  // Constraints that could not be split beside flat triangles may be since these changed. Tries triangles
+  // that were refused for such a constraint again; returns whether there are some.
   bool retry_frozen() {
     Arena::Scope scope(arena_);
-    const auto [at, count] = host::pack_positions(runtime_, arrays_.refused, rows_, kernel::EXCUSED_FROZEN);
-    reserve_made(count);
-    runtime_.map(count,
-                 kernels::make_again{
-                     .positions = at, .rows = arrays_.rows, .refused = arrays_.refused, .made = made_});
-    runtime_.finish();
-    made_count_ = count;
-    return count > 0;
+    const auto is_tried = arena_.allocate<cl_uchar>(rows_);
+    runtime_.map(rows_, kernels::retry_frozen{.states = arrays_.states, .is_tried = is_tried});
+    return host::pack_positions(runtime_, is_tried, rows_, 1).second > 0;
   }
 
   // -------------------------------------------------------------------------------------------------------
@@ -183,6 +185,8 @@ class Rounds {
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
   }
+
+  double unscaled(double x) const { return std::ldexp(x, -shift_); }
 
   // An area that is too small to be scaled is still one: no triangle is as small.
   double scaled_area(double area) const {
@@ -223,9 +227,9 @@ class Rounds {
     rules_.area_kind = wanted_.areas_at               ? kernel::AREAS_BY_ROW
                        : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
                                                       : kernel::AREAS_NONE;
-    rules_.rule = wanted_.min_angle > kRingAbove ? kernel::RULE_RING : kernel::RULE_NEIGHBORS;
-    // Of few triangles, most are near the border, where those that wait cost points.
-    rules_.waits = wanted_.min_angle <= kWaitsUpTo && mesh_.triangles.size() / 3 > kMostWithoutWaiting;
+    // Squares of lengths are below 2 extent^2, by 2^100 classes of which the shortest sides are told apart.
+    rules_.least_class =
+        8 * (2 * (extent_ > 0 ? std::ilogb(extent_) : 0) + 1023 + 3) - kernel::TASK_CLASSES / 2;
     rules_.vertices = static_cast<int>(mesh_.points);
   }
 
@@ -302,17 +306,18 @@ class Rounds {
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     reserve(rows_, vertices_);
-    clear_claims();
-    reserve_made(rows_);
-    made_count_ = rows_;
-    runtime_.fill(arrays_.refused, rows_, cl_uchar{kernel::EXCUSED_NOT});
+    known_ = vertices_;
+    rules_.has_apexes =
+        std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
+    runtime_.fill(arrays_.states, rows_, cl_uchar{kernel::ROW_NEW});
+    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
+    start_blocks();
     {
       Arena::Scope scope(arena_);
       runtime_.map(rows_, kernels::load_rows{.triangles = runtime_.upload(arena_, places_of(mesh_.triangles)),
                                              .neighbors = runtime_.upload(arena_, mesh_.neighbors),
                                              .edges = runtime_.upload(arena_, std::move(edges)),
-                                             .rows = arrays_.rows,
-                                             .made = made_});
+                                             .rows = arrays_.rows});
       runtime_.finish();
     }
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
@@ -324,6 +329,7 @@ class Rounds {
       if (areas_differ_within_regions()) {
         given_ = arena_.allocate<mesh_row>(rows_);
         runtime_.copy(arrays_.rows, 0, given_, 0, rows_);
+        rules_.has_given = 1;
       }
     } else {
       parent_areas_ = arena_.allocate<cl_double>(1);  // nobody reads it
@@ -344,10 +350,6 @@ class Rounds {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  void reserve_made(std::size_t count) {
-    if (count > made_.size()) grow(made_, made_count_, with_spare(count));
-  }
-
   // With what is likely to be needed later. Natively, memory that is not used costs nothing.
   std::size_t with_spare(std::size_t count) const {
     return runtime_.is_native() ? 3 * count : count + count / 2;
@@ -363,34 +365,18 @@ class Rounds {
       }
       const std::size_t size = std::min(kMostTriangles, with_spare(rows));
       grow(arrays_.rows, rows_, size);
-      grow(arrays_.keys, rows_, size);
-      grow(arrays_.claims, rows_, size);
-      grow(arrays_.visits, rows_, size);
-      grow(arrays_.refused, rows_, size);
+      grow(arrays_.states, rows_, size);
       if (rules_.area_kind == kernel::AREAS_BY_ROW) grow(arrays_.areas, rows_, size);
-      grow(arrays_.bad, bad_count_, size);
-      grow(arrays_.next_bad, 0, size);
       row_room_ = size;
     }
     if (vertices > vertex_room_) {
       const std::size_t size = with_spare(vertices);
       grow(arrays_.points, vertices_, size);
       grow(arrays_.places, vertices_, size);
+      grow(arrays_.cells, vertices_, size);
+      grow(arrays_.births, vertices_, size);
       vertex_room_ = size;
     }
-  }
-
-  // Claims of later steps are smaller than those before, so that nobody has to clear them.
-  void clear_claims() {
-    runtime_.fill(arrays_.claims, rows_, cl_uint{UNCLAIMED_ROW});
-    runtime_.fill(arrays_.visits, rows_, cl_uint{UNCLAIMED_ROW});
-    next_claim_ = UNCLAIMED_ROW;
-  }
-  // The first of so many claims.
-  cl_uint take_claims(std::size_t count) {
-    if (count >= next_claim_) clear_claims();
-    next_claim_ -= static_cast<cl_uint>(count);
-    return next_claim_;
   }
 
   kernels::refined_mesh refined_mesh() const {
@@ -405,369 +391,488 @@ class Rounds {
   // -------------------------------------------------------------------------------------------------------
   // Tests
 
-  // What is to be split in any case.
-  struct Encroached {
-    Buffer<cl_int> corners{};  // opposite; those less than 0 are none
-    std::size_t count = 0;
-  };
-
-  // Tests what the last round has made, and makes the list of bad rows.
-  Encroached test() {
-    const std::size_t count = made_count_;
-    const auto bad = arena_.allocate<cl_uchar>(count), encroached = arena_.allocate<cl_uchar>(count),
-               split_bits = arena_.allocate<cl_uchar>(count),
-               unchanged = arena_.allocate<cl_uchar>(bad_count_);
-    // Before the test, which gives rows that were made keys again.
-    runtime_.map(bad_count_,
-                 kernels::find_unchanged{.list = arrays_.bad, .keys = arrays_.keys, .unchanged = unchanged});
-    runtime_.map_in_small_groups(count, kernels::test_rows{.rules = rules_,
-                                                           .made = made_,
+  // Tests all rows: what constraints are encroached, or what is bad.
+  void test(bool segments_only) {
+    runtime_.map_in_small_groups(rows_, kernels::test_rows{.segments_only = segments_only ? 1 : 0,
+                                                           .rules = rules_,
                                                            .refined_mesh = refined_mesh(),
-                                                           .keys = arrays_.keys,
-                                                           .bad = bad,
-                                                           .encroached = encroached,
-                                                           .split_bits = split_bits});
-    const auto [kept_at, kept_count] = host::pack_positions(runtime_, unchanged, bad_count_, 1);
-    const auto [bad_at, bad_count] = host::pack_positions(runtime_, bad, count, 1);
-    const auto [encroached_at, encroached_count] = host::pack_positions(runtime_, encroached, count, 1);
-    runtime_.map(kept_count, kernels::gather_elements{
-                                 .positions = kept_at, .from = arrays_.bad, .list = arrays_.next_bad});
-    runtime_.map(bad_count, kernels::append_made{.first = static_cast<int>(kept_count),
-                                                 .positions = bad_at,
-                                                 .made = made_,
-                                                 .list = arrays_.next_bad});
-    std::swap(arrays_.bad, arrays_.next_bad);
-    bad_count_ = kept_count + bad_count;
-    const Encroached found{arena_.allocate<cl_int>(kernel::SLOTS_PER_ROW * encroached_count),
-                           kernel::SLOTS_PER_ROW * encroached_count};
-    runtime_.map(
-        encroached_count,
-        kernels::list_encroached{
-            .positions = encroached_at, .made = made_, .split_bits = split_bits, .corners = found.corners});
-    return found;
+                                                           .states = arrays_.states});
+  }
+
+  // Rows whose states have a bit of a mask.
+  std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
+    const auto flags = arena_.allocate<cl_uchar>(rows_);
+    runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
+    return host::pack_positions(runtime_, flags, rows_, 1);
   }
 
   // Finds the areas of rows that were made: those of parents, and what the caller's function says.
   void find_areas() {
+    if (given_.size() == 0 && !wanted_.areas_at) return;
+    Arena::Scope scope(arena_);
+    const auto [list, count] = rows_with(kernel::ROW_NEW);
+    if (count == 0) return;
     if (given_.size() > 0) {
-      runtime_.map_in_small_groups(made_count_, kernels::find_parents{.rules = rules_,
-                                                                      .made = made_,
-                                                                      .given = given_,
-                                                                      .points = arrays_.points,
-                                                                      .rows = arrays_.rows});
+      runtime_.map_in_small_groups(count, kernels::find_parents{.rules = rules_,
+                                                                .list = list,
+                                                                .given = given_,
+                                                                .points = arrays_.points,
+                                                                .rows = arrays_.rows});
     }
     if (!wanted_.areas_at) return;
-    Arena::Scope scope(arena_);
-    const auto centroids = arena_.allocate<cl_double2>(made_count_);
+    const auto centroids = arena_.allocate<cl_double2>(count);
     runtime_.map_in_small_groups(
-        made_count_,
-        kernels::write_centroids{.made = made_, .refined_mesh = refined_mesh(), .centroids = centroids});
-    const std::vector<double> all = points::download(runtime_, centroids.as<cl_double>(), 2 * made_count_);
-    std::vector<double> places, areas;
-    std::vector<std::size_t> of;
-    for (std::size_t i = 0; i < made_count_; ++i) {
-      if (std::isnan(all[2 * i])) continue;
-      of.push_back(i);
-      for (int k = 0; k < 2; ++k) places.push_back(std::ldexp(all[2 * i + k], -shift_));
-    }
-    areas.resize(of.size());
-    wanted_.areas_at(places.data(), of.size(), areas.data());
+        count,
+        kernels::write_centroids{.list = list, .refined_mesh = refined_mesh(), .centroids = centroids});
+    std::vector<double> places = points::download(runtime_, centroids.as<cl_double>(), 2 * count),
+                        areas(count);
+    for (double& x : places) x = std::ldexp(x, -shift_);
+    wanted_.areas_at(places.data(), count, areas.data());
     check_areas(areas.data(), areas.size(), "areas");
-    std::vector<double> given(made_count_);
-    for (std::size_t i = 0; i < of.size(); ++i) given[of[i]] = scaled_area(areas[i]);
-    runtime_.map(made_count_, kernels::set_areas{.has_parents = mesh_.largest_areas.empty() ? 0 : 1,
-                                                 .made = made_,
-                                                 .rows = arrays_.rows,
-                                                 .given = runtime_.upload(arena_, std::move(given)),
-                                                 .parent_areas = parent_areas_,
-                                                 .areas = arrays_.areas});
+    for (double& area : areas) area = scaled_area(area);
+    runtime_.map_in_small_groups(count, kernels::set_areas{.has_parents = mesh_.largest_areas.empty() ? 0 : 1,
+                                                           .rules = rules_,
+                                                           .list = list,
+                                                           .rows = arrays_.rows,
+                                                           .points = arrays_.points,
+                                                           .given = runtime_.upload(arena_, std::move(areas)),
+                                                           .parent_areas = parent_areas_,
+                                                           .areas = arrays_.areas,
+                                                           .states = arrays_.states});
     runtime_.finish();
   }
 
   // -------------------------------------------------------------------------------------------------------
-  // Rounds
+  // Phases
 
-  struct Proposals {
-    std::size_t count = 0, winners = 0;
-    Buffer<proposal> all{};
-    int listed = 0;             // the rows of cavities with at most so many are in a list
-    Buffer<cl_int> cavities{};  // that many rows each
-    Buffer<cl_int> order{};     // by ranks
-    Buffer<cl_uchar> outcomes{};
-    Buffer<cl_int> winners_at{};  // places in the order
-    Buffer<cl_uint> wanted{};     // scanned: the constraints that are split for each
-    std::size_t wanted_count = 0;
+  // Rows in which something is to be done, and what is known of them.
+  struct Pending {
+    std::size_t count = 0;
+    Buffer<cl_int> list{};
+    Buffer<cl_double2> middles{};
+    Buffer<cl_double> radii{};
+    Buffer<cl_uchar> levels{}, is_sampled{};
   };
 
-  // Returns false if there is nothing left to do.
-  bool make_round() {
-    find_areas();
-    const Encroached encroached = test();
-    may_propose_ |= encroached.count == 0;
-    Proposals proposals;
-    if (may_propose_) proposals = propose(encroached);
-    if (encroached.count + proposals.count == 0) return false;
-    insert(encroached, proposals);
-    return true;
+  // sample: one in so many, a power of two.
+  Pending describe(const Buffer<cl_int>& list, std::size_t count, std::size_t sample) {
+    Pending all{count,
+                list,
+                arena_.allocate<cl_double2>(count),
+                arena_.allocate<cl_double>(count),
+                arena_.allocate<cl_uchar>(count),
+                arena_.allocate<cl_uchar>(count)};
+    runtime_.map_in_small_groups(count, kernels::describe_rows{.rules = rules_,
+                                                               .step = kLevelStep,
+                                                               .mask = static_cast<cl_uint>(sample - 1),
+                                                               .list = list,
+                                                               .refined_mesh = refined_mesh(),
+                                                               .middles = all.middles,
+                                                               .radii = all.radii,
+                                                               .levels = all.levels,
+                                                               .is_sampled = all.is_sampled});
+    runtime_.finish();
+    return all;
   }
 
-  Proposals propose(const Encroached& encroached) {
-    const auto active = arena_.allocate<cl_uchar>(bad_count_);
-    runtime_.map(bad_count_, kernels::find_active{.waits = rules_.waits,
-                                                  .list = arrays_.bad,
-                                                  .rows = arrays_.rows,
-                                                  .keys = arrays_.keys,
-                                                  .active = active});
-    const auto [active_at, count] = host::pack_positions(runtime_, active, bad_count_, 1);
-    Proposals made;
-    made.count = count;
-    if (count == 0) return made;
-    const auto list = arena_.allocate<cl_int>(count);
-    runtime_.map(count, kernels::gather_elements{.positions = active_at, .from = arrays_.bad, .list = list});
-    made.all = arena_.allocate<proposal>(count);
-    made.listed = std::min(listed_, std::numeric_limits<int>::max() / static_cast<int>(count));
-    made.cavities = arena_.allocate<cl_int>(static_cast<std::size_t>(made.listed) * count);
-    made.order = arena_.allocate<cl_int>(count);
-    made.outcomes = arena_.allocate<cl_uchar>(count);
-    const auto keys = arena_.allocate<cl_ulong>(count);
-    const auto unlisted = arena_.allocate<cl_uint>(1);
-    runtime_.fill(unlisted, 1, cl_uint{0});
-    runtime_.map_in_small_groups(count, kernels::propose{.rules = rules_,
-                                                         .listed = made.listed,
-                                                         .list = list,
-                                                         .refined_mesh = refined_mesh(),
-                                                         .row_keys = arrays_.keys,
-                                                         .proposals = made.all,
-                                                         .cavities = made.cavities,
-                                                         .keys = keys,
-                                                         .payloads = made.order,
-                                                         .outcomes = made.outcomes,
-                                                         .unlisted = unlisted});
-    if (kPartUnlisted * runtime_.read_one(unlisted, 0) > count) listed_ = std::min(2 * listed_, kMostListed);
-    host::sort_by_key(runtime_, keys, made.order, count);
-    runtime_.map(
-        count, kernels::order_equal{
-                   .keys = keys, .proposals = made.all, .refined_mesh = refined_mesh(), .order = made.order});
-    const auto ranks = arena_.allocate<cl_uint>(count);
-    runtime_.map(count, kernels::list_ranks{.order = made.order, .ranks = ranks});
-    const cl_uint splits_claim = take_claims(count + 1), first = splits_claim + 1;
-    if (encroached.count > 0) {
-      runtime_.map_in_small_groups(encroached.count, kernels::claim_splits{.rules = rules_,
-                                                                           .claim = splits_claim,
-                                                                           .corners = encroached.corners,
-                                                                           .refined_mesh = refined_mesh(),
-                                                                           .claims = arrays_.claims});
-      runtime_.map_in_small_groups(count, kernels::find_blocked{.claim = splits_claim,
-                                                                .listed = made.listed,
-                                                                .proposals = made.all,
-                                                                .cavities = made.cavities,
-                                                                .refined_mesh = refined_mesh(),
-                                                                .claims = arrays_.claims,
-                                                                .outcomes = made.outcomes});
+  // The levels of area of a series of phases: a triangle acts if it exceeds the current one.
+  struct Levels {
+    int current = -1;
+    std::size_t at_first = 0;
+  };
+
+  // Goes down to the next level if this one is done. Returns the rows that act.
+  std::pair<Buffer<cl_int>, std::size_t> rows_at_level(const Buffer<cl_int>& list, std::size_t count,
+                                                       Levels& levels) {
+    // New triangles of a phase have no areas by places, so that there each level is a factor of two.
+    if (rules_.area_kind == kernel::AREAS_BY_ROW ||
+        (rules_.area_kind == kernel::AREAS_NONE && !(rules_.area > 0)))
+      levels.current = 0;
+    if (levels.current == 0) return {list, count};
+    const Pending all = describe(list, count, 1);
+    const Here<cl_uchar> of(runtime_, all.levels, count);
+    std::array<std::size_t, 257> counts{};
+    for (std::size_t i = 0; i < count; ++i) ++counts[of[i]];
+    const auto acting = [&] {
+      std::size_t sum = counts[0];
+      for (std::size_t k = static_cast<std::size_t>(levels.current) + 1; k < counts.size(); ++k)
+        sum += counts[k];
+      return sum;
+    };
+    if (levels.current < 0) {
+      levels.current = 255;
+      while (levels.current > 0 && counts[static_cast<std::size_t>(levels.current)] == 0) --levels.current;
     }
-    runtime_.map_in_small_groups(count, kernels::claim_cavities{.rules = rules_,
-                                                                .first = first,
-                                                                .listed = made.listed,
-                                                                .proposals = made.all,
-                                                                .cavities = made.cavities,
-                                                                .ranks = ranks,
-                                                                .outcomes = made.outcomes,
-                                                                .refined_mesh = refined_mesh(),
-                                                                .claims = arrays_.claims});
-    runtime_.map_in_small_groups(count, kernels::decide{.rules = rules_,
-                                                        .first = first,
-                                                        .proposals = made.all,
-                                                        .ranks = ranks,
-                                                        .refined_mesh = refined_mesh(),
-                                                        .row_keys = arrays_.keys,
-                                                        .claims = arrays_.claims,
-                                                        .outcomes = made.outcomes});
-    const auto inserts = arena_.allocate<cl_uchar>(count);
-    runtime_.map(count,
-                 kernels::mark_winners{.order = made.order, .outcomes = made.outcomes, .inserts = inserts});
-    std::tie(made.winners_at, made.winners) = host::pack_positions(runtime_, inserts, count, 1);
-    runtime_.map(count, kernels::refuse{.proposals = made.all,
-                                        .outcomes = made.outcomes,
-                                        .row_keys = arrays_.keys,
-                                        .refused = arrays_.refused});
-    made.wanted = arena_.allocate<cl_uint>(count + 1);
-    runtime_.map(count, kernels::count_wanted{
-                            .proposals = made.all, .outcomes = made.outcomes, .counts = made.wanted});
-    host::exclusive_scan(runtime_, made.wanted, count, made.wanted);
-    made.wanted_count = runtime_.read_one(made.wanted, count);
+    while (levels.current > 0 &&
+           static_cast<double>(acting()) <= kLevelRest * static_cast<double>(levels.at_first)) {
+      --levels.current;
+      levels.at_first = acting();
+    }
+    if (levels.current == 0) return {list, count};
+    const Here<cl_int> rows(runtime_, list, count);
+    std::vector<cl_int> chosen;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (of[i] == 0 || of[i] > levels.current) chosen.push_back(rows[i]);
+    }
+    const std::size_t size = chosen.size();
+    const auto at_level = runtime_.upload(arena_, std::move(chosen));
+    runtime_.finish();
+    return {at_level, size};
+  }
+
+  struct Cut {
+    Pending all;
+    std::vector<kernel::block_cut> cuts{};
+  };
+
+  // Cuts the plane so that leaves have about `block` of these rows, by the places of a sample.
+  Cut cut(const Buffer<cl_int>& list, std::size_t count, std::size_t block, Cuts how) {
+    const std::size_t sample = sample_of(count, block, how == Cuts::medians ? kFirstSample : kLaterSample);
+    Cut made{describe(list, count, sample)};
+    const auto [at, sampled] = host::pack_positions(runtime_, made.all.is_sampled, count, 1);
+    const Here<cl_int> positions(runtime_, at, sampled);
+    const Here<double> middles(runtime_, made.all.middles.as<cl_double>(), 2 * count);
+    std::vector<double2> places(sampled);
+    for (std::size_t i = 0; i < sampled; ++i) {
+      const auto k = 2 * static_cast<std::size_t>(positions[i]);
+      places[i] = {middles[k], middles[k + 1]};
+    }
+    made.cuts = cut_plane(std::move(places), std::max<std::size_t>(1, block / sample), how);
     return made;
   }
 
-  // The constraints that are split in this round, each once, in an order of their own.
-  struct Splits {
-    Buffer<cl_int> corners{}, at{};  // opposite corners, and those of them that count
-    std::size_t count = 0;
+  static std::size_t sample_of(std::size_t count, std::size_t block, std::size_t sample) {
+    while (sample > 1 && count < 4 * block) sample /= 2;
+    return sample;
+  }
+
+  // Blocks, and the rows that each begins with.
+  struct Blocks {
+    std::size_t count = 1, largest = 0;
+    Buffer<kernel::block_cut> cuts{};
+    Buffer<cl_int> list{}, starts{};
   };
 
-  Splits find_splits(const Encroached& encroached, const Proposals& proposals) {
-    const std::size_t count = encroached.count + proposals.wanted_count;
-    Splits splits;
-    if (count == 0) return splits;
-    splits.corners = arena_.allocate<cl_int>(count);
-    runtime_.copy(encroached.corners, 0, splits.corners, 0, encroached.count);
-    if (proposals.wanted_count > 0) {
-      runtime_.map_in_small_groups(proposals.count,
-                                   kernels::list_wanted{.rules = rules_,
-                                                        .first = static_cast<int>(encroached.count),
-                                                        .proposals = proposals.all,
-                                                        .outcomes = proposals.outcomes,
-                                                        .offsets = proposals.wanted,
-                                                        .refined_mesh = refined_mesh(),
-                                                        .corners = splits.corners});
-    }
+  Blocks whole_plane(const Buffer<cl_int>& list, std::size_t count) {
+    Blocks blocks;
+    blocks.largest = count;
+    blocks.cuts = runtime_.upload(arena_, std::vector<kernel::block_cut>{{0, -1, 0}});
+    blocks.list = list;
+    blocks.starts = runtime_.upload(arena_, std::vector<cl_int>{0, static_cast<cl_int>(count)});
+    runtime_.finish();
+    return blocks;
+  }
+
+  Blocks make_blocks(Cut made) {
+    const auto& [list, count] = std::pair(made.all.list, made.all.count);
+    Blocks blocks;
+    blocks.count = leaves_of(made.cuts);
+    blocks.cuts = runtime_.upload(arena_, std::move(made.cuts));
+    blocks.list = arena_.allocate<cl_int>(count);
+    blocks.starts = arena_.allocate<cl_int>(blocks.count + 1);
     const auto keys = arena_.allocate<cl_ulong>(count);
-    const auto is_new = arena_.allocate<cl_uchar>(count);
-    runtime_.map(count, kernels::constraint_keys{
-                            .corners = splits.corners, .refined_mesh = refined_mesh(), .keys = keys});
-    host::sort_by_key(runtime_, keys, splits.corners, count);
-    runtime_.map(count, kernels::find_new{
-                            .keys = keys, .corners = splits.corners, .rows = arrays_.rows, .is_new = is_new});
-    std::tie(splits.at, splits.count) = host::pack_positions(runtime_, is_new, count, 1);
-    return splits;
+    runtime_.map(count, kernels::find_leaves{.list = list,
+                                             .middles = made.all.middles,
+                                             .cuts = blocks.cuts,
+                                             .keys = keys,
+                                             .payloads = blocks.list});
+    host::sort_by_key(runtime_, keys, blocks.list, count);
+    runtime_.map(count, kernels::find_starts{
+                            .leaves = static_cast<int>(blocks.count), .keys = keys, .starts = blocks.starts});
+    const Here<cl_int> starts(runtime_, blocks.starts, blocks.count + 1);
+    for (std::size_t b = 0; b < blocks.count; ++b)
+      blocks.largest = std::max(blocks.largest, static_cast<std::size_t>(starts[b + 1] - starts[b]));
+    return blocks;
   }
 
-  void insert(const Encroached& encroached, const Proposals& proposals) {
-    const Splits splits = find_splits(encroached, proposals);
-    const std::size_t most = wanted_.most_points - added_;
-    const std::size_t split_count = std::min(splits.count, most);
-    const std::size_t point_count = std::min(proposals.winners, most - split_count);
-    const std::size_t count = split_count + proposals.winners;
-    made_count_ = 0;
-    if (count == 0) return;
-    reserve(rows_ + 2 * count, vertices_ + count);
-    const auto insertions = arena_.allocate<insertion>(count);
-    const auto states = arena_.allocate<cl_uchar>(count);
-    const int first_vertex = static_cast<int>(vertices_), first_row = static_cast<int>(rows_);
-    runtime_.map(split_count, kernels::start_splits{.rules = rules_,
-                                                    .first_vertex = first_vertex,
-                                                    .first_row = first_row,
-                                                    .positions = splits.at,
-                                                    .corners = splits.corners,
-                                                    .ends = ends_,
-                                                    .rows = arrays_.rows,
-                                                    .points = arrays_.points,
-                                                    .places = arrays_.places,
-                                                    .row_keys = arrays_.keys,
-                                                    .claims = arrays_.claims,
-                                                    .visits = arrays_.visits,
-                                                    .insertions = insertions,
-                                                    .states = states});
-    const cl_uint mask = std::bit_ceil(proposals.winners) - 1;
-    if (proposals.winners > 0) {
-      const auto places_of = arena_.allocate<cl_int>(proposals.count);
-      runtime_.map(proposals.winners,
-                   kernels::list_places{
-                       .positions = proposals.winners_at, .order = proposals.order, .places_of = places_of});
-      const auto [list, winners] =
-          host::pack_positions(runtime_, proposals.outcomes, proposals.count, kernel::PROPOSAL_INSERTS);
-      runtime_.map(winners,
-                   kernels::start_points{.step = step_,
-                                         .first = static_cast<int>(split_count),
-                                         .mask = mask,
-                                         .most = static_cast<int>(point_count),
-                                         .first_vertex = first_vertex + static_cast<int>(split_count),
-                                         .first_row = first_row + 2 * static_cast<int>(split_count),
-                                         .list = list,
-                                         .places_of = places_of,
-                                         .proposals = proposals.all,
-                                         .rows = arrays_.rows,
-                                         .points = arrays_.points,
-                                         .places = arrays_.places,
-                                         .row_keys = arrays_.keys,
-                                         .claims = arrays_.claims,
-                                         .visits = arrays_.visits,
-                                         .insertions = insertions,
-                                         .states = states});
-    }
-    rows_ += 2 * count;
-    vertices_ += count;
-    tried_ += split_count + point_count;
-    insert_in_steps(insertions, states, split_count, proposals, split_count + mask + 1);
-    // Those that were dropped do not count.
-    added_ += host::pack_positions(runtime_, states, count, kernel::POINT_INSERTED).second;
-  }
-
-  // Ranks of points are below `ranks`.
-  void insert_in_steps(const Buffer<insertion>& insertions, const Buffer<cl_uchar>& states,
-                       std::size_t split_count, const Proposals& proposals, std::size_t ranks) {
-    const std::size_t count = split_count + proposals.winners;
-    std::vector<std::int32_t> all(count);
-    std::iota(all.begin(), all.end(), 0);
-    auto list = runtime_.upload(arena_, std::move(all));
-    auto next = arena_.allocate<cl_int>(count);
-    const Buffer<cl_int> known =
-        proposals.winners > 0 ? proposals.cavities : arena_.allocate<cl_int>(1);  // nobody reads it
-    for (std::size_t waiting = count; waiting > 0;) {
+  // Makes phases until nothing is left that can be done, or a limit is reached.
+  void make_phases(bool segments_only) {
+    const int mask = segments_only ? kernel::ROW_ALL_SPLITS : kernel::ROW_ALL_SPLITS | kernel::ROW_BAD;
+    std::size_t block = block_;
+    Levels levels;
+    bool is_first = true, needs_scaffold = !segments_only;
+    while (!is_at_limit()) {
       Arena::Scope scope(arena_);
-      const auto sizes = arena_.allocate<cl_uint>(waiting + 1);
-      const auto waits = arena_.allocate<cl_uchar>(waiting);
-      const cl_uint first = take_claims(ranks);
-      runtime_.map_in_small_groups(waiting, kernels::claim_points{.rules = rules_,
-                                                                  .step = step_,
-                                                                  .is_first = waiting == count,
-                                                                  .first = first,
-                                                                  .listed = proposals.listed,
-                                                                  .list = list,
-                                                                  .cavities = known,
-                                                                  .refined_mesh = refined_mesh(),
-                                                                  .claims = arrays_.claims,
-                                                                  .insertions = insertions,
-                                                                  .sizes = sizes,
-                                                                  .states = states});
-      host::exclusive_scan(runtime_, sizes, waiting, sizes);
-      const std::size_t all_sides = runtime_.read_one(sizes, waiting);
-      const auto sides = arena_.allocate<star_side>(all_sides);
-      const auto made_at = arena_.allocate<cl_uint>(waiting + 1);
-      runtime_.map(waiting, kernels::gather_stars{.first = first,
-                                                  .list = list,
-                                                  .offsets = sizes,
-                                                  .insertions = insertions,
-                                                  .refined_mesh = refined_mesh(),
-                                                  .claims = arrays_.claims,
-                                                  .visits = arrays_.visits,
-                                                  .sides = sides,
-                                                  .states = states,
-                                                  .made_sizes = made_at});
-      host::exclusive_scan(runtime_, made_at, waiting, made_at);
-      const std::size_t made_count = runtime_.read_one(made_at, waiting);
-      reserve_made(made_count_ + made_count);
-      runtime_.map(waiting, kernels::insert_stars{.step = step_,
-                                                  .first_made = static_cast<int>(made_count_),
-                                                  .list = list,
-                                                  .offsets = sizes,
-                                                  .made_at = made_at,
-                                                  .insertions = insertions,
-                                                  .states = states,
-                                                  .sides = sides,
-                                                  .places = arrays_.places,
-                                                  .rows = arrays_.rows,
-                                                  .row_keys = arrays_.keys,
-                                                  .refused = arrays_.refused,
-                                                  .made = made_,
-                                                  .waits = waits});
-      if (split_count > 0) {
-        runtime_.map(waiting, kernels::freeze_constraints{.list = list,
-                                                          .insertions = insertions,
-                                                          .states = states,
-                                                          .points = arrays_.points,
-                                                          .rows = arrays_.rows});
+      const auto [all, all_count] = rows_with(mask);
+      if (all_count == 0) return;
+      std::optional<Cut> made;
+      if (std::exchange(needs_scaffold, false) && all_count > block) {
+        made = cut(all, all_count, block, Cuts::medians);
+        if (make_scaffold(*made)) continue;
       }
-      made_count_ += made_count;
-      ++step_;
-      const auto [at, left] = host::pack_positions(runtime_, waits, waiting, 1);
-      runtime_.map(left, kernels::gather_elements{.positions = at, .from = list, .list = next});
-      std::swap(list, next);
-      if (left == waiting) {
-        throw Error(ErrorKind::internal,
-                    "points to be inserted wait for each other; please report the input");
+      const auto [list, count] = rows_at_level(all, all_count, levels);
+      while (count / block >> (kernel::LEAF_BITS - 1) != 0) block *= 2;
+      const std::size_t left = wanted_.most_points - added_;
+      bool is_whole = count <= block;
+      if (!is_whole && (!made || count != all_count))
+        made = cut(list, count, block, is_first ? Cuts::medians : Cuts::gaps);
+      Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(std::move(*made));
+      // Each has a part of what is left.
+      if (!is_whole && (blocks.count == 1 || left < blocks.count)) {
+        is_whole = true;
+        blocks = whole_plane(list, count);
       }
-      waiting = left;
+      kernel::refinement_phase phase{};
+      phase.level = std::pow(kLevelStep, levels.current);
+      phase.is_whole = is_whole;
+      phase.segments_only = segments_only;
+      phase.most =
+          static_cast<int>(std::min({kMostPerTriangle * block, left / blocks.count, kMostTriangles}));
+      const std::size_t inserted = run_blocks(phase, blocks, blocks.cuts.as<cl_double>());
+      if (is_whole && inserted == 0 && levels.current == 0) return;
+      if (static_cast<double>(inserted) < kLeastProgress * static_cast<double>(count))
+        block = std::min(2 * block, kMostTriangles);
+      is_first = false;
     }
+  }
+
+  // Cuts triangles that are long for their blocks, such as those across an empty polygon, so that blocks are
+  // independent of each other: circumcentres, the largest circle first, one after the other. Returns whether
+  // there were some.
+  bool make_scaffold(const Cut& made) {
+    const auto& [all, cuts] = made;
+    const std::size_t count = all.count;
+    const Here<double> middles(runtime_, all.middles.as<cl_double>(), 2 * count),
+        radii(runtime_, all.radii, count);
+    struct Box {
+      double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    };
+    std::vector<Box> boxes(leaves_of(cuts));
+    std::vector<std::size_t> leaves(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      leaves[i] = leaf_of(cuts, {middles[2 * i], middles[2 * i + 1]});
+      Box& box = boxes[leaves[i]];
+      for (std::size_t k = 0; k < 2; ++k) {
+        box.low[k] = std::min(box.low[k], middles[2 * i + k]);
+        box.high[k] = std::max(box.high[k], middles[2 * i + k]);
+      }
+    }
+    std::vector<double> reaches;
+    for (const Box& box : boxes) {
+      const double reach = kScaffold * std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+      reaches.push_back(reach * reach);
+    }
+    const Here<cl_int> rows(runtime_, all.list, count);
+    std::vector<cl_int> chosen;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (radii[i] > reaches[leaves[i]]) chosen.push_back(rows[i]);
+    }
+    if (chosen.empty()) return false;
+    const std::size_t size = chosen.size();
+    Blocks blocks = whole_plane(runtime_.upload(arena_, std::move(chosen)), size);
+    blocks.cuts = runtime_.upload(arena_, cuts);
+    kernel::refinement_phase phase{};
+    phase.is_whole = phase.is_scaffold = 1;
+    phase.level = 1;
+    phase.most = static_cast<int>(std::min(wanted_.most_points - added_, kMostTriangles));
+    run_blocks(phase, blocks, runtime_.upload(arena_, std::move(reaches)));
+    return true;
+  }
+
+  // What work-items begin with.
+  void start_blocks() {
+    kernel::block_state none{};
+    none.block = none.retry = -1;
+    workers_ = runtime_.is_native() ? runtime_.threads() : kBlocksAtOnce;
+    if (block_states_.size() == 0) {
+      block_states_ = arena_.allocate<kernel::block_state>(workers_);
+      lists_.heads = arena_.allocate<cl_int>(workers_ * kernel::TASK_CLASSES);
+      lists_.tails = arena_.allocate<cl_int>(workers_ * kernel::TASK_CLASSES);
+      runtime_.fill(lists_.heads, lists_.heads.size(), cl_int{0});
+    }
+    const std::vector<kernel::block_state> all(workers_, none);
+    runtime_.write(block_states_, 0, workers_, all.data());
+    block_count_ = 0;
+    inserted_by_.clear();
+    phase_ = 0;
+  }
+
+  // Makes lists of at least so many places for each work-item. keeps_tasks: whether they have some.
+  void reserve_lists(std::size_t at_once, std::size_t room, bool keeps_tasks) {
+    const std::size_t before = room_ + kernel::SPARE_ROOM, size = room + kernel::SPARE_ROOM;
+    if (at_once * size > lists_.tasks.size()) {
+      const auto make = [&]<typename T>(Buffer<T>& array) {
+        array =
+            Buffer<T>(host::allocate_memory(runtime_.memory(), at_once * size * sizeof(T)), at_once * size);
+      };
+      const Buffer<kernel::block_task> tasks = lists_.tasks;
+      make(lists_.tasks);
+      for (std::size_t w = 0; w < at_once && keeps_tasks; ++w)
+        runtime_.copy(tasks, w * before, lists_.tasks, w * size, before);
+      make(lists_.stacks);
+      make(lists_.cavities);
+      make(lists_.sides);
+      make(lists_.firsts);
+      runtime_.finish();
+    }
+    room_ = lists_.tasks.size() / at_once - kernel::SPARE_ROOM;
+  }
+
+  // Runs all blocks of a phase, and returns how many points they inserted.
+  std::size_t run_blocks(kernel::refinement_phase phase, const Blocks& blocks,
+                         const Buffer<cl_double>& reaches) {
+    const std::size_t at_once = std::min(workers_, blocks.count);
+    reserve_lists(at_once, std::max(kLeastRoom, 4 * blocks.largest + kernel::SPARE_ROOM), false);
+    if (++phase_ >> (32 - kernel::LEAF_BITS) != 0) {
+      phase_ = 1;
+      runtime_.fill(arrays_.cells, vertices_, cl_int{0});
+    }
+    phase.number = phase_;
+    phase.blocks = static_cast<int>(blocks.count);
+    phase.first_block = static_cast<int>(block_count_);
+    phase.steps = runtime_.capabilities().loops_end_early ? kFewSteps : std::numeric_limits<int>::max();
+    const auto counters = arena_.allocate<cl_int>(kernel::COUNTERS_OF_PHASE);
+    const auto inserted = arena_.allocate<cl_int>(blocks.count);
+    cl_int counts[kernel::COUNTERS_OF_PHASE] = {0, static_cast<cl_int>(rows_), static_cast<cl_int>(vertices_),
+                                                0};
+    const std::size_t rows_per_chunk = kernel::ROWS_PER_CHUNK,
+                      vertices_per_chunk = kernel::VERTICES_PER_CHUNK;
+    std::size_t spare = std::max<std::size_t>(4, at_once);
+    for (;;) {
+      const std::size_t first_row = rows_, first_vertex = vertices_;
+      reserve(rows_ + spare * rows_per_chunk, vertices_ + spare * vertices_per_chunk);
+      phase.room = static_cast<int>(room_);
+      phase.row_room = static_cast<int>(row_room_);
+      phase.vertex_room = static_cast<int>(vertex_room_);
+      counts[kernel::COUNT_NEEDS] = 0;
+      runtime_.write(counters, 0, kernel::COUNTERS_OF_PHASE, counts);
+      runtime_.launch(at_once, 1,
+                      kernels::refine_blocks{.rules = rules_,
+                                             .phase = phase,
+                                             .rows = arrays_.rows,
+                                             .points = arrays_.points,
+                                             .places = arrays_.places,
+                                             .ends = ends_,
+                                             .wedges = wedges_,
+                                             .areas = refined_mesh().areas,
+                                             .given = given_.size() > 0 ? given_ : arrays_.rows,
+                                             .states = arrays_.states,
+                                             .cells = arrays_.cells,
+                                             .births = arrays_.births,
+                                             .cuts = blocks.cuts,
+                                             .reaches = reaches,
+                                             .list = blocks.list,
+                                             .starts = blocks.starts,
+                                             .counters = counters,
+                                             .inserted = inserted,
+                                             .block_states = block_states_,
+                                             .heads = lists_.heads,
+                                             .tails = lists_.tails,
+                                             .tasks = lists_.tasks,
+                                             .stacks = lists_.stacks,
+                                             .cavities = lists_.cavities,
+                                             .sides = lists_.sides,
+                                             .firsts = lists_.firsts});
+      runtime_.read(counters, 0, kernel::COUNTERS_OF_PHASE, counts);
+      // Chunks beyond the room were not taken.
+      const auto used = [](cl_int count, std::size_t first, std::size_t room, std::size_t chunk) {
+        return std::min(static_cast<std::size_t>(count), first + (room - first) / chunk * chunk);
+      };
+      rows_ = used(counts[kernel::COUNT_ROWS], first_row, row_room_, rows_per_chunk);
+      vertices_ = used(counts[kernel::COUNT_VERTICES], first_vertex, vertex_room_, vertices_per_chunk);
+      counts[kernel::COUNT_ROWS] = static_cast<cl_int>(rows_);
+      counts[kernel::COUNT_VERTICES] = static_cast<cl_int>(vertices_);
+      const cl_int needs = counts[kernel::COUNT_NEEDS];
+      if (needs == 0) break;
+      if ((needs & kernel::NEEDS_ROOM) != 0) reserve_lists(at_once, 2 * room_, true);
+    }
+    const std::vector<cl_int> by = points::download(runtime_, inserted, blocks.count);
+    inserted_by_.insert(inserted_by_.end(), by.begin(), by.end());
+    block_count_ += blocks.count;
+    const auto sum = static_cast<std::size_t>(std::accumulate(by.begin(), by.end(), std::int64_t{0}));
+    added_ += sum;
+    if (sum > 0) ++report_.rounds;
+    find_areas();
+    return sum;
+  }
+
+  // -------------------------------------------------------------------------------------------------------
+  // Order
+
+  // Vertices and rows by what made them, whichever thread that was.
+  struct Order {
+    std::size_t rows, made;  // numbers of all rows, and of vertices that were made
+    Buffer<cl_ulong> order{};
+    Buffer<cl_int> row_numbers{}, numbers{};
+  };
+
+  // by_input: whether vertices of the input have the numbers that they have there.
+  Order find_order(bool by_input) {
+    std::vector<cl_int> firsts(inserted_by_.size()), names;
+    std::exclusive_scan(inserted_by_.begin(), inserted_by_.end(), firsts.begin(), cl_int{0});
+    Order found{0, added_ - known_ + mesh_.points};
+    if (by_input) {
+      names.resize(mesh_.points);
+      for (std::size_t v = 0; v < mesh_.points; ++v) names[place_of_[v]] = static_cast<cl_int>(v);
+    }
+    const int known = static_cast<int>(known_);
+    found.numbers = arena_.allocate<cl_int>(vertices_);
+    runtime_.map(vertices_, kernels::number_added{.known = known,
+                                                  .inputs = static_cast<int>(names.size()),
+                                                  .births = arrays_.births,
+                                                  .firsts = runtime_.upload(arena_, std::move(firsts)),
+                                                  .names = runtime_.upload(arena_, std::move(names)),
+                                                  .numbers = found.numbers});
+    runtime_.finish();
+    const auto flags = arena_.allocate<cl_uchar>(rows_);
+    runtime_.map(rows_, kernels::flag_made_rows{.rows = arrays_.rows, .flags = flags});
+    const auto [kept_at, kept] = host::pack_positions(runtime_, flags, rows_, kernel::ROW_KEPT);
+    const auto [made_at, made] = host::pack_positions(runtime_, flags, rows_, kernel::ROW_MADE);
+    const auto keys = arena_.allocate<cl_ulong>(made);
+    const auto list = arena_.allocate<cl_int>(made);
+    runtime_.map(made, kernels::key_made_rows{.positions = made_at,
+                                              .numbers = found.numbers,
+                                              .rows = arrays_.rows,
+                                              .keys = keys,
+                                              .payloads = list});
+    if (made > 0) host::sort_by_key(runtime_, keys, list, made);
+    found.rows = kept + made;
+    found.order = arena_.allocate<cl_ulong>(found.rows);
+    found.row_numbers = arena_.allocate<cl_int>(rows_);
+    const auto place = [&](const Buffer<cl_int>& some, std::size_t count, std::size_t to) {
+      runtime_.map(count, kernels::place_rows_in_order{.first = static_cast<int>(to),
+                                                       .list = some,
+                                                       .numbers = found.numbers,
+                                                       .rows = arrays_.rows,
+                                                       .order = found.order});
+    };
+    place(kept_at, kept, 0);
+    place(list, made, kept);
+    runtime_.map(
+        made, kernels::sort_made_rows{.first = static_cast<int>(kept), .keys = keys, .order = found.order});
+    runtime_.map(found.rows, kernels::invert_order{.order = found.order, .row_numbers = found.row_numbers});
+    return found;
+  }
+
+  // Gives vertices and rows their numbers.
+  void put_in_order() {
+    Arena::Scope scope(arena_);
+    const Order found = find_order(false);
+    const Arrays before = std::exchange(arrays_, {});
+    const std::size_t vertices = std::exchange(vertices_, 0);
+    rows_ = row_room_ = vertex_room_ = 0;
+    reserve(found.rows, known_ + found.made);
+    rows_ = found.rows;
+    vertices_ = known_ = known_ + found.made;
+    const bool by_row = rules_.area_kind == kernel::AREAS_BY_ROW;
+    runtime_.map(rows_, kernels::move_rows{.by_row = by_row ? 1 : 0,
+                                           .order = found.order,
+                                           .row_numbers = found.row_numbers,
+                                           .numbers = found.numbers,
+                                           .rows = before.rows,
+                                           .states = before.states,
+                                           .areas = by_row ? before.areas : parent_areas_,
+                                           .moved_rows = arrays_.rows,
+                                           .moved_states = arrays_.states,
+                                           .moved_areas = by_row ? arrays_.areas : parent_areas_});
+    runtime_.map(vertices, kernels::move_added{.numbers = found.numbers,
+                                               .points = before.points,
+                                               .places = before.places,
+                                               .moved_points = arrays_.points,
+                                               .moved_places = arrays_.places});
+    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
+    runtime_.finish();
+    start_blocks();
   }
 
   // -------------------------------------------------------------------------------------------------------
@@ -778,26 +883,19 @@ class Rounds {
     // With angles of 20 degrees no constraint is encroached.
     kernel::refinement_rules rules = rules_;
     rules.squared_sine = quality_bounds(std::max(wanted_.min_angle, kSmoothedAngle)).squared_sine;
-    const auto [changed, count] = smooth(runtime_, {.rows = rows_,
-                                                    .vertices = vertices_,
-                                                    .rules = rules,
-                                                    .mesh = refined_mesh(),
-                                                    .triangles = arrays_.rows,
-                                                    .points = arrays_.points,
-                                                    .keys = arrays_.keys,
-                                                    .refused = arrays_.refused});
-    made_count_ = 0;
-    reserve_made(count);
-    runtime_.map(count, kernels::list_changed{.positions = changed, .rows = arrays_.rows, .made = made_});
-    made_count_ = count;
+    smooth(runtime_, {.rows = rows_,
+                      .vertices = vertices_,
+                      .rules = rules,
+                      .mesh = refined_mesh(),
+                      .triangles = arrays_.rows,
+                      .points = arrays_.points,
+                      .states = arrays_.states});
   }
 
   void measure_before_smoothing() {
     const Here<mesh_row> rows(runtime_, arrays_.rows, rows_);
     const Here<double> coordinates(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
-    for (std::size_t t = 0; t < rows_; ++t) {
-      if (rows[t].corner[0] != kernel::NO_TRIANGLE) before_smoothing_.add(&coordinates[0], rows[t].corner);
-    }
+    for (std::size_t t = 0; t < rows_; ++t) before_smoothing_.add(&coordinates[0], rows[t].corner);
   }
 
   // -------------------------------------------------------------------------------------------------------
@@ -806,75 +904,59 @@ class Rounds {
   RefinedMesh result() {
     RefinedMesh refined;
     Arena::Scope scope(arena_);
-    const auto excuses_there = arena_.allocate<cl_uchar>(rows_);
-    runtime_.map_in_small_groups(rows_, kernels::report_rows{.rules = rules_,
-                                                             .refined_mesh = refined_mesh(),
-                                                             .refused = arrays_.refused,
-                                                             .excuses = excuses_there});
-    const Here<cl_uchar> excuses(runtime_, excuses_there, rows_);
-    const Here<mesh_row> rows(runtime_, arrays_.rows, rows_);
+    const Order found = find_order(true);
+    for (auto* const array : {&refined.triangles, &refined.neighbors, &refined.edges}) {
+      runtime_.resize(*array, 3 * found.rows);
+    }
+    runtime_.resize(refined.parents, found.rows);
+    std::vector<cl_uchar> excuses(found.rows);
+    {
+      const host::Runtime::Settled settled(runtime_);
+      const auto triangles = runtime_.output(refined.triangles),
+                 neighbors = runtime_.output(refined.neighbors), edges = runtime_.output(refined.edges),
+                 parents = runtime_.output(refined.parents);
+      const auto excuses_there = runtime_.output(excuses);
+      runtime_.map_in_small_groups(found.rows, kernels::write_refined_rows{.rules = rules_,
+                                                                           .order = found.order,
+                                                                           .row_numbers = found.row_numbers,
+                                                                           .numbers = found.numbers,
+                                                                           .refined_mesh = refined_mesh(),
+                                                                           .states = arrays_.states,
+                                                                           .triangles = triangles,
+                                                                           .neighbors = neighbors,
+                                                                           .edges = edges,
+                                                                           .parents = parents,
+                                                                           .excuses = excuses_there});
+      runtime_.fetch_later(triangles, refined.triangles);
+      runtime_.fetch_later(neighbors, refined.neighbors);
+      runtime_.fetch_later(edges, refined.edges);
+      runtime_.fetch_later(parents, refined.parents);
+      runtime_.fetch_later(excuses_there, excuses);
+      runtime_.finish();
+    }
     const Here<double> coordinates(runtime_, arrays_.points.as<cl_double>(), 2 * vertices_);
     const Here<edge_place> places(runtime_, arrays_.places, vertices_);
-
-    // Rows and vertices of points that were dropped are left out.
-    std::vector<std::int32_t> row_of(rows_, -1), vertex_of(vertices_, -1);
-    std::int32_t row_count = 0;
-    for (std::size_t t = 0; t < rows_; ++t) {
-      if (rows[t].corner[0] == kernel::NO_TRIANGLE) continue;
-      row_of[t] = row_count++;
-      for (const int v : rows[t].corner) vertex_of[v] = 0;
-    }
-    std::int32_t vertex_count = static_cast<std::int32_t>(mesh_.points);
-    for (std::size_t v = 0; v < mesh_.points; ++v) vertex_of[place_of_[v]] = static_cast<std::int32_t>(v);
+    const Here<cl_int> numbers(runtime_, found.numbers, vertices_);
+    const std::size_t added = known_ + found.made - mesh_.points;
+    refined.added.resize(2 * added);
+    refined.added_edges.resize(added);
+    refined.added_places.resize(added);
     for (std::size_t v = mesh_.points; v < vertices_; ++v) {
-      if (vertex_of[v] == 0) {
-        vertex_of[v] = vertex_count++;
-        for (int k = 0; k < 2; ++k) refined.added.push_back(std::ldexp(coordinates[2 * v + k], -shift_));
-        refined.added_edges.push_back(places[v].edge);
-        refined.added_places.push_back(places[v].part);
-        if (places[v].edge >= 0) ++report_.split_points;
-      }
+      if (numbers[v] < 0) continue;
+      const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
+      for (std::size_t k = 0; k < 2; ++k) refined.added[2 * to + k] = unscaled(coordinates[2 * v + k]);
+      refined.added_edges[to] = places[v].edge;
+      refined.added_places[to] = places[v].part;
+      if (places[v].edge >= 0) ++report_.split_points;
     }
     const Excuse at_limit = report_.rounds >= wanted_.most_rounds ? Excuse::most_rounds : Excuse::most_points;
-    const std::size_t all = static_cast<std::size_t>(row_count);
-    for (auto* const array : {&refined.triangles, &refined.neighbors, &refined.edges}) {
-      runtime_.resize(*array, 3 * all);
-    }
-    runtime_.resize(refined.parents, all);
-    const auto write_row = [&](std::size_t t) {
-      const mesh_row& row = rows[t];
-      int first = 0;
-      for (int k = 1; k < 3; ++k) {
-        if (vertex_of[row.corner[k]] < vertex_of[row.corner[first]]) first = k;
-      }
-      const std::size_t to = 3 * static_cast<std::size_t>(row_of[t]);
-      for (int k = 0; k < 3; ++k) {
-        const int from = (first + k) % 3;
-        refined.triangles[to + k] = vertex_of[row.corner[from]];
-        refined.neighbors[to + k] = row.neighbor[from] < 0 ? -1 : row_of[row.neighbor[from]];
-        refined.edges[to + k] = row.edge[from] < 0 ? -1 : row.edge[from] & kernel::EDGE_NUMBER;
-      }
-      refined.parents[to / 3] = row.parent;
-    };
-    const auto write_part = [&](std::size_t part) {
-      for (std::size_t t = part * kPartOfRows; t < std::min(rows_, (part + 1) * kPartOfRows); ++t) {
-        if (row_of[t] >= 0) write_row(t);
-      }
-    };
-    const std::size_t parts = (rows_ + kPartOfRows - 1) / kPartOfRows;
-    if (runtime_.is_native()) {
-      runtime_.share(parts, write_part);
-    } else {
-      for (std::size_t part = 0; part < parts; ++part) write_part(part);
-    }
-    for (std::size_t t = 0; t < rows_; ++t) {
-      if (row_of[t] >= 0 && excuses[t] != kernel::EXCUSED_NOT) {
-        report_.bad_triangles.push_back(row_of[t]);
-        // Without the limit, those at frozen constraints would be tried again.
-        const bool is_limited =
-            excuses[t] == kernel::EXCUSED_LIMIT || (excuses[t] == kernel::EXCUSED_FROZEN && is_at_limit());
-        report_.excuses.push_back(is_limited ? at_limit : static_cast<Excuse>(excuses[t]));
-      }
+    for (std::size_t t = 0; t < found.rows; ++t) {
+      if (excuses[t] == kernel::EXCUSED_NOT) continue;
+      report_.bad_triangles.push_back(static_cast<std::int32_t>(t));
+      // Without the limit, those at frozen constraints would be tried again.
+      const bool is_limited =
+          excuses[t] == kernel::EXCUSED_LIMIT || (excuses[t] == kernel::EXCUSED_FROZEN && is_at_limit());
+      report_.excuses.push_back(is_limited ? at_limit : static_cast<Excuse>(excuses[t]));
     }
     report_.added_points = refined.added_edges.size();
     refined.report = std::move(report_);
@@ -886,6 +968,7 @@ class Rounds {
   Arena& arena_;
   const MeshToRefine& mesh_;
   const Refinement& wanted_;
+  const std::size_t block_;
   int shift_ = 0;
   double extent_ = 0, largest_ = 0;  // scaled: the larger side of the bounding box, the largest coordinate
   kernel::refinement_rules rules_{};
@@ -895,22 +978,24 @@ class Rounds {
   Buffer<cl_int> ends_{}, wedges_{};
   Buffer<cl_double> parent_areas_{};
   Buffer<mesh_row> given_{};  // the rows at first, if triangles of one region have different areas
-  Buffer<cl_int2> made_{};    // what the last round has made: rows and their first vertices
-  std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, made_count_ = 0, bad_count_ = 0,
-              added_ = 0, tried_ = 0;
-  cl_uint next_claim_ = 0;
-  int step_ = 1;  // of all that insert points, counted from the beginning
-  bool may_propose_ = false;
-  int listed_ = kFewestListed;
+  std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, added_ = 0;
+  std::size_t known_ = 0;  // vertices that have their numbers
+  Buffer<kernel::block_state> block_states_{};
+  Lists lists_;
+  std::size_t workers_ = 0, room_ = 0;  // room: places in the lists of each work-item
+  cl_uint phase_ = 0;
+  std::size_t block_count_ = 0;
+  std::vector<cl_int> inserted_by_;  // points of each block of all phases
   RefinementReport report_;
   Angles before_smoothing_{true};
 };
 
 }  // namespace
 
-RefinedMesh refine(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted) {
+RefinedMesh refine(host::Runtime& runtime, const MeshToRefine& mesh, const Refinement& wanted,
+                   std::size_t block) {
   Arena::Scope scope(runtime.arena());
-  return Rounds(runtime, mesh, wanted).run();
+  return Refining(runtime, mesh, wanted, block).run();
 }
 
 }  // namespace flaunay::constrained

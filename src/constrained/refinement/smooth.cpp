@@ -1,7 +1,6 @@
 #include "constrained/refinement/smooth.hpp"
 
 #include "host/launch/vector_operations.hpp"
-#include "launchers/refinement/insert.cl.hpp"
 #include "refinement/codes.h"
 
 namespace flaunay::constrained {
@@ -56,7 +55,7 @@ void make_delaunay(host::Runtime& runtime, const MeshToSmooth& of, const Buffer<
     if (count == 0) break;
     const auto keys = arena.allocate<cl_ulong>(count);
     const auto wins = arena.allocate<cl_uchar>(count);
-    runtime.map(count, kernels::constraint_keys{.corners = corners, .refined_mesh = of.mesh, .keys = keys});
+    runtime.map(count, kernels::keys_of_edges{.corners = corners, .refined_mesh = of.mesh, .keys = keys});
     host::sort_by_key(runtime, keys, corners, count);
     runtime.fill(claims, of.rows, cl_uint{UNCLAIMED_ROW});
     runtime.map(count, kernels::claim_flips{.corners = corners, .rows = of.triangles, .claims = claims});
@@ -72,18 +71,14 @@ void make_delaunay(host::Runtime& runtime, const MeshToSmooth& of, const Buffer<
 
 }  // namespace
 
-std::pair<Buffer<cl_int>, std::size_t> smooth(host::Runtime& runtime, const MeshToSmooth& of) {
+void smooth(host::Runtime& runtime, const MeshToSmooth& of) {
   Arena& arena = runtime.arena();
+  Arena::Scope scope(arena);
   const auto changes = arena.allocate<cl_uint>(of.rows);
-  const auto is_changed = arena.allocate<cl_uchar>(of.rows);
   move_vertices(runtime, of, changes);
   make_delaunay(runtime, of, changes);
-  runtime.map(of.rows, kernels::forget_changed{.changes = changes,
-                                               .rows = of.triangles,
-                                               .row_keys = of.keys,
-                                               .refused = of.refused,
-                                               .is_changed = is_changed});
-  return host::pack_positions(runtime, is_changed, of.rows, 1);
+  runtime.map(of.rows,
+              kernels::forget_changed{.changes = changes, .rows = of.triangles, .states = of.states});
 }
 
 }  // namespace flaunay::constrained

@@ -2,28 +2,25 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
 #include "host/runtime.hpp"
 #include "launchers/refinement/smooth.cl.hpp"
 
 namespace flaunay::constrained {
 
-/// The mesh, in the arrays of its rounds.
+/// The mesh, in the arrays of its phases.
 struct MeshToSmooth {
   std::size_t rows, vertices;
   kernel::refinement_rules rules;  ///< what triangles must stay better than
   kernels::refined_mesh mesh;
   host::Buffer<kernel::mesh_row> triangles;
   host::Buffer<cl_double2> points;
-  host::Buffer<cl_ulong> keys;
-  host::Buffer<cl_uchar> refused;
+  host::Buffer<cl_uchar> states;
 };
 
 /// Moves vertices that are not on edges that must stay, all at once, and flips edges until the triangulation
 /// is the canonical one again. No triangle turns over in between, and none has a smaller angle than before
-/// and than it should have. Returns the rows that were changed, in the caller's arena scope, and their
-/// number.
-std::pair<host::Buffer<cl_int>, std::size_t> smooth(host::Runtime& runtime, const MeshToSmooth& mesh);
+/// and than it should have. States of rows that changed are ROW_NEW.
+void smooth(host::Runtime& runtime, const MeshToSmooth& mesh);
 
 }  // namespace flaunay::constrained
