@@ -63,7 +63,7 @@ struct Tuning : host::Sizes {
   /// in a mesh with constraints, before it walks straight.
   std::size_t walk_most = 1;
   /// In fixed point, a query between the places of the grid looks at so many more neighbours, or the call
-  /// fails.
+  /// computes in doubles; 0: it does so at once.
   std::size_t off_grid_most = 1;
 
   /// Chains of at most this many vertices are triangulated by gift-wrapping, and of those with more, a

@@ -52,7 +52,8 @@ constexpr double kLeastProgress = 0.1;
 constexpr std::size_t kFirstSample = 8, kLaterSample = 4;
 // Areas go down in levels, each so many times smaller than the one before; the next one begins when this part
 // of a level is left.
-constexpr double kLevelStep = 16, kLevelRest = 0.1;
+constexpr int kLevelPlaces = 4;
+constexpr double kLevelStep = 1 << kLevelPlaces, kLevelRest = 0.1;
 // Triangles with a circumradius above this part of the size of their block are cut before.
 constexpr double kScaffold = 0.5;
 // Blocks at once, on devices; natively, as many as threads. The lists of each have so many places at first.
@@ -613,7 +614,7 @@ class Refining {
         blocks = whole_plane(list, count);
       }
       kernel::refinement_phase phase{};
-      phase.level = std::pow(kLevelStep, levels.current);
+      phase.level = std::ldexp(1.0, kLevelPlaces * levels.current);
       phase.is_whole = is_whole;
       phase.segments_only = segments_only;
       phase.most =

@@ -467,8 +467,9 @@ Fitted<Done> nearest(host::Runtime& runtime, Locator& locator, const Buffer<cl_d
   Arena::Scope scope(runtime.arena());
   const Fitted<Pass> pass = prepare(runtime, locator, queries, m, query_offsets);
   if (!pass) return pass.too_wide();
-  const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
   const Tuning& tuning = tuning_of(runtime);
+  if (pass->is_off_grid && tuning.off_grid_most == 0) return TooWide{pass->both};
+  const auto found = runtime.arena().allocate<cl_int>(m), unanswered = runtime.arena().allocate<cl_int>(1);
   const WalkLimits limits{tuning.levels_from, tuning.walk_most};
   if (!locator.has_clearances) {
     measure_clearances(runtime, locator);
