@@ -44,8 +44,13 @@ function(flaunay_test NAME)
     target_compile_definitions(${NAME} PRIVATE _USE_MATH_DEFINES)
   endif()
   # Compiling the tests takes longer than what their own loops take; the library that they test is as users have it.
-  # Members that tests leave out are zero.
-  target_compile_options(${NAME} PRIVATE $<IF:$<BOOL:${ARG_OPTIMISED}>,-O1,-O0> -Wno-missing-field-initializers)
+  # Members that tests leave out are zero. Without frame pointers, sanitizers would keep a wrong stack, each time another
+  # one, of every allocation.
+  set(OPTIMISATION -O0)
+  if(ARG_OPTIMISED)
+    set(OPTIMISATION -O1 -fno-omit-frame-pointer)
+  endif()
+  target_compile_options(${NAME} PRIVATE ${OPTIMISATION} -Wno-missing-field-initializers)
   if(NOT ARG_UNITY)
     set_target_properties(${NAME} PROPERTIES UNITY_BUILD OFF)
   endif()
