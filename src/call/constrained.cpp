@@ -41,11 +41,7 @@ void check(const Constraints& constraints, const ConstrainedOptions& options) {
                    refinement.seed_areas != nullptr,
                "seeds have neither attributes nor areas: both pointers are null");
   check_array(refinement.mesh.triangles, refinement.mesh.count, "triangles of the mesh", kMostIndexed / 3);
-  const bool has_bounds = refinement.min_angle != 0 || refinement.max_area != 0 ||
-                          refinement.seed_areas != nullptr || refinement.mesh.areas != nullptr ||
-                          refinement.min_edge != kDefaultMinEdge;
-  // For small polygons, the sine of no angle takes long.
-  if (has_bounds) call::check_refinement(refinement, constraints.seed_count);
+  call::check_refinement(refinement, constraints.seed_count);
 }
 
 // The coordinates of n points and of those that splitting added. Empty if there are none of these.

@@ -522,8 +522,9 @@ void check_refinement(const Refinement& wanted, std::size_t seeds) {
   if (wanted.seed_areas != nullptr) constrained::check_areas(wanted.seed_areas, seeds, "seed");
   if (wanted.mesh.areas != nullptr)
     constrained::check_areas(wanted.mesh.areas, wanted.mesh.count, "triangle of the mesh");
-  expect(wanted.min_edge == kDefaultMinEdge || (wanted.min_edge >= 0 && std::isfinite(wanted.min_edge)),
-         fmt::format("the smallest edge is {}, but it must be a length from 0 on", wanted.min_edge));
+  expect(wanted.min_edge == kDefaultMinEdge || (wanted.min_edge >= 0 && std::isfinite(wanted.min_edge)), [&] {
+    return fmt::format("the smallest edge is {}, but it must be a length from 0 on", wanted.min_edge);
+  });
 }
 
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,

@@ -112,9 +112,10 @@ void check(const SphericalTriangulation& mesh) {
   check_arrays(mesh);
   for (std::size_t i = 0; i < mesh.places.size() / 2; ++i) {
     const Point place = sphere::place_at(mesh.places, i), known = kernel::rounded_place(place.x, place.y);
-    call::expect(
-        place.x == known.x && place.y == known.y,
-        fmt::format("place {} of the triangulation on the sphere is none: ({}, {})", i, place.x, place.y));
+    call::expect(place.x == known.x && place.y == known.y, [&] {
+      return fmt::format("place {} of the triangulation on the sphere is none: ({}, {})", i, place.x,
+                         place.y);
+    });
   }
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {

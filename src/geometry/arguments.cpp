@@ -32,7 +32,7 @@ std::size_t check_columns(std::size_t columns, std::size_t rows) {
 }
 
 void check_enumerator(int value, int last, const char* type) {
-  if (value < 0 || value > last) throw Error(ErrorKind::usage, fmt::format("{} is no {}", value, type));
+  expect(value >= 0 && value <= last, [&] { return fmt::format("{} is no {}", value, type); });
 }
 
 void check_offsets(const std::vector<std::size_t>& offsets) {
@@ -42,9 +42,9 @@ void check_offsets(const std::vector<std::size_t>& offsets) {
 
 void check_offsets(const std::vector<std::size_t>& offsets, std::size_t n) {
   check_offsets(offsets);
-  if (offsets.back() == n) return;
-  throw Error(ErrorKind::usage,
-              fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n));
+  expect(offsets.back() == n, [&] {
+    return fmt::format("offsets of point sets end with {}, but there are {} points", offsets.back(), n);
+  });
 }
 
 }  // namespace flaunay

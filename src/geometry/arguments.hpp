@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -13,10 +14,15 @@
 
 namespace flaunay {
 
-/// Throws Error(usage) with the message `what` unless the condition holds.
+/// Throws Error(usage) with the message `what`, or with what it returns, unless the condition holds.
 template <typename Message>
 void expect(bool holds, const Message& what) {
-  if (!holds) throw Error(ErrorKind::usage, what);
+  if (holds) return;
+  if constexpr (std::is_invocable_v<Message>) {
+    throw Error(ErrorKind::usage, what());
+  } else {
+    throw Error(ErrorKind::usage, what);
+  }
 }
 
 /// The largest number of elements that 32-bit indices count.

@@ -46,12 +46,12 @@ struct Entrances {
 };
 /// Adds steps, each with the region that it leads into.
 void group_steps(const std::vector<std::pair<std::int32_t, Step>>& all, Entrances& into);
-/// Goes through the regions, and labels each by the polygons around it. rule: of the inside of a curve.
-/// overlap: gets the first region in several polygons, or the number of regions, and two of these polygons.
+/// The first region in several polygons, or the number of regions, and two of these polygons.
 struct Overlap {
   std::int32_t region = 0;
   std::pair<std::int32_t, std::int32_t> polygons{};
 };
+/// Goes through the regions, and labels each by the polygons around it. rule: of the inside of a curve.
 MapLabels label_regions(const Entrances& into, const Curves& curves, FillRule rule, Overlap& overlap);
 
 /// Goes through all regions from outside, each time over one edge, whose segments lead into polygons or out

@@ -34,6 +34,7 @@ Pair quotient(Pair a, double b) {
 
 /// By the Taylor series of the sine, to the nearest multiple of 2^-56 or of a unit in the last place.
 double squared_sine_of(double degrees) {
+  if (degrees == 0) return 0;
   const Pair degree{0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};
   const Pair angle = product({degrees, 0}, degree), square = product(angle, -angle);
   Pair sine = angle, term = angle;
@@ -58,7 +59,8 @@ QualityBounds quality_bounds(double min_angle) {
   const double squared = squared_sine_of(min_angle);
   // Triangle's factor; the square root of (1 + cos theta) / (1 - cos theta).
   const double off_centre = 0.475 * ((1 + std::sqrt(1 - squared)) / std::sqrt(squared));
-  const double cosine = 1 - 2 * squared_sine_of(std::max(min_angle, kLensAngle));
+  static const double of_lens = squared_sine_of(kLensAngle);
+  const double cosine = 1 - 2 * (min_angle > kLensAngle ? squared : of_lens);
   return {squared, squared > 0 ? off_centre : 0, cosine * cosine};
 }
 
