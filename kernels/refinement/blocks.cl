@@ -1,7 +1,8 @@
 // Phases of refinement. Segments: the blocks.
 //
-// mark_pending: rows in which something is to be done. describe_rows: where they are, and how bad. find_leaves, with
-// the tree of cuts that the host makes, and after a sort find_starts: the rows that each block begins with.
+// mark_pending: rows in which something is to be done. find_levels: which of them are too large, and how much.
+// describe_rows: where they are. find_leaves, with the tree of cuts that the host makes, and after a sort find_starts:
+// the rows that each block begins with.
 // refine_blocks: each work-item takes one block after the other, and runs the sequential algorithm in it (blocks.h); a
 // launch may end before all are done, and the next one goes on. When phases are over: number_added, flag_made_rows,
 // key_made_rows and, after a sort, place_rows_in_order, sort_made_rows and invert_order: the numbers of vertices are in
@@ -19,18 +20,28 @@ kernel void mark_pending(int n, int mask, global const uchar* restrict states, g
   if (row < n) flags[row] = (states[row] & mask) != 0;
 }
 
-// n rows of the list: the middle of the shortest side; the squared circumradius; of those that are too large, at how
-// many levels of area, each `step` times the one before, or 0; and whether they are in the sample by which the plane is
-// cut, of which there is one in mask + 1.
-kernel void describe_rows(int n, refinement_rules rules, double step, uint mask, global const int* restrict list,
-                          REFINED_MESH(), global double2* restrict middles, global double* restrict radii,
-                          global uchar* restrict levels, global uchar* restrict is_sampled) {
+// n rows of the list: the middle of the shortest side; the squared circumradius; and whether they are in the sample by
+// which the plane is cut, of which there is one in mask + 1.
+kernel void describe_rows(int n, uint mask, global const int* restrict list, REFINED_MESH(),
+                          global double2* restrict middles, global double* restrict radii,
+                          global uchar* restrict is_sampled) {
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
     const ordered_triangle triangle = ordered(&mesh, list[i]);
     middles[i] = middle_of_shortest(triangle.point);
     radii[i] = squared_circumradius(triangle.point);
+    is_sampled[i] = (hash_with(0, middles[i]) & mask) == 0;
+  }
+}
+
+// n rows of the list: of those that are too large, at how many levels of area, each `step` times the one before, or 0.
+kernel void find_levels(int n, refinement_rules rules, double step, global const int* restrict list, REFINED_MESH(),
+                        global uchar* restrict levels) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const seen_mesh mesh = {rows, points};
+    const ordered_triangle triangle = ordered(&mesh, list[i]);
     int level = 0;
     const double wanted = area_of_row(&mesh, list[i], rules, areas, 0);
     if (wanted > 0.0 && wanted < INFINITY) {
@@ -39,7 +50,6 @@ kernel void describe_rows(int n, refinement_rules rules, double step, uint mask,
       for (double bound = wanted; area > bound && level < 255; bound = bound * step) ++level;
     }
     levels[i] = (uchar)level;
-    is_sampled[i] = (hash_with(0, middles[i]) & mask) == 0;
   }
 }
 

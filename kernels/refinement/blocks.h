@@ -238,6 +238,11 @@ static inline void push_task(block_work* work, int tier, int row, int task) {
   }
   work->tails[tier] = at;
 }
+// Notes that a class has no tasks.
+static inline void empty_tier(block_state* state, int tier) {
+  state->classes[tier >> 6] &= ~((uint64)1 << (63 - (tier & 63)));
+  if (state->classes[tier >> 6] == 0) state->groups &= ~(0x80000000u >> (tier >> 6));
+}
 static inline int first_tier(const block_work* work) {
   if (work->state.groups == 0) return -1;
   const int group = clz((int)work->state.groups);
@@ -250,10 +255,7 @@ static inline void drop_task(block_work* work, int tier) {
   state->free_task = at;
   ++state->free_count;
   work->heads[tier] = next;
-  if (next == 0) {
-    state->classes[tier >> 6] &= ~((uint64)1 << (63 - (tier & 63)));
-    if (state->classes[tier >> 6] == 0) state->groups &= ~(0x80000000u >> (tier >> 6));
-  }
+  if (next == 0) empty_tier(state, tier);
 }
 static inline int room_for_tasks(const block_work* work) {
   return work->phase.room - work->state.used_tasks + work->state.free_count;
@@ -305,6 +307,20 @@ OUT_OF_LINE static inline int is_in_circle_of(const seen_mesh* mesh, int row, do
   return is_in_circle(mesh, row, p);
 }
 
+// Member by member, as `dig` reads it soon after.
+static inline void put_side(GLOBAL dug_side* side, double bx, double by, double bl, double cx, double cy, double cl,
+                            double bc, int edge, int from) {
+  side->bx = bx;
+  side->by = by;
+  side->bl = bl;
+  side->cx = cx;
+  side->cy = cy;
+  side->cl = cl;
+  side->bc = bc;
+  side->edge = edge;
+  side->from = from;
+}
+
 // Goes on with the cavity of p over the sides on the stack, depth first, so that sides come out counter-clockwise. Of a
 // point that is on no constraint, sides that it encroaches are counted and have their corner in the place of a row;
 // is_beyond: whether it is not strictly before one.
@@ -341,26 +357,8 @@ static inline int dig(block_work* work, double2 p, int is_free, int most) {
           break;
         }
         cavity[size++] = beyond;
-        GLOBAL dug_side* const second = &stack[depth];
-        GLOBAL dug_side* const first = &stack[depth + 1];
-        second->bx = dx;
-        second->by = dy;
-        second->bl = dl;
-        second->cx = cx;
-        second->cy = cy;
-        second->cl = cl;
-        second->bc = dc;
-        second->edge = beyond << 2 | corner_before(facing);
-        second->from = d;
-        first->bx = bx;
-        first->by = by;
-        first->bl = bl;
-        first->cx = dx;
-        first->cy = dy;
-        first->cl = dl;
-        first->bc = bd;
-        first->edge = beyond << 2 | next_corner(facing);
-        first->from = from;
+        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before(facing), d);
+        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | next_corner(facing), from);
         depth += 2;
         continue;
       }
@@ -415,8 +413,8 @@ static inline int dig_from(block_work* work, int row, int k, int count, double2 
   work->cavity[work->cavity_size++] = row;
   for (int i = 2; i >= 3 - count; --i) {
     const int b = next_corner(i), c = corner_before(i);
-    const dug_side side = {x[b], y[b], l[b], x[c], y[c], l[c], cross[i], row << 2 | number[i], at->corner[number[b]]};
-    work->stack[work->depth++] = side;
+    put_side(&work->stack[work->depth++], x[b], y[b], l[b], x[c], y[c], l[c], cross[i], row << 2 | number[i],
+             at->corner[number[b]]);
   }
   const double det = (l[0] * cross[0] + l[1] * cross[1]) + l[2] * cross[2];
   const double magnitude = l[0] * l[1] + l[2] * (l[0] + l[1]);
@@ -781,8 +779,7 @@ static inline void end_block(block_work* work) {
     work->states[state->retry] |= ROW_BAD;
   for (int tier = first_tier(work); tier >= 0; tier = first_tier(work)) {
     work->heads[tier] = 0;
-    state->classes[tier >> 6] &= ~((uint64)1 << (63 - (tier & 63)));
-    if (state->classes[tier >> 6] == 0) state->groups &= ~(0x80000000u >> (tier >> 6));
+    empty_tier(state, tier);
   }
   state->used_tasks = state->free_task = state->free_count = 0;
   state->retry = -1;

@@ -37,7 +37,7 @@ typedef struct {
   int has_apexes;          // whether there are any
   int has_given;           // whether triangles of one region may have different areas, by the mesh that was given
   int vertices;            // those of the input
-  int least_class, spare;  // see class_of
+  int least_class, spare;  // see tier_of
 } refinement_rules;
 ASSERT_SIZE(refinement_rules, 80);
 

@@ -452,25 +452,18 @@ class Refining {
     Buffer<cl_int> list{};
     Buffer<cl_double2> middles{};
     Buffer<cl_double> radii{};
-    Buffer<cl_uchar> levels{}, is_sampled{};
+    Buffer<cl_uchar> is_sampled{};
   };
 
   // sample: one in so many, a power of two.
   Pending describe(const Buffer<cl_int>& list, std::size_t count, std::size_t sample) {
-    Pending all{count,
-                list,
-                arena_.allocate<cl_double2>(count),
-                arena_.allocate<cl_double>(count),
-                arena_.allocate<cl_uchar>(count),
+    Pending all{count, list, arena_.allocate<cl_double2>(count), arena_.allocate<cl_double>(count),
                 arena_.allocate<cl_uchar>(count)};
-    runtime_.map_in_small_groups(count, kernels::describe_rows{.rules = rules_,
-                                                               .step = kLevelStep,
-                                                               .mask = static_cast<cl_uint>(sample - 1),
+    runtime_.map_in_small_groups(count, kernels::describe_rows{.mask = static_cast<cl_uint>(sample - 1),
                                                                .list = list,
                                                                .refined_mesh = refined_mesh(),
                                                                .middles = all.middles,
                                                                .radii = all.radii,
-                                                               .levels = all.levels,
                                                                .is_sampled = all.is_sampled});
     runtime_.finish();
     return all;
@@ -490,8 +483,14 @@ class Refining {
         (rules_.area_kind == kernel::AREAS_NONE && !(rules_.area > 0)))
       levels.current = 0;
     if (levels.current == 0) return {list, count};
-    const Pending all = describe(list, count, 1);
-    const Here<cl_uchar> of(runtime_, all.levels, count);
+    const auto found = arena_.allocate<cl_uchar>(count);
+    runtime_.map_in_small_groups(count, kernels::find_levels{.rules = rules_,
+                                                             .step = kLevelStep,
+                                                             .list = list,
+                                                             .refined_mesh = refined_mesh(),
+                                                             .levels = found});
+    runtime_.finish();
+    const Here<cl_uchar> of(runtime_, found, count);
     std::array<std::size_t, 257> counts{};
     for (std::size_t i = 0; i < count; ++i) ++counts[of[i]];
     const auto acting = [&] {
