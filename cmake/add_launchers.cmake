@@ -89,7 +89,7 @@ function(flaunay_use_launchers LIBRARY TARGET)
     # The rest of a module is compiled for its size.
     list(APPEND OPTIONS -O3)
   elseif(FLAUNAY_SANITIZE)
-    list(APPEND OPTIONS -O1)
+    list(APPEND OPTIONS -O1 -fsanitize=null,alignment)
   endif()
   set_property(SOURCE ${SOURCES} PROPERTY COMPILE_OPTIONS ${OPTIONS})
 endfunction()

@@ -2193,7 +2193,7 @@ static void test_raster_in_chunks(void) {
   for (size_t row = 2; row < 40; ++row) CHECK(pixels[row * kColumns + 2] == 500);
   flaunay_chunk_report_destroy(report);
 
-  const flaunay_value_source broken = {.read = read_no_values}, unread = {NULL};
+  const flaunay_value_source broken = {.read = read_no_values}, unread = {.read = NULL};
   const flaunay_strided_values strange = {.values = scan, .reserved = {1}};
   CHECK(fails(
       flaunay_rasterize_streams(&source, &broken, 0, &raster, pixels, NULL, 0, NULL, NULL, NULL, &report),

@@ -255,7 +255,8 @@ Ids sets_of(const std::vector<std::size_t>& offsets) {
   return sets;
 }
 
-// Numbers the points that were added, of which there are n others, by their sets.
+// Numbers the points that were added, of which there are n others, by their sets. A set's points keep their
+// order, so triangles begin with the same corners.
 void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation& result) {
   if (numbers.empty()) return;
   const auto first = static_cast<std::int32_t>(n);
@@ -266,17 +267,6 @@ void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation
   Ids added(result.representatives.begin() + first, result.representatives.end());
   permute(numbers, 1, added);
   std::copy(added.begin(), added.end(), result.representatives.begin() + first);
-  for (std::size_t t = 0; t < result.triangles.size(); t += 3) {
-    const auto row = result.triangles.begin() + static_cast<std::ptrdiff_t>(t);
-    const std::ptrdiff_t smallest = std::min_element(row, row + 3) - row;
-    std::rotate(row, row + smallest, row + 3);
-    const auto rotate = [&](auto& rows) {
-      const auto own = rows.begin() + static_cast<std::ptrdiff_t>(t);
-      std::rotate(own, own + smallest, own + 3);
-    };
-    rotate(result.neighbors);
-    rotate(result.constrained);
-  }
 }
 
 void renumber_triangles(const Ids& numbers, ConstrainedTriangulation& result) {

@@ -148,8 +148,9 @@ INSTANTIATE_TEST_SUITE_P(Fixtures, OnFixture, ::testing::ValuesIn(fixture_names(
 TEST(Modes, OnFiles) {
   for (const std::string& file : data_files()) {
     SCOPED_TRACE(file);
-    const Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
+    Coordinates points = io::read_points(test_data() + "/" + file).coordinates;
     const bool is_small = points.size() < 300;
+    points.resize(std::min<std::size_t>(points.size(), 20000));
     expect_all_same(points, is_small);
     if (is_small) expect_all_same(scaled(points, 1e-150), false);
   }

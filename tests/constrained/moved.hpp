@@ -113,6 +113,9 @@ class Moves {
                          exact_.compare_sine(b, c, a, squared_sine_) < 0 ||
                          exact_.compare_sine(c, a, b, squared_sine_) < 0;
     const bool is_large = wanted_.max_area > 0 && exact_.compare_area(a, b, c, wanted_.max_area) > 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (std::sqrt(square(minus(after[k], after[(k + 1) % 3]))) < wanted_.min_edge) return false;
+    }
     return !(is_thin && sine(ordered(after)) < sine(ordered(before))) &&
            !(is_large && doubled_area(ordered(after)) > doubled_area(ordered(before)));
   }

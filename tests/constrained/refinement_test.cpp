@@ -16,10 +16,13 @@
 #include "app/verify/exact.hpp"
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/refine.hpp"
+#include "launchers/refinement/smooth.cl.hpp"
+#include "refinement/codes.h"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/moved.hpp"
 #include "tests/constrained/nasty_domains.hpp"
 #include "tests/constrained/refined.hpp"
+#include "tests/support/device.hpp"
 #include "tests/support/runtimes.hpp"
 #include "tests/support/same.hpp"
 
@@ -433,6 +436,18 @@ TEST(SmallRefinement, NoSmallestEdge) {
   for (std::size_t i = 0; i < refined.added.size(); i += 2) EXPECT_LT(refined.added[i], 0x1p62);
 }
 
+// A point that rounding would move by more than an eighth of its distance from the triangle is not inserted.
+TEST(SmallRefinement, RoundedPoints) {
+  DomainToRefine domain;
+  domain.points = {0, 0, 8, 0, 8, 8, 0, 8, 4, 4, 5, 4};
+  for (double& x : domain.points) x += 0x1p52;
+  Refinement wanted = angle_of(30);
+  wanted.min_edge = 0;
+  const RefinedMesh refined = expect_right(mesh_to_refine(domain), wanted);
+  EXPECT_EQ(refined.added.size(), 0);
+  EXPECT_GT(excused_for(refined, Excuse::min_edge), 0);
+}
+
 // An edge that rounding did not allow to split beside a flat triangle, which others replace later.
 TEST(SmallRefinement, FrozenEdgesThaw) {
   if (!tests_native()) GTEST_SKIP() << "hundreds of rounds";
@@ -443,6 +458,28 @@ TEST(SmallRefinement, FrozenEdgesThaw) {
   Refinement wanted = angle_of(33);
   wanted.most_points = 3000;
   EXPECT_EQ(excused_for(expect_right(mesh_to_refine(domain), wanted), Excuse::frozen), 0);
+}
+
+// Also where only the triangle beyond has moved.
+TEST(SmallRefinement, EdgesThawBesideMovedTriangles) {
+  host::Runtime& runtime = Runtimes::get("own");
+  const host::Arena::Scope scope(runtime.arena());
+  const cl_int frozen = 5 | kernel::EDGE_FROZEN;
+  // In a row; the first and the last edge are on the border.
+  const std::vector<kernel::mesh_row> strip = {{{0, 1, 2}, {1, -1, -1}, {frozen, frozen, -1}, 0, 0},
+                                               {{1, 3, 2}, {2, 0, -1}, {frozen, frozen, -1}, 0, 0},
+                                               {{3, 4, 2}, {-1, 1, -1}, {frozen, frozen, -1}, 0, 0}};
+  const auto rows = upload(runtime, strip);
+  const auto states = upload(runtime, std::vector<cl_uchar>(3, kernel::ROW_BAD));
+  runtime.map(3,
+              kernels::forget_changed{
+                  .changes = upload(runtime, std::vector<cl_uint>{2, 0, 0}), .rows = rows, .states = states});
+  EXPECT_EQ(download(runtime, states, 3),
+            (std::vector<cl_uchar>{kernel::ROW_NEW, kernel::ROW_BAD, kernel::ROW_BAD}));
+  std::vector<cl_int> edges;
+  for (const kernel::mesh_row& row : download(runtime, rows, 3))
+    edges.insert(edges.end(), row.edge, row.edge + 3);
+  EXPECT_EQ(edges, (std::vector<cl_int>{5, 5, -1, frozen, 5, -1, frozen, frozen, -1}));
 }
 
 TEST(SmallRefinement, SmallInputAngles) {
@@ -517,7 +554,8 @@ TEST(SmallRefinement, TheSmallestAngleIsExact) {
 // Positions by the sequential twin, and then the canonical triangulation of these.
 TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
   std::size_t moved = 0, cancelled = 0;
-  for (const double area : {0.0, 1.0}) {
+  for (const auto& [area, min_edge] :
+       {std::pair(0.0, kDefaultMinEdge), {1.0, kDefaultMinEdge}, {0.0, 0.02}}) {
     DomainToRefine domain = nasty_detail::polygon(60, 3);
     if (area == 0) {
       domain = {};
@@ -527,6 +565,7 @@ TEST(SmallRefinement, SmoothingMovesPointsByItsDefinition) {
     Refinement wanted = angle_of(area > 0 ? 20 : 30);
     wanted.most_points = 10000;
     wanted.max_area = area;
+    wanted.min_edge = min_edge;
     const RefinedMesh before = constrained::refine(native_runtime(), mesh, wanted);
     wanted.smoothing_steps = 1;
     const RefinedMesh after = expect_right(mesh, wanted);

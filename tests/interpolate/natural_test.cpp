@@ -383,7 +383,7 @@ TEST(Natural, AllFixtures) {
   const std::size_t step = testing::tests_native() ? 1 : 4;
   for (std::size_t k = 0; k < fixtures.size(); k += step) {
     SCOPED_TRACE(fixtures[k].name);
-    check_natural(natural_case(fixtures[k].make(40, 3), 5, 4));
+    check_natural(natural_case(fixtures[k].make(25, 3), 5, 4));
   }
 }
 

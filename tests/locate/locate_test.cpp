@@ -290,7 +290,7 @@ TEST(Locate, TheOrderOfManyQueriesDoesNotShow) {
 TEST(Locate, EveryFixture) {
   for (const testing::Fixture& fixture : testing::all_fixtures()) {
     SCOPED_TRACE(fixture.name);
-    const Case input = make_case(fixture.make(330, 11), 30, 12);
+    const Case input = make_case(fixture.make(330, 11), 10, 12);
     check_answers(input);
   }
 }

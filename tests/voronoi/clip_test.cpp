@@ -407,7 +407,7 @@ TEST(Clip, SmallIntegers) {
 TEST(Clip, EveryFixture) {
   for (const testing::Fixture& fixture : testing::all_fixtures()) {
     SCOPED_TRACE(fixture.name);
-    const Case input = one_set(fixture.make(40, 3));
+    const Case input = one_set(fixture.make(25, 3));
     const std::vector<Coordinates> polygons = polygons_for(input.points, 4);
     for (std::size_t k = 0; k < polygons.size(); ++k) {
       SCOPED_TRACE(k);
