@@ -49,6 +49,8 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4
+// Of so few rows, all that belongs to them is in the cache.
+#define ROWS_IN_CACHE 4096
 FETCHING void fetch_row(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
   fetch(&mesh->rows[row]);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "arithmetic/coordinates.h"
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/cuts.hpp"
@@ -58,6 +59,10 @@ constexpr double kLevelStep = 1 << kLevelPlaces, kLevelRest = 0.1;
 constexpr double kScaffold = 0.5;
 // Blocks at once, on devices; natively, as many as threads. The lists of each have so many places at first.
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
+// A launch has room for so many chunks of rows and of vertices, or for one per block.
+constexpr std::size_t kLeastChunks = 4;
+// For so many rows, a thread's loops take less time than passes of kernels.
+constexpr std::size_t kFewRows = std::size_t{1} << 14;
 // Where loops of a work-item must be short, a launch takes so many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
@@ -91,14 +96,19 @@ struct Lists {
   Buffer<kernel::first_task> firsts{};
 };
 
+// Where an array is, if kernels run natively.
+template <typename T>
+T* address_in(const Buffer<T>& array) {
+  return reinterpret_cast<T*>(host::address_of(array.memory()));
+}
+
 // What an array holds: where it is, if kernels run natively, or else a copy.
 template <typename T>
 class Here {
  public:
   Here(host::Runtime& runtime, const Buffer<T>& array, std::size_t count) {
     if (!runtime.is_native()) copy_ = points::download(runtime, array, count);
-    values_ =
-        runtime.is_native() ? reinterpret_cast<const T*>(host::address_of(array.memory())) : copy_.data();
+    values_ = runtime.is_native() ? address_in(array) : copy_.data();
   }
   const T& operator[](std::size_t i) const { return values_[i]; }
 
@@ -150,6 +160,14 @@ class Refining {
   // that were refused for such a constraint again; returns whether there are some.
   bool retry_frozen() {
     Arena::Scope scope(arena_);
+    if (has_few_rows()) {
+      const auto thaw = [](cl_uchar& state) {
+        const bool is_frozen = (state & kernel::ROW_REFUSED) == kernel::EXCUSED_FROZEN;
+        if (is_frozen) state = static_cast<cl_uchar>((state & ~kernel::ROW_REFUSED) | kernel::ROW_BAD);
+        return is_frozen;
+      };
+      return rows_where(thaw).second > 0;
+    }
     const auto is_tried = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::retry_frozen{.states = arrays_.states, .is_tried = is_tried});
     return host::pack_positions(runtime_, is_tried, rows_, 1).second > 0;
@@ -173,11 +191,12 @@ class Refining {
     rules_.coarse = std::ldexp(1.0, lowest + kernel::DOUBLE_BITS - 1);
     order_vertices();
     points_.resize(mesh_.points);
+    scale_ = kernel::scale_of(shift_);
     double low[2] = {0, 0}, high[2] = {0, 0};
     for (std::size_t i = 0; i < mesh_.points; ++i) {
       double at[2];
       for (int k = 0; k < 2; ++k) {
-        at[k] = std::ldexp(mesh_.coordinates[2 * i + k], shift_) + 0.0;
+        at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
         low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
         high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
         largest_ = std::max(largest_, std::fabs(at[k]));
@@ -186,8 +205,6 @@ class Refining {
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
   }
-
-  double unscaled(double x) const { return std::ldexp(x, -shift_); }
 
   // An area that is too small to be scaled is still one: no triangle is as small.
   double scaled_area(double area) const {
@@ -263,17 +280,18 @@ class Refining {
   // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
   std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends) const {
     std::vector<std::int32_t> wedges(ends.size(), -1);
-    const auto vertex = [&](int corner) { return place_of_[mesh_.triangles[corner]]; };
-    for (int c = 0; c < static_cast<int>(mesh_.triangles.size()); ++c) {
-      const int edge = mesh_.edges[geometry::previous_halfedge(c)], v = vertex(c);
+    const std::int32_t* const triangles = mesh_.triangles.data();
+    for (int before = 0; before < static_cast<int>(mesh_.triangles.size()); ++before) {
+      const int edge = mesh_.edges[before];
       if (edge < 0) continue;
-      int last = geometry::next_halfedge(c);  // opposite to the side that comes next
+      const int corner = geometry::next_halfedge(before);
+      int last = geometry::next_halfedge(corner);  // opposite to the side that comes next
       while (mesh_.edges[last] < 0) {
         int at = 3 * mesh_.neighbors[last];
-        while (vertex(at) != v) ++at;
+        while (triangles[at] != triangles[corner]) ++at;
         last = geometry::next_halfedge(at);
       }
-      wedges[ends[2 * edge] == v ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
+      wedges[ends[2 * edge] == place_of_[triangles[corner]] ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
     }
     return wedges;
   }
@@ -306,7 +324,9 @@ class Refining {
     const std::vector<edge_place> places = input_places(ends, wedges);
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
-    reserve(rows_, vertices_);
+    // With what the first phase takes.
+    reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
+            vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
     known_ = vertices_;
     rules_.has_apexes =
         std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
@@ -400,8 +420,26 @@ class Refining {
                                                            .states = arrays_.states});
   }
 
+  // Whether loops of this thread take less time than passes of kernels.
+  bool has_few_rows() const { return runtime_.is_native() && (rows_ <= kFewRows || runtime_.threads() == 1); }
+
+  // Rows for whose states a function returns true.
+  template <typename Holds>
+  std::pair<Buffer<cl_int>, std::size_t> rows_where(const Holds& holds) {
+    const auto list = arena_.allocate<cl_int>(rows_);
+    cl_uchar* const states = address_in(arrays_.states);
+    cl_int* const rows = address_in(list);
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      rows[count] = static_cast<cl_int>(row);
+      count += holds(states[row]) ? 1 : 0;
+    }
+    return {list, count};
+  }
+
   // Rows whose states have a bit of a mask.
   std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
+    if (has_few_rows()) return rows_where([mask](cl_uchar state) { return (state & mask) != 0; });
     const auto flags = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
     return host::pack_positions(runtime_, flags, rows_, 1);
@@ -727,7 +765,7 @@ class Refining {
                                                 0};
     const std::size_t rows_per_chunk = kernel::ROWS_PER_CHUNK,
                       vertices_per_chunk = kernel::VERTICES_PER_CHUNK;
-    std::size_t spare = std::max<std::size_t>(4, at_once);
+    const std::size_t spare = std::max(kLeastChunks, at_once);
     for (;;) {
       const std::size_t first_row = rows_, first_vertex = vertices_;
       reserve(rows_ + spare * rows_per_chunk, vertices_ + spare * vertices_per_chunk);
@@ -807,6 +845,7 @@ class Refining {
     }
     const int known = static_cast<int>(known_);
     found.numbers = arena_.allocate<cl_int>(vertices_);
+    found.row_numbers = arena_.allocate<cl_int>(rows_);
     runtime_.map(vertices_, kernels::number_added{.known = known,
                                                   .inputs = static_cast<int>(names.size()),
                                                   .births = arrays_.births,
@@ -814,6 +853,10 @@ class Refining {
                                                   .names = runtime_.upload(arena_, std::move(names)),
                                                   .numbers = found.numbers});
     runtime_.finish();
+    if (has_few_rows()) {
+      order_here(found);
+      return found;
+    }
     const auto flags = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::flag_made_rows{.rows = arrays_.rows, .flags = flags});
     const auto [kept_at, kept] = host::pack_positions(runtime_, flags, rows_, kernel::ROW_KEPT);
@@ -828,7 +871,6 @@ class Refining {
     if (made > 0) host::sort_by_key(runtime_, keys, list, made);
     found.rows = kept + made;
     found.order = arena_.allocate<cl_ulong>(found.rows);
-    found.row_numbers = arena_.allocate<cl_int>(rows_);
     const auto place = [&](const Buffer<cl_int>& some, std::size_t count, std::size_t to) {
       runtime_.map(count, kernels::place_rows_in_order{.first = static_cast<int>(to),
                                                        .list = some,
@@ -842,6 +884,38 @@ class Refining {
         made, kernels::sort_made_rows{.first = static_cast<int>(kept), .keys = keys, .order = found.order});
     runtime_.map(found.rows, kernels::invert_order{.order = found.order, .row_numbers = found.row_numbers});
     return found;
+  }
+
+  // What the passes above do with rows, in loops.
+  void order_here(Order& found) {
+    const mesh_row* const rows = address_in(arrays_.rows);
+    const cl_int* const numbers = address_in(found.numbers);
+    cl_int* const row_numbers = address_in(found.row_numbers);
+    found.order = arena_.allocate<cl_ulong>(rows_);
+    cl_ulong* const order = address_in(found.order);
+    std::vector<std::size_t> ends(known_ + found.made + 1, 0);  // per vertex, of the rows that it begins
+    const auto is_made = [&](const mesh_row& row) { return row.corner[0] >= 0 && row.changed != 0; };
+    for (std::size_t r = 0; r < rows_; ++r) {
+      if (is_made(rows[r])) {
+        ++ends[static_cast<std::size_t>(numbers[rows[r].corner[0]]) + 1];
+      } else if (rows[r].corner[0] >= 0) {
+        order[found.rows++] = r;
+      }
+    }
+    ends[0] = found.rows;
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    found.rows = ends.back();
+    const std::vector<std::size_t> firsts = ends;
+    for (std::size_t r = 0; r < rows_; ++r) {
+      if (!is_made(rows[r])) continue;
+      const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
+      const cl_ulong placed = static_cast<cl_ulong>(numbers[rows[r].corner[1]]) << 32 | r;
+      std::size_t to = ends[v]++;
+      for (; to > firsts[v] && order[to - 1] > placed; --to) order[to] = order[to - 1];
+      order[to] = placed;
+    }
+    for (std::size_t i = 0; i < found.rows; ++i)
+      row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
   }
 
   // Gives vertices and rows their numbers.
@@ -941,10 +1015,12 @@ class Refining {
     refined.added.resize(2 * added);
     refined.added_edges.resize(added);
     refined.added_places.resize(added);
+    const kernel::scaling back = kernel::scale_of(-shift_);
     for (std::size_t v = mesh_.points; v < vertices_; ++v) {
       if (numbers[v] < 0) continue;
       const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
-      for (std::size_t k = 0; k < 2; ++k) refined.added[2 * to + k] = unscaled(coordinates[2 * v + k]);
+      for (std::size_t k = 0; k < 2; ++k)
+        refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
       refined.added_edges[to] = places[v].edge;
       refined.added_places[to] = places[v].part;
       if (places[v].edge >= 0) ++report_.split_points;
@@ -970,6 +1046,7 @@ class Refining {
   const Refinement& wanted_;
   const std::size_t block_;
   int shift_ = 0;
+  kernel::scaling scale_{};
   double extent_ = 0, largest_ = 0;  // scaled: the larger side of the bounding box, the largest coordinate
   kernel::refinement_rules rules_{};
   std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
