@@ -161,14 +161,14 @@ RefinedMesh expect_right(const MeshToRefine& mesh, const Refinement& wanted) {
   const OwnedMesh other = shuffled(mesh, 7);
   const RefinedMesh from_other = constrained::refine(native_runtime(), other.mesh, wanted);
   EXPECT_TRUE(ByCoordinates(other.mesh, from_other) == ByCoordinates(mesh, refined));
-  const RefinedMesh by_tiny = constrained::refine(native_runtime(), mesh, wanted, 4);
+  const RefinedMesh by_tiny = constrained::refine(native_runtime(), mesh, wanted, 2);
   EXPECT_EQ(what_is_wrong(mesh, by_tiny, wanted), "");
-  EXPECT_TRUE(ByCoordinates(other.mesh, constrained::refine(native_runtime(), other.mesh, wanted, 4)) ==
+  EXPECT_TRUE(ByCoordinates(other.mesh, constrained::refine(native_runtime(), other.mesh, wanted, 2)) ==
               ByCoordinates(mesh, by_tiny));
   for (const std::string& tuning : tunings()) {
     SCOPED_TRACE("tuning " + tuning);
     expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted), refined);
-    expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted, 4), by_tiny);
+    expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted, 2), by_tiny);
   }
   return refined;
 }

@@ -48,6 +48,9 @@ using kernel::mesh_row;
 constexpr std::size_t kMostPerTriangle = 16;
 // A phase that adds fewer points than this part of its bad triangles makes the blocks of the next one larger.
 constexpr double kLeastProgress = 0.1;
+// Without areas, a mesh with bad triangles for so many blocks is one: it makes fewer points, and takes one
+// thread less time.
+constexpr std::size_t kBlocksAlone = 8;
 // One bad triangle in so many decides where the plane is cut: in the first phase, which cuts in medians, and
 // later.
 constexpr std::size_t kFirstSample = 8, kLaterSample = 4;
@@ -507,6 +510,8 @@ class Refining {
     return all;
   }
 
+  bool has_areas() const { return rules_.area_kind != kernel::AREAS_NONE || rules_.area > 0; }
+
   // The levels of area of a series of phases: a triangle acts if it exceeds the current one.
   struct Levels {
     int current = -1;
@@ -517,9 +522,7 @@ class Refining {
   std::pair<Buffer<cl_int>, std::size_t> rows_at_level(const Buffer<cl_int>& list, std::size_t count,
                                                        Levels& levels) {
     // New triangles of a phase have no areas by places, so that there each level is a factor of two.
-    if (rules_.area_kind == kernel::AREAS_BY_ROW ||
-        (rules_.area_kind == kernel::AREAS_NONE && !(rules_.area > 0)))
-      levels.current = 0;
+    if (rules_.area_kind == kernel::AREAS_BY_ROW || !has_areas()) levels.current = 0;
     if (levels.current == 0) return {list, count};
     const auto found = arena_.allocate<cl_uchar>(count);
     runtime_.map_in_small_groups(count, kernels::find_levels{.rules = rules_,
@@ -634,9 +637,12 @@ class Refining {
       const auto [all, all_count] = rows_with(mask);
       if (all_count == 0) return;
       std::optional<Cut> made;
-      if (std::exchange(needs_scaffold, false) && all_count > block) {
-        made = cut(all, all_count, block, Cuts::medians);
-        if (make_scaffold(*made)) continue;
+      if (std::exchange(needs_scaffold, false)) {
+        if (!has_areas() && all_count <= kBlocksAlone * block) block *= kBlocksAlone;
+        if (all_count > block) {
+          made = cut(all, all_count, block, Cuts::medians);
+          if (make_scaffold(*made)) continue;
+        }
       }
       const auto [list, count] = rows_at_level(all, all_count, levels);
       while (count / block >> (kernel::LEAF_BITS - 1) != 0) block *= 2;
