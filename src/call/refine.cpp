@@ -320,13 +320,13 @@ void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& 
             result.representatives.end(), static_cast<std::int32_t>(before));
   split_constraints(edges, chains, result);
   split_hull(edges, chains, result);
-  std::vector<std::uint8_t> is_constraint(edges.is_border.size(), 0);
+  std::vector<std::uint8_t> is_constraint(edges.is_border.size() + 1, 0);  // the first one is for no edge
   for (const std::int32_t edge : edges.of_constraints) {
-    if (edge >= 0) is_constraint[edge] = 1;
+    if (edge >= 0) is_constraint[edge + 1] = 1;
   }
   result.constrained.resize(mesh.edges.size());
   for (std::size_t c = 0; c < mesh.edges.size(); ++c)
-    result.constrained[c] = mesh.edges[c] < 0 ? std::uint8_t{0} : is_constraint[mesh.edges[c]];
+    result.constrained[c] = is_constraint[mesh.edges[c] + 1];
   result.triangles = std::move(mesh.triangles);
   result.neighbors = std::move(mesh.neighbors);
   for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) inherit(mesh.parents, *labels);
@@ -428,8 +428,9 @@ void write_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points
                std::size_t s, RefinedMesh& all) {
   const std::size_t first_added = points + sets.added[s], first_triangle = sets.triangles[s];
   const auto write = [](auto& to, const auto& from, std::size_t first, std::size_t by) {
-    for (std::size_t i = 0; i < from.size(); ++i)
-      to[first + i] = from[i] < 0 ? from[i] : from[i] + static_cast<std::int32_t>(by);
+    // Without branches, which could not be predicted.
+    const auto shift = static_cast<std::int32_t>(by);
+    for (std::size_t i = 0; i < from.size(); ++i) to[first + i] = from[i] + (from[i] < 0 ? 0 : shift);
   };
   for (std::size_t i = 0; i < own.triangles.size(); ++i)
     all.triangles[3 * first_triangle + i] = set.of_all(own.triangles[i], first_added);

@@ -290,9 +290,9 @@ class Refining {
       const int corner = geometry::next_halfedge(before);
       int last = geometry::next_halfedge(corner);  // opposite to the side that comes next
       while (mesh_.edges[last] < 0) {
-        int at = 3 * mesh_.neighbors[last];
-        while (triangles[at] != triangles[corner]) ++at;
-        last = geometry::next_halfedge(at);
+        const std::int32_t* const beyond = triangles + 3 * mesh_.neighbors[last];
+        const int k = beyond[1] == triangles[corner] ? 1 : 0, at = beyond[2] == triangles[corner] ? 2 : k;
+        last = 3 * mesh_.neighbors[last] + kernel::next_corner(at);
       }
       wedges[ends[2 * edge] == place_of_[triangles[corner]] ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
     }
@@ -328,8 +328,11 @@ class Refining {
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     // With what the first phase takes.
+    is_starting_ = runtime_.is_native() && rows_ <= kFewRows;
+    if (is_starting_) reserve_lists(1, kLeastRoom, false);
     reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
             vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
+    is_starting_ = false;
     known_ = vertices_;
     rules_.has_apexes =
         std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
@@ -368,9 +371,15 @@ class Refining {
     return false;
   }
 
+  // A new array. Those that a small mesh begins with are the arena's, which takes less time.
+  template <typename T>
+  Buffer<T> make(std::size_t size) {
+    if (is_starting_) return arena_.allocate<T>(size);
+    return {host::allocate_memory(runtime_.memory(), size * sizeof(T)), size};
+  }
   template <typename T>
   void grow(Buffer<T>& array, std::size_t used, std::size_t size) {
-    const Buffer<T> larger(host::allocate_memory(runtime_.memory(), size * sizeof(T)), size);
+    const Buffer<T> larger = make<T>(size);
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
@@ -735,18 +744,15 @@ class Refining {
   void reserve_lists(std::size_t at_once, std::size_t room, bool keeps_tasks) {
     const std::size_t before = room_ + kernel::SPARE_ROOM, size = room + kernel::SPARE_ROOM;
     if (at_once * size > lists_.tasks.size()) {
-      const auto make = [&]<typename T>(Buffer<T>& array) {
-        array =
-            Buffer<T>(host::allocate_memory(runtime_.memory(), at_once * size * sizeof(T)), at_once * size);
-      };
+      const auto renew = [&]<typename T>(Buffer<T>& array) { array = make<T>(at_once * size); };
       const Buffer<kernel::block_task> tasks = lists_.tasks;
-      make(lists_.tasks);
+      renew(lists_.tasks);
       for (std::size_t w = 0; w < at_once && keeps_tasks; ++w)
         runtime_.copy(tasks, w * before, lists_.tasks, w * size, before);
-      make(lists_.stacks);
-      make(lists_.cavities);
-      make(lists_.sides);
-      make(lists_.firsts);
+      renew(lists_.stacks);
+      renew(lists_.cavities);
+      renew(lists_.sides);
+      renew(lists_.firsts);
       runtime_.finish();
     }
     room_ = lists_.tasks.size() / at_once - kernel::SPARE_ROOM;
@@ -1065,6 +1071,7 @@ class Refining {
   std::size_t known_ = 0;  // vertices that have their numbers
   Buffer<kernel::block_state> block_states_{};
   Lists lists_;
+  bool is_starting_ = false;
   std::size_t workers_ = 0, room_ = 0;  // room: places in the lists of each work-item
   cl_uint phase_ = 0;
   std::size_t block_count_ = 0;
