@@ -359,8 +359,8 @@ static inline int dig(block_work* work, double2 p, int is_free, int most) {
           break;
         }
         cavity[size++] = beyond;
-        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before(facing), d);
-        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | next_corner(facing), from);
+        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
+        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | corner_after_any(facing), from);
         depth += 2;
         continue;
       }
@@ -640,7 +640,7 @@ static inline void sort_first(block_work* work, int count) {
     }
     int at = root;
     for (int child = 2 * at + 1; child < end; child = 2 * at + 1) {
-      if (child + 1 < end && comes_first(work, firsts[child], firsts[child + 1])) ++child;
+      if (child + 1 < end) child += comes_first(work, firsts[child], firsts[child + 1]);
       if (!comes_first(work, moved, firsts[child])) break;
       firsts[at] = firsts[child];
       at = child;

@@ -41,6 +41,9 @@ static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
             is_second = neighbor_meanwhile(&row->neighbor[1]) == neighbor;
   return 2 - is_second - 2 * is_first;
 }
+// next_corner and corner_before, likewise without branches.
+static inline int corner_after_any(int k) { return 1 << k & 3; }
+static inline int corner_before_any(int k) { return 18 >> 2 * k & 3; }
 static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + number_facing(&mesh->rows[row], neighbor);
 }

@@ -356,12 +356,11 @@ struct SetNumbers {
     const auto i = static_cast<std::size_t>(v);
     return static_cast<std::int32_t>(i >= first_split ? i - first_split + points : i - first_point);
   }
-  // first_added: of the points that were added to this set, in all sets.
-  std::int32_t of_all(std::int32_t v, std::size_t first_added) const {
-    const auto i = static_cast<std::size_t>(v);
-    return static_cast<std::int32_t>(i < points            ? first_point + i
-                                     : i < points + splits ? first_split + i - points
-                                                           : first_added + i - points - splits);
+  // How much larger those of all sets are: of its points, of what splitting added, and of what was added
+  // then, the first of which is `first_added` there.
+  std::array<std::int32_t, 3> shifts(std::size_t first_added) const {
+    return {static_cast<std::int32_t>(first_point), static_cast<std::int32_t>(first_split - points),
+            static_cast<std::int32_t>(first_added - points - splits)};
   }
 };
 
@@ -426,14 +425,19 @@ MeshToRefine mesh_of_set(const MeshToRefine& all, const SetNumbers& set, std::ve
 // Writes the result of set s to that of all sets, of which there were so many points before.
 void write_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points, const SetOffsets& sets,
                std::size_t s, RefinedMesh& all) {
-  const std::size_t first_added = points + sets.added[s], first_triangle = sets.triangles[s];
+  const std::size_t first_triangle = sets.triangles[s];
   const auto write = [](auto& to, const auto& from, std::size_t first, std::size_t by) {
-    // Without branches, which could not be predicted.
     const auto shift = static_cast<std::int32_t>(by);
     for (std::size_t i = 0; i < from.size(); ++i) to[first + i] = from[i] + (from[i] < 0 ? 0 : shift);
   };
-  for (std::size_t i = 0; i < own.triangles.size(); ++i)
-    all.triangles[3 * first_triangle + i] = set.of_all(own.triangles[i], first_added);
+  // Without branches, which could not be predicted.
+  const std::array<std::int32_t, 3> shifts = set.shifts(points + sets.added[s]);
+  const auto splits = static_cast<std::int32_t>(set.points),
+             added = static_cast<std::int32_t>(set.points + set.splits);
+  for (std::size_t i = 0; i < own.triangles.size(); ++i) {
+    const std::int32_t v = own.triangles[i];
+    all.triangles[3 * first_triangle + i] = v + shifts[(v >= splits ? 1 : 0) + (v >= added ? 1 : 0)];
+  }
   write(all.neighbors, own.neighbors, 3 * first_triangle, first_triangle);
   write(all.edges, own.edges, 3 * first_triangle, set.first_edge);
   write(all.parents, own.parents, first_triangle, set.first_triangle);
