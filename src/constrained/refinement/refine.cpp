@@ -281,7 +281,9 @@ class Refining {
   }
 
   // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
-  std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends) const {
+  // Vertices at which two edges meet so at a sharp angle are apexes.
+  std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends,
+                                      std::vector<edge_place>& places) const {
     std::vector<std::int32_t> wedges(ends.size(), -1);
     const std::int32_t* const triangles = mesh_.triangles.data();
     for (int before = 0; before < static_cast<int>(mesh_.triangles.size()); ++before) {
@@ -294,26 +296,14 @@ class Refining {
         const int k = beyond[1] == triangles[corner] ? 1 : 0, at = beyond[2] == triangles[corner] ? 2 : k;
         last = 3 * mesh_.neighbors[last] + kernel::next_corner(at);
       }
-      wedges[ends[2 * edge] == place_of_[triangles[corner]] ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
+      const std::int32_t v = place_of_[triangles[corner]];
+      wedges[ends[2 * edge] == v ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
+      const auto beside = [&](int c) { return points_[place_of_[triangles[geometry::next_halfedge(c)]]]; };
+      const double2 at = points_[v], from = beside(corner), to = beside(last);
+      const bool is_convex = kernel::orient_sign(at, from, to, ORIENT_BOUND) > 0;
+      if (is_convex && kernel::is_sharp(at, from, to) != 0) places[v].apex = v;
     }
     return wedges;
-  }
-
-  // Where input vertices are: those at which two edges meet at a sharp angle, with triangles between, are
-  // apexes.
-  std::vector<edge_place> input_places(const std::vector<std::int32_t>& ends,
-                                       const std::vector<std::int32_t>& wedges) const {
-    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (wedges[i] < 0) continue;
-      const std::int32_t v = ends[i], next = 2 * wedges[i];
-      const double2 at = points_[v], first = points_[ends[i ^ 1]],
-                    last = points_[ends[ends[next] == v ? next + 1 : next]];
-      const bool is_convex = kernel::orient_sign(at, first, last, ORIENT_BOUND) > 0;
-      if (is_convex && kernel::is_sharp(at, first, last) != 0) places[v].apex = v;
-    }
-    add_far_ends(ends, places);
-    return places;
   }
 
   void upload() {
@@ -323,8 +313,9 @@ class Refining {
     for (std::int32_t& e : edges) {
       if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
     }
-    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends);
-    const std::vector<edge_place> places = input_places(ends, wedges);
+    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
+    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends, places);
+    add_far_ends(ends, places);
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     // With what the first phase takes.
