@@ -493,6 +493,22 @@ TEST(SmallRefinement, AnglesOutsideExcuseNothing) {
   }
 }
 
+// Bad triangles for eight blocks are one, in which nothing waits for further rounds.
+TEST(SmallRefinement, FewBlocksAreOne) {
+  DomainToRefine domain;
+  for (int i = 0; i < 500; ++i) {
+    const double angle = kTurn * i / 500, radius = 1 + 0.01 * std::sin(i * i);
+    domain.point(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  domain.chain(0, true);
+  domain.outside = Outside::holes;
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 30;
+  EXPECT_EQ(constrained::refine(native_runtime(), mesh, wanted).report.rounds, 1);
+  EXPECT_GT(constrained::refine(native_runtime(), mesh, wanted, 50).report.rounds, 1);
+}
+
 // Two angles of 25 degrees but for rounding, of which one is between edges of the border.
 TEST(SmallRefinement, TheSmallestAngleIsExact) {
   FixtureRandom random(1);
