@@ -74,7 +74,7 @@ static inline double2 turned_right(double2 p) { return VECTOR(double2, p.y, -p.x
 static inline int sine_filtered(double2 a, double2 b, double2 c, double squared_sine) {
   const double2 u = b - a, v = c - b, w = a - c;
   const double u2 = squared_length(u), v2 = squared_length(v), w2 = squared_length(w);
-  const double longer = u2 > v2 ? u2 : v2, shorter = u2 > v2 ? v2 : u2;
+  const double longer = u2 > v2 ? u2 : v2, shorter = u2 < v2 ? u2 : v2;
   return cosine_filtered(u.x * v.y - u.y * v.x, longer * (shorter > w2 ? shorter : w2), squared_sine);
 }
 

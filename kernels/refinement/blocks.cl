@@ -225,7 +225,10 @@ kernel void move_rows(int n, int by_row, global const uint64* restrict order, gl
 static inline int why_encroaching(const seen_mesh* mesh, int row, global const edge_place* places,
                                   global const int* ends, refinement_rules rules) {
   for (int corner = 3 * row; corner < 3 * row + 3; ++corner) {
-    if (edge_at(mesh, corner) < 0 || !encroaches(mesh, corner, point_at(mesh, corner), rules)) continue;
+    if (edge_at(mesh, corner) < 0 ||
+        !encroaches(point_at(mesh, next_halfedge(corner)), point_at(mesh, previous_halfedge(corner)),
+                    point_at(mesh, corner), rules.squared_cosine))
+      continue;
     const int reason = why_not_split(mesh, corner, places, ends, rules);
     return reason == EXCUSED_NOT ? EXCUSED_LIMIT : reason;
   }
@@ -242,22 +245,24 @@ kernel void write_refined_rows(int n, refinement_rules rules, global const uint6
   if (i < n) {
     const seen_mesh mesh = {rows, points};
 #if FETCH_AHEAD
-    fetch_row(&mesh, row_in_order(order, min(n - 1, i + ROWS_FAR_AHEAD)));
-    const int ahead = row_in_order(order, min(n - 1, i + ROWS_AHEAD));
-    for (int j = 0; j < 3; ++j) {
-      fetch(&row_numbers[max(0, rows[ahead].neighbor[j])]);
-      fetch(&numbers[rows[ahead].corner[j]]);
+    if (n > ROWS_IN_CACHE) {
+      fetch_row(&mesh, row_in_order(order, min(n - 1, i + ROWS_FAR_AHEAD)));
+      const int ahead = row_in_order(order, min(n - 1, i + ROWS_AHEAD));
+      for (int j = 0; j < 3; ++j) {
+        fetch(&row_numbers[max(0, rows[ahead].neighbor[j])]);
+        fetch(&numbers[rows[ahead].corner[j]]);
+      }
     }
 #endif
     const int from = row_in_order(order, i);
     global const mesh_row* const row = &rows[from];
     const int a = numbers[row->corner[0]], b = numbers[row->corner[1]], c = numbers[row->corner[2]];
-    int k = a < b ? (a < c ? 0 : 2) : b < c ? 1 : 2;
-    for (int j = 3 * i; j < 3 * i + 3; ++j) {
+    const int first = a < b ? (a < c ? 0 : 2) : b < c ? 1 : 2;
+    for (int k = 0; k < 3; ++k) {
+      const int j = 3 * i + k - first + (k < first ? 3 : 0);
       triangles[j] = k == 0 ? a : k == 1 ? b : c;
       neighbors[j] = row->neighbor[k] < 0 ? -1 : row_numbers[row->neighbor[k]];
       edges[j] = row->edge[k] < 0 ? -1 : row->edge[k] & EDGE_NUMBER;
-      k = next_corner(k);
     }
     parents[i] = row->parent;
     int excuse = states[from] & ROW_BAD ? (int)EXCUSED_LIMIT : states[from] & ROW_REFUSED;

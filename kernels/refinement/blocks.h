@@ -194,21 +194,23 @@ static inline int tier_of_row(const seen_mesh* mesh, int row, refinement_rules r
              : TIER_GOOD;
 }
 
-// Whether an apex of the triangles beside a constraint encroaches it. The one beyond may be as it was when rounding did
-// not allow to split the constraint.
-static inline int is_encroached_from_a_side(const seen_mesh* mesh, int corner, refinement_rules rules) {
-  const int beyond = neighbor_at(mesh, corner);
-  return encroaches(mesh, corner, point_at(mesh, corner), rules) ||
-         (beyond >= 0 && encroaches(mesh, corner, point_at(mesh, corner_facing(mesh, beyond, row_of(corner))), rules));
+// Whether an apex of the triangles beside a constraint, opposite to corner k of a row, encroaches it. The one beyond
+// may be as it was when rounding did not allow to split the constraint.
+static inline int is_encroached_from_a_side(const seen_mesh* mesh, int row, int k, refinement_rules rules) {
+  GLOBAL const mesh_row* const at = &mesh->rows[row];
+  const double2 from = mesh->points[at->corner[next_corner(k)]], to = mesh->points[at->corner[corner_before(k)]];
+  if (encroaches(from, to, mesh->points[at->corner[k]], rules.squared_cosine)) return 1;
+  if (at->neighbor[k] < 0) return 0;
+  GLOBAL const mesh_row* const beyond = &mesh->rows[at->neighbor[k]];
+  return encroaches(from, to, mesh->points[beyond->corner[number_facing(beyond, row)]], rules.squared_cosine);
 }
 
 // A bit per corner whose opposite constraint is to be split.
 static inline int splits_of_row(const seen_mesh* mesh, int row, refinement_rules rules) {
   int splits = 0, is_far;
   for (int k = 0; k < 3; ++k) {
-    const int corner = 3 * row + k;
-    if (mesh->rows[row].edge[k] >= 0 && is_encroached_from_a_side(mesh, corner, rules) &&
-        why_not_split_here(mesh, corner, rules, &is_far) == EXCUSED_NOT)
+    if (mesh->rows[row].edge[k] >= 0 && is_encroached_from_a_side(mesh, row, k, rules) &&
+        why_not_split_here(mesh, 3 * row + k, rules, &is_far) == EXCUSED_NOT)
       splits |= ROW_SPLITS << k;
   }
   return splits;
@@ -357,19 +359,18 @@ static inline int dig(block_work* work, double2 p, int is_free, int most) {
           break;
         }
         cavity[size++] = beyond;
-        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before(facing), d);
-        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | next_corner(facing), from);
+        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
+        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | corner_after_any(facing), from);
         depth += 2;
         continue;
       }
     } else {
       if (beyond >= 0) facing = number_facing(&rows[beyond], row);
       if (is_free) {
-        const int corner = 3 * row + k;
-        work->is_beyond |= orient_sign(point_at(&mesh, next_halfedge(corner)),
-                                       point_at(&mesh, previous_halfedge(corner)), p, ORIENT_BOUND) <= 0;
-        if (encroaches(&mesh, corner, p, work->rules)) {
-          hit = corner;
+        const double2 b = points[at->corner[next_corner(k)]], c = points[at->corner[corner_before(k)]];
+        work->is_beyond |= orient_sign(b, c, p, ORIENT_BOUND) <= 0;
+        if (encroaches(b, c, p, work->rules.squared_cosine)) {
+          hit = 3 * row + k;
           ++work->hits;
         }
       }
@@ -639,7 +640,7 @@ static inline void sort_first(block_work* work, int count) {
     }
     int at = root;
     for (int child = 2 * at + 1; child < end; child = 2 * at + 1) {
-      if (child + 1 < end && comes_first(work, firsts[child], firsts[child + 1])) ++child;
+      if (child + 1 < end) child += comes_first(work, firsts[child], firsts[child + 1]);
       if (!comes_first(work, moved, firsts[child])) break;
       firsts[at] = firsts[child];
       at = child;

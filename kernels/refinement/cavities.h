@@ -41,6 +41,9 @@ static inline int number_facing(GLOBAL const mesh_row* row, int neighbor) {
             is_second = neighbor_meanwhile(&row->neighbor[1]) == neighbor;
   return 2 - is_second - 2 * is_first;
 }
+// next_corner and corner_before, likewise without branches.
+static inline int corner_after_any(int k) { return 1 << k & 3; }
+static inline int corner_before_any(int k) { return 18 >> 2 * k & 3; }
 static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + number_facing(&mesh->rows[row], neighbor);
 }
@@ -49,6 +52,8 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4
+// Of so few rows, all that belongs to them is in the cache.
+#define ROWS_IN_CACHE 4096
 FETCHING void fetch_row(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
   fetch(&mesh->rows[row]);

@@ -21,15 +21,15 @@ typedef struct {
 } ordered_triangle;
 
 static inline ordered_triangle ordered(const seen_mesh* mesh, int row) {
-  int first = 3 * row;
-  for (int k = 1; k < 3; ++k) {
-    if (comes_before(point_at(mesh, 3 * row + k), point_at(mesh, first))) first = 3 * row + k;
-  }
+  GLOBAL const int* const corners = mesh->rows[row].corner;
+  const double2 a = mesh->points[corners[0]], b = mesh->points[corners[1]], c = mesh->points[corners[2]];
+  int first = comes_before(b, a);
+  if (comes_before(c, first ? b : a)) first = 2;
   ordered_triangle triangle;
   for (int k = 0; k < 3; ++k) {
-    triangle.corner[k] = first;
-    triangle.point[k] = point_at(mesh, first);
-    first = next_halfedge(first);
+    triangle.corner[k] = 3 * row + first;
+    triangle.point[k] = mesh->points[corners[first]];
+    first = next_corner(first);
   }
   return triangle;
 }
@@ -187,11 +187,10 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const 
   return is_split_crowded(mesh, corner, places, ends, rules) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 
-// With a cosine of 0, a right angle is none: triangles are Delaunay beyond the constraint, too.
-static inline int encroaches(const seen_mesh* mesh, int corner, double2 p, refinement_rules rules) {
-  const double2 from = point_at(mesh, next_halfedge(corner)), to = point_at(mesh, previous_halfedge(corner));
-  return rules.squared_cosine > 0.0 ? is_encroached(from, to, p, rules.squared_cosine)
-                                    : cosine_sign(from, p, p, to, 0.0) > 0;
+// Whether a point encroaches a constraint between two vertices. With a cosine of 0, a right angle is none: triangles
+// are Delaunay beyond the constraint, too.
+static inline int encroaches(double2 from, double2 to, double2 p, double squared_cosine) {
+  return squared_cosine > 0.0 ? is_encroached(from, to, p, squared_cosine) : cosine_sign(from, p, p, to, 0.0) > 0;
 }
 
 END_SHARED

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include "call/frame.hpp"
@@ -26,8 +25,8 @@ using constrained::RefinedMesh;
 
 // The ends of the edge opposite to a corner, with its triangle on the left.
 std::array<std::int32_t, 2> ends_of(const Ids& triangles, std::size_t corner) {
-  const std::size_t first = corner - corner % 3;
-  return {triangles[first + (corner + 1) % 3], triangles[first + (corner + 2) % 3]};
+  const std::size_t k = corner % 3;
+  return {triangles[k == 2 ? corner - 2 : corner + 1], triangles[k == 0 ? corner + 2 : corner - 1]};
 }
 
 // The constraint edges and borders that the triangles of a result have. They are numbered anew.
@@ -54,17 +53,40 @@ struct HullPlaces {
   Ids of_points, next;
 };
 
-FixedEdges fixed_edges(const ConstrainedTriangulation& mesh, std::size_t points) {
-  const auto key = [](std::int32_t a, std::int32_t b) {
-    const auto low = static_cast<std::uint64_t>(std::min(a, b)),
-               high = static_cast<std::uint64_t>(std::max(a, b));
-    return high << 32 | low;
-  };
-  const std::size_t constraint_count = mesh.constraint_edges.size() / 2;
-  std::unordered_map<std::uint64_t, std::int32_t> numbers(constraint_count);
-  for (std::size_t e = 0; e < constraint_count; ++e) {
-    numbers.emplace(key(mesh.constraint_edges[2 * e], mesh.constraint_edges[2 * e + 1]), e);
+// Finds edges by their ends. Each is kept at the one that has fewer edges: in a plane, few are looked
+// through.
+class EdgesByEnds {
+ public:
+  EdgesByEnds(const Ids& ends, std::size_t points)
+      : ends_(ends), degrees_(points, 0), first_(points + 1, 0), edges_(ends.size() / 2) {
+    for (const std::int32_t v : ends) ++degrees_[v];
+    for (std::size_t e = 0; e < edges_.size(); ++e) ++first_[keeper(ends[2 * e], ends[2 * e + 1])];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      edges_[--first_[keeper(ends[2 * e], ends[2 * e + 1])]] = static_cast<std::int32_t>(e);
   }
+  // a and b: the ends of one of them.
+  std::int32_t number(std::int32_t a, std::int32_t b) const {
+    const std::int32_t at = keeper(a, b), other = a == at ? b : a;
+    std::size_t k = first_[at];
+    while (ends_[2 * static_cast<std::size_t>(edges_[k])] != other &&
+           ends_[2 * static_cast<std::size_t>(edges_[k]) + 1] != other)
+      ++k;
+    return edges_[k];
+  }
+
+ private:
+  std::int32_t keeper(std::int32_t a, std::int32_t b) const {
+    return degrees_[a] < degrees_[b] || (degrees_[a] == degrees_[b] && a < b) ? a : b;
+  }
+
+  const Ids& ends_;
+  Ids degrees_, first_, edges_;
+};
+
+FixedEdges fixed_edges(const ConstrainedTriangulation& mesh, std::size_t points) {
+  const std::size_t constraint_count = mesh.constraint_edges.size() / 2;
+  const EdgesByEnds constraints(mesh.constraint_edges, points);
   const HullPlaces hull(mesh, points);
   FixedEdges edges;
   edges.of_corners.assign(mesh.triangles.size(), -1);
@@ -76,14 +98,15 @@ FixedEdges fixed_edges(const ConstrainedTriangulation& mesh, std::size_t points)
     auto [a, b] = ends_of(mesh.triangles, c);
     const std::int32_t place = is_border ? hull.of_points[a] : -1;
     std::int32_t border = -1, constraint = -1;
-    if (is_constraint) constraint = numbers.at(key(a, b));
+    if (is_constraint) constraint = constraints.number(a, b);
     std::int32_t& number = is_constraint ? edges.of_constraints[constraint] : border;
     if (number < 0) {
       number = static_cast<std::int32_t>(edges.is_border.size());
       edges.is_border.push_back(is_border ? 1 : 0);
       const bool is_turned =
           is_constraint && mesh.constraint_edges[2 * static_cast<std::size_t>(constraint)] != a;
-      edges.ends.insert(edges.ends.end(), {is_turned ? b : a, is_turned ? a : b});
+      edges.ends.push_back(is_turned ? b : a);
+      edges.ends.push_back(is_turned ? a : b);
     }
     edges.of_corners[c] = number;
     if (place >= 0 && mesh.hull[hull.next[place]] == b) edges.of_hull[place] = number;
@@ -142,7 +165,7 @@ class EdgeChains {
   EdgeChains(const FixedEdges& edges, const RefinedMesh& mesh, std::size_t points) {
     const auto first_added = static_cast<std::int32_t>(points);
     // The points before and after each one that was added, and the first one of each edge.
-    Ids links(2 * mesh.added_edges.size(), -1), first(edges.is_border.size(), -1);
+    Ids links(mesh.added.size(), -1), first(edges.is_border.size(), -1);
     for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
       const std::int32_t e = mesh.edges[c], beyond = mesh.neighbors[c];
       // A piece between two triangles counts once.
@@ -168,17 +191,14 @@ class EdgeChains {
       offsets_.push_back(vertices_.size());
     }
   }
-  // Adds those of an edge to a list; of edge -1 there are none.
-  void append(std::int32_t edge, bool is_turned, Ids& to) const {
+  // Calls add(v) for those of an edge; of edge -1 there are none.
+  template <typename Add>
+  void visit(std::int32_t edge, bool is_turned, const Add& add) const {
     if (edge < 0) return;
-    const auto begin = vertices_.begin() + static_cast<std::ptrdiff_t>(offsets_[edge]),
-               end = vertices_.begin() + static_cast<std::ptrdiff_t>(offsets_[edge + 1]);
-    if (is_turned) {
-      to.insert(to.end(), std::make_reverse_iterator(end), std::make_reverse_iterator(begin));
-    } else {
-      to.insert(to.end(), begin, end);
-    }
+    const std::size_t begin = offsets_[edge], end = offsets_[edge + 1];
+    for (std::size_t k = begin; k < end; ++k) add(vertices_[is_turned ? begin + end - 1 - k : k]);
   }
+  std::size_t vertices() const { return vertices_.size(); }
 
  private:
   std::vector<std::size_t> offsets_;
@@ -186,15 +206,19 @@ class EdgeChains {
 };
 
 void split_constraints(const FixedEdges& edges, const EdgeChains& chains, ConstrainedTriangulation& result) {
-  Ids all, segments, first(1, 0), chain;
+  Ids all, segments, first(1, 0);
+  all.reserve(result.constraint_edges.size() + 2 * chains.vertices());
   for (std::size_t e = 0; e < edges.of_constraints.size(); ++e) {
-    chain.assign(1, result.constraint_edges[2 * e]);
-    chains.append(edges.of_constraints[e], false, chain);
-    chain.push_back(result.constraint_edges[2 * e + 1]);
-    for (std::size_t k = 1; k < chain.size(); ++k) {
-      all.insert(all.end(), {chain[k - 1], chain[k]});
+    const auto end_piece = [&](std::int32_t v) {
+      all.push_back(v);
       segments.push_back(result.edge_segments[e]);
-    }
+    };
+    all.push_back(result.constraint_edges[2 * e]);
+    chains.visit(edges.of_constraints[e], false, [&](std::int32_t v) {
+      end_piece(v);
+      all.push_back(v);
+    });
+    end_piece(result.constraint_edges[2 * e + 1]);
     first.push_back(static_cast<std::int32_t>(segments.size()));
   }
   result.constraint_edges = std::move(all);
@@ -210,7 +234,8 @@ void split_hull(const FixedEdges& edges, const EdgeChains& chains, Triangulation
     if (i == result.hull.size()) break;
     const std::int32_t v = result.hull[i], edge = edges.of_hull[i];
     hull.push_back(v);
-    chains.append(edge, edge >= 0 && edges.ends[2 * static_cast<std::size_t>(edge)] != v, hull);
+    chains.visit(edge, edge >= 0 && edges.ends[2 * static_cast<std::size_t>(edge)] != v,
+                 [&hull](std::int32_t between) { hull.push_back(between); });
   }
   result.hull = std::move(hull);
   result.hull_offsets = std::move(offsets);
@@ -226,18 +251,6 @@ void inherit(const Ids& parents, std::vector<T>& values) {
   values = std::move(own);
 }
 
-// Numbers things by their sets, in their order within one. new_numbers: empty if nothing changes. Returns
-// where sets begin, and the end.
-std::vector<std::size_t> number_by_sets(const Ids& sets, std::size_t set_count, Ids& new_numbers) {
-  std::vector<std::size_t> offsets(set_count + 1, 0);
-  for (const std::int32_t set : sets) ++offsets[set + 1];
-  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  if (std::is_sorted(sets.begin(), sets.end())) return offsets;
-  std::vector<std::size_t> next = offsets;
-  for (const std::int32_t set : sets) new_numbers.push_back(static_cast<std::int32_t>(next[set]++));
-  return offsets;
-}
-
 template <typename T>
 void permute(const Ids& numbers, std::size_t columns, std::vector<T>& rows) {
   std::vector<T> permuted(rows.size());
@@ -247,18 +260,9 @@ void permute(const Ids& numbers, std::size_t columns, std::vector<T>& rows) {
   rows = std::move(permuted);
 }
 
-// For each triangle the number of its set.
-Ids sets_of(const std::vector<std::size_t>& offsets) {
-  Ids sets;
-  for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
-    sets.resize(offsets[s + 1], static_cast<std::int32_t>(s));
-  return sets;
-}
-
-// Numbers the points that were added, of which there are n others, by their sets. A set's points keep their
-// order, so triangles begin with the same corners.
+// Numbers the points that were added, of which there are n others. A set's points keep their order, so triangles begin
+// with the same corners.
 void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation& result) {
-  if (numbers.empty()) return;
   const auto first = static_cast<std::int32_t>(n);
   for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
     for (std::int32_t& v : *vertices) v = v < first ? v : first + numbers[v - first];
@@ -269,41 +273,31 @@ void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation
   std::copy(added.begin(), added.end(), result.representatives.begin() + first);
 }
 
-void renumber_triangles(const Ids& numbers, ConstrainedTriangulation& result) {
-  if (numbers.empty()) return;
-  for (std::int32_t& neighbor : result.neighbors) neighbor = neighbor < 0 ? neighbor : numbers[neighbor];
-  permute(numbers, 3, result.triangles);
-  permute(numbers, 3, result.neighbors);
-  permute(numbers, 3, result.constrained);
-  for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) permute(numbers, 1, *labels);
-  permute(numbers, 1, result.triangle_attributes);
-  RefinementReport& report = result.refinement;
-  std::vector<std::pair<std::int32_t, Excuse>> bad;
-  for (std::size_t k = 0; k < report.excuses.size(); ++k) {
-    bad.emplace_back(numbers[report.bad_triangles[k]], report.excuses[k]);
-  }
-  std::sort(bad.begin(), bad.end());
-  for (std::size_t k = 0; k < bad.size(); ++k) {
-    std::tie(report.bad_triangles[k], report.excuses[k]) = bad[k];
-  }
-}
+// Of each set where what refinement made begins, and the end.
+struct SetOffsets {
+  std::vector<std::size_t> triangles{0}, added{0};
+};
 
-// Makes the points of each set follow each other, and its triangles. parents: of triangles.
-void sort_by_sets(std::size_t n, const Ids& parents, ConstrainedTriangulation& result) {
-  const std::size_t set_count = result.triangle_offsets.size() - 1;
-  Ids of_triangles = sets_of(result.triangle_offsets), of_points = sets_of(result.added_offsets);
-  inherit(parents, of_triangles);
-  of_points.resize(result.added_points.size() / 2, 0);
-  for (std::size_t c = 0; c < result.triangles.size(); ++c) {
-    const auto v = static_cast<std::size_t>(result.triangles[c]);
-    if (v >= n) of_points[v - n] = of_triangles[c / 3];
+// Makes the added points of each set follow each other: those of splitting first.
+void sort_by_sets(std::size_t n, const SetOffsets& sets, ConstrainedTriangulation& result) {
+  const std::size_t set_count = sets.added.size() - 1;
+  std::vector<std::size_t> splits = result.added_offsets;
+  splits.resize(set_count + 1, 0);
+  if (set_count > 1 && splits.back() > 0) {
+    Ids numbers;
+    for (std::size_t s = 0; s < set_count; ++s) {
+      for (std::size_t k = splits[s]; k < splits[s + 1]; ++k)
+        numbers.push_back(static_cast<std::int32_t>(k + sets.added[s]));
+    }
+    for (std::size_t s = 0; s < set_count; ++s) {
+      for (std::size_t k = sets.added[s]; k < sets.added[s + 1]; ++k)
+        numbers.push_back(static_cast<std::int32_t>(splits[s + 1] + k));
+    }
+    renumber_points(n, numbers, result);
   }
-  Ids numbers;
-  result.added_offsets = number_by_sets(of_points, set_count, numbers);
-  renumber_points(n, numbers, result);
-  numbers.clear();
-  result.triangle_offsets = number_by_sets(of_triangles, set_count, numbers);
-  renumber_triangles(numbers, result);
+  result.added_offsets = sets.added;
+  for (std::size_t s = 0; s <= set_count; ++s) result.added_offsets[s] += splits[s];
+  result.triangle_offsets = sets.triangles;
 }
 
 // Writes the mesh to the result, with its own numbers of points and triangles.
@@ -311,17 +305,18 @@ void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& 
                 ConstrainedTriangulation& result) {
   result.added_points.insert(result.added_points.end(), mesh.added.begin(), mesh.added.end());
   const std::size_t before = result.representatives.size();
-  result.representatives.resize(before + mesh.added_edges.size());
+  result.representatives.resize(before + mesh.added.size() / 2);
   std::iota(result.representatives.begin() + static_cast<std::ptrdiff_t>(before),
             result.representatives.end(), static_cast<std::int32_t>(before));
   split_constraints(edges, chains, result);
   split_hull(edges, chains, result);
-  std::vector<std::uint8_t> is_constraint(edges.is_border.size(), 0);
+  std::vector<std::uint8_t> is_constraint(edges.is_border.size() + 1, 0);  // the first one is for no edge
   for (const std::int32_t edge : edges.of_constraints) {
-    if (edge >= 0) is_constraint[edge] = 1;
+    if (edge >= 0) is_constraint[edge + 1] = 1;
   }
-  result.constrained.clear();
-  for (const std::int32_t edge : mesh.edges) result.constrained.push_back(edge < 0 ? 0 : is_constraint[edge]);
+  result.constrained.resize(mesh.edges.size());
+  for (std::size_t c = 0; c < mesh.edges.size(); ++c)
+    result.constrained[c] = is_constraint[mesh.edges[c] + 1];
   result.triangles = std::move(mesh.triangles);
   result.neighbors = std::move(mesh.neighbors);
   for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) inherit(mesh.parents, *labels);
@@ -351,12 +346,11 @@ struct SetNumbers {
     const auto i = static_cast<std::size_t>(v);
     return static_cast<std::int32_t>(i >= first_split ? i - first_split + points : i - first_point);
   }
-  // first_added: of the points that were added to this set, in all sets.
-  std::int32_t of_all(std::int32_t v, std::size_t first_added) const {
-    const auto i = static_cast<std::size_t>(v);
-    return static_cast<std::int32_t>(i < points            ? first_point + i
-                                     : i < points + splits ? first_split + i - points
-                                                           : first_added + i - points - splits);
+  // How much larger those of all sets are: of its points, of what splitting added, and of what was added
+  // then, the first of which is `first_added` there.
+  std::array<std::int32_t, 3> shifts(std::size_t first_added) const {
+    return {static_cast<std::int32_t>(first_point), static_cast<std::int32_t>(first_split - points),
+            static_cast<std::int32_t>(first_added - points - splits)};
   }
 };
 
@@ -418,20 +412,33 @@ MeshToRefine mesh_of_set(const MeshToRefine& all, const SetNumbers& set, std::ve
   return mesh;
 }
 
-// Adds the result of a set to that of all sets, of which there were so many points before.
-void append_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points, RefinedMesh& all) {
-  const std::size_t first_added = points + all.added_edges.size(), first_triangle = all.parents.size();
-  const auto append = [](auto& to, const auto& from, std::size_t by) {
-    for (const auto value : from) to.push_back(value < 0 ? value : value + static_cast<std::int32_t>(by));
+// Writes the result of set s to that of all sets, of which there were so many points before.
+void write_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points, const SetOffsets& sets,
+               std::size_t s, RefinedMesh& all) {
+  const std::size_t first_triangle = sets.triangles[s];
+  const auto write = [](auto& to, const auto& from, std::size_t first, std::size_t by) {
+    const auto shift = static_cast<std::int32_t>(by);
+    for (std::size_t i = 0; i < from.size(); ++i) to[first + i] = from[i] + (from[i] < 0 ? 0 : shift);
   };
-  for (const std::int32_t v : own.triangles) all.triangles.push_back(set.of_all(v, first_added));
-  append(all.neighbors, own.neighbors, first_triangle);
-  append(all.edges, own.edges, set.first_edge);
-  append(all.parents, own.parents, set.first_triangle);
-  append(all.added_edges, own.added_edges, set.first_edge);
-  append(all.report.bad_triangles, own.report.bad_triangles, first_triangle);
-  all.added.insert(all.added.end(), own.added.begin(), own.added.end());
-  all.added_places.insert(all.added_places.end(), own.added_places.begin(), own.added_places.end());
+  // Without branches, which could not be predicted.
+  const std::array<std::int32_t, 3> shifts = set.shifts(points + sets.added[s]);
+  const auto splits = static_cast<std::int32_t>(set.points),
+             added = static_cast<std::int32_t>(set.points + set.splits);
+  for (std::size_t i = 0; i < own.triangles.size(); ++i) {
+    const std::int32_t v = own.triangles[i];
+    all.triangles[3 * first_triangle + i] = v + shifts[(v >= splits ? 1 : 0) + (v >= added ? 1 : 0)];
+  }
+  write(all.neighbors, own.neighbors, 3 * first_triangle, first_triangle);
+  write(all.edges, own.edges, 3 * first_triangle, set.first_edge);
+  write(all.parents, own.parents, first_triangle, set.first_triangle);
+  std::copy(own.added.begin(), own.added.end(),
+            all.added.begin() + static_cast<std::ptrdiff_t>(2 * sets.added[s]));
+}
+
+// Adds the report of a set to that of all sets, which have so many triangles before.
+void add_report(const RefinedMesh& own, std::size_t first_triangle, RefinedMesh& all) {
+  for (const std::int32_t t : own.report.bad_triangles)
+    all.report.bad_triangles.push_back(t + static_cast<std::int32_t>(first_triangle));
   all.report.excuses.insert(all.report.excuses.end(), own.report.excuses.begin(), own.report.excuses.end());
   all.report.rounds = std::max(all.report.rounds, own.report.rounds);
   all.report.added_points += own.report.added_points;
@@ -442,7 +449,7 @@ void append_set(const RefinedMesh& own, const SetNumbers& set, std::size_t point
 // Refines sets one by one, small ones on threads, so that each is as if it were alone.
 RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine& all,
                         const std::vector<SetNumbers>& sets, bool profile, const Refinement& wanted,
-                        Statistics& statistics) {
+                        SetOffsets& offsets, Statistics& statistics) {
   std::vector<RefinedMesh> parts(sets.size());
   std::vector<std::size_t> small;
   const auto refine_set = [&](std::size_t s, Engine& by) {
@@ -460,18 +467,27 @@ RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine
       refine_set(s, engine);
     }
   }
-  const auto on_thread = [&](std::size_t k) { refine_set(small[k], Engine::of_thread()); };
   // The caller's function has one thread.
-  if (wanted.areas_at || &engine == &Engine::of_thread()) {
-    for (std::size_t k = 0; k < small.size(); ++k) on_thread(k);
-  } else {
-    self.native().runtime.share(small.size(), on_thread);
-  }
+  const bool is_alone = wanted.areas_at || &engine == &Engine::of_thread();
+  const auto share = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+    if (!is_alone) return self.native().runtime.share(count, work);
+    for (std::size_t k = 0; k < count; ++k) work(k);
+  };
+  share(small.size(), [&](std::size_t k) { refine_set(small[k], Engine::of_thread()); });
   RefinedMesh joined;
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    append_set(parts[s], sets[s], all.points, joined);
-    parts[s] = {};
+  for (const RefinedMesh& part : parts) {
+    add_report(part, offsets.triangles.back(), joined);
+    offsets.triangles.push_back(offsets.triangles.back() + part.parents.size());
+    offsets.added.push_back(offsets.added.back() + part.added.size() / 2);
   }
+  for (Ids* array : {&joined.triangles, &joined.neighbors, &joined.edges})
+    array->resize(3 * offsets.triangles.back());
+  joined.parents.resize(offsets.triangles.back());
+  joined.added.resize(2 * offsets.added.back());
+  share(sets.size(), [&](std::size_t s) {
+    write_set(parts[s], sets[s], all.points, offsets, s, joined);
+    parts[s] = {};
+  });
   return joined;
 }
 
@@ -526,12 +542,12 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   MeshToRefine mesh;
   mesh.coordinates = coordinates;
   mesh.points = points;
-  mesh.triangles = result.triangles;
-  mesh.neighbors = result.neighbors;
-  mesh.edges = edges.of_corners;
-  mesh.edge_ends = edges.ends;
   mesh.kept_edges = kept_edges(wanted, edges, result);
   mesh.largest_areas = largest_areas(wanted, seeds, areas, result.triangles.size() / 3);
+  mesh.triangles = std::move(result.triangles);
+  mesh.neighbors = std::move(result.neighbors);
+  mesh.edges = std::move(edges.of_corners);
+  mesh.edge_ends = edges.ends;
 
   const bool may_stay = !self.is_named() && !options.profile &&
                         expected_points(mesh, 0, mesh.triangles.size() / 3) <=
@@ -543,13 +559,15 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
   phases.progress("refine", 0);
+  SetOffsets sets;
   RefinedMesh refined = offsets.size() > 2
                             ? refine_sets(self, engine, mesh, numbers_of_sets(mesh, offsets, result),
-                                          options.profile, wanted, result.statistics)
+                                          options.profile, wanted, sets, result.statistics)
                             : refine_on(engine, mesh, options.profile, wanted, result.statistics);
+  if (offsets.size() == 2) sets = {{0, refined.parents.size()}, {0, refined.added.size() / 2}};
 
   write_mesh(edges, EdgeChains(edges, refined, points), refined, result);
-  sort_by_sets(n, refined.parents, result);
+  sort_by_sets(n, sets, result);
   renumber_regions(result.regions);
   measure_angles(coordinates, n, wanted.smoothing_steps > 0, result);
   result.refinement.smallest_angle_before = refined.before_smoothing.smallest();

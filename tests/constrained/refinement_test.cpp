@@ -164,14 +164,14 @@ RefinedMesh expect_right(const MeshToRefine& mesh, const Refinement& wanted) {
   const OwnedMesh other = shuffled(mesh, 7);
   const RefinedMesh from_other = constrained::refine(native_runtime(), other.mesh, wanted);
   EXPECT_TRUE(ByCoordinates(other.mesh, from_other) == ByCoordinates(mesh, refined));
-  const RefinedMesh by_tiny = constrained::refine(native_runtime(), mesh, wanted, 4);
+  const RefinedMesh by_tiny = constrained::refine(native_runtime(), mesh, wanted, 2);
   EXPECT_EQ(what_is_wrong(mesh, by_tiny, wanted), "");
-  EXPECT_TRUE(ByCoordinates(other.mesh, constrained::refine(native_runtime(), other.mesh, wanted, 4)) ==
+  EXPECT_TRUE(ByCoordinates(other.mesh, constrained::refine(native_runtime(), other.mesh, wanted, 2)) ==
               ByCoordinates(mesh, by_tiny));
   for (const std::string& tuning : tunings()) {
     SCOPED_TRACE("tuning " + tuning);
     expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted), refined);
-    expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted, 4), by_tiny);
+    expect_same(constrained::refine(Runtimes::get(tuning), mesh, wanted, 2), by_tiny);
   }
   return refined;
 }
@@ -528,6 +528,22 @@ TEST(SmallRefinement, AnglesOutsideExcuseNothing) {
       ASSERT_EQ(refined.report.bad_triangles.size(), 0) << round;
     }
   }
+}
+
+// Bad triangles for eight blocks are one, in which nothing waits for further rounds.
+TEST(SmallRefinement, FewBlocksAreOne) {
+  DomainToRefine domain;
+  for (int i = 0; i < 500; ++i) {
+    const double angle = kTurn * i / 500, radius = 1 + 0.01 * std::sin(i * i);
+    domain.point(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  domain.chain(0, true);
+  domain.outside = Outside::holes;
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 30;
+  EXPECT_EQ(constrained::refine(native_runtime(), mesh, wanted).report.rounds, 1);
+  EXPECT_GT(constrained::refine(native_runtime(), mesh, wanted, 50).report.rounds, 1);
 }
 
 // Two angles of 25 degrees but for rounding, of which one is between edges of the border.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "arithmetic/coordinates.h"
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/cuts.hpp"
@@ -47,6 +48,9 @@ using kernel::mesh_row;
 constexpr std::size_t kMostPerTriangle = 16;
 // A phase that adds fewer points than this part of its bad triangles makes the blocks of the next one larger.
 constexpr double kLeastProgress = 0.1;
+// Without areas, a mesh with bad triangles for so many blocks is one: it makes fewer points, and takes one
+// thread less time.
+constexpr std::size_t kBlocksAlone = 8;
 // One bad triangle in so many decides where the plane is cut: in the first phase, which cuts in medians, and
 // later.
 constexpr std::size_t kFirstSample = 8, kLaterSample = 4;
@@ -58,6 +62,10 @@ constexpr double kLevelStep = 1 << kLevelPlaces, kLevelRest = 0.1;
 constexpr double kScaffold = 0.5;
 // Blocks at once, on devices; natively, as many as threads. The lists of each have so many places at first.
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
+// A launch has room for so many chunks of rows and of vertices, or for one per block.
+constexpr std::size_t kLeastChunks = 4;
+// For so many rows, a thread's loops take less time than passes of kernels.
+constexpr std::size_t kFewRows = std::size_t{1} << 14;
 // Where loops of a work-item must be short, a launch takes so many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
@@ -91,14 +99,19 @@ struct Lists {
   Buffer<kernel::first_task> firsts{};
 };
 
+// Where an array is, if kernels run natively.
+template <typename T>
+T* address_in(const Buffer<T>& array) {
+  return reinterpret_cast<T*>(host::address_of(array.memory()));
+}
+
 // What an array holds: where it is, if kernels run natively, or else a copy.
 template <typename T>
 class Here {
  public:
   Here(host::Runtime& runtime, const Buffer<T>& array, std::size_t count) {
     if (!runtime.is_native()) copy_ = points::download(runtime, array, count);
-    values_ =
-        runtime.is_native() ? reinterpret_cast<const T*>(host::address_of(array.memory())) : copy_.data();
+    values_ = runtime.is_native() ? address_in(array) : copy_.data();
   }
   const T& operator[](std::size_t i) const { return values_[i]; }
 
@@ -150,6 +163,14 @@ class Refining {
   // that were refused for such a constraint again; returns whether there are some.
   bool retry_frozen() {
     Arena::Scope scope(arena_);
+    if (has_few_rows()) {
+      const auto thaw = [](cl_uchar& state) {
+        const bool is_frozen = (state & kernel::ROW_REFUSED) == kernel::EXCUSED_FROZEN;
+        if (is_frozen) state = static_cast<cl_uchar>((state & ~kernel::ROW_REFUSED) | kernel::ROW_BAD);
+        return is_frozen;
+      };
+      return rows_where(thaw).second > 0;
+    }
     const auto is_tried = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::retry_frozen{.states = arrays_.states, .is_tried = is_tried});
     return host::pack_positions(runtime_, is_tried, rows_, 1).second > 0;
@@ -173,11 +194,12 @@ class Refining {
     rules_.coarse = std::ldexp(1.0, lowest + kernel::DOUBLE_BITS - 1);
     order_vertices();
     points_.resize(mesh_.points);
+    scale_ = kernel::scale_of(shift_);
     double low[2] = {0, 0}, high[2] = {0, 0};
     for (std::size_t i = 0; i < mesh_.points; ++i) {
       double at[2];
       for (int k = 0; k < 2; ++k) {
-        at[k] = std::ldexp(mesh_.coordinates[2 * i + k], shift_) + 0.0;
+        at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
         low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
         high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
         largest_ = std::max(largest_, std::fabs(at[k]));
@@ -186,8 +208,6 @@ class Refining {
     }
     extent_ = std::max(high[0] - low[0], high[1] - low[1]);
   }
-
-  double unscaled(double x) const { return std::ldexp(x, -shift_); }
 
   // An area that is too small to be scaled is still one: no triangle is as small.
   double scaled_area(double area) const {
@@ -261,38 +281,29 @@ class Refining {
   }
 
   // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
-  std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends) const {
+  // Vertices at which two edges meet so at a sharp angle are apexes.
+  std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends,
+                                      std::vector<edge_place>& places) const {
     std::vector<std::int32_t> wedges(ends.size(), -1);
-    const auto vertex = [&](int corner) { return place_of_[mesh_.triangles[corner]]; };
-    for (int c = 0; c < static_cast<int>(mesh_.triangles.size()); ++c) {
-      const int edge = mesh_.edges[geometry::previous_halfedge(c)], v = vertex(c);
+    const std::int32_t* const triangles = mesh_.triangles.data();
+    for (int before = 0; before < static_cast<int>(mesh_.triangles.size()); ++before) {
+      const int edge = mesh_.edges[before];
       if (edge < 0) continue;
-      int last = geometry::next_halfedge(c);  // opposite to the side that comes next
+      const int corner = geometry::next_halfedge(before);
+      int last = geometry::next_halfedge(corner);  // opposite to the side that comes next
       while (mesh_.edges[last] < 0) {
-        int at = 3 * mesh_.neighbors[last];
-        while (vertex(at) != v) ++at;
-        last = geometry::next_halfedge(at);
+        const std::int32_t* const beyond = triangles + 3 * mesh_.neighbors[last];
+        const int k = beyond[1] == triangles[corner] ? 1 : 0, at = beyond[2] == triangles[corner] ? 2 : k;
+        last = 3 * mesh_.neighbors[last] + kernel::next_corner(at);
       }
+      const std::int32_t v = place_of_[triangles[corner]];
       wedges[ends[2 * edge] == v ? 2 * edge : 2 * edge + 1] = mesh_.edges[last];
+      const auto beside = [&](int c) { return points_[place_of_[triangles[geometry::next_halfedge(c)]]]; };
+      const double2 at = points_[v], from = beside(corner), to = beside(last);
+      const bool is_convex = kernel::orient_sign(at, from, to, ORIENT_BOUND) > 0;
+      if (is_convex && kernel::is_sharp(at, from, to) != 0) places[v].apex = v;
     }
     return wedges;
-  }
-
-  // Where input vertices are: those at which two edges meet at a sharp angle, with triangles between, are
-  // apexes.
-  std::vector<edge_place> input_places(const std::vector<std::int32_t>& ends,
-                                       const std::vector<std::int32_t>& wedges) const {
-    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (wedges[i] < 0) continue;
-      const std::int32_t v = ends[i], next = 2 * wedges[i];
-      const double2 at = points_[v], first = points_[ends[i ^ 1]],
-                    last = points_[ends[ends[next] == v ? next + 1 : next]];
-      const bool is_convex = kernel::orient_sign(at, first, last, ORIENT_BOUND) > 0;
-      if (is_convex && kernel::is_sharp(at, first, last) != 0) places[v].apex = v;
-    }
-    add_far_ends(ends, places);
-    return places;
   }
 
   void upload() {
@@ -302,11 +313,17 @@ class Refining {
     for (std::int32_t& e : edges) {
       if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
     }
-    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends);
-    const std::vector<edge_place> places = input_places(ends, wedges);
+    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
+    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends, places);
+    add_far_ends(ends, places);
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
-    reserve(rows_, vertices_);
+    // With what the first phase takes.
+    is_starting_ = runtime_.is_native() && rows_ <= kFewRows;
+    if (is_starting_) reserve_lists(1, kLeastRoom, false);
+    reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
+            vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
+    is_starting_ = false;
     known_ = vertices_;
     rules_.has_apexes =
         std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
@@ -345,9 +362,15 @@ class Refining {
     return false;
   }
 
+  // A new array. Those that a small mesh begins with are the arena's, which takes less time.
+  template <typename T>
+  Buffer<T> make(std::size_t size) {
+    if (is_starting_) return arena_.allocate<T>(size);
+    return {host::allocate_memory(runtime_.memory(), size * sizeof(T)), size};
+  }
   template <typename T>
   void grow(Buffer<T>& array, std::size_t used, std::size_t size) {
-    const Buffer<T> larger(host::allocate_memory(runtime_.memory(), size * sizeof(T)), size);
+    const Buffer<T> larger = make<T>(size);
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
@@ -400,8 +423,26 @@ class Refining {
                                                            .states = arrays_.states});
   }
 
+  // Whether loops of this thread take less time than passes of kernels.
+  bool has_few_rows() const { return runtime_.is_native() && (rows_ <= kFewRows || runtime_.threads() == 1); }
+
+  // Rows for whose states a function returns true.
+  template <typename Holds>
+  std::pair<Buffer<cl_int>, std::size_t> rows_where(const Holds& holds) {
+    const auto list = arena_.allocate<cl_int>(rows_);
+    cl_uchar* const states = address_in(arrays_.states);
+    cl_int* const rows = address_in(list);
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      rows[count] = static_cast<cl_int>(row);
+      count += holds(states[row]) ? 1 : 0;
+    }
+    return {list, count};
+  }
+
   // Rows whose states have a bit of a mask.
   std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
+    if (has_few_rows()) return rows_where([mask](cl_uchar state) { return (state & mask) != 0; });
     const auto flags = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
     return host::pack_positions(runtime_, flags, rows_, 1);
@@ -469,6 +510,8 @@ class Refining {
     return all;
   }
 
+  bool has_areas() const { return rules_.area_kind != kernel::AREAS_NONE || rules_.area > 0; }
+
   // The levels of area of a series of phases: a triangle acts if it exceeds the current one.
   struct Levels {
     int current = -1;
@@ -479,9 +522,7 @@ class Refining {
   std::pair<Buffer<cl_int>, std::size_t> rows_at_level(const Buffer<cl_int>& list, std::size_t count,
                                                        Levels& levels) {
     // New triangles of a phase have no areas by places, so that there each level is a factor of two.
-    if (rules_.area_kind == kernel::AREAS_BY_ROW ||
-        (rules_.area_kind == kernel::AREAS_NONE && !(rules_.area > 0)))
-      levels.current = 0;
+    if (rules_.area_kind == kernel::AREAS_BY_ROW || !has_areas()) levels.current = 0;
     if (levels.current == 0) return {list, count};
     const auto found = arena_.allocate<cl_uchar>(count);
     runtime_.map_in_small_groups(count, kernels::find_levels{.rules = rules_,
@@ -596,9 +637,12 @@ class Refining {
       const auto [all, all_count] = rows_with(mask);
       if (all_count == 0) return;
       std::optional<Cut> made;
-      if (std::exchange(needs_scaffold, false) && all_count > block) {
-        made = cut(all, all_count, block, Cuts::medians);
-        if (make_scaffold(*made)) continue;
+      if (std::exchange(needs_scaffold, false)) {
+        if (!has_areas() && all_count <= kBlocksAlone * block) block *= kBlocksAlone;
+        if (all_count > block) {
+          made = cut(all, all_count, block, Cuts::medians);
+          if (make_scaffold(*made)) continue;
+        }
       }
       const auto [list, count] = rows_at_level(all, all_count, levels);
       while (count / block >> (kernel::LEAF_BITS - 1) != 0) block *= 2;
@@ -691,18 +735,15 @@ class Refining {
   void reserve_lists(std::size_t at_once, std::size_t room, bool keeps_tasks) {
     const std::size_t before = room_ + kernel::SPARE_ROOM, size = room + kernel::SPARE_ROOM;
     if (at_once * size > lists_.tasks.size()) {
-      const auto make = [&]<typename T>(Buffer<T>& array) {
-        array =
-            Buffer<T>(host::allocate_memory(runtime_.memory(), at_once * size * sizeof(T)), at_once * size);
-      };
+      const auto renew = [&]<typename T>(Buffer<T>& array) { array = make<T>(at_once * size); };
       const Buffer<kernel::block_task> tasks = lists_.tasks;
-      make(lists_.tasks);
+      renew(lists_.tasks);
       for (std::size_t w = 0; w < at_once && keeps_tasks; ++w)
         runtime_.copy(tasks, w * before, lists_.tasks, w * size, before);
-      make(lists_.stacks);
-      make(lists_.cavities);
-      make(lists_.sides);
-      make(lists_.firsts);
+      renew(lists_.stacks);
+      renew(lists_.cavities);
+      renew(lists_.sides);
+      renew(lists_.firsts);
       runtime_.finish();
     }
     room_ = lists_.tasks.size() / at_once - kernel::SPARE_ROOM;
@@ -727,7 +768,7 @@ class Refining {
                                                 0};
     const std::size_t rows_per_chunk = kernel::ROWS_PER_CHUNK,
                       vertices_per_chunk = kernel::VERTICES_PER_CHUNK;
-    std::size_t spare = std::max<std::size_t>(4, at_once);
+    const std::size_t spare = std::max(kLeastChunks, at_once);
     for (;;) {
       const std::size_t first_row = rows_, first_vertex = vertices_;
       reserve(rows_ + spare * rows_per_chunk, vertices_ + spare * vertices_per_chunk);
@@ -807,6 +848,7 @@ class Refining {
     }
     const int known = static_cast<int>(known_);
     found.numbers = arena_.allocate<cl_int>(vertices_);
+    found.row_numbers = arena_.allocate<cl_int>(rows_);
     runtime_.map(vertices_, kernels::number_added{.known = known,
                                                   .inputs = static_cast<int>(names.size()),
                                                   .births = arrays_.births,
@@ -814,6 +856,10 @@ class Refining {
                                                   .names = runtime_.upload(arena_, std::move(names)),
                                                   .numbers = found.numbers});
     runtime_.finish();
+    if (has_few_rows()) {
+      order_here(found);
+      return found;
+    }
     const auto flags = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::flag_made_rows{.rows = arrays_.rows, .flags = flags});
     const auto [kept_at, kept] = host::pack_positions(runtime_, flags, rows_, kernel::ROW_KEPT);
@@ -828,7 +874,6 @@ class Refining {
     if (made > 0) host::sort_by_key(runtime_, keys, list, made);
     found.rows = kept + made;
     found.order = arena_.allocate<cl_ulong>(found.rows);
-    found.row_numbers = arena_.allocate<cl_int>(rows_);
     const auto place = [&](const Buffer<cl_int>& some, std::size_t count, std::size_t to) {
       runtime_.map(count, kernels::place_rows_in_order{.first = static_cast<int>(to),
                                                        .list = some,
@@ -842,6 +887,38 @@ class Refining {
         made, kernels::sort_made_rows{.first = static_cast<int>(kept), .keys = keys, .order = found.order});
     runtime_.map(found.rows, kernels::invert_order{.order = found.order, .row_numbers = found.row_numbers});
     return found;
+  }
+
+  // What the passes above do with rows, in loops.
+  void order_here(Order& found) {
+    const mesh_row* const rows = address_in(arrays_.rows);
+    const cl_int* const numbers = address_in(found.numbers);
+    cl_int* const row_numbers = address_in(found.row_numbers);
+    found.order = arena_.allocate<cl_ulong>(rows_);
+    cl_ulong* const order = address_in(found.order);
+    std::vector<std::size_t> ends(known_ + found.made + 1, 0);  // per vertex, of the rows that it begins
+    const auto is_made = [&](const mesh_row& row) { return row.corner[0] >= 0 && row.changed != 0; };
+    for (std::size_t r = 0; r < rows_; ++r) {
+      if (is_made(rows[r])) {
+        ++ends[static_cast<std::size_t>(numbers[rows[r].corner[0]]) + 1];
+      } else if (rows[r].corner[0] >= 0) {
+        order[found.rows++] = r;
+      }
+    }
+    ends[0] = found.rows;
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    found.rows = ends.back();
+    const std::vector<std::size_t> firsts = ends;
+    for (std::size_t r = 0; r < rows_; ++r) {
+      if (!is_made(rows[r])) continue;
+      const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
+      const cl_ulong placed = static_cast<cl_ulong>(numbers[rows[r].corner[1]]) << 32 | r;
+      std::size_t to = ends[v]++;
+      for (; to > firsts[v] && order[to - 1] > placed; --to) order[to] = order[to - 1];
+      order[to] = placed;
+    }
+    for (std::size_t i = 0; i < found.rows; ++i)
+      row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
   }
 
   // Gives vertices and rows their numbers.
@@ -941,10 +1018,12 @@ class Refining {
     refined.added.resize(2 * added);
     refined.added_edges.resize(added);
     refined.added_places.resize(added);
+    const kernel::scaling back = kernel::scale_of(-shift_);
     for (std::size_t v = mesh_.points; v < vertices_; ++v) {
       if (numbers[v] < 0) continue;
       const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
-      for (std::size_t k = 0; k < 2; ++k) refined.added[2 * to + k] = unscaled(coordinates[2 * v + k]);
+      for (std::size_t k = 0; k < 2; ++k)
+        refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
       refined.added_edges[to] = places[v].edge;
       refined.added_places[to] = places[v].part;
       if (places[v].edge >= 0) ++report_.split_points;
@@ -970,6 +1049,7 @@ class Refining {
   const Refinement& wanted_;
   const std::size_t block_;
   int shift_ = 0;
+  kernel::scaling scale_{};
   double extent_ = 0, largest_ = 0;  // scaled: the larger side of the bounding box, the largest coordinate
   kernel::refinement_rules rules_{};
   std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
@@ -982,6 +1062,7 @@ class Refining {
   std::size_t known_ = 0;  // vertices that have their numbers
   Buffer<kernel::block_state> block_states_{};
   Lists lists_;
+  bool is_starting_ = false;
   std::size_t workers_ = 0, room_ = 0;  // room: places in the lists of each work-item
   cl_uint phase_ = 0;
   std::size_t block_count_ = 0;
