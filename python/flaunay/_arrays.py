@@ -292,7 +292,9 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     if geometries is not None:
         return _of_geometries(geometries, name)
     try:
-        if _is_arrow(given):
+        if isinstance(given, (list, tuple)):
+            array = np.asarray(given)
+        elif _is_arrow(given):
             array = _of_arrow(given, name)
         else:
             check_memory(given, name)
