@@ -186,6 +186,11 @@ def check_memory(given: Any, name: str) -> None:
         raise UsageError(f"{name} are in the memory of {memory}: copy them to the host before")
 
 
+def is_plain(given: object) -> TypeGuard[npt.NDArray[Any]]:
+    """Whether it is an array of NumPy without objects, which needs no conversion."""
+    return type(given) is np.ndarray and given.dtype.kind != "O"
+
+
 def column_of(given: Any) -> Any:
     """The column of geometries, if it is a table that has one, as those of GeoPandas; everything else as it is."""
     return getattr(given, "geometry", given) if hasattr(given, "columns") else given
@@ -196,6 +201,8 @@ def geometries_in(given: Any) -> Optional[npt.NDArray[np.object_]]:
 
     None if there are none. Where one is missing, there is None.
     """
+    if is_plain(given):
+        return None
     column = column_of(given)
     members: Any
     if isinstance(column, (list, tuple)):
@@ -270,7 +277,7 @@ def _of_geometries(geometries: npt.NDArray[np.object_], name: str) -> npt.NDArra
 
 def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     """What numpy makes of it; UsageError, with numpy's words, if it cannot, as of a list of unequal rows."""
-    if type(given) is np.ndarray and given.dtype.kind != "O":
+    if is_plain(given):
         return given
     if is_masked(given):
         return _of_masked(given, name)
@@ -285,7 +292,9 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
     if geometries is not None:
         return _of_geometries(geometries, name)
     try:
-        if _is_arrow(given):
+        if isinstance(given, (list, tuple)):
+            array = np.asarray(given)
+        elif _is_arrow(given):
             array = _of_arrow(given, name)
         else:
             check_memory(given, name)
@@ -385,6 +394,8 @@ def check_points_shape(points: FloatArray) -> None:
 
 def as_points(given: ArrayLike) -> FloatArray:
     """Points of shape (n, 2); UsageError for any other shape."""
+    if are_rows(given):
+        return given
     points = as_floats(given, "points")
     check_points_shape(points)
     return points

@@ -26,6 +26,7 @@ from flaunay._arrays import FloatArray, Mesh, Searched, names_of
 from flaunay._declarations import INDEX_TYPE, PART, PRECISION
 from flaunay._errors import UsageError
 from flaunay._library import DeviceHandle, Handle, check, library, text_of
+from flaunay._refinement import RefinementReport
 
 _Doubles = npt.NDArray[np.float64]
 _Indices = npt.NDArray[np.int32]
@@ -48,13 +49,26 @@ def _arrays(table: dict[str, tuple[str, str, int, str]]) -> _Arrays:
 
 
 TRIANGULATION = _arrays(_declarations.TRIANGULATION_ARRAYS)
-# In place of who asks for an array its bit, 0 if it is there always.
-_PARTS = [
-    (name, dtype, row, columns, 0 if asked == "always" else PART[name])
-    for name, (dtype, row, columns, asked) in TRIANGULATION.items()
-]
-_ADDRESSES = operator.attrgetter(*TRIANGULATION)
 _CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
+_OFFSETS = (_INT64, "set_offset", 1, "always")
+# Those of triangulations are asked for by their own names.
+_MADE: _Arrays = {
+    name: (dtype, row, columns, name if asked == "on_request" else asked)
+    for name, (dtype, row, columns, asked) in {**TRIANGULATION, **_CONSTRAINED}.items()
+}
+_MADE |= dict.fromkeys(["triangle_offsets", "hull_offsets"], _OFFSETS)
+# How many rows there are of what, in flaunay_mesh and flaunay_constrained_arrays.
+_ROWS: dict[str, Callable[[Any, Any], int]] = {
+    "triangle": lambda mesh, _: mesh.triangle_count,
+    "halfedge": lambda mesh, _: 3 * mesh.triangle_count,
+    "hull_vertex": lambda mesh, _: mesh.hull_count,
+    "point": lambda mesh, _: mesh.point_count,
+    "set_offset": lambda mesh, _: mesh.set_count + 1,
+    "added_point": lambda _, arrays: arrays.added_count,
+    "constraint": lambda _, arrays: arrays.constraint_count,
+    "segment_offset": lambda _, arrays: arrays.segment_count + 1,
+    "piece": lambda _, arrays: arrays.piece_count,
+}
 _VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
 _CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
 _SPHERICAL = _arrays(_declarations.SPHERICAL_ARRAYS)
@@ -104,7 +118,9 @@ def _address_of(array: Any) -> Optional[int]:
         # Quicker than NumPy's own way.
         return _addressof(_from_buffer(array))
     except (TypeError, ValueError):
-        if array.size and array.flags.writeable:
+        if not array.size:
+            return None
+        if array.flags.writeable:
             raise
     return cast(Optional[int], array.ctypes.data)
 
@@ -294,28 +310,32 @@ def _parts_of(wanted: set[str]) -> int:
 # ---- Points and results in host memory
 
 
-def _arrays_of(owner: Handle, mesh: Any, parts: int) -> dict[str, Any]:
-    """What was computed, by its name; None if an array was not asked for."""
-    triangles, sets = mesh.triangle_count, mesh.set_count
-    counts = {
-        "triangle": triangles,
-        "halfedge": 3 * triangles,
-        "hull_vertex": mesh.hull_count,
-        "point": mesh.point_count,
-    }
-    result: dict[str, Any] = {}
-    # Written out, since for small sets every call counts.
-    for (name, dtype, row, columns, bit), address in zip(_PARTS, _ADDRESSES(mesh)):
-        if bit & ~parts:
-            result[name] = None
-        elif columns == 1:
-            result[name] = _view(owner, address, (counts[row],), dtype)
-        else:
-            result[name] = _view(owner, address, (counts[row], columns), dtype)
-    result["triangle_offsets"] = _view(owner, mesh.triangle_offsets, (sets + 1,), _INT64)
-    result["hull_offsets"] = _view(owner, mesh.hull_offsets, (sets + 1,), _INT64)
-    result["statistics"] = _statistics_of(mesh.statistics[0])
-    return result
+class Made(dict[str, Any]):
+    """What the library has made, by its names. None: it was not asked for.
+
+    Each is read when it is first asked for: to read all takes longer than to triangulate a small set.
+    """
+
+    def __init__(self, owner: Any, wanted: set[str], mesh: Any, arrays: Any = None) -> None:
+        super().__init__()
+        self._owner, self._mesh, self._arrays = owner, mesh[0], arrays and arrays[0]
+        self._wanted = {"always", *wanted}
+
+    def __missing__(self, name: str) -> Any:
+        # Another thread may have asked, too.
+        return self.setdefault(name, self._read(name))
+
+    def _read(self, name: str) -> Any:
+        if name == "statistics":
+            return _statistics_of(self._mesh.statistics[0])
+        if name == "refinement":
+            return self._owner.report() if name in self._wanted else None
+        dtype, row, columns, asked = _MADE[name]
+        if asked not in self._wanted:
+            return None
+        shape = _shape(_ROWS[row](self._mesh, self._arrays), columns)
+        address = getattr(self._arrays if name in _CONSTRAINED else self._mesh, name)
+        return _view(self._owner, address, shape, dtype)
 
 
 class _Triangulation(Handle):
@@ -387,7 +407,11 @@ class _Aside:
 class _Refinement:
     """A refinement for one call. given: members of flaunay_refinement; there may be none."""
 
+    pointer, _function = None, None
+
     def __init__(self, given: dict[str, Any]) -> None:
+        if not given:
+            return
         self._given = given  # the arrays, which the struct refers to
         self._function = given.get("areas_at")
         members = self._members(given)
@@ -399,7 +423,7 @@ class _Refinement:
             self._aside = _Aside()
             members["areas_at"] = _declarations.RefinementAreasAt(self._ask_for_areas)
         self._struct = _declarations.Refinement(**members)
-        self.pointer = ctypes.pointer(self._struct) if given else None
+        self.pointer = ctypes.pointer(self._struct)
 
     @staticmethod
     def _members(given: dict[str, Any]) -> dict[str, Any]:
@@ -445,36 +469,20 @@ class _Refinement:
 class _Constrained(Handle):
     _destroy = library.constrained_destroy
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> RefinementReport:
         """How refinement went."""
         given = library.constrained_refinement(self.pointer)[0]
         shape = (given.bad_count,)
-        return {
+        return RefinementReport.of(
+            bad_triangles=_view(self, given.bad_triangles, shape, _INT32),
+            excuses=_view(self, given.excuses, shape, _UINT8),
             **_REFINEMENT(given),
-            "bad_triangles": _view(self, given.bad_triangles, shape, _INT32),
-            "excuses": _view(self, given.excuses, shape, _UINT8),
-        }
+        )
 
-    def arrays(self, parts: int, asked_by: set[str]) -> dict[str, Any]:
-        """What was computed, by its name; None if an array was not asked for. asked_by: what asks for arrays."""
-        result = _arrays_of(self, library.constrained_mesh(self.pointer)[0], parts)
-        given = library.constrained_get_arrays(self.pointer)[0]
-        counts = {
-            "point": len(result["representatives"]),
-            "added_point": given.added_count,
-            "set_offset": len(result["triangle_offsets"]),
-            "constraint": given.constraint_count,
-            "segment_offset": given.segment_count + 1,
-            "piece": given.piece_count,
-            "triangle": len(result["triangles"]),
-        }
-        there = {
-            name: row
-            for name, row in _CONSTRAINED.items()
-            if row[3] == "always" or row[3] in asked_by
-        }
-        views = _views(self, there, counts, lambda name: getattr(given, name))
-        return {**result, **dict.fromkeys(_CONSTRAINED), **views}
+    def made(self, wanted: set[str]) -> Made:
+        """wanted: the optional arrays, and what asks for some."""
+        arrays = library.constrained_get_arrays(self.pointer)
+        return Made(self, wanted, library.constrained_mesh(self.pointer), arrays)
 
 
 class Triangulator(DeviceHandle):
@@ -533,7 +541,7 @@ def triangulate(
     given_offsets: Optional[_Offsets],
     mode: str,
     wanted: set[str],
-) -> dict[str, Any]:
+) -> Made:
     """Triangulates points in host memory. wanted: names of the optional arrays.
 
     triangulator: None in modes that run on the host, for points that are float64.
@@ -558,7 +566,7 @@ def triangulate(
     else:
         with triangulator.turn:
             check(function(triangulator.pointer, first, n, sizes, sets, options, result.place))
-    return _arrays_of(result, library.triangulation_mesh(result.pointer)[0], parts)
+    return Made(result, wanted, library.triangulation_mesh(result.pointer))
 
 
 def triangulate_constrained(
@@ -567,11 +575,11 @@ def triangulate_constrained(
     given_offsets: Optional[_Offsets],
     segments: _Indices,
     places: dict[str, tuple[_Doubles, Optional[_Offsets]]],
-    carried: dict[str, Optional[npt.NDArray[Any]]],
+    carried: dict[str, npt.NDArray[Any]],
     rules: dict[str, int],
     refinement: dict[str, Any],
     wanted: set[str],
-) -> dict[str, Any]:
+) -> Made:
     """Triangulates points with segments.
 
     places: the holes and the seeds, with their offsets. carried, rules: other members of flaunay_constraints, which
@@ -590,10 +598,7 @@ def triangulate_constrained(
         arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
         counts[f"{name}_count"] = len(rows)
     # Finding those of empty arrays takes ten times as long, and nobody reads them.
-    addresses = {
-        name: None if array is None or array.size == 0 else _address_of(array)
-        for name, array in arrays.items()
-    }
+    addresses = {name: _address_of(array) for name, array in arrays.items() if array is not None and array.size > 0}
     result, options = _Constrained(), _options_for("blocks", parts)
     refining = _Refinement(refinement)
     constraints = _declarations.Constraints(
@@ -603,12 +608,11 @@ def triangulate_constrained(
         *(triangulator, library.triangulate_constrained),
         *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
     )
-    has_attributes = counts["seed_count"] > 0 or "attributes" in refinement.get("mesh", {})
-    asked_by = names_of(labels=bool(rules["labels"]), seeds=has_attributes)
-    arrays = result.arrays(
-        parts, asked_by | {name for name in carried if carried[name] is not None}
+    has_attributes = "seed_attributes" in carried or "attributes" in refinement.get("mesh", {})
+    asked_by = names_of(
+        labels=bool(rules["labels"]), seeds=has_attributes, refinement=bool(refinement)
     )
-    return {**arrays, "refinement": result.report() if refinement else None}
+    return result.made({*wanted, *asked_by, *carried})
 
 
 def triangulate_polygons(
@@ -620,7 +624,7 @@ def triangulate_polygons(
     rules: dict[str, int],
     refinement: dict[str, Any],
     wanted: set[str],
-) -> dict[str, Any]:
+) -> Made:
     """Triangulates polygons. rules: members of flaunay_polygons that are no arrays.
 
     refinement: as of `triangulate_constrained`.
@@ -649,8 +653,10 @@ def triangulate_polygons(
         *(triangulator, library.triangulate_polygons),
         *(triangulator.pointer, polygons, options, result.place),
     )
-    arrays = result.arrays(parts, names_of(labels=bool(rules["labels"]), map=bool(rules["map"])))
-    return {**arrays, "refinement": result.report() if refinement else None}
+    asked_by = names_of(
+        labels=bool(rules["labels"]), map=bool(rules["map"]), refinement=bool(refinement)
+    )
+    return result.made(wanted | asked_by)
 
 
 class Dynamic(_InTurns):
@@ -745,11 +751,11 @@ class Dynamic(_InTurns):
     def write_rows(self, place: DeviceRows, enqueue: Enqueue) -> None:
         self._call(library.dynamic_rows_device, enqueue.struct, place.pointer)
 
-    def arrays(self) -> dict[str, Any]:
+    def arrays(self) -> Made:
         """The result of a call on all points."""
         result = _Triangulation()
         self._call(library.dynamic_triangulation, result.place)
-        return _arrays_of(result, library.triangulation_mesh(result.pointer)[0], self._PARTS)
+        return Made(result, {"neighbors"}, library.triangulation_mesh(result.pointer))
 
     def constraints(self) -> tuple[_Indices, _Indices]:
         """The edges that segments are made of, and a segment of each."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Optional, TypeVar
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -381,9 +381,6 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
         raise UsageError("with constraints, find_simplex is exact: it takes no tol")
 
 
-_Mesh = TypeVar("_Mesh", bound=ConstrainedTriangulation)
-
-
 @dataclass(frozen=True)
 class _Searched:
     """What a locator is made from."""
@@ -482,46 +479,40 @@ def as_segments(given: npt.ArrayLike, n: int) -> Indices:
     if segments.ndim != 2 or segments.shape[1] != 2:
         hint = "; offsets of sets are given as offsets" if segments.ndim == 1 else ""
         raise UsageError(f"segments must have the shape (k, 2), not {segments.shape}{hint}")
-    if segments.min() < 0 or segments.max() >= n:
+    # Of negative ones, the largest.
+    if int(segments.astype(np.uint64).max()) >= n:
         row, column = np.argwhere((segments < 0) | (segments >= n))[0].tolist()
         index = segments[row, column]
         raise UsageError(f"segments[{row}, {column}] = {index} is none of the {n} points")
     return np.ascontiguousarray(segments, np.int32)
 
 
+_NOWHERE = np.empty((0, 3))
+
+
 def _as_places(given: Optional[npt.ArrayLike], name: str, columns: int) -> Doubles:
     """Rows of x, y and perhaps more."""
-    places = np.empty((0, columns)) if given is None else np.asarray(as_floats(given, name), float)
+    places = _NOWHERE if given is None else np.asarray(as_floats(given, name), float)
     if places.size == 0:
-        return np.empty((0, columns))
+        return _NOWHERE[:, :columns]
     if places.ndim != 2 or places.shape[1] != columns:
         raise UsageError(f"{name} must have the shape ({name[0]}, {columns}), not {places.shape}")
     return places
 
 
-def _as_markers(given: Optional[npt.ArrayLike], name: str, count: int) -> Optional[Indices]:
+def _as_markers(given: npt.ArrayLike, name: str, count: int) -> Indices:
     """One int32 each of so many things."""
-    if given is None:
-        return None
     markers = as_integers(given, name)
     if markers.shape != (count,):
         raise UsageError(f"{name} must have the shape ({count},), not {markers.shape}")
     return as_int32(markers, name)
 
 
-def with_device(mesh: _Mesh, device: Optional[str]) -> _Mesh:
-    """The mesh, whose queries use a device."""
-    mesh.__dict__["_device"] = device
-    return mesh
-
-
-def with_points(result: dict[str, Any], given: Doubles) -> dict[str, Any]:
-    """What the library computed, with all points in place of those that it added."""
-    added = result.pop("added_points")
-    result["points"] = np.concatenate([given, added])
-    report = result["refinement"]
-    result["refinement"] = None if report is None else RefinementReport.of(report)
-    return result
+def with_points(made: _calls.Made, given: Doubles) -> _calls.Made:
+    """What the library has made, with all points: a copy, which does not change with those that were given."""
+    added = made["added_points"]
+    made["points"] = np.concatenate([given, added]) if len(added) else given.copy()
+    return made
 
 
 def arrays_of_constrained(
@@ -533,7 +524,7 @@ def arrays_of_constrained(
     refining: Refining,
     wanted: set[str],
     device: Optional[str],
-) -> dict[str, Any]:
+) -> _calls.Made:
     """What a `ConstrainedTriangulation` consists of, by its names.
 
     given: the arguments of `triangulate` that are holes, markers and seeds. wanted: the optional arrays to compute.
@@ -542,28 +533,25 @@ def arrays_of_constrained(
     coordinates = np.asarray(as_points(points), np.float64)
     pairs = as_segments(segments, len(coordinates))
     seeds = _as_places(given.get("seeds"), "seeds", 3)
-    rows = {"hole": _as_places(given.get("holes"), "holes", 2), "seed": seeds[:, :2]}
-    places = {}
-    for name, members in rows.items():
+    places: dict[str, tuple[Doubles, Optional[npt.NDArray[np.int64]]]] = {}
+    for name, rows in ("hole", _as_places(given.get("holes"), "holes", 2)), ("seed", seeds[:, :2]):
         of_sets = given.get(f"{name}_offsets")
         if of_sets is not None:
-            of_sets = as_offsets(of_sets, f"{name}_offsets")
-        elif offsets is not None and len(offsets) != 2 and len(members):
-            raise UsageError(f"{name}s of several sets need {name}_offsets")
-        places[name] = members, of_sets
-    carried = {
-        name: _as_markers(given.get(name), name, count)
-        for name, count in {
-            "segment_markers": len(pairs),
-            "point_markers": len(coordinates),
-        }.items()
-    }
-    carried["seed_attributes"] = np.ascontiguousarray(seeds[:, 2])
+            places[name] = rows, as_offsets(of_sets, f"{name}_offsets")
+        elif len(rows):
+            if offsets is not None and len(offsets) != 2:
+                raise UsageError(f"{name}s of several sets need {name}_offsets")
+            places[name] = rows, None
+    carried: dict[str, npt.NDArray[Any]] = {}
+    for name, count in ("segment_markers", len(pairs)), ("point_markers", len(coordinates)):
+        if given.get(name) is not None:
+            carried[name] = _as_markers(given[name], name, count)
+    if len(seeds):
+        carried["seed_attributes"] = np.ascontiguousarray(seeds[:, 2])
     refinement = as_refinement(refining, len(pairs), len(seeds))
     triangulator = _triangulators.of_device(device, "areas_at" in refinement)
-    result = _calls.triangulate_constrained(
+    made = _calls.triangulate_constrained(
         *(triangulator, coordinates, offsets, pairs, places, carried),
         *(rules, refinement, wanted),
     )
-    del result["polygons"]
-    return with_points(result, coordinates)
+    return with_points(made, coordinates)

@@ -161,8 +161,9 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
                 raise UsageError(f"mode {mode!r} cannot be incremental; mode 'blocks' can")
             self._living = DynamicTriangulation(as_points(points), device=device)
         else:
-            self.points = frozen(as_points(points).copy())
-            mesh = arrays_of_mesh(self.points, None, {"neighbors"}, device, mode)
+            copy = as_points(points).copy()
+            mesh = arrays_of_mesh(copy, None, {"neighbors"}, device, mode)
+            self.points = frozen(copy)  # which would take longer to hand over
             self.simplices = frozen(mesh["triangles"])
             self.neighbors = frozen(mesh["neighbors"])
             self.hull = frozen(mesh["hull"])

@@ -23,7 +23,7 @@ from flaunay._constrained import as_segments
 from flaunay._declarations import CROSSINGS
 from flaunay._device_arrays import DeviceCall, queue_for, view
 from flaunay._errors import InputError, UsageError
-from flaunay._triangulation import Triangulation
+from flaunay._triangulation import Triangulation, with_arrays
 
 if TYPE_CHECKING:
     import pyopencl
@@ -392,7 +392,7 @@ class DynamicTriangulation:
 
         Triangles are in the order of their rows. Representatives of points that were removed are -1.
         """
-        return Triangulation(**self._handle.arrays())
+        return with_arrays(Triangulation, self._handle.arrays())
 
     def constraints(self) -> LivingConstraints:
         """The edges that segments are made of now.

@@ -26,13 +26,13 @@ from flaunay._arrays import (
 from flaunay._constrained import (
     ConstrainedTriangulation,
     rules_of,
-    with_device,
     with_points,
 )
 from flaunay._declarations import OVERLAPS
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 from flaunay._refinement import Refining, as_refinement
+from flaunay._triangulation import with_arrays
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -426,10 +426,8 @@ def polygons(
     wanted = names_of(neighbors=neighbors, halfedges=halfedges)
     refinement = as_refinement(refining, len(points), 0)
     triangulator = _triangulators.of_device(device, "areas_at" in refinement)
-    result = _calls.triangulate_polygons(
+    made = _calls.triangulate_polygons(
         *(triangulator, points, rings, outer, parts, rules, refinement, wanted | {"areas"})
     )
-    mesh = PolygonTriangulation(
-        **with_points(result, points), ring_offsets=frozen(rings), polygon_offsets=frozen(outer)
-    )
-    return with_device(mesh, device)
+    offsets = {"ring_offsets": frozen(rings), "polygon_offsets": frozen(outer)}
+    return with_arrays(PolygonTriangulation, with_points(made, points), **offsets, _device=device)

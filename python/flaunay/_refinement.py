@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Optional, TypedDict
 
@@ -75,10 +75,9 @@ class RefinementReport:
     excuses: npt.NDArray[np.str_]
 
     @staticmethod
-    def of(report: Mapping[str, Any]) -> RefinementReport:
+    def of(excuses: npt.NDArray[np.uint8], **others: Any) -> RefinementReport:
         """Of what the library says, in which excuses are numbers."""
-        excuses = frozen(_EXCUSES[report["excuses"]])
-        return RefinementReport(**{**report, "excuses": excuses})
+        return RefinementReport(excuses=frozen(_EXCUSES[excuses]), **others)
 
 
 def _number(given: Any, name: str) -> float:

@@ -14,12 +14,11 @@ from flaunay._constrained import (
     ConstrainedTriangulation,
     arrays_of_constrained,
     rules_of,
-    with_device,
 )
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._refinement import Doubles, Refining
-from flaunay._triangulation import Triangulation, arrays_of_mesh
+from flaunay._triangulation import Triangulation, arrays_of_mesh, with_arrays
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -281,15 +280,11 @@ def triangulate(
     if segments is None and refining:
         segments = np.empty((0, 2), np.int32)
     if segments is None:
-        for name, is_given in {
-            **{name: value is not None for name, value in given.items()},
-            "outside": outside != "keep",
-            "crossings": crossings != "error",
-            "fill_rule": fill_rule != "nesting",
-            "labels": labels,
-        }.items():
-            if is_given:
-                raise UsageError(f"{name} is for segments, of which there are none")
+        # The rules of the defaults are 0.
+        unused = [name for name in given if given[name] is not None]
+        unused += [name for name in rules if rules[name]]
+        if unused:
+            raise UsageError(f"{unused[0]} is for segments, of which there are none")
         result = arrays_of_mesh(as_points(points), sets, wanted, device, mode)
     else:
         if mode != "blocks":
@@ -300,8 +295,8 @@ def triangulate(
     if places:
         _write(result, places)
     if segments is None:
-        return Triangulation(**result)
-    return with_device(ConstrainedTriangulation(**result), device)
+        return with_arrays(Triangulation, result)
+    return with_arrays(ConstrainedTriangulation, result, _device=device)
 
 
 def _given_mesh(mesh: Union[ConstrainedTriangulation, Delaunay]) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,8 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import FloatArray, summary
 from flaunay._errors import UsageError
+
+_Kind = TypeVar("_Kind", bound="Triangulation")
 
 _MODES_ON_HOST = {mode["name"] for mode in _calls.modes() if mode["on_host"]}
 
@@ -58,6 +60,22 @@ class Triangulation:
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name):
+            """What the library has made, and nobody has asked for before."""
+            made = self.__dict__.get("_made")
+            if made is None or name not in self.__dataclass_fields__:
+                return object.__getattribute__(self, name)  # its error
+            return self.__dict__.setdefault(name, made[name])
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.__dataclass_fields__]
+
+    def __getstate__(self) -> dict[str, Any]:
+        own = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        return {**self.__dict__, **own, "_made": None}
+
     def __repr__(self) -> str:
         return summary(
             self,
@@ -68,13 +86,20 @@ class Triangulation:
         )
 
 
+def with_arrays(kind: type[_Kind], made: _calls.Made, **others: Any) -> _Kind:
+    """A triangulation that has what the library has made, and other attributes."""
+    mesh = object.__new__(kind)
+    mesh.__dict__.update(others, _made=made)
+    return mesh
+
+
 def arrays_of_mesh(
     coordinates: FloatArray,
     offsets: Optional[npt.NDArray[np.int64]],
     wanted: set[str],
     device: Optional[str],
     mode: str,
-) -> dict[str, Any]:
+) -> _calls.Made:
     """What a `Triangulation` consists of, by its names. wanted: the optional arrays to compute."""
     if not isinstance(mode, str):
         names = ", ".join(row["name"] for row in _calls.modes())

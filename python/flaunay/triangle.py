@@ -134,8 +134,11 @@ def _triangulated(given: Members, letters: Counter[str], options: Options) -> Me
     points = given["vertices"]
     if options == {"outside": "keep"}:
         triangulator = _triangulators.of_device(None)
-        mesh = _calls.triangulate(triangulator, points, None, "blocks", {"neighbors"})
-        return {**mesh, "points": points}
+        made = _calls.triangulate(triangulator, points, None, "blocks", {"neighbors"})
+        pairs = np.empty((0, 2), np.intc)
+        made.update(constraint_edges=pairs, edge_markers=pairs[:, 0], triangle_attributes=None)
+        made["points"] = points
+        return made
     read = given if letters["p"] else {}
     segments = read.get("segments", np.empty((0, 2), np.intc))
     markers = read.get("segment_markers", np.zeros(len(segments), np.intc)).ravel()
@@ -167,7 +170,8 @@ def _triangulated(given: Members, letters: Counter[str], options: Options) -> Me
         mesh = arrays()
         if not is_inside.any():
             mesh["triangle_attributes"] = np.zeros(len(mesh["triangles"]))
-    return {**mesh, "segments": segments}
+    mesh["segments"] = segments
+    return mesh
 
 
 def _ends(mesh: Members, count: int) -> tuple[Array, Array, Array]:
@@ -209,7 +213,7 @@ def _attributes(mesh: Members, values: Array) -> Array:
 def _border(mesh: Members) -> tuple[Array, Array]:
     """The ends of the edges that one triangle has. Without segments, the hull is the border."""
     triangles, hull = mesh["triangles"], mesh["hull"]
-    if len(mesh.get("constraint_edges", ())):
+    if len(mesh["constraint_edges"]):
         border = Border(mesh["points"], triangles, mesh["neighbors"])
         return border.firsts, border.seconds
     hull = hull if len(triangles) else hull[:0]
@@ -238,8 +242,7 @@ def _result(mesh: Members, given: Members, letters: Counter[str]) -> Members:
     """The members for the arrays of a triangulation."""
     points, triangles, neighbors = mesh["points"], mesh["triangles"], mesh["neighbors"]
     border = _border(mesh)
-    pairs = mesh.get("constraint_edges", np.empty((0, 2), np.intc))
-    markers = mesh.get("edge_markers", pairs[:, 0])
+    pairs, markers = mesh["constraint_edges"], mesh["edge_markers"]
     # As in Triangle, the border and its vertices have the marker 1 unless they are given others.
     vertex_markers = np.zeros(len(points), np.intc)
     vertex_markers[border[0]] = 1
@@ -380,7 +383,7 @@ def triangulate(
         options["most_points"] = int(numbers.get("S", 0))
     mesh = _triangulated(given, letters, options)
     result = _result(mesh, given, letters)
-    attributes = mesh.get("triangle_attributes")
+    attributes = mesh["triangle_attributes"]
     if attributes is not None and kinds is not None:
         result["triangle_attributes"] = kinds[attributes.astype(np.intp)]
     elif attributes is not None and letters["A"]:

@@ -1,5 +1,7 @@
 """Triangulations with segments as edges."""
 
+import copy
+import dataclasses
 import pickle
 
 import numpy as np
@@ -127,13 +129,22 @@ def test_optional_arrays(random):
     assert np.array_equal(written.triangles, mesh.triangles)
 
 
-def test_pickling_keeps_everything(random):
+@pytest.mark.parametrize("call", [flaunay.triangulate, flaunay.refine])
+def test_copies_keep_everything_also_what_was_not_read_before(random, call):
     points = random.random((30, 2))
-    mesh = flaunay.triangulate(points, uncrossed(random, points, 5))
-    copy = pickle.loads(pickle.dumps(mesh))
-    assert np.array_equal(copy.triangles, mesh.triangles)
-    assert np.array_equal(copy.constraint_edges, mesh.constraint_edges)
-    assert np.array_equal(copy.edges_of(3), mesh.edges_of(3))
+    mesh = call(points, uncrossed(random, points, 5), device="host")
+    copies = pickle.loads(pickle.dumps(mesh)), copy.copy(mesh), dataclasses.replace(mesh)
+    own = points.copy()
+    points[:] = 0
+    assert np.array_equal(mesh.points[:30], own)
+    for field in dataclasses.fields(mesh):
+        value = getattr(mesh, field.name)
+        assert value is getattr(mesh, field.name) and field.name in dir(copies[0])
+        assert [repr(getattr(one, field.name)) for one in copies] == 3 * [repr(value)]
+    assert np.array_equal(copies[0].edges_of(3), mesh.edges_of(3))
+    for one in (mesh, *copies):
+        with pytest.raises(AttributeError, match="no attribute 'polygons'"):
+            one.polygons
 
 
 # ---- Crossings that are split
@@ -284,6 +295,7 @@ def test_crossing_segments_are_named():
         ([["0", "1"]], "segments must be integers"),
         ([[0, 1], [2, 4]], r"segments\[1, 1\] = 4 is none of the 4 points"),
         ([[-1, 1]], r"segments\[0, 0\] = -1 is none"),
+        (np.array([[0, -1]], ">i2"), r"segments\[0, 1\] = -1 is none"),
         ([[0, 2**40]], rf"segments\[0, 1\] = {2**40} is none"),
         ([[0], [1, 2]], "segments (are no array|must be integers)"),
         (np.ma.masked_equal([[0, 1]], 1), r"segments\[0, 1\] is masked"),

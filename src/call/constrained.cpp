@@ -130,9 +130,12 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
                                          const Constraints& constraints, const ConstrainedOptions& options) {
   // What splitting and triangulating take for each piece; there are two for a segment and a place on it.
   constexpr std::size_t kBytesPerPiece = 320;
+  // To ask how much memory there is takes longer than a small call, for which there is always enough.
+  constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
   const double begin = host::now();
   constrained::SplitLimits limits;
-  limits.pieces = std::min(limits.pieces, host::memory_left().bytes / kBytesPerPiece);
+  limits.more = [most = limits.pieces] { return std::min(most, host::memory_left().bytes / kBytesPerPiece); };
+  limits.pieces = kNeverLacking / kBytesPerPiece;
   constrained::Split split = constrained::split(
       coordinates, offsets, {constraints.segments, constraints.segments + 2 * constraints.segment_count},
       limits);

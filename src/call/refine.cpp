@@ -260,8 +260,8 @@ void permute(const Ids& numbers, std::size_t columns, std::vector<T>& rows) {
   rows = std::move(permuted);
 }
 
-// Numbers the points that were added, of which there are n others. A set's points keep their order, so triangles begin
-// with the same corners.
+// Numbers the points that were added, of which there are n others. A set's points keep their order, so
+// triangles begin with the same corners.
 void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation& result) {
   const auto first = static_cast<std::int32_t>(n);
   for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {

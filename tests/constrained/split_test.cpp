@@ -748,6 +748,14 @@ TEST(SmallSplit, Errors) {
   EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {8}),
             "splitting segments makes more than 8 pieces, for which memory or 32-bit indices do not suffice");
   EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {9}), "no error");
+  // How many more there may be is asked once, and only if it matters.
+  int asked = 0;
+  const auto up_to = [&asked](std::size_t most) { return [&asked, most] { return ++asked, most; }; };
+  EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {9, up_to(0)}), "no error");
+  EXPECT_EQ(asked, 0);
+  EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {2, up_to(9)}), "no error");
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(message({2, 3, 0, 1, 4, 5}, {2, up_to(8)}), message({2, 3, 0, 1, 4, 5}, {8}));
 }
 
 // What must not take a square number of steps: one segment across many, a grid of lines, parallel lines, a

@@ -208,7 +208,7 @@ void CrossingPlaces::merge() {
     }
     ++places_;
   }
-  if (merged.size() > most_) throw_too_many_pieces(most_);
+  check_pieces(merged.size(), limits_);
   all_.swap(merged);
   merge_at_ = std::max(kFirstMerge, 2 * all_.size());
 }

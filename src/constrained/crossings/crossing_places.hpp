@@ -47,8 +47,8 @@ class CrossingPlaces {
  public:
   /// patience: hubs may have so many times as many pairs.
   CrossingPlaces(const Vertices& vertices, const geometry::Predicates& predicates,
-                 const std::vector<Piece>& edges, std::size_t most, std::size_t patience)
-      : vertices_(vertices), predicates_(predicates), edges_(edges), most_(most), patience_(patience) {}
+                 const std::vector<Piece>& edges, SplitLimits& limits, std::size_t patience)
+      : vertices_(vertices), predicates_(predicates), edges_(edges), limits_(limits), patience_(patience) {}
 
   /// Adds two edges that cross. Returns whether to go on: not if many pairs cross at places that are hubs.
   bool add(std::int32_t e, std::int32_t f);
@@ -95,7 +95,8 @@ class CrossingPlaces {
   const Vertices& vertices_;
   const geometry::Predicates& predicates_;
   const std::vector<Piece>& edges_;
-  std::size_t most_, patience_;
+  SplitLimits& limits_;
+  std::size_t patience_;
   std::vector<Crossing> all_;
   std::size_t merge_at_ = kFirstMerge;
   std::size_t places_ = 0;  // as of the last merge

@@ -65,7 +65,7 @@ class Snapping {
            double unit)
       : predicates_(predicates), points_(points), edges_(edges), unit_(unit) {}
 
-  Chains run(std::size_t most_vertices) {
+  Chains run(SplitLimits& limits) {
     double largest = 0;
     for (const Point p : points_) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
     // Nothing is rounded by more than this, in each coordinate.
@@ -84,7 +84,7 @@ class Snapping {
       });
       add_chain(edge, chains.vertices);
       chains.offsets.push_back(chains.vertices.size());
-      if (chains.vertices.size() > most_vertices) throw_too_many_pieces(most_vertices);
+      check_pieces(chains.vertices.size(), limits);
     }
     return chains;
   }
@@ -194,16 +194,18 @@ class Snapping {
 }  // namespace
 
 Chains snap(const Predicates& predicates, const std::vector<Point>& points, const std::vector<Piece>& edges,
-            double unit, std::size_t most) {
-  return Snapping(predicates, points, edges, unit).run(most);
+            double unit, SplitLimits& limits) {
+  return Snapping(predicates, points, edges, unit).run(limits);
 }
 
-void throw_too_many_pieces(std::size_t most) {
+void check_pieces(std::size_t pieces, SplitLimits& limits) {
+  if (pieces > limits.pieces && limits.more) limits.pieces = std::exchange(limits.more, nullptr)();
+  if (pieces <= limits.pieces) return;
   throw Error(
       ErrorKind::input,
       fmt::format("splitting segments makes more than {} pieces, for which memory or 32-bit indices do "
                   "not suffice",
-                  most));
+                  limits.pieces));
 }
 
 }  // namespace flaunay::constrained

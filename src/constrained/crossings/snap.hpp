@@ -2,12 +2,24 @@
 // the result, and proves that no two chains cross.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "constrained/crossings/pairs.hpp"
 
 namespace flaunay::constrained {
+
+/// What splitting may take.
+struct SplitLimits {
+  std::size_t pieces = 1'000'000'000;  ///< of all segments; at most 2^30 - 1
+  /// Called once there are more pieces, for how many there may be; null: no more.
+  std::function<std::size_t()> more = nullptr;
+};
+
+/// Throws Error(input) for more pieces than there may be.
+void check_pieces(std::size_t pieces, SplitLimits& limits);
 
 /// The vertices between the ends of edges, along each.
 struct Chains {
@@ -21,14 +33,11 @@ struct Chains {
 /// points: all are vertices, and multiples of the unit, as for round_crossing. edges: the lexicographically
 /// smaller end first; all places where they cross, rounded, must be vertices.
 ///
-/// Throws Error(input) if chains have more than `most` vertices. Let m be the number of pairs of an edge and
-/// a vertex within a unit in the last place of it. O(v log v + m log v) for v vertices, if few boxes of
-/// vertices are met beside those, and O(e v) otherwise; a chain that turns around k vertices takes O(k) times
-/// as long at worst.
+/// Throws Error(input) if chains have more vertices than there may be pieces. Let m be the number of pairs of
+/// an edge and a vertex within a unit in the last place of it. O(v log v + m log v) for v vertices, if few
+/// boxes of vertices are met beside those, and O(e v) otherwise; a chain that turns around k vertices takes
+/// O(k) times as long at worst.
 Chains snap(const geometry::Predicates& predicates, const std::vector<geometry::Point>& points,
-            const std::vector<Piece>& edges, double unit, std::size_t most);
-
-/// Throws the error about more pieces than there may be.
-[[noreturn]] void throw_too_many_pieces(std::size_t most);
+            const std::vector<Piece>& edges, double unit, SplitLimits& limits);
 
 }  // namespace flaunay::constrained

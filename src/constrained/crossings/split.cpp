@@ -45,10 +45,10 @@ class SetSplitter {
     piece_of_ = remove_equal(pieces_);
   }
 
-  void run(const SplitLimits& limits) {
+  void run(SplitLimits& limits) {
     for (std::size_t patience = 1;; patience *= 2) {
       cut();
-      CrossingPlaces crossings(vertices_, predicates_, edges_.edges, limits.pieces, patience);
+      CrossingPlaces crossings(vertices_, predicates_, edges_.edges, limits, patience);
       bool is_complete = true;
       find_crossings_by_place(predicates_, points(), edges_.edges, [&](std::int32_t e, std::int32_t f) {
         return is_complete = crossings.add(e, f);
@@ -181,14 +181,14 @@ class SetSplitter {
 
   // Leads edges through the places of their crossings; and if parts of them cross then, through all vertices
   // whose cells they meet.
-  void lead_through(CrossingPlaces& crossings, const SplitLimits& limits) {
+  void lead_through(CrossingPlaces& crossings, SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
     // Both look at what rounding moves by kHalfSpacing at most. Subnormal numbers are farther apart.
     const bool is_moved_little = vertices_.unit <= 2 * kHalfSpacing;
     if ((is_moved_little && are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;
-    chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit, limits.pieces);
+    chains_ = snap(predicates_, vertices_.points, edges_.edges, vertices_.unit, limits);
   }
 
   // Whether no point is so near to an edge, one of them having moved, that it may be on its other side now.
@@ -270,7 +270,7 @@ bool may_cross(const double* coordinates, const Ids& segments, const Ids& of_set
 }  // namespace
 
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets, const Ids& segments,
-            const SplitLimits& limits) {
+            SplitLimits limits) {
   check_offsets(offsets);
   check_points(coordinates, offsets.back());
   const SetScalings scalings = set_scalings(
@@ -308,7 +308,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
         const auto s = static_cast<std::size_t>(by_set[set][k]);
         place[s] = ends.size();
         splitter.list_pieces(k, ends);
-        if (ends.size() / 2 > limits.pieces) throw_too_many_pieces(limits.pieces);
+        check_pieces(ends.size() / 2, limits);
         counts[s] = (ends.size() - place[s]) / 2;
         for (std::size_t e = place[s]; e < ends.size(); ++e) ends[e] = index[ends[e]];
       }
@@ -354,7 +354,8 @@ std::vector<Point> noded(const std::vector<Point>& path) {
   SegmentSet set(coordinates.data(), offsets, 0, segments, numbers);
   const std::vector<Piece> given = set.pieces;
   SetSplitter splitter(set.vertices, set.pieces);
-  splitter.run({});
+  SplitLimits limits;
+  splitter.run(limits);
   if (splitter.is_as_it_was()) return path;
 
   const Point* const points = set.vertices.points.data();

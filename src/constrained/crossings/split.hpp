@@ -6,14 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "constrained/crossings/snap.hpp"
 #include "geometry/predicates.hpp"
 
 namespace flaunay::constrained {
-
-/// What splitting may take.
-struct SplitLimits {
-  std::size_t pieces = 1'000'000'000;  ///< of all segments; at most 2^30 - 1
-};
 
 struct Split {
   /// As in ConstrainedTriangulation.
@@ -43,7 +39,7 @@ struct Split {
 /// Throws Error(usage) for wrong segments as constrain() does; Error(input) as Triangulator::triangulate does
 /// for points, and if there are more pieces than the limit, or more points than 32-bit indices allow.
 Split split(const double* coordinates, const std::vector<std::size_t>& offsets,
-            const std::vector<std::int32_t>& segments, const SplitLimits& limits = {});
+            const std::vector<std::int32_t>& segments, SplitLimits limits = {});
 
 /// A path whose pieces are split as segments are, and cut at the ends of others on them: so no two pieces
 /// have a place in common that is inside of one of them, unless they are equal. The same path, if that is so
