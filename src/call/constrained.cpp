@@ -22,6 +22,7 @@
 #include "host/clock.hpp"
 #include "host/memory/system_memory.hpp"
 #include "host/opencl/device.hpp"
+#include "points/query_range.hpp"
 
 namespace flaunay {
 namespace {
@@ -76,12 +77,22 @@ bool stays_here(const call::Implementation& self, const std::vector<std::size_t>
          offsets.back() + constraints.segment_count <= tuning.host_points;
 }
 
+// Whether all holes are as near to the points as places may be.
+bool are_holes_near(const double* coordinates, const std::vector<std::size_t>& offsets,
+                    const Constraints& constraints) {
+  const auto both = geometry::joined(geometry::inspect(coordinates, 0, offsets.back()),
+                                     geometry::inspect(constraints.holes, 0, constraints.hole_count));
+  return both.bad == kernel::NO_BAD && geometry::bits_of(both) <= points::kOrientLimits.most_bits();
+}
+
 // Does what the stages do with small sets, on the calling thread. Nothing if it does not pay or errors are to
-// be told.
+// be told. leaves_holes: there is one set, whose holes are left out.
 std::optional<ConstrainedTriangulation> constrain_small(
     const call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-    const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
+    const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request,
+    bool leaves_holes = false) {
   if (self.host_tuning().segment_steps == 0) return {};
+  if (leaves_holes && !are_holes_near(coordinates, offsets, constraints)) return {};
   const statistics::Phases phases(options);
   phases.progress("triangulate", 0);
   double begin = host::now();
@@ -95,6 +106,7 @@ std::optional<ConstrainedTriangulation> constrain_small(
   wanted.neighbors = options.neighbors || options.halfedges;
   wanted.most_steps = self.host_tuning().segment_steps;
   if (wanted.has_depths) wanted.curves = request.curves;
+  if (leaves_holes) wanted.with_holes = coordinates;
   if (!constrained::constrain_small(*rings, offsets, constraints, wanted, *result)) return {};
   result->statistics.device = host::kHostName;
   end_phase("constrain", begin, result->statistics);
@@ -268,10 +280,10 @@ ConstrainedTriangulation constrain_group(call::Implementation& self, const doubl
   return *std::move(small);
 }
 
-// Whether groups of sets need to know of no others.
+// Whether groups of sets need to know of no others, but for holes.
 bool can_be_grouped(const Constraints& constraints, const ConstrainedOptions& options) {
-  return constraints.hole_count == 0 && constraints.seed_count == 0 && options.refinement.mesh.count == 0 &&
-         !options.profile && options.crossings != Crossings::split;
+  return constraints.seed_count == 0 && options.refinement.mesh.count == 0 && !options.profile &&
+         options.crossings != Crossings::split;
 }
 
 // Nothing if there are no groups, or if there is an error.
@@ -307,14 +319,16 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
     first.neighbors = true;
     first.halfedges = first.areas = false;
   }
-  const bool can_be_at_once = can_be_grouped(constraints, first);
+  const bool has_holes = constraints.hole_count > 0;
+  const bool can_be_at_once = can_be_grouped(constraints, first) && (!has_holes || offsets.size() == 2);
   const bool is_small =
       can_be_at_once && !request.polygons && stays_here(self, offsets, constraints, options);
   std::optional<ConstrainedTriangulation> at_once;
+  if (has_holes) constrained::holes_of(constraints, offsets.size() - 1);
   if (is_small) {
-    at_once = constrain_small(self, coordinates, offsets, constraints, first, request);
+    at_once = constrain_small(self, coordinates, offsets, constraints, first, request, has_holes);
     if (at_once) end_small(self, coordinates, constraints, offsets.back(), first, *at_once);
-  } else if (can_be_at_once) {
+  } else if (can_be_at_once && !has_holes) {
     at_once = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
   }
   if (at_once && !is_refined) return *std::move(at_once);

@@ -1,6 +1,7 @@
 #include "constrained/small.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -39,6 +40,8 @@ class Small {
     number_edges();
     visit_all();
     sort_changed();
+    holes_.clear();
+    if (request.with_holes != nullptr && !find_holes()) return false;
     leave();
     write_rows();
     return true;
@@ -454,6 +457,29 @@ class Small {
     return label_regions(into, curves, request_->rules.fill, ignored);
   }
 
+  // The regions of holes. Returns false unless each is in a triangle, farther from the edges than rounding
+  // can tell.
+  bool find_holes() {
+    const auto is_left_of = [&](int e, const double* p) {
+      const double *a = request_->with_holes + 2 * static_cast<std::size_t>(id_at(origin(e))),
+                   *b = request_->with_holes + 2 * static_cast<std::size_t>(id_at(edges_[e].to));
+      const double left = (b[0] - a[0]) * (p[1] - a[1]), right = (b[1] - a[1]) * (p[0] - a[0]);
+      return left - right > 0x1p-50 * (std::fabs(left) + std::fabs(right)) + 0x1p-960;
+    };
+    for (std::size_t h = 0; h < constraints_->hole_count; ++h) {
+      steps_left_ -= static_cast<std::int64_t>(faces_.size());
+      if (steps_left_ < 0) return false;
+      const double* const p = constraints_->holes + 2 * h;
+      const auto found = std::find_if(faces_.begin(), faces_.end(), [&](const Face& face) {
+        const auto [second, third] = after(face.edge);
+        return is_left_of(face.edge, p) && is_left_of(second, p) && is_left_of(third, p);
+      });
+      if (found == faces_.end()) return false;
+      holes_.push_back(found->region);
+    }
+    return true;
+  }
+
   // Numbers the rows that are left, and their regions.
   void leave() {
     const DepthRules& rules = request_->rules;
@@ -471,6 +497,7 @@ class Small {
             kernel::is_left(depths[r], static_cast<int>(rules.fill), static_cast<int>(rules.outside));
       }
     }
+    for (const std::int32_t hole : holes_) is_left[hole] = 0;
     Ids numbers(regions_.size(), kNone);
     std::int32_t count = 0, region_count = 0;
     rows_.resize(faces_.size());
@@ -547,7 +574,7 @@ class Small {
   std::vector<Face> faces_;  // by row
   std::vector<Face> entries_;
   std::vector<Region> regions_;
-  Ids open_, changed_;
+  Ids open_, changed_, holes_;
   std::vector<std::pair<std::pair<std::int32_t, std::int32_t>, Face>> moved_;
   Ids rows_;  // by row its number if it is left
 };

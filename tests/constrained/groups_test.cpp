@@ -237,8 +237,10 @@ struct HereAndTogether {
     if (expected == "no error") expect_same_arrays(call(here), call(together));
     return expected == "no error";
   }
-  bool compare(const SegmentInput& input, const ConstrainedOptions& options) {
+  bool compare(const SegmentInput& input, const ConstrainedOptions& options, const Coordinates& holes = {}) {
     Constraints constraints;
+    constraints.holes = holes.data();
+    constraints.hole_count = holes.size() / 2;
     constraints.segments = input.segments.data();
     constraints.segment_count = input.segments.size() / 2;
     return compare([&](Triangulator& triangulator) {
@@ -331,10 +333,46 @@ TEST(SmallSets, OfPlacesAndMarkers) {
     constraints.seeds = places + 2;
     constraints.seed_attributes = attributes;
     constraints.seed_count = 1 - holes;
-    EXPECT_TRUE(by.compare([&](Triangulator& triangulator) {
+    const auto call = [&](Triangulator& triangulator) {
       return triangulator.constrained(input.points.data(), input.points.size() / 2, constraints);
-    }));
+    };
+    EXPECT_TRUE(by.compare(call));
+    // Holes alone need no passes.
+    EXPECT_EQ(call(by.here).statistics.phases.back().name, holes > 0 ? "constrain" : "domains");
   }
+}
+
+// Inside of triangles and on their edges, at vertices, outside, and where no sign is exact.
+TEST(SmallSets, OfHoles) {
+  HereAndTogether by;
+  int right = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    FixtureRandom random(seed);
+    SegmentInput input;
+    input.points = random_integer_points(40, 9, seed);
+    input.segments =
+        random_curves(delaunay_of(input.points, {0, 40}), random, 1 + static_cast<int>(seed % 4));
+    Coordinates holes;
+    for (int k = 0; k < 4 && k <= static_cast<int>(seed % 5); ++k)
+      holes.push_back((0.5 + random.integer(0, 16)) / (seed % 3 == 0 ? 2 : 1.83));
+    holes.resize(holes.size() / 2 * 2);
+    ConstrainedOptions options;
+    options.labels = seed % 2 == 0;
+    for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
+      options.outside = outside;
+      right += by.compare(input, options, holes) ? 1 : 0;
+    }
+    if (holes.empty()) continue;
+    options.refinement.min_angle = 20;
+    options.refinement.most_points = 100;
+    by.compare(input, options, holes);
+    for (const double x : {1e300, 1e-300, 5e-324, HUGE_VAL}) {
+      holes[0] = x;
+      by.compare(input, options, holes);
+    }
+  }
+  EXPECT_GT(right, 50);
 }
 
 // Rings along the triangles of a grid's triangulation, as borders, holes and parts in any order.
