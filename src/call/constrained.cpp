@@ -280,10 +280,16 @@ ConstrainedTriangulation constrain_group(call::Implementation& self, const doubl
   return *std::move(small);
 }
 
-// Whether groups of sets need to know of no others, but for holes.
+// Whether no segment has several pieces.
+bool are_whole(const Ids& piece_offsets) {
+  return std::adjacent_find(piece_offsets.begin(), piece_offsets.end(),
+                            [](std::int32_t first, std::int32_t next) { return next - first > 1; }) ==
+         piece_offsets.end();
+}
+
+// Whether groups of sets need to know of no others, but for holes and for points that splitting adds.
 bool can_be_grouped(const Constraints& constraints, const ConstrainedOptions& options) {
-  return constraints.seed_count == 0 && options.refinement.mesh.count == 0 && !options.profile &&
-         options.crossings != Crossings::split;
+  return constraints.seed_count == 0 && options.refinement.mesh.count == 0 && !options.profile;
 }
 
 // Nothing if there are no groups, or if there is an error.
@@ -319,7 +325,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
     first.neighbors = true;
     first.halfedges = first.areas = false;
   }
-  const bool has_holes = constraints.hole_count > 0;
+  const bool has_holes = constraints.hole_count > 0, splits = options.crossings == Crossings::split;
   const bool can_be_at_once = can_be_grouped(constraints, first) && (!has_holes || offsets.size() == 2);
   const bool is_small =
       can_be_at_once && !request.polygons && stays_here(self, offsets, constraints, options);
@@ -327,16 +333,17 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
   if (has_holes) constrained::holes_of(constraints, offsets.size() - 1);
   if (is_small) {
     at_once = constrain_small(self, coordinates, offsets, constraints, first, request, has_holes);
+    // Splitting makes segments of pieces, also where these are edges already.
+    if (splits && at_once && !are_whole(at_once->piece_offsets)) at_once.reset();
     if (at_once) end_small(self, coordinates, constraints, offsets.back(), first, *at_once);
-  } else if (can_be_at_once && !has_holes) {
+  } else if (can_be_at_once && !has_holes && !splits) {
     at_once = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
   }
   if (at_once && !is_refined) return *std::move(at_once);
   ConstrainedTriangulation result =
-      at_once ? *std::move(at_once)
-      : options.crossings == Crossings::split
-          ? constrain_split(self, coordinates, offsets, constraints, first)
-          : constrain(self, coordinates, offsets, constraints, first, !is_small);
+      at_once  ? *std::move(at_once)
+      : splits ? constrain_split(self, coordinates, offsets, constraints, first)
+               : constrain(self, coordinates, offsets, constraints, first, !is_small);
   double begin = host::now();
   std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
   const auto points = [&] { return all.empty() ? coordinates : all.data(); };

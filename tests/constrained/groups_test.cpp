@@ -256,6 +256,9 @@ struct HereAndTogether {
           options.outside = outside;
           compare(input, options);
         }
+        options.crossings = Crossings::split;
+        compare(input, options);
+        options.crossings = Crossings::error;
       }
     });
   }
@@ -359,6 +362,7 @@ TEST(SmallSets, OfHoles) {
     holes.resize(holes.size() / 2 * 2);
     ConstrainedOptions options;
     options.labels = seed % 2 == 0;
+    options.crossings = seed % 7 == 0 ? Crossings::split : Crossings::error;
     for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
       options.outside = outside;
       right += by.compare(input, options, holes) ? 1 : 0;
