@@ -173,7 +173,8 @@ def _as_offsets(
 
 
 def _address_or_none(array: Optional[npt.NDArray[Any]]) -> Optional[int]:
-    return None if array is None else _address_of(array)
+    # Finding those of empty arrays takes ten times as long, and nobody reads them.
+    return None if array is None or not array.size else _address_of(array)
 
 
 def _as_arguments(given: tuple[Any, ...]) -> list[Any]:
@@ -597,8 +598,7 @@ def triangulate_constrained(
             raise UsageError(f"{name}_offsets are of {count} sets, but there are {max(sets, 1)}")
         arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
         counts[f"{name}_count"] = len(rows)
-    # Finding those of empty arrays takes ten times as long, and nobody reads them.
-    addresses = {name: _address_of(array) for name, array in arrays.items() if array is not None and array.size > 0}
+    addresses = {name: _address_or_none(array) for name, array in arrays.items()}
     result, options = _Constrained(), _options_for("blocks", parts)
     refining = _Refinement(refinement)
     constraints = _declarations.Constraints(

@@ -163,14 +163,6 @@ class Refining {
   // that were refused for such a constraint again; returns whether there are some.
   bool retry_frozen() {
     Arena::Scope scope(arena_);
-    if (has_few_rows()) {
-      const auto thaw = [](cl_uchar& state) {
-        const bool is_frozen = (state & kernel::ROW_REFUSED) == kernel::EXCUSED_FROZEN;
-        if (is_frozen) state = static_cast<cl_uchar>((state & ~kernel::ROW_REFUSED) | kernel::ROW_BAD);
-        return is_frozen;
-      };
-      return rows_where(thaw).second > 0;
-    }
     const auto is_tried = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::retry_frozen{.states = arrays_.states, .is_tried = is_tried});
     return host::pack_positions(runtime_, is_tried, rows_, 1).second > 0;
@@ -426,23 +418,19 @@ class Refining {
   // Whether loops of this thread take less time than passes of kernels.
   bool has_few_rows() const { return runtime_.is_native() && (rows_ <= kFewRows || runtime_.threads() == 1); }
 
-  // Rows for whose states a function returns true.
-  template <typename Holds>
-  std::pair<Buffer<cl_int>, std::size_t> rows_where(const Holds& holds) {
-    const auto list = arena_.allocate<cl_int>(rows_);
-    cl_uchar* const states = address_in(arrays_.states);
-    cl_int* const rows = address_in(list);
-    std::size_t count = 0;
-    for (std::size_t row = 0; row < rows_; ++row) {
-      rows[count] = static_cast<cl_int>(row);
-      count += holds(states[row]) ? 1 : 0;
-    }
-    return {list, count};
-  }
-
   // Rows whose states have a bit of a mask.
   std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
-    if (has_few_rows()) return rows_where([mask](cl_uchar state) { return (state & mask) != 0; });
+    if (has_few_rows()) {
+      const auto list = arena_.allocate<cl_int>(rows_);
+      const cl_uchar* const states = address_in(arrays_.states);
+      cl_int* const rows = address_in(list);
+      std::size_t count = 0;
+      for (std::size_t row = 0; row < rows_; ++row) {
+        rows[count] = static_cast<cl_int>(row);
+        count += (states[row] & mask) != 0 ? 1 : 0;
+      }
+      return {list, count};
+    }
     const auto flags = arena_.allocate<cl_uchar>(rows_);
     runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
     return host::pack_positions(runtime_, flags, rows_, 1);
