@@ -86,6 +86,7 @@ for attack in "${attacks[@]}"; do
   fi
 done
 export POCL_CACHE_DIR="${POCL_CACHE_DIR-$PWD/build/kernels}" FLAUNAY_CACHE_DIR="${FLAUNAY_CACHE_DIR-}"
+scripts/install-deps.sh --all
 failed=()
 for attack in "${attacks[@]}"; do
   echo "== $attack"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what flaunay needs on Debian 12. Does nothing if everything is installed.
-#   scripts/install-deps.sh              to build, run, test and benchmark
+#   scripts/install-deps.sh              to build, run and test
 #   scripts/install-deps.sh --build      to build and run the library and the command
+#   scripts/install-deps.sh --all        what benchmarks and scripts/attack.sh need, too
 #   scripts/install-deps.sh --packages   all, and what scripts/release.sh and scripts/package-test.sh need
 set -euo pipefail
 
@@ -14,29 +15,29 @@ packages=(
 
 case "${1-}" in
   --build) ;;
-  '' | --packages)
+  '' | --all | --packages)
     packages+=(
       # MPI and GeoTIFF, for what FLAUNAY_MPI and FLAUNAY_GDAL build
       libopenmpi-dev openmpi-bin libgdal-dev
       # a device without double precision, for tests
       mesa-opencl-icd
       # tests
-      libgtest-dev libgmp-dev libcgal-dev oclgrind clang-format-14
-      # libFuzzer, for the readers of files
-      clang-14 libclang-rt-14-dev
-      # benchmarks: other triangulators for comparison, such as CGAL; programs that draw the records
-      libqhull-dev python3-matplotlib
+      libgtest-dev libgmp-dev oclgrind clang-14 clang-format-14 lld
       # the Python module and its tests
-      python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest
+      python3-venv python3-pip python3-numpy python3-scipy python3-pyopencl python3-pytest python3-matplotlib
       # the documentation
       doxygen
     )
     ;;
   *)
-    echo "usage: scripts/install-deps.sh [--build | --packages]" >&2
+    echo "usage: scripts/install-deps.sh [--build | --all | --packages]" >&2
     exit 2
     ;;
 esac
+if [[ ${1-} == --all || ${1-} == --packages ]]; then
+  # other triangulators, to compare with; libFuzzer, for the readers of files
+  packages+=(libcgal-dev libqhull-dev libclang-rt-14-dev)
+fi
 if [[ ${1-} == --packages ]]; then
   packages+=(autopkgtest debhelper debootstrap dpkg-dev help2man libc6-arm64-cross lintian llvm-14 musl
     qemu-user wine wine64)

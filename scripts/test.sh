@@ -44,21 +44,29 @@ if [[ -n $folder ]]; then
   exec build/release/flaunay devices --test --device '#0' --points 300 --only "$call"
 fi
 
-scripts/install-deps.sh
-scripts/format.sh --check
-
 jobs="$(nproc)"
 build() {
   cmake --preset "$@"
   cmake --build --preset "$1"
 }
 
+scripts/install-deps.sh --build
+# What only the tests need is installed while the library is compiled.
+scripts/install-deps.sh &
+installing=$!
+if [[ ! -e build/release/CMakeCache.txt ]]; then
+  cmake --preset release -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF
+  cmake --build --preset release --target flaunay
+fi
+wait "$installing"
+scripts/format.sh --check
+
 if $quick; then
-  build release -DFLAUNAY_BENCH=OFF
+  build release -DFLAUNAY_TESTS=ON -DFLAUNAY_BENCH=OFF
 else
-  build release -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
+  build release -DFLAUNAY_TESTS=ON -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
   # With the tests' objects of the build above: the library is what is to be sanitized.
-  build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release"
+  build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release" -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
   # detection on again.
   ASAN_OPTIONS=detect_leaks=0 ctest --preset asan --label-regex asan --no-tests=error -j "$jobs"
