@@ -68,6 +68,38 @@ std::vector<std::vector<Edge>> expected_edges(const Coordinates& points,
   return all;
 }
 
+std::int32_t find_no_fan(const Coordinates& points, const Triangulation& mesh,
+                         const std::vector<std::uint8_t>& constrained) {
+  Plane plane(points);
+  const std::vector<std::int32_t>& triangles = mesh.triangles;
+  // Triangles of one cell, by union and find.
+  std::vector<std::int32_t> cell(triangles.size() / 3), first(cell.size(), -1);
+  std::iota(cell.begin(), cell.end(), 0);
+  const auto root = [&cell](std::int32_t t) {
+    while (cell[t] != t) t = cell[t] = cell[cell[t]];
+    return t;
+  };
+  for (std::size_t c = 0; c < triangles.size(); ++c) {
+    const auto t = static_cast<std::int32_t>(c / 3);
+    const std::int32_t beyond = mesh.neighbors[c];
+    if (beyond < t || (!constrained.empty() && constrained[c] != 0)) continue;
+    std::int32_t opposite = 3 * beyond;
+    while (mesh.neighbors[opposite] != t) ++opposite;
+    if (plane.circle(triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2], triangles[opposite]) == 0)
+      cell[root(t)] = root(beyond);
+  }
+  for (std::size_t c = 0; c < triangles.size(); ++c) {
+    std::int32_t& v = first[root(static_cast<std::int32_t>(c / 3))];
+    if (v < 0 || plane.before(triangles[c], v)) v = triangles[c];
+  }
+  for (std::size_t t = 0; t < cell.size(); ++t) {
+    const Row row = row_of(mesh, t);
+    if (std::find(row.begin(), row.end(), first[root(static_cast<std::int32_t>(t))]) == row.end())
+      return static_cast<std::int32_t>(t);
+  }
+  return -1;
+}
+
 void expect_edges(const std::vector<std::vector<Edge>>& expected, const ConstrainedTriangulation& result) {
   ASSERT_EQ(result.piece_edges.size(), 2 * expected.size());
   std::vector<Edge> all, listed;
@@ -111,13 +143,6 @@ void expect_canonical(const Coordinates& points, const Triangulation& delaunay,
   // A set without triangles has no other edges to be among.
   for (const Edge& edge : constraints)
     is_missing.push_back(std::binary_search(vertices.begin(), vertices.end(), edge.first));
-  // Triangles of one cell, by union and find.
-  std::vector<std::int32_t> cell(triangles.size() / 3), first(cell.size(), -1);
-  std::iota(cell.begin(), cell.end(), 0);
-  const auto root = [&cell](std::int32_t t) {
-    while (cell[t] != t) t = cell[t] = cell[cell[t]];
-    return t;
-  };
   for (std::size_t c = 0; c < triangles.size(); ++c) {
     const std::size_t t = c - c % 3;
     const std::int32_t a = triangles[t], b = triangles[t + 1], d = triangles[t + 2];
@@ -134,25 +159,17 @@ void expect_canonical(const Coordinates& points, const Triangulation& delaunay,
     if (beyond < 0 || is_constraint) continue;
     std::int32_t opposite = 3 * beyond;
     while (triangles[opposite] == edge.first || triangles[opposite] == edge.second) ++opposite;
-    const int side = plane.circle(a, b, d, triangles[opposite]);
-    ASSERT_LE(side, 0) << "edge " << edge.first << "-" << edge.second;
-    if (side == 0) cell[root(static_cast<std::int32_t>(c / 3))] = root(beyond);
+    ASSERT_LE(plane.circle(a, b, d, triangles[opposite]), 0) << "edge " << edge.first << "-" << edge.second;
   }
   EXPECT_EQ(std::count(is_missing.begin(), is_missing.end(), true), 0) << "constraints are no edges";
-  for (std::size_t c = 0; c < triangles.size(); ++c) {
-    std::int32_t& v = first[root(static_cast<std::int32_t>(c / 3))];
-    if (v < 0 || plane.before(triangles[c], v)) v = triangles[c];
-  }
+  EXPECT_EQ(find_no_fan(points, result, result.constrained), -1);
   // Rows that are not among the Delaunay triangles take the places of those that are not among the result.
   std::vector<Row> rows;
-  for (std::size_t t = 0; t < cell.size(); ++t) rows.push_back(row_of(result, t));
+  for (std::size_t t = 0; t < triangles.size() / 3; ++t) rows.push_back(row_of(result, t));
   const std::vector<Row> in_order = sorted(rows);
   Row last{-1, -1, -1};
-  for (std::size_t t = 0; t < cell.size(); ++t) {
-    const Row& row = rows[t];
-    EXPECT_NE(std::find(row.begin(), row.end(), first[root(static_cast<std::int32_t>(t))]), row.end())
-        << "no fan: triangle " << t;
-    const Row was = row_of(delaunay, t);
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    const Row &row = rows[t], was = row_of(delaunay, t);
     if (std::binary_search(in_order.begin(), in_order.end(), was)) {
       EXPECT_EQ(row, was);
     } else {

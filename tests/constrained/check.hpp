@@ -61,6 +61,11 @@ std::vector<std::vector<Edge>> expected_edges(const Coordinates& points,
                                               const std::vector<std::size_t>& offsets,
                                               const Triangulation& delaunay, const Segments& segments);
 
+/// A triangle that is not part of a fan from the lexicographically smallest vertex of its cell; -1 if there
+/// is none. Cells are of triangles with one circle, and end at constrained edges.
+std::int32_t find_no_fan(const Coordinates& points, const Triangulation& mesh,
+                         const std::vector<std::uint8_t>& constrained = {});
+
 /// That segments map to the edges that they consist of, and each edge is listed once, in the right order.
 void expect_edges(const std::vector<std::vector<Edge>>& expected, const ConstrainedTriangulation& result);
 
