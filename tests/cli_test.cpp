@@ -1117,15 +1117,6 @@ TEST_F(CommandChunksTest, DegenerateInput) {
 }
 
 // PoCL can be told to have one GiB, which 4 million points do not fit.
-TEST_F(CommandChunksTest, TheyAreChosenIfThePointsDoNotFit) {
-  run_well({"generate", "uniform", "4000000", "-o", path("points.npy")}, kNoPlatform);
-  const Outcome outcome = run_well({"triangulate", path("points.npy"), "--device", "#0", "--scratch",
-                                    path(""), "--triangles", path("t.npy")},
-                                   {{"POCL_MEMORY_LIMIT", "1"}});
-  expect_parts(outcome.out, {"note: about 4000000 points are too many at once: ", " chunks"});
-  run_well({"verify", path("points.npy"), path("t.npy")}, kNoPlatform);
-}
-
 // ------------------------------------------------------------------------------------ partition and assemble
 
 class CommandPartitionTest : public ArraysTest {

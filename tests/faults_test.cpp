@@ -242,6 +242,16 @@ TEST_F(ChunkFaultsTest, SystemsWithoutUnnamedFiles) {
   EXPECT_TRUE(fs::is_empty(path("scratch")));
 }
 
+TEST_F(ChunkFaultsTest, TheyAreChosenIfThePointsDoNotFit) {
+  run_well({"generate", "uniform", "1000000", "-o", path("points.npy")}, kNoPlatform);
+  const Outcome outcome =
+      run_well({"triangulate", path("points.npy"), "--device", "#0", "--scratch", path("scratch"),
+                "--triangles", path("t.npy")},
+               {{"LD_PRELOAD", FLAUNAY_POOR_DEVICE_LIBRARY}, {"POOR_DEVICE", "buffer=50000000"}});
+  expect_parts(outcome.out, {"note: about 1000000 points are too many at once: ", " chunks"});
+  run_well({"verify", path("points.npy"), path("t.npy")}, kNoPlatform);
+}
+
 TEST_F(ChunkFaultsTest, AFullDiskLeavesOldOutputs) {
   expect_unchanged({"t.npy", "No space left on device"}, in_chunks({"--memory", "1G"}), with("full-at-sync"));
 }

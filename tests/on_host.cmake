@@ -99,9 +99,9 @@ function(flaunay_test NAME)
 endfunction()
 
 # What tests compare with; GMP stays here, out of the library.
-flaunay_test_library(flaunay_test_support support/reference.cpp)
+flaunay_test_library(flaunay_test_support constrained/check.cpp support/reference.cpp)
 target_include_directories(flaunay_test_support PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(flaunay_test_support PUBLIC flaunay_options gmpxx gmp)
+target_link_libraries(flaunay_test_support PUBLIC flaunay_options flaunay_verify gmpxx gmp GTest::gtest)
 
 # The points that the fuzzer of the triangulation makes, and how it shrinks those that fail.
 flaunay_test_library(flaunay_fuzz fuzz/degenerate.cpp fuzz/minimise.cpp)

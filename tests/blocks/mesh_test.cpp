@@ -62,7 +62,7 @@ void check_mesh(Call& call, const Blocks& blocks, const Rings& rings, bool neigh
     ASSERT_EQ(edges[e].to, g.edges[e].to) << "edge " << e;
     if (edges[e].to == testing::kNone) continue;
     const cl_int next = g.edges[e].next;
-    const bool is_outside = twin.outside.count(static_cast<cl_int>(e)) > 0;
+    const bool is_outside = twin.outside[e];
     ASSERT_EQ(edges[e].next, is_outside ? ~next : next) << "edge " << e;
     const cl_int place = edges[e].previous;
     if (!neighbors || is_outside) {

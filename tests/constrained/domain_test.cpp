@@ -16,6 +16,7 @@
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/sequential/domains.hpp"
 #include "tests/support/integer_points.hpp"
+#include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {

@@ -65,13 +65,14 @@ void expect_near(const std::vector<Point>& points, const std::vector<constrained
   std::vector<std::int32_t> ids(points.size());
   std::iota(ids.begin(), ids.end(), 0);
   const constrained::PointTree tree(points.data(), ids, largest);
-  std::set<std::pair<std::int32_t, std::int32_t>> by_tree, by_grid;
+  // Per line and point.
+  const std::size_t n = points.size();
+  std::vector<char> by_tree(lines.size() * n), by_grid(lines.size() * n);
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    tree.visit_near(lines[k], distance,
-                    [&](std::int32_t v) { by_tree.emplace(static_cast<std::int32_t>(k), v); });
+    tree.visit_near(lines[k], distance, [&](std::int32_t v) { by_tree[k * n + v] = 1; });
   }
-  const bool is_complete = grid.find_near(points, distance, [&by_grid](std::int32_t e, std::int32_t v) {
-    by_grid.emplace(e, v);
+  const bool is_complete = grid.find_near(points, distance, [&](std::int32_t e, std::int32_t v) {
+    by_grid[e * n + v] = 1;
     return true;
   });
   for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -94,13 +95,12 @@ void expect_near(const std::vector<Point>& points, const std::vector<constrained
         clip(a.y, b.y, p.y);
         return low <= high;
       };
-      const std::pair<std::int32_t, std::int32_t> pair(static_cast<std::int32_t>(k), v);
-      for (const auto* found : {&by_tree, &by_grid}) {
-        if (found == &by_grid && !is_complete) continue;
-        if (near(0.999L * distance) && found->count(pair) == 0)
-          ADD_FAILURE() << "line " << k << ", point " << v;
-        if (!near(4 * distance) && found->count(pair) != 0)
-          ADD_FAILURE() << "line " << k << ", far point " << v;
+      const bool is_found = by_tree[k * n + v] != 0;
+      if (is_complete && by_grid[k * n + v] != is_found) {
+        // Only one of them has it, so it is neither near nor far.
+        if (near(0.999L * distance) || !near(4 * distance)) ADD_FAILURE() << "line " << k << ", point " << v;
+      } else if (is_found ? !near(4 * distance) : near(0.999L * distance)) {
+        ADD_FAILURE() << "line " << k << ", point " << v;
       }
     }
   }

@@ -14,6 +14,7 @@
 #include "flaunay/constrained.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/support/integer_points.hpp"
+#include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing {

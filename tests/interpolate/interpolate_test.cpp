@@ -197,34 +197,38 @@ std::vector<double> gradients_of(const std::string& tuning, const Case& input,
   return download(located.runtime, results, 2 * values.size());
 }
 
-/// Each point's neighbours.
-std::vector<std::set<std::int32_t>> neighbors_of(const Case& input) {
-  std::vector<std::set<std::int32_t>> neighbors(input.size());
-  for (std::size_t t = 0; t < input.mesh.triangles.size() / 3; ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = input.corner(t, k), b = input.corner(t, (k + 1) % 3);
-      neighbors[static_cast<std::size_t>(a)].insert(b);
-      neighbors[static_cast<std::size_t>(b)].insert(a);
-    }
-  }
-  return neighbors;
-}
-
 /// By Gauss and Seidel's iteration until nothing changes, as SciPy does it.
 std::vector<double> gradient_twin(const Case& input, const std::vector<double>& values) {
-  const auto neighbors = neighbors_of(input);
-  std::vector<double> g(2 * input.size(), kOutside);
-  for (std::size_t v = 0; v < input.size(); ++v) {
-    if (!neighbors[v].empty()) g[2 * v] = g[2 * v + 1] = 0;
+  // Each point's edges, and what of its equations does not change.
+  struct Spoke {
+    std::int32_t v, u;
+    long double ex, ey, cube;
+  };
+  std::vector<Spoke> spokes;
+  for (std::size_t c = 0; c < input.mesh.triangles.size(); ++c) {
+    // Edges at the border are edges of one triangle.
+    const std::int32_t a = input.mesh.triangles[c], b = input.corner(c / 3, static_cast<int>((c + 1) % 3));
+    spokes.push_back({a, b, 0, 0, 0});
+    if (input.mesh.neighbors[c - c % 3 + (c + 2) % 3] < 0) spokes.push_back({b, a, 0, 0, 0});
   }
-  for (int sweep = 0; sweep < 80; ++sweep) {
-    for (std::size_t v = 0; v < input.size(); ++v) {
+  std::sort(spokes.begin(), spokes.end(),
+            [](const Spoke& p, const Spoke& q) { return std::tie(p.v, p.u) < std::tie(q.v, q.u); });
+  std::vector<double> g(2 * input.size(), kOutside);
+  for (Spoke& spoke : spokes) {
+    spoke.ex = input.point(spoke.u)[0] - input.point(spoke.v)[0];
+    spoke.ey = input.point(spoke.u)[1] - input.point(spoke.v)[1];
+    const long double length = std::hypot(spoke.ex, spoke.ey);
+    spoke.cube = length * length * length;
+    g[2 * spoke.v] = g[2 * spoke.v + 1] = 0;
+  }
+  std::vector<double> before;
+  for (int sweep = 0; sweep < 80 && g != before; ++sweep) {
+    before = g;
+    for (std::size_t i = 0; i < spokes.size();) {
+      const std::int32_t v = spokes[i].v;
       long double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
-      for (const std::int32_t neighbor : neighbors[v]) {
-        const auto u = static_cast<std::size_t>(neighbor);
-        const long double ex = input.points[2 * u] - input.points[2 * v],
-                          ey = input.points[2 * u + 1] - input.points[2 * v + 1];
-        const long double length = std::hypot(ex, ey), cube = length * length * length;
+      for (; i < spokes.size() && spokes[i].v == v; ++i) {
+        const auto& [from, u, ex, ey, cube] = spokes[i];
         const long double s = 6 * (values[u] - values[v]) - 2 * (ex * g[2 * u] + ey * g[2 * u + 1]);
         xx += 4 * ex * ex / cube;
         xy += 4 * ex * ey / cube;
@@ -232,7 +236,6 @@ std::vector<double> gradient_twin(const Case& input, const std::vector<double>& 
         x += s * ex / cube;
         y += s * ey / cube;
       }
-      if (neighbors[v].empty()) continue;
       const long double determinant = xx * yy - xy * xy;
       g[2 * v] = static_cast<double>((yy * x - xy * y) / determinant);
       g[2 * v + 1] = static_cast<double>((xx * y - xy * x) / determinant);

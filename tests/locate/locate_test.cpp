@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/verify/exact.hpp"
 #include "blocks/run.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
@@ -92,8 +93,9 @@ std::vector<cl_int> ask_constrained(Runtime& runtime, const Case& input, std::si
 }
 
 bool contains(const Case& input, std::size_t t, const double* q) {
+  static ExactPredicates exact;
   for (int k = 0; k < 3; ++k) {
-    if (reference_orient2d(input.point(input.corner(t, k)), input.point(input.corner(t, (k + 1) % 3)), q) < 0)
+    if (exact.orient2d(input.point(input.corner(t, k)), input.point(input.corner(t, (k + 1) % 3)), q) < 0)
       return false;
   }
   return true;
@@ -114,13 +116,18 @@ cl_int triangle_twin(const Case& input, std::size_t set, const double* q) {
 cl_int nearest_twin(const Case& input, std::size_t set, const double* q) {
   cl_int best = -1;
   mpq_class least;
+  double about_least = 0;
   for (std::size_t i = input.offsets[set]; i < input.offsets[set + 1]; ++i) {
     const auto index = static_cast<cl_int>(i);
+    // Most points are out of question by rounded numbers, if these neither overflow nor underflow.
+    const double x = input.point(index)[0] - q[0], y = input.point(index)[1] - q[1], about = x * x + y * y;
+    if (about_least > 1e-290 && about > 1.001 * about_least && about < 1e300) continue;
     const mpq_class d = distance(input.point(index), q);
     const auto place = [&](cl_int p) { return std::make_pair(input.point(p)[0], input.point(p)[1]); };
     if (best < 0 || d < least || (d == least && place(index) < place(best))) {
       best = index;
       least = d;
+      about_least = about;
     }
   }
   return best;

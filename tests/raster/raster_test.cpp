@@ -347,17 +347,19 @@ TEST(RasterInChunks, EqualPointsHaveOneValue) {
     values.push_back(value);
     places[{x, y}].push_back(value);
   }
+  for (auto& [place, of_place] : places) std::sort(of_place.begin(), of_place.end());
   Terrain given = make_terrain(points, values);
   const RasterGrid grid{0, 0, 0.5, 0.5, 25, 79};
   for (const Duplicates duplicates : {Duplicates::highest, Duplicates::lowest, Duplicates::mean}) {
     Terrain expected = given;
     for (std::size_t i = 0; i < expected.values.size(); ++i) {
-      std::vector<double>& of_place = places[{points[2 * i], points[2 * i + 1]}];
-      std::sort(of_place.begin(), of_place.end());
-      const double sum = std::accumulate(of_place.begin(), of_place.end(), 0.0);
+      const std::vector<double>& of_place = places[{points[2 * i], points[2 * i + 1]}];
+      const auto mean = [&] {
+        return std::accumulate(of_place.begin(), of_place.end(), 0.0) / static_cast<double>(of_place.size());
+      };
       expected.values[i] = duplicates == Duplicates::highest  ? of_place.back()
                            : duplicates == Duplicates::lowest ? of_place.front()
-                                                              : sum / static_cast<double>(of_place.size());
+                                                              : mean();
     }
     const std::vector<double> pixels = rasterized(on_host(), expected, grid);
     for (const std::size_t chunk_points : {0, 100}) {

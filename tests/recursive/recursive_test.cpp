@@ -157,25 +157,26 @@ TEST(Recursive, SeveralSets) {
 // -----------------------------------------------------------------------------------------------------------
 // Hulls
 
-// The strict lower hull by its definition: of all points those that no two others, nor a lower one of the
-// same column, hold from below.
+// The strict lower hull, from one vertex to the next: of the points after it, the one below whose chord none
+// lies; of several on one chord the last, of several in one column the lowest.
 std::vector<std::int32_t> brute_force_hull(const std::vector<HullPoint>& points, const Line& line) {
-  std::vector<HullPoint> hull;
-  for (const HullPoint& p : points) {
-    bool is_vertex = true;
-    for (const HullPoint& a : points) {
-      if (a.u() == p.u() && a.id != p.id && line.is_lower(a, p)) is_vertex = false;
-      for (const HullPoint& b : points) {
-        if (!is_vertex || !(a.u() < p.u() && p.u() < b.u())) continue;
-        is_vertex = kernel::hull_depth_sign(a.place, b.place, p.place, line.q, line.planar()) > 0;
-      }
-      if (!is_vertex) break;
-    }
-    if (is_vertex) hull.push_back(p);
-  }
-  std::sort(hull.begin(), hull.end(), [](const HullPoint& a, const HullPoint& b) { return a.u() < b.u(); });
+  const auto is_below = [&](const HullPoint& a, const HullPoint& b, const HullPoint& p) {
+    return kernel::hull_depth_sign(a.place, b.place, p.place, line.q, line.planar()) > 0;
+  };
   std::vector<std::int32_t> ids;
-  for (const HullPoint& p : hull) ids.push_back(p.id);
+  const HullPoint *at = nullptr, *next = &points[0];
+  for (; next != nullptr; at = next) {
+    if (at != nullptr) next = nullptr;
+    for (const HullPoint& p : points) {
+      if (at != nullptr && !(at->u() < p.u())) continue;
+      if (next == nullptr || (p.u() == next->u()  ? line.is_lower(p, *next)
+                              : at == nullptr     ? p.u() < next->u()
+                              : p.u() < next->u() ? is_below(*at, *next, p)
+                                                  : !is_below(*at, p, *next)))
+        next = &p;
+    }
+    if (next != nullptr) ids.push_back(next->id);
+  }
   return ids;
 }
 

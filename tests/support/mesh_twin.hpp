@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <tuple>
 #include <vector>
 
@@ -20,10 +19,10 @@ namespace flaunay::testing {
 struct MeshTwin {
   std::vector<std::int32_t> triangles, hull;
   std::vector<std::size_t> triangle_offsets{0}, hull_offsets{0};
-  std::set<cl_int> outside;  ///< edges whose left side is outside
+  std::vector<bool> outside;  ///< per edge, whether its left side is outside
   std::size_t vertices = 0;
 
-  explicit MeshTwin(const HostRings& g) {
+  explicit MeshTwin(const HostRings& g) : outside(g.edges.size()) {
     for (std::size_t s = 0; s < g.sets(); ++s) {
       const std::vector<cl_int> members = g.vertices_of(g.set_blocks[s], g.set_blocks[s + 1]);
       vertices += members.size();
@@ -46,7 +45,8 @@ struct MeshTwin {
               [&](cl_int v, cl_int w) { return comes_first(g.point(v), g.point(w), 0); });
     std::vector<cl_int> around;
     const cl_int start = g.edge_of(members[0]);
-    for (cl_int e = start; e != kNone && outside.insert(e ^ 1).second; e = g.along_hull(e)) {
+    for (cl_int e = start; e != kNone && !outside[e ^ 1]; e = g.along_hull(e)) {
+      outside[e ^ 1] = true;
       around.push_back(g.from(e));
     }
     std::vector<Row> rows;
@@ -55,7 +55,7 @@ struct MeshTwin {
     const auto last =
         static_cast<cl_int>(kEdgesPerPoint) * g.offsets[static_cast<std::size_t>(g.set_blocks[s + 1])];
     for (cl_int e = first; e < last; ++e) {
-      if (g.used(e) && outside.count(e) == 0 && e < g.along_face(e) && e < g.along_face(g.along_face(e))) {
+      if (g.used(e) && !outside[e] && e < g.along_face(e) && e < g.along_face(g.along_face(e))) {
         rows.push_back(row_of(g, e));
       }
     }

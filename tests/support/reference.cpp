@@ -177,6 +177,9 @@ class CellWrapper {
   TriangleSet triangles_;
 };
 
+/// The corner after c in its triangle.
+std::size_t next(std::size_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+
 TriangleSet normalized(TriangleSet triangles) {
   for (auto& triangle : triangles) {
     std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
@@ -241,38 +244,55 @@ std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles) {
   return flat;
 }
 
-std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> triangle_left_of;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::size_t t = i / 3;
-    const std::pair<std::int32_t, std::int32_t> edge{triangles[3 * t + (i + 1) % 3],
-                                                     triangles[3 * t + (i + 2) % 3]};
-    if (!triangle_left_of.emplace(edge, static_cast<std::int32_t>(t)).second) {
-      throw std::logic_error("reference_neighbors: an edge of two triangles");
-    }
+std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles) {
+  const auto edge = [](std::int32_t a, std::int32_t b) {
+    return std::uint64_t(std::uint32_t(a)) << 32 | std::uint32_t(b);
+  };
+  std::vector<std::pair<std::uint64_t, std::int32_t>> sorted;
+  sorted.reserve(triangles.size());
+  for (std::size_t h = 0; h < triangles.size(); ++h)
+    sorted.emplace_back(edge(triangles[h], triangles[next(h)]), static_cast<std::int32_t>(h));
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i - 1].first == sorted[i].first)
+      throw std::logic_error("reference_halfedges: an edge of two triangles");
   }
+  std::vector<std::int32_t> halfedges;
+  halfedges.reserve(triangles.size());
+  for (std::size_t h = 0; h < triangles.size(); ++h) {
+    const std::uint64_t back = edge(triangles[next(h)], triangles[h]);
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair(back, 0));
+    halfedges.push_back(at != sorted.end() && at->first == back ? at->second : -1);
+  }
+  return halfedges;
+}
+
+std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles) {
+  const std::vector<std::int32_t> halfedges = reference_halfedges(triangles);
   std::vector<std::int32_t> neighbors;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::size_t t = i / 3;
-    const auto beyond =
-        triangle_left_of.find({triangles[3 * t + (i + 2) % 3], triangles[3 * t + (i + 1) % 3]});
-    neighbors.push_back(beyond == triangle_left_of.end() ? -1 : beyond->second);
+  neighbors.reserve(triangles.size());
+  for (std::size_t c = 0; c < triangles.size(); ++c) {
+    const std::int32_t beyond = halfedges[next(c)];
+    neighbors.push_back(beyond < 0 ? -1 : beyond / 3);
   }
   return neighbors;
 }
 
-std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> halfedge_of;
-  const auto next = [](std::size_t h) { return h % 3 == 2 ? h - 2 : h + 1; };
-  for (std::size_t h = 0; h < triangles.size(); ++h) {
-    halfedge_of[{triangles[h], triangles[next(h)]}] = static_cast<std::int32_t>(h);
+std::vector<std::int32_t> linked_rows(const std::vector<std::int32_t>& triangles,
+                                      const std::vector<std::int32_t>& neighbors) {
+  using Row = std::array<std::int32_t, 3>;
+  std::vector<std::pair<Row, std::size_t>> sorted;
+  for (std::size_t c = 0; c < triangles.size(); c += 3)
+    sorted.push_back({{triangles[c], triangles[c + 1], triangles[c + 2]}, c});
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::int32_t> place(sorted.size()), rows;
+  for (std::size_t t = 0; t < sorted.size(); ++t) place[sorted[t].second / 3] = static_cast<std::int32_t>(t);
+  rows.reserve(2 * triangles.size());
+  for (const auto& [row, c] : sorted) {
+    rows.insert(rows.end(), row.begin(), row.end());
+    for (std::size_t k = c; k < c + 3; ++k) rows.push_back(neighbors[k] < 0 ? -1 : place.at(neighbors[k]));
   }
-  std::vector<std::int32_t> halfedges;
-  for (std::size_t h = 0; h < triangles.size(); ++h) {
-    const auto back = halfedge_of.find({triangles[next(h)], triangles[h]});
-    halfedges.push_back(back == halfedge_of.end() ? -1 : back->second);
-  }
-  return halfedges;
+  return rows;
 }
 
 namespace {

@@ -28,8 +28,13 @@ std::vector<std::int32_t> flat_triangles(const TriangleSet& triangles);
 /// For each triangle the triangles opposite to its corners, -1 for none: as Triangulation::neighbors.
 /// Every directed edge must occur at most once.
 std::vector<std::int32_t> reference_neighbors(const std::vector<std::int32_t>& triangles);
-/// For each edge of a triangle its twin, -1 for none: as Triangulation::halfedges.
+/// For each edge of a triangle its twin, -1 for none: as Triangulation::halfedges. The same holds.
 std::vector<std::int32_t> reference_halfedges(const std::vector<std::int32_t>& triangles);
+
+/// Sorted triangles, each with the places of its neighbours in this list: equal for triangulations that
+/// differ in the order of rows alone.
+std::vector<std::int32_t> linked_rows(const std::vector<std::int32_t>& triangles,
+                                      const std::vector<std::int32_t>& neighbors);
 
 /// Triangulation::areas: each the double next to the exact area.
 std::vector<double> reference_areas(const std::vector<double>& coordinates,

@@ -4,14 +4,13 @@
 #include <CL/cl.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
 
 #include "flaunay/result_arrays.hpp"
+#include "tests/support/reference.hpp"
 
 namespace flaunay::testing {
 
@@ -57,26 +56,11 @@ void expect_same_sizes(const Result& found, const Result& expected) {
   EXPECT_EQ(found.statistics.hull_vertices, expected.statistics.hull_vertices);
 }
 
-/// A triangle with those across from its vertices; {-1, -1, -1} beyond the hull.
-using LinkedRow = std::array<std::array<std::int32_t, 3>, 4>;
-
-inline std::vector<LinkedRow> linked_rows(const Triangulation& mesh) {
-  const auto row_at = [&](std::int32_t t) -> std::array<std::int32_t, 3> {
-    if (t < 0) return {-1, -1, -1};
-    return {mesh.triangles[3 * t], mesh.triangles[3 * t + 1], mesh.triangles[3 * t + 2]};
-  };
-  std::vector<LinkedRow> rows;
-  for (std::size_t t = 0; 3 * t < mesh.triangles.size(); ++t) {
-    rows.push_back({row_at(static_cast<std::int32_t>(t)), row_at(mesh.neighbors[3 * t]),
-                    row_at(mesh.neighbors[3 * t + 1]), row_at(mesh.neighbors[3 * t + 2])});
-  }
-  std::sort(rows.begin(), rows.end());
-  return rows;
-}
-
 /// The order of rows is the mode's own; everything else must agree.
 inline void expect_same_but_for_order(const Triangulation& found, const Triangulation& expected) {
-  EXPECT_TRUE(linked_rows(found) == linked_rows(expected)) << "triangles or neighbours differ";
+  EXPECT_TRUE(linked_rows(found.triangles, found.neighbors) ==
+              linked_rows(expected.triangles, expected.neighbors))
+      << "triangles or neighbours differ";
   EXPECT_EQ(found.hull, expected.hull);
   EXPECT_EQ(found.representatives, expected.representatives);
   expect_same_sizes(found, expected);
