@@ -56,7 +56,7 @@ scripts/install-deps.sh &
 installing=$!
 if [[ ! -e build/release/CMakeCache.txt ]]; then
   cmake --preset release -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF
-  cmake --build --preset release --target flaunay
+  cmake --build --preset release --target flaunay_core
 fi
 wait "$installing"
 scripts/format.sh --check
