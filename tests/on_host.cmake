@@ -99,9 +99,13 @@ function(flaunay_test NAME)
 endfunction()
 
 # What tests compare with; GMP stays here, out of the library.
-flaunay_test_library(flaunay_test_support constrained/check.cpp support/reference.cpp)
+flaunay_test_library(flaunay_test_support support/reference.cpp)
 target_include_directories(flaunay_test_support PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(flaunay_test_support PUBLIC flaunay_options flaunay_verify gmpxx gmp GTest::gtest)
+target_link_libraries(flaunay_test_support PUBLIC flaunay_options gmpxx gmp)
+# The definition of constrained triangulations.
+flaunay_test_library(flaunay_constrained_check constrained/check.cpp)
+target_include_directories(flaunay_constrained_check PUBLIC ${PROJECT_SOURCE_DIR}/src)
+target_link_libraries(flaunay_constrained_check PUBLIC flaunay_verify flaunay_test_support GTest::gtest)
 
 # The points that the fuzzer of the triangulation makes, and how it shrinks those that fail.
 flaunay_test_library(flaunay_fuzz fuzz/degenerate.cpp fuzz/minimise.cpp)
@@ -156,7 +160,7 @@ flaunay_test(
   WHEN_SANITIZED -NastySegments.*:CrossingPairs.AllKindsOfSegments:Constrained.*OfOtherTriangulations:Constrained.OneSegmentThroughEverything:Split.Large*:Split.ManySegments
   SOURCES constrained/constrained_test.cpp constrained/pairs_test.cpp constrained/refinement_bounds_test.cpp
           constrained/split_test.cpp constrained/verify_test.cpp
-  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_verify flaunay_test_support
+  LIBRARIES flaunay_core flaunay_host_modes flaunay_io flaunay_constrained_check
   LABELS asan)
 flaunay_test(
   test_io UNITY
