@@ -5,9 +5,10 @@
                         GPUs; they are installed by pip in an environment of its own, build/device-runtimes. Each process
                         loads one driver; at the end one loads two, which share the chunks of a triangulation.
   devices.py rusticl    Mesa's rusticl on the CPU, which has no double precision
-  devices.py poor       devices that lack double precision, 64-bit atomics, local memory, large work-groups and buffers
-                        (PoCL with tests/support/poor_device.c). Clang reads all programs that were compiled for them,
-                        as a device of 32 bits with nothing of that would.
+  devices.py poor       a device that lacks double precision, 64-bit atomics, local memory, large work-groups and buffers
+                        (PoCL with tests/support/poor_device.c). Clang reads all programs that were compiled for it, as a
+                        device of 32 bits with nothing of that would.
+  devices.py limited    one that lacks all of that but double precision
 
 Exit code: 0; 1 if a result differed or a run failed; 77 if what is to be compared is not installed: no runtime of PyPI,
 which takes a network, or no rusticl. With FLAUNAY_TEST_ALL=1 in the environment, rusticl must be installed. See
@@ -37,9 +38,8 @@ CHUNK_POINTS = 5000
 # The one whose LLVM is not in conflict with the system's.
 TOGETHER = "Intel's CPU runtime"
 # What devices lack, as tests/support/poor_device.c has it, with the sizes of launches.
-SMALL_BUFFER, BYTES_PER_POINT, MORE_THAN_FITS = 134217728, 72, 2000000
-LIMITS = f"no-int64-atomics local=16384 group=64 buffer={SMALL_BUFFER} address-bits=32"
-POOR = [(f"no-fp64 {LIMITS}", "gpu"), (LIMITS, "gpu:32,fetch_ahead=6144")]
+LIMITS = "no-int64-atomics local=16384 group=64 buffer=134217728 address-bits=32"
+POOR, LIMITED = (f"no-fp64 {LIMITS}", "gpu"), (LIMITS, "gpu:32,fetch_ahead=6144")
 # As a device compiles that has what OpenCL 1.2 requires, and addresses of 32 bits. Warnings tell of literals of type
 # double.
 CLANG = ["clang-14", "-x", "cl", "-target", "spir-unknown-unknown", "-fsyntax-only", "-Werror", "-Xclang",
@@ -183,32 +183,17 @@ class Tester:
         self.test(RUSTICL.name, "", environment, FEW_POINTS)
         return True
 
-    def on_poor_devices(self):
-        for limits, tuning in POOR:
-            texts = self.outputs / "texts"
-            shutil.rmtree(texts, ignore_errors=True)
-            texts.mkdir(parents=True)
-            # Nothing that was compiled before: the text is what matters.
-            environment = {**self.environment(REFERENCE, tuning), "FLAUNAY_CACHE_DIR": "",
-                           "LD_PRELOAD": str(self.build / "tests/libpoor_device.so"),
-                           "POOR_DEVICE": f"{limits} texts={texts}"}
-            self.test(limits, tuning, environment, FEW_POINTS)
-            if "no-fp64" in limits:
-                self.read_texts(sorted(texts.iterdir()))
-
-    def in_small_buffers(self):
-        """The command triangulates in chunks what one call has no room for."""
-        points, triangles = self.outputs / "points.npy", self.outputs / "triangles.npy"
-        subprocess.run([self.flaunay, "generate", "uniform", str(MORE_THAN_FITS), "-o", points], check=True,
-                       capture_output=True)
-        environment = {**self.environment(REFERENCE, ""), "POOR_DEVICE": f"buffer={SMALL_BUFFER}",
-                       "LD_PRELOAD": str(self.build / "tests/libpoor_device.so")}
-        command = [self.flaunay, "triangulate", points, "--triangles", triangles]
-        path = self.run("small buffers", "", command, environment)
-        note = f"{MORE_THAN_FITS} points are too many at once: {SMALL_BUFFER // BYTES_PER_POINT} would fit"
-        if path is not None and note not in path.read_text():
-            self.failures += 1
-            print(f"  FAILED: no '{note}' in {path.read_text()}", flush=True)
+    def on_poor_device(self, limits, tuning):
+        texts = self.outputs / "texts"
+        shutil.rmtree(texts, ignore_errors=True)
+        texts.mkdir(parents=True)
+        # Nothing that was compiled before: the text is what matters.
+        environment = {**self.environment(REFERENCE, tuning), "FLAUNAY_CACHE_DIR": "",
+                       "LD_PRELOAD": str(self.build / "tests/libpoor_device.so"),
+                       "POOR_DEVICE": f"{limits} texts={texts}"}
+        self.test(limits, tuning, environment, FEW_POINTS)
+        if "no-fp64" in limits:
+            self.read_texts(sorted(texts.iterdir()))
 
     def read_texts(self, paths):
         """What Clang says of programs that were handed to a device. Their first lines have the options."""
@@ -249,13 +234,16 @@ def test_rusticl(tester):
     return False
 
 
-def test_poor(tester):
-    tester.on_poor_devices()
-    tester.in_small_buffers()
+def test_poor(tester, case=POOR):
+    tester.on_poor_device(*case)
     return True
 
 
-TESTS = {"installable": test_installable, "rusticl": test_rusticl, "poor": test_poor}
+def test_limited(tester):
+    return test_poor(tester, LIMITED)
+
+
+TESTS = {"installable": test_installable, "rusticl": test_rusticl, "poor": test_poor, "limited": test_limited}
 
 
 def main():

@@ -47,7 +47,7 @@ fi
 jobs="$(nproc)"
 build() {
   cmake --preset "$@"
-  cmake --build --preset "$1"
+  cmake --build --preset "$1" --parallel "$jobs"
 }
 
 scripts/install-deps.sh --build
@@ -56,7 +56,7 @@ scripts/install-deps.sh &
 installing=$!
 if [[ ! -e build/release/CMakeCache.txt ]]; then
   cmake --preset release -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF
-  cmake --build --preset release --target flaunay_core
+  cmake --build --preset release --target flaunay_core --parallel "$jobs"
 fi
 wait "$installing"
 scripts/format.sh --check

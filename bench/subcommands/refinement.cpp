@@ -182,13 +182,14 @@ void add_targets(Json& targets, const Jobs& jobs, const Task& task) {
   const bool is_many = task.input.points.sets() > 1;
   const Job* const of_triangle = job_of(jobs, kOfTriangle, task);
   if (!task.input.has_polygons()) {
-    beside(of_triangle, "Triangle", {1.5, 3}, {2.5, 6});
+    beside(of_triangle, "Triangle", {2.2, 4}, {4, 7});
   } else {
-    beside(of_triangle, "Triangle", {2, is_many ? 6.0 : 5.0}, {2, is_many ? 6.0 : 5.0});
+    const Bounds bounds = is_many ? Bounds{2, 5} : Bounds{2.5, 4};
+    beside(of_triangle, "Triangle", bounds, bounds);
   }
-  beside(job_of(jobs, kOfCgal, task), "CGAL", {4, 10}, {4, 10});
+  beside(job_of(jobs, kOfCgal, task), "CGAL", {8, 12}, {8, 12});
   if (task.wanted.min_angle > 0 && of_triangle != nullptr) {
-    add("points / Triangle's", 1.06, 1.00,
+    add("points / Triangle's", 1.02, 1.00,
         own->details["points"].get<double>() / of_triangle->details["points"].get<double>());
   }
 }
