@@ -2,8 +2,8 @@
 # Builds and runs the tests. Needs only Debian 12: installs everything else first.
 #   scripts/test.sh           all but those of benchmarks and those labelled nightly, which scripts/attack.sh runs; those
 #                             labelled asan once more under the sanitizers
-#   scripts/test.sh --quick   on the host alone, and the command: without MPI, packages, simulators, and what is about
-#                             devices
+#   scripts/test.sh --quick   on the host alone, and the command: without MPI, packages, simulators, documents, systems
+#                             that fail, and what is about devices
 #   scripts/test.sh --kernels FOLDER   what a change of kernels/FOLDER concerns: its suites on the host, and its calls on
 #                             the first device, in the release build; for daily work
 set -euo pipefail
@@ -73,5 +73,5 @@ else
 fi
 # Last, so that its summary is what the script ends with; the sanitized tests have passed when it is reached.
 left_out=nightly
-if $quick; then left_out='nightly|devices|oclgrind|package'; fi
+if $quick; then left_out='nightly|devices|docs|faults|oclgrind|package'; fi
 ctest --preset release --no-tests=error -j "$jobs" --label-exclude "$left_out"
