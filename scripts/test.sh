@@ -37,7 +37,7 @@ export FLAUNAY_TEST_ALL=1
 
 if [[ -n $folder ]]; then
   read -r suites call <<<"${concerned[$folder]}"
-  [[ -e build/release/CMakeCache.txt ]] || cmake --preset release
+  cmake --preset release
   cmake --build --preset release --target flaunay_cli "$suites"
   export POCL_CACHE_DIR="${POCL_CACHE_DIR-$PWD/build/kernels}" FLAUNAY_CACHE_DIR="${FLAUNAY_CACHE_DIR-}"
   FLAUNAY_TEST_DEVICE=host "build/release/tests/$suites" --gtest_brief=1
@@ -62,9 +62,9 @@ wait "$installing"
 scripts/format.sh --check
 
 if $quick; then
-  build release -DFLAUNAY_TESTS=ON -DFLAUNAY_BENCH=OFF
+  build release -DFLAUNAY_BENCH=OFF
 else
-  build release -DFLAUNAY_TESTS=ON -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
+  build release -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
   # With the tests' objects of the build above: the library is what is to be sanitized.
   build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release" -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the
