@@ -1323,8 +1323,8 @@ static void test_sphere(void) {
   double directions[15] = {0};
   OK(flaunay_spherical_directions(spherical, directions));
   CHECK(directions[0] == 1 && directions[4] == 1 && directions[8] == 1 && directions[11] == -1);
-  OK(flaunay_spherical_verify(triangulator, spherical, places, degrees));
-  CHECK(fails(flaunay_spherical_verify(triangulator, spherical, other, degrees), FLAUNAY_ERROR_INTERNAL,
+  OK(flaunay_spherical_verify(spherical, places, degrees));
+  CHECK(fails(flaunay_spherical_verify(spherical, other, degrees), FLAUNAY_ERROR_INTERNAL,
               "point 0 has a wrong place"));
 
   flaunay_spherical_voronoi* voronoi = NULL;
@@ -1364,10 +1364,9 @@ static void test_weighted(void) {
   CHECK(flaunay_weighted_triangles(weighted)[0] == 0 && flaunay_weighted_neighbors(weighted)[1] >= -1);
   CHECK(flaunay_weighted_triangle_offsets(weighted)[1] == 4 &&
         flaunay_weighted_hull_offsets(weighted)[1] == 4);
-  OK(flaunay_weighted_verify(triangulator, weighted, places, weights));
+  OK(flaunay_weighted_verify(weighted, places, weights));
   const double others[] = {0, 0, 0, 0, 8, 3};
-  CHECK(fails(flaunay_weighted_verify(triangulator, weighted, places, others), FLAUNAY_ERROR_INTERNAL,
-              "point 4"));
+  CHECK(fails(flaunay_weighted_verify(weighted, places, others), FLAUNAY_ERROR_INTERNAL, "point 4"));
   int32_t hiding = -1;
   OK(flaunay_weighted_hiding_triangles(triangulator, weighted, places, &hiding));
   CHECK(hiding == 0);
@@ -1400,7 +1399,7 @@ static void test_periodic(void) {
   CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
   CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
-  OK(flaunay_periodic_verify(triangulator, periodic));
+  OK(flaunay_periodic_verify(periodic));
   flaunay_clipped_voronoi* cells = NULL;
   OK(flaunay_periodic_cells(triangulator, periodic, &cells));
   const double* const areas = flaunay_clipped_voronoi_areas(cells);

@@ -189,12 +189,14 @@ TEST_F(CommandUsageTest, OptionsThatTheModeWouldIgnoreAreRefused) {
 }
 
 TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
-  for (const char* const option : {"--output", "--hull", "--halfedges", "--areas", "--constraints", "--mode"})
+  for (const char* const option : {"--hull", "--halfedges", "--areas", "--constraints", "--mode"})
     refused(option, "--period",
             {"--period", "1,inf", option, std::string(option) == "--mode" ? "dwyer" : "x.npy"});
   refused("--profile", "--sphere", {"--sphere", "--profile"});
   refused("--memory", "--sphere", {"--sphere", "--memory", "1G"});
   refused("--points", "--sphere", {"--sphere", "--points", "p.npy"});
+  refused("t.svg", "on the sphere", {"--sphere", "--output", "t.svg"});
+  refused("--output", "in chunks", {"--period", "1,1", "--output", "t.obj", "--memory", "1G"});
   refused("--sphere", "--period", {"--sphere", "--period", "1,1"});
   refused("--offsets", "--period", {"--offsets", "o.npy"});
   refused("--device", "one device", {"--sphere", "--device", "all"});
@@ -388,6 +390,40 @@ TEST_F(CommandVerifyTest, Constraints) {
                {"verify", points, other, "--constraints", text, "--constraint-edges", path("edges.txt")});
   expect_error(kBadInput, {"beyond.txt: line 1", "index 7"},
                {"verify", points, other, "--constraints", write("beyond.txt", "0 7\n")});
+}
+
+TEST_F(CommandVerifyTest, OtherSpaces) {
+  const std::string points = write("points.xy", "0 0\n4 0\n1 3\n3 4\n2 2\n2 2\n");
+  const std::string weighted = write("w.txt", "0 0 0\n4 0 0\n0 4 0\n1 1 -9\n0 0 -1\n0 4 0\n");
+  const auto check = [&](const std::string& input, const Arguments& space) {
+    run_well(
+        joined({"triangulate", input, "--triangles", path("t.npy"), "--neighbors", path("n.npy")}, space));
+    const Arguments checked = joined({input, path("t.npy")}, space);
+    expect_right(checked);
+    expect_right(joined(checked, {"--neighbors", path("n.npy")}));
+    expect_wrong({}, joined({input, write_rows("wrong.npy", {0, 1, 3, 1, 2, 3})}, space));
+  };
+  check(weighted, {"--weighted"});
+  check(points, {"--sphere"});
+  run_well(
+      {"triangulate", points, "--period", "5,inf", "--triangles", path("t.npy"), "--offsets", path("o.npy")});
+  const Arguments torus = {points, path("t.npy"), "--offsets", path("o.npy"), "--period"};
+  expect_right(joined(torus, {"5,inf"}));
+  expect_wrong({}, joined(torus, {"5,5"}));
+  // On a line, triangles do not say which points are hidden.
+  const std::string none = write_rows("none.npy", {});
+  expect_right({write("line.txt", "0 0 0\n1 1 9\n2 2 0\n"), none, "--weighted"});
+  expect_wrong({"collinear"}, {weighted, none, "--weighted"});
+
+  expect_error(kUsage, {"--period", "--offsets"}, {"verify", points, none, "--period", "1,1"});
+  expect_error(kUsage, {"--offsets", "needs --period"}, {"verify", points, none, "--offsets", "o.npy"});
+  expect_error(kUsage, {"--hole", "--sphere"}, {"verify", points, none, "--sphere", "--hole", "1,1"});
+  expect_error(
+      kBadInput, {"o.npy", "4 rows", "0 triangles"},
+      {"verify", points, none, "--period", "5,5", "--offsets", write_rows("o.npy", std::vector<int>(24), 6)});
+  expect_error(kBadInput, {"o.npy", "row 0 has offset 7"},
+               {"verify", points, none, "--period", "5,5", "--offsets",
+                write_rows("o.npy", std::vector<int>(6, 7), 6)});
 }
 
 TEST_F(CommandVerifyTest, RefinedMeshes) {

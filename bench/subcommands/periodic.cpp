@@ -9,6 +9,7 @@
 #include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "bench/peers/peer.hpp"
+#include "flaunay/verify.hpp"
 
 namespace flaunay::bench::periodic {
 namespace {
@@ -54,7 +55,7 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   add("cylinder", [&] {
     return seconds_of([&] { triangulate_periodic(triangulator, on.points.data(), on.n, {1, HUGE_VAL}); });
   });
-  add("verify", [&] { return seconds_of([&] { verify_periodic(triangulator, on.mesh); }); });
+  add("verify", [&] { return seconds_of([&] { verify(on.mesh); }); });
   add("locator", [&] { return seconds_of([&] { PeriodicLocator(triangulator, on.mesh); }); });
   const double* const queries = on.queries.data();
   add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n); }); });

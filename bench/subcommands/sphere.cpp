@@ -9,6 +9,7 @@
 #include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "bench/peers/peer.hpp"
+#include "flaunay/verify.hpp"
 
 namespace flaunay::bench::sphere {
 namespace {
@@ -61,9 +62,7 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
       [&] { return seconds_of([&] { triangulator.triangulate(on.mesh.places.data(), on.n); }); });
   add("cells", [&] { return seconds_of([&] { voronoi_on_sphere(triangulator, on.mesh); }); });
   add("verify", [&] {
-    return seconds_of([&] {
-      verify_sphere(triangulator, on.points.data(), {0, on.n}, kDirections, on.mesh);
-    });
+    return seconds_of([&] { verify(on.points.data(), {0, on.n}, kDirections, on.mesh); });
   });
   add("locator", [&] { return seconds_of([&] { SphereLocator(triangulator, on.mesh); }); });
   const double* const queries = on.queries.data();

@@ -67,7 +67,7 @@ from flaunay._refinement import RefinementReport
 from flaunay._sphere import SphericalDelaunay, SphericalVoronoi, spherical
 from flaunay._terrain import Terrain, terrain
 from flaunay._triangulate import refine, triangulate
-from flaunay._triangulation import Triangulation, modes
+from flaunay._triangulation import Triangulation, modes, verify
 from flaunay._triangulators import devices
 from flaunay._voronoi import Voronoi
 from flaunay._weighted import WeightedDelaunay, weighted
@@ -130,6 +130,7 @@ __all__ = [
     "triangulate",
     "triangulate_chunks",
     "triangulate_device",
+    "verify",
     "voronoi_polygons",
     "weighted",
 ]

@@ -659,6 +659,72 @@ def triangulate_polygons(
     return result.made(wanted | asked_by)
 
 
+def _mesh_of(arrays: dict[str, Any], n: int) -> Any:
+    """A flaunay_mesh of n points. arrays: by their names, contiguous, which must outlive it; there are all but links."""
+    counts = {
+        "set_count": len(arrays["triangle_offsets"]) - 1,
+        "triangle_count": len(arrays["triangles"]),
+        "hull_count": len(arrays["hull"]),
+    }
+    names = (*TRIANGULATION, "triangle_offsets", "hull_offsets")
+    members = {name: _address_or_none(arrays.get(name)) for name in names}
+    return _declarations.Mesh(point_count=n, **counts, **members)
+
+
+def verify(points: _Doubles, offsets: Optional[_Offsets], arrays: dict[str, Any]) -> None:
+    """Checks a triangulation. arrays: as of `_mesh_of`."""
+    points, n = _as_doubles(points), len(points)
+    sizes, sets = _as_offsets(offsets, n)
+    mesh = _mesh_of(arrays, n)
+    if mesh.set_count != max(sets, 1):
+        raise UsageError(f"the triangulation has {mesh.set_count} sets, but there are {max(sets, 1)}")
+    if len(arrays["representatives"]) != n:
+        raise UsageError(f"the triangulation has {len(arrays['representatives'])} points, but there are {n}")
+    check(library.mesh_verify(mesh, _address_of(points), _address_or_none(sizes)))
+
+
+def verify_constrained(
+    points: _Doubles, arrays: dict[str, Any], bad_triangles: Optional[_Indices], asked: dict[str, Any]
+) -> None:
+    """Checks a triangulation with constraints. points: with those that were added. arrays: as of `_mesh_of`.
+
+    bad_triangles: None if nothing was refined. asked: members of flaunay_constraints or flaunay_polygons, of
+    flaunay_refinement in its member `refinement`, and of points `offsets`.
+    """
+    added = int(arrays["added_offsets"][-1])
+    given, n = _as_doubles(points), len(points) - added
+    members = {name: _address_or_none(arrays.get(name)) for name in _CONSTRAINED}
+    more = _declarations.ConstrainedArrays(
+        **members | {"added_points": _address_or_none(given[n:])},
+        added_count=added,
+        constraint_count=len(arrays["constraint_edges"]),
+        segment_count=len(arrays["piece_offsets"]) - 1,
+        piece_count=len(arrays["piece_edges"]),
+    )
+    report = None
+    if bad_triangles is not None:
+        report = _declarations.RefinementReport(
+            added_points=added,
+            bad_count=len(bad_triangles),
+            bad_triangles=_address_or_none(bad_triangles),
+        )
+    refining = _Refinement(asked["refinement"])
+    rest = {name: value for name, value in asked.items() if name not in ("refinement", "offsets")}
+    wanted = _Refinement._members(rest) | {"refinement": refining.pointer}
+    mesh = _mesh_of(arrays, len(points))
+    if "ring_offsets" in rest:
+        polygons = _declarations.Polygons(**wanted, coordinates=_address_of(given))
+        check(library.mesh_verify_polygons(mesh, more, report, polygons))
+    else:
+        sizes, _ = _as_offsets(asked["offsets"], n)
+        constraints = _declarations.Constraints(**wanted)
+        check(
+            library.mesh_verify_constrained(
+                *(mesh, more, report, _address_of(given), _address_or_none(sizes), constraints)
+            )
+        )
+
+
 class Dynamic(_InTurns):
     """A triangulation that changes."""
 
@@ -1682,12 +1748,10 @@ class Spherical(Handle):
             ),
         }
 
-    def verify(self, triangulator: Triangulator, points: _Doubles) -> None:
+    def verify(self, points: _Doubles) -> None:
         points = _as_doubles(points)
-        triangulator.call(
-            library.spherical_verify,
-            *(triangulator.pointer, self.pointer, points, _sphere_coordinates(points.shape[1])),
-        )
+        width = _sphere_coordinates(points.shape[1])
+        check(library.spherical_verify(self.pointer, _address_of(points), width))
 
     def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
         made = _SphericalVoronoi()
@@ -1795,8 +1859,8 @@ class Periodic(Handle):
             ("triangle_offsets", (self._sets + 1,), _INT64),
         )
 
-    def verify(self, triangulator: Triangulator) -> None:
-        triangulator.call(library.periodic_verify, triangulator.pointer, self.pointer)
+    def verify(self) -> None:
+        check(library.periodic_verify(self.pointer))
 
     def cells(self, triangulator: Triangulator) -> dict[str, Any]:
         result = _ClippedVoronoi()
@@ -1860,11 +1924,9 @@ class Weighted(Handle):
         )
         return triangles
 
-    def verify(self, triangulator: Triangulator, points: _Doubles, weights: _Doubles) -> None:
-        triangulator.call(
-            library.weighted_verify,
-            *(triangulator.pointer, self.pointer, _as_doubles(points), _as_doubles(weights)),
-        )
+    def verify(self, points: _Doubles, weights: _Doubles) -> None:
+        points, weights = _as_doubles(points), _as_doubles(weights)
+        check(library.weighted_verify(self.pointer, _address_of(points), _address_of(weights)))
 
     def cells(
         self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles

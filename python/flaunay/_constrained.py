@@ -30,7 +30,7 @@ from flaunay._optional import optional
 from flaunay._plot import ConstrainedArtists, draw_constrained
 from flaunay._queries import KeptLocator, Queries
 from flaunay._raster import MapMethods
-from flaunay._refinement import RefinementReport, Refining, as_refinement
+from flaunay._refinement import RefinementReport, Refining, as_refinement, provable
 from flaunay._triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -213,6 +213,29 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
                 return attributes.astype(np.int32)
         regions = np.zeros(len(self.triangles), np.int32) if self.regions is None else self.regions
         return regions + np.int32(1)
+
+    def verify(self) -> None:
+        """Checks exactly that this is what was asked for: the canonical triangulation with these constraints.
+
+        Segments are edges or chains of edges, other edges are Delaunay, and just those triangles are there which were
+        to be kept. Refined ones have no smaller angles and no larger areas than asked for, but those that
+        `refinement` lists; areas by seeds, triangles and functions are not checked, nor is it which of several
+        polygons a triangle of a map is given to.
+
+        The check shares no predicate with what makes triangulations. O(n log n), on one thread.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        report = self.refinement
+        _calls.verify_constrained(
+            self.points,
+            self._contiguous_arrays(),
+            None if report is None else np.ascontiguousarray(report.bad_triangles),
+            self.__dict__["_asked"],
+        )
 
     @property
     def simplices(self) -> Indices:
@@ -524,8 +547,8 @@ def arrays_of_constrained(
     refining: Refining,
     wanted: set[str],
     device: Optional[str],
-) -> _calls.Made:
-    """What a `ConstrainedTriangulation` consists of, by its names.
+) -> tuple[_calls.Made, dict[str, Any]]:
+    """What a `ConstrainedTriangulation` consists of, by its names, and what is asked for, for `verify`.
 
     given: the arguments of `triangulate` that are holes, markers and seeds. wanted: the optional arrays to compute.
     """
@@ -554,4 +577,16 @@ def arrays_of_constrained(
         *(triangulator, coordinates, offsets, pairs, places, carried),
         *(rules, refinement, wanted),
     )
-    return with_points(made, coordinates)
+    holes, hole_offsets = places.get("hole", (None, None))
+    asked = {
+        **rules,
+        "offsets": None if offsets is None else offsets.copy(),
+        "segments": pairs.copy(),
+        "segment_count": len(pairs),
+        "refinement": provable(refinement),
+    }
+    if holes is not None:
+        asked |= {"holes": holes.copy(), "hole_count": len(holes)}
+    if hole_offsets is not None:
+        asked["hole_offsets"] = hole_offsets.copy()
+    return with_points(made, coordinates), asked

@@ -402,6 +402,28 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
         """
         return draw_edges(self.points, self.edges, ax, style)
 
+    def verify(self) -> None:
+        """Checks exactly that this is the canonical Delaunay triangulation of its points.
+
+        The check shares no predicate with what makes triangulations. O(n log n), on one thread.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        kept = ~self._removed
+        numbers = np.cumsum(kept, dtype=np.int32) - np.int32(1)
+        arrays = {
+            "triangles": numbers[self.simplices],
+            "neighbors": self.neighbors,
+            "hull": numbers[self.hull],
+            "representatives": numbers[self.representatives[kept]],
+            "triangle_offsets": np.array([0, len(self.simplices)]),
+            "hull_offsets": np.array([0, len(self.hull)]),
+        }
+        _calls.verify(np.asarray(self.points[kept], np.float64), None, arrays)
+
     def close(self) -> None:
         """Ends an incremental triangulation: its arrays stay, but its points cannot change any more.
 

@@ -136,7 +136,7 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(self._triangulator)
+        self._handle.verify()
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """Triangles that contain points, exactly.

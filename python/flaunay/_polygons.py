@@ -31,7 +31,7 @@ from flaunay._constrained import (
 from flaunay._declarations import OVERLAPS
 from flaunay._errors import UsageError
 from flaunay._optional import optional
-from flaunay._refinement import Refining, as_refinement
+from flaunay._refinement import Refining, as_refinement, provable
 from flaunay._triangulation import with_arrays
 
 if TYPE_CHECKING:
@@ -430,4 +430,16 @@ def polygons(
         *(triangulator, points, rings, outer, parts, rules, refinement, wanted | {"areas"})
     )
     offsets = {"ring_offsets": frozen(rings), "polygon_offsets": frozen(outer)}
-    return with_arrays(PolygonTriangulation, with_points(made, points), **offsets, _device=device)
+    asked = {
+        **rules,
+        **offsets,
+        "ring_count": len(rings) - 1,
+        "polygon_count": len(outer) - 1,
+        "has_outside": 1,
+        "has_fill_rule": 1,
+        "refinement": provable(refinement),
+    }
+    if parts is not None:
+        asked |= {"part_offsets": parts.copy(), "part_count": len(parts) - 1}
+    made = with_points(made, points)
+    return with_arrays(PolygonTriangulation, made, **offsets, _device=device, _asked=asked)

@@ -115,6 +115,15 @@ def _mesh(wanted: dict[str, Any]) -> dict[str, Any]:
     return mesh
 
 
+def provable(refinement: dict[str, Any]) -> dict[str, Any]:
+    """Those members that a proof is about, with copies of arrays."""
+    kept = {name: refinement[name] for name in ("min_angle", "max_area", "conforming") if name in refinement}
+    if refinement.get("mesh"):
+        rows = refinement["mesh"]["triangles"]
+        kept["mesh"] = {"triangles": rows.copy(), "count": len(rows)}
+    return kept
+
+
 def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     """The members of flaunay_refinement, arrays and a function among them. Nothing if nothing is asked for.
 

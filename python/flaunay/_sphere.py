@@ -190,7 +190,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(self._triangulator, self.points)
+        self._handle.verify(self.points)
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.

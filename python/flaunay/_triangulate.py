@@ -285,18 +285,18 @@ def triangulate(
         unused += [name for name in rules if rules[name]]
         if unused:
             raise UsageError(f"{unused[0]} is for segments, of which there are none")
-        result = arrays_of_mesh(as_points(points), sets, wanted, device, mode)
+        result, asked = arrays_of_mesh(as_points(points), sets, wanted, device, mode), {}
     else:
         if mode != "blocks":
             raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
-        result = arrays_of_constrained(
+        result, asked = arrays_of_constrained(
             points, segments, sets, given, rules, refining, wanted | {"areas"}, device
         )
     if places:
         _write(result, places)
     if segments is None:
         return with_arrays(Triangulation, result)
-    return with_arrays(ConstrainedTriangulation, result, _device=device)
+    return with_arrays(ConstrainedTriangulation, result, _device=device, _asked=asked)
 
 
 def _given_mesh(mesh: Union[ConstrainedTriangulation, Delaunay]) -> dict[str, Any]:

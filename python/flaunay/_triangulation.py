@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import FloatArray, summary
+from flaunay._arrays import ArrayLike, FloatArray, as_offsets, as_points, summary
 from flaunay._errors import UsageError
 
 _Kind = TypeVar("_Kind", bound="Triangulation")
@@ -84,6 +84,58 @@ class Triangulation:
             hull_vertices=len(self.hull),
             sets=len(self.hull_offsets) - 1,
         )
+
+
+    def _contiguous_arrays(self) -> dict[str, Any]:
+        """All arrays, by their names, as the library takes them."""
+        return {
+            field.name: np.ascontiguousarray(array)
+            for field in fields(self)
+            if isinstance(array := getattr(self, field.name), np.ndarray)
+        }
+
+
+def verify(
+    points: ArrayLike, triangulation: Triangulation, offsets: Optional[npt.ArrayLike] = None
+) -> None:
+    """Checks exactly that this is the canonical Delaunay triangulation of these points, with all of its arrays.
+
+    Triangulations that keep their points have a method of this name, also those with constraints. The check shares
+    no predicate with what makes triangulations.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        What was triangulated.
+    triangulation : Triangulation
+    offsets : array_like of int, optional
+        As of `triangulate`.
+
+    Raises
+    ------
+    InternalError
+        If it is not; the message says what is wrong.
+    UsageError
+        For arrays that are none of these points.
+
+    Notes
+    -----
+    O(n log n), on one thread.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> points = [[0, 0], [4, 0], [4, 3], [0, 4]]
+    >>> mesh = flaunay.triangulate(points)
+    >>> flaunay.verify(points, mesh)
+    >>> mesh.triangles[0] = 0, 1, 3
+    >>> flaunay.verify(points, mesh)
+    Traceback (most recent call last):
+    flaunay.InternalError: triangles 0 and 1 are not neighbors of each other
+    """
+    given = np.asarray(as_points(points), np.float64)
+    sets = None if offsets is None else as_offsets(offsets)
+    _calls.verify(given, sets, triangulation._contiguous_arrays())
 
 
 def with_arrays(kind: type[_Kind], made: _calls.Made, **others: Any) -> _Kind:

@@ -79,7 +79,7 @@ class WeightedDelaunay(OfPoints):
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(self._triangulator, self.points, self.weights)
+        self._handle.verify(self.points, self.weights)
 
     def cells(self, bounds: Any) -> ClippedVoronoi:
         """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <numeric>
@@ -10,6 +11,7 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/verify.hpp"
 
 using namespace flaunay;
 
@@ -147,6 +149,30 @@ PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_o
   return result;
 }
 
+// A copy of the caller's arrays.
+ConstrainedTriangulation to_result(const flaunay_mesh* mesh, const flaunay_constrained_arrays* arrays,
+                                   const flaunay_refinement_report* report) {
+  const flaunay_mesh& given = required(mesh, "the mesh");
+  const flaunay_constrained_arrays& more = required(arrays, "the arrays of constraints");
+  ConstrainedTriangulation result;
+  c::copy_to(result, given);
+  const std::size_t triangles = given.triangle_count;
+  expect(more.added_count <= given.point_count, "there are more added points than points");
+  result.added_points = c::copied(more.added_points, 2 * more.added_count, "added points");
+  result.added_offsets = c::copied_offsets(more.added_offsets, given.set_count, more.added_count);
+  result.constraint_edges = c::copied(more.constraint_edges, 2 * more.constraint_count, "constraint edges");
+  result.edge_segments = c::copied(more.edge_segments, more.constraint_count, "segments of edges");
+  result.piece_offsets = c::copied(more.piece_offsets, more.segment_count + 1, "offsets of pieces");
+  result.piece_edges = c::copied(more.piece_edges, 2 * more.piece_count, "edges of pieces");
+  result.constrained = c::copied(more.constrained, 3 * triangles, "constrained", true);
+  result.depths = c::copied(more.depths, triangles, "depths", true);
+  result.regions = c::copied(more.regions, triangles, "regions", true);
+  if (report == nullptr) return result;
+  result.refinement.added_points = report->added_points;
+  result.refinement.bad_triangles = c::copied(report->bad_triangles, report->bad_count, "bad triangles");
+  return result;
+}
+
 // count: of what the offsets begin and end. Null: none.
 std::vector<std::size_t> copy_offsets(const std::size_t* offsets, std::size_t count, const char* name) {
   if (offsets == nullptr) return {};
@@ -255,6 +281,33 @@ const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_c
 
 const flaunay_refinement_report* flaunay_constrained_refinement(const flaunay_constrained* result) {
   return read(result, [](const auto& handle) { return &handle.refinement; });
+}
+
+flaunay_status flaunay_mesh_verify_constrained(const flaunay_mesh* mesh,
+                                               const flaunay_constrained_arrays* arrays,
+                                               const flaunay_refinement_report* report,
+                                               const double* coordinates, const size_t* offsets,
+                                               const flaunay_constraints* constraints) {
+  return c::verified([&] {
+    const ConstrainedTriangulation result = to_result(mesh, arrays, report);
+    const flaunay_constraints given = constraints != nullptr ? *constraints : flaunay_constraints{};
+    c::check_reserved(given, "flaunay_constraints");
+    const std::size_t n = result.representatives.size() - result.added_points.size() / 2;
+    return verify(coordinates, c::copied_offsets(offsets, mesh->set_count, n),
+                  c::to_constraints(given, std::max<std::size_t>(mesh->set_count, 1)),
+                  c::to_constrained_options(given, nullptr), result);
+  });
+}
+
+flaunay_status flaunay_mesh_verify_polygons(const flaunay_mesh* mesh,
+                                            const flaunay_constrained_arrays* arrays,
+                                            const flaunay_refinement_report* report,
+                                            const flaunay_polygons* polygons) {
+  return c::verified([&] {
+    const flaunay_polygons& given = required(polygons, "the polygons");
+    c::check_reserved(given, "flaunay_polygons");
+    return verify(to_polygons(given), to_polygon_options(given, nullptr), to_result(mesh, arrays, report));
+  });
 }
 
 FLAUNAY_DEVICE_RESULT(constraints, "the constraint edges")

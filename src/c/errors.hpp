@@ -47,6 +47,15 @@ void copy_to(T* place, const Values& values, const char* name) {
   std::copy(values.begin(), values.end(), place);
 }
 
+/// Fails with what find_problem() returns, if that is something: FLAUNAY_ERROR_INTERNAL.
+template <typename FindProblem>
+flaunay_status verified(const FindProblem& find_problem) noexcept {
+  return guarded([&] {
+    const std::string problem = find_problem();
+    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+  });
+}
+
 /// Stores the handle that make() returns in *place, or null if it throws.
 template <typename Handle, typename Make>
 flaunay_status create(Handle** place, const Make& make) noexcept {

@@ -59,6 +59,18 @@ flaunay_device_info view_of(const DeviceInfo& info);
 /// A triangulation as a C struct. It refers to both, which must outlive it.
 flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics);
 
+/// A copy of the caller's arrays. Throws Error(usage) for one that is null but has elements.
+void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh);
+/// `count` values; none for null, if that is allowed.
+template <typename T>
+std::vector<T> copied(const T* values, std::size_t count, const char* name, bool may_be_null = false) {
+  if (values == nullptr && may_be_null) return {};
+  check_array(values, count, name, kMostCountable);
+  return {values, values + count};
+}
+/// `count` parts of `size` things; null if there is but one.
+std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t count, std::size_t size);
+
 /// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
 research::Options to_options(const flaunay_options* options);
 

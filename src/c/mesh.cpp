@@ -8,12 +8,14 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/verify.hpp"
 #include "geometry/triangles.hpp"
 
 using namespace flaunay;
 
 using c::create;
 using c::guarded;
+using c::required;
 
 namespace {
 
@@ -63,6 +65,29 @@ flaunay_status measure(const double* coordinates, std::size_t n, const std::int3
 
 }  // namespace
 
+namespace flaunay::c {
+
+std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t count, std::size_t size) {
+  if (offsets == nullptr && count <= 1) return {0, size};
+  check_array(offsets, count, "offsets", kMostIndexed);
+  return {offsets, offsets + count + 1};
+}
+
+void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh) {
+  const std::size_t corners = 3 * mesh.triangle_count;
+  check_count(mesh.triangle_count, "triangles", kMostIndexed / 3);
+  triangulation.triangles = copied(mesh.triangles, corners, "triangles");
+  triangulation.neighbors = copied(mesh.neighbors, corners, "neighbors", true);
+  triangulation.halfedges = copied(mesh.halfedges, corners, "halfedges", true);
+  triangulation.hull = copied(mesh.hull, mesh.hull_count, "hull vertices");
+  triangulation.representatives = copied(mesh.representatives, mesh.point_count, "representatives");
+  triangulation.areas = copied(mesh.areas, mesh.triangle_count, "areas", true);
+  triangulation.triangle_offsets = copied_offsets(mesh.triangle_offsets, mesh.set_count, mesh.triangle_count);
+  triangulation.hull_offsets = copied_offsets(mesh.hull_offsets, mesh.set_count, mesh.hull_count);
+}
+
+}  // namespace flaunay::c
+
 flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, size_t t,
                                             const int32_t* neighbors, const int32_t* hull, size_t h,
                                             const int32_t* representatives,
@@ -79,6 +104,16 @@ flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, 
     made.statistics.triangles = t;
     made.statistics.hull_vertices = h;
     return std::make_unique<flaunay_triangulation>(std::move(made));
+  });
+}
+
+flaunay_status flaunay_mesh_verify(const flaunay_mesh* mesh, const double* coordinates,
+                                   const size_t* offsets) {
+  return c::verified([&] {
+    const flaunay_mesh& given = required(mesh, "the mesh");
+    Triangulation triangulation;
+    c::copy_to(triangulation, given);
+    return verify(coordinates, c::copied_offsets(offsets, given.set_count, given.point_count), triangulation);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/verify.hpp"
 
 using namespace flaunay;
 
@@ -103,12 +104,8 @@ flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangulator, const 
   });
 }
 
-flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator, const flaunay_periodic* periodic) {
-  return guarded([&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    const std::string problem = verify_periodic(cpp, required(periodic, "the triangulation").cpp);
-    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
-  });
+flaunay_status flaunay_periodic_verify(const flaunay_periodic* periodic) {
+  return c::verified([&] { return verify(required(periodic, "the triangulation").cpp); });
 }
 
 FLAUNAY_DEVICE_RESULT(periodic, "the triangulation")

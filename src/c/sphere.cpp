@@ -9,6 +9,7 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/verify.hpp"
 
 using namespace flaunay;
 
@@ -90,15 +91,11 @@ flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical, 
   });
 }
 
-flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
-                                        const flaunay_spherical* spherical, const double* points,
+flaunay_status flaunay_spherical_verify(const flaunay_spherical* spherical, const double* points,
                                         int coordinates) {
-  return guarded([&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::verified([&] {
     const SphericalTriangulation& mesh = required(spherical, "the triangulation").cpp;
-    const std::string problem =
-        verify_sphere(cpp, points, mesh.point_offsets, to_coordinates(coordinates), mesh);
-    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+    return verify(points, mesh.point_offsets, to_coordinates(coordinates), mesh);
   });
 }
 

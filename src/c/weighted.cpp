@@ -8,6 +8,7 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/verify.hpp"
 
 using namespace flaunay;
 
@@ -69,13 +70,11 @@ flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangula
   });
 }
 
-flaunay_status flaunay_weighted_verify(flaunay_triangulator* triangulator, const flaunay_weighted* weighted,
-                                       const double* points, const double* weights) {
-  return guarded([&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+flaunay_status flaunay_weighted_verify(const flaunay_weighted* weighted, const double* points,
+                                       const double* weights) {
+  return c::verified([&] {
     const flaunay_weighted& mesh = required(weighted, "the triangulation");
-    const std::string problem = verify_weighted(cpp, points, weights, mesh.offsets, mesh.cpp);
-    if (!problem.empty()) throw Error(ErrorKind::internal, problem);
+    return verify(points, weights, mesh.offsets, mesh.cpp);
   });
 }
 

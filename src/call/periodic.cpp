@@ -10,8 +10,9 @@
 #include "call/frame.hpp"
 #include "derived/periodic/cells.hpp"
 #include "derived/periodic/torus.hpp"
-#include "derived/periodic/verify.hpp"
+#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
+#include "prove/periodic_proof.hpp"
 
 namespace flaunay {
 
@@ -215,12 +216,9 @@ ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangul
   });
 }
 
-std::string verify_periodic(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
-    call::check(mesh);
-    return periodic::find_problem(self.native().runtime, mesh);
-  });
+std::string verify(const PeriodicTriangulation& mesh) {
+  call::check(mesh);
+  return prove::find_problem(mesh);
 }
 
 }  // namespace flaunay

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "call/constrained.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/crossings/first_crossing.hpp"
 #include "constrained/domains/map.hpp"
+#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 
 namespace flaunay {
@@ -114,6 +116,27 @@ ConstrainedTriangulation compute(call::Implementation& self, const Polygons& pol
 
 ConstrainedTriangulation Triangulator::polygons(const Polygons& polygons, const PolygonOptions& options) {
   return call::take_turn(*implementation_, [&] { return compute(*implementation_, polygons, options); });
+}
+
+std::string verify(const Polygons& polygons, const PolygonOptions& options,
+                   const ConstrainedTriangulation& triangulation) {
+  check(polygons, options);
+  const std::vector<std::size_t> points = points_of(polygons);
+  const Ids segments = segments_of(polygons);
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  if (!polygons.part_offsets.empty() && options.fill_rule != FillRule::nesting) {
+    constraints.rings = {polygons.ring_offsets, polygons.part_offsets, polygons.polygon_offsets};
+    constrained::check_rings(constraints.rings, constraints.segment_count, options.fill_rule);
+  } else if (options.map) {
+    // The rings of a polygon count alike, as if they were one.
+    std::vector<std::size_t> numbers(points.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    constraints.rings = {points, numbers, numbers};
+  }
+  return verify(polygons.coordinates, options.map ? std::vector<std::size_t>{0, points.back()} : points,
+                constraints, options, triangulation);
 }
 
 ConstrainedTriangulation Triangulator::polygons(const Polygons& polygons) {

@@ -13,9 +13,10 @@
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/plane.hpp"
-#include "derived/sphere/verify.hpp"
 #include "derived/sphere/walk.hpp"
+#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
+#include "prove/sphere_proof.hpp"
 #include "sphere/places.h"
 
 namespace flaunay {
@@ -150,17 +151,18 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
   return close_all(plane, std::move(planar), std::move(mesh));
 }
 
-std::string verify_sphere(Triangulator& triangulator, const double* points,
-                          const std::vector<std::size_t>& offsets, SphereCoordinates coordinates,
-                          const SphericalTriangulation& triangulation) {
+std::string verify(const double* points, const std::vector<std::size_t>& offsets,
+                   SphereCoordinates coordinates, const SphericalTriangulation& triangulation) {
   check_offsets(offsets);
-  check_points(points, offsets.back());
   check_arrays(triangulation);
   if (offsets != triangulation.point_offsets) return "the sets have other points";
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  const std::vector<double> places = places_of(self, points, offsets.back(), coordinates, "point");
-  return call::take_turn(self,
-                         [&] { return sphere::find_problem(self.native().runtime, places, triangulation); });
+  return prove::find_problem(places_on_sphere(points, offsets.back(), coordinates), triangulation);
+}
+
+std::vector<double> places_on_sphere(const double* points, std::size_t n, SphereCoordinates coordinates) {
+  check_points(points, n);
+  check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
+  return sphere::to_places(call::Engine::of_thread().runtime, points, n, coordinates, "point");
 }
 
 std::vector<double> directions_of(const std::vector<double>& places) {

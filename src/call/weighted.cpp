@@ -11,12 +11,14 @@
 #include "blocks/weighted.hpp"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"
+#include "call/verify.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
-#include "derived/weighted/verify.hpp"
+#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
+#include "prove/planar_proof.hpp"
 
 namespace flaunay {
 namespace {
@@ -76,18 +78,11 @@ void settle(const double* points, const double* weights, const std::vector<std::
 }
 
 void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  check_offsets(offsets);
-  check_points(points, offsets.back());
-  const std::size_t n = offsets.back(), sets = offsets.size() - 1, triangles = mesh.triangles.size() / 3;
-  call::expect(mesh.representatives.size() == n && are_indices(mesh.representatives, n) &&
-                   mesh.triangles.size() == 3 * triangles && are_indices(mesh.triangles, n) &&
-                   are_indices(mesh.hull, n) && are_indices(mesh.hidden, n) &&
-                   std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()) &&
-                   are_offsets(mesh.triangle_offsets, sets, triangles) &&
-                   are_offsets(mesh.hull_offsets, sets, mesh.hull.size()),
-               "the triangulation is not one of these points");
-  call::expect(mesh.neighbors.size() == mesh.triangles.size() && are_indices(mesh.neighbors, triangles, -1),
-               "the triangulation must have its neighbours");
+  call::check_arrays(points, offsets, mesh);
+  call::expect(
+      are_indices(mesh.hidden, offsets.back()) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
+      "the hidden points are not those of these points");
+  call::expect(mesh.neighbors.size() == mesh.triangles.size(), "the triangulation must have its neighbours");
 }
 
 }  // namespace
@@ -157,14 +152,11 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
   });
 }
 
-std::string verify_weighted(Triangulator& triangulator, const double* points, const double* weights,
-                            const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+std::string verify(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
+                   const WeightedTriangulation& mesh) {
   check(points, offsets, mesh);
   check_array(weights, offsets.back(), "weights");
-  const weighted::Claim claim{points, weights, offsets, mesh};
-  std::string problem = weighted::find_problem(claim);
-  if (!problem.empty()) return problem;
-  return weighted::find_problem_of_hidden(claim, hiding_triangles(triangulator, points, offsets, mesh));
+  return prove::find_problem({points, weights, offsets, mesh, mesh.neighbors, mesh.hidden});
 }
 
 }  // namespace flaunay

@@ -8,7 +8,6 @@
 #include <set>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "blocks/codes.h"
 #include "blocks/halving.h"
 #include "blocks/limits.h"
@@ -19,6 +18,7 @@
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "predicates/bounds.h"
+#include "prove/exact.hpp"
 #include "tests/blocks/support.hpp"
 
 namespace flaunay::blocks {

@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/verify.hpp"
 #include "flaunay/chunks.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/dynamic.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "prove/delaunay_proof.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/support/environment.hpp"
 #include "tests/support/fixtures.hpp"

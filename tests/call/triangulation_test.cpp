@@ -16,10 +16,10 @@
 
 #include "app/files/generate.hpp"
 #include "app/files/points.hpp"
-#include "app/verify/verify.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
 #include "host/clock.hpp"
+#include "prove/delaunay_proof.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/research.hpp"
+#include "prove/exact.hpp"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::testing {

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/refine.hpp"
+#include "prove/exact.hpp"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::testing {

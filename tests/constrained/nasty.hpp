@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/fixtures.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/constrained.hpp"
 #include "flaunay/constrained.hpp"
+#include "prove/constrained_proof.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"

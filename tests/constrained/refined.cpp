@@ -13,9 +13,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/verify/exact.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "geometry/magnitudes.hpp"
+#include "prove/exact.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/support/reference.hpp"
 

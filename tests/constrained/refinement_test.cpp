@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "constrained/refinement/angles.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "launchers/refinement/smooth.cl.hpp"
+#include "prove/exact.hpp"
 #include "refinement/codes.h"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/moved.hpp"

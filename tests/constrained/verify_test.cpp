@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/constrained.hpp"
+#include "prove/constrained_proof.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/native.hpp"

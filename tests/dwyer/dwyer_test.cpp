@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/verify.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/sort.hpp"
+#include "prove/delaunay_proof.hpp"
 #include "statistics/costs.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"

@@ -5,7 +5,7 @@
 //
 //   fuzz_constrained [--seconds N] [--seed S] [--first CASE]
 
-#include "app/verify/constrained.hpp"
+#include "flaunay/constrained.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest-spi.h>
@@ -21,8 +21,9 @@
 #include <vector>
 
 #include "constrained/crossings/split.hpp"
-#include "flaunay/constrained.hpp"
 #include "flaunay/flaunay.hpp"
+#include "flaunay/verify.hpp"
+#include "prove/constrained_proof.hpp"
 #include "tests/constrained/check.hpp"
 #include "tests/constrained/nasty.hpp"
 #include "tests/constrained/native.hpp"
@@ -57,6 +58,13 @@ Flat flat(const SegmentBatch& batch) {
   return all;
 }
 
+Constraints constraints_of(const Flat& all) {
+  Constraints constraints;
+  constraints.segments = all.segments.data();
+  constraints.segment_count = all.segments.size() / 2;
+  return constraints;
+}
+
 Ids minus(const Ids& ids, std::size_t begin, std::size_t end, std::size_t base) {
   Ids result(ids.begin() + static_cast<std::ptrdiff_t>(begin),
              ids.begin() + static_cast<std::ptrdiff_t>(end));
@@ -80,71 +88,6 @@ struct Domain {
             set.points[2 * a + 1] / 2 + set.points[2 * b + 1] / 2};
   }
 };
-
-/// The arrays of a result. Labels are null if there are none.
-struct Arrays {
-  const std::vector<std::size_t>& triangle_offsets;
-  const Ids &triangles, &neighbors, &edges, &segment_edges;
-  const Ids *edge_segments = nullptr, *depths = nullptr, *regions = nullptr;
-};
-
-Arrays arrays_of(const Triangulation& delaunay, const ConstrainedTriangulation& result) {
-  return {delaunay.triangle_offsets, result.triangles, result.neighbors, result.constraint_edges,
-          result.piece_edges};
-}
-Arrays arrays_of(const ConstrainedTriangulation& result) {
-  return {result.triangle_offsets, result.triangles,      result.neighbors, result.constraint_edges,
-          result.piece_edges,      &result.edge_segments, &result.depths,   &result.regions};
-}
-
-/// What the verifier says about each set.
-std::string verify_sets(const SegmentBatch& batch, const Flat& all, const Arrays& arrays,
-                        const Domain& domain) {
-  std::size_t edge = 0, region = 0;
-  for (std::size_t s = 0; s < batch.size(); ++s) {
-    const std::size_t begin = arrays.triangle_offsets[s], end = arrays.triangle_offsets[s + 1];
-    const Ids triangles = minus(arrays.triangles, 3 * begin, 3 * end, all.offsets[s]);
-    const Ids neighbors = minus(arrays.neighbors, 3 * begin, 3 * end, begin);
-    std::size_t last_edge = edge;
-    while (last_edge < arrays.edges.size() / 2 &&
-           static_cast<std::size_t>(arrays.edges[2 * last_edge]) < all.offsets[s + 1]) {
-      ++last_edge;
-    }
-    const Ids edges = minus(arrays.edges, 2 * edge, 2 * last_edge, all.offsets[s]);
-    Ids ranges = minus(arrays.segment_edges, 2 * all.segment_offsets[s], 2 * all.segment_offsets[s + 1], 0);
-    for (std::size_t i = 0; i < ranges.size(); i += 2) {
-      if (ranges[i] == ranges[i + 1]) continue;
-      for (std::size_t k = i; k < i + 2; ++k) ranges[k] -= static_cast<std::int32_t>(edge);
-    }
-    const std::vector<double> hole = domain.hole_of(batch[s]);
-    VerifyConstraints constraints;
-    constraints.segments = &batch[s].segments;
-    constraints.outside = domain.outside;
-    constraints.fill_rule = domain.fill_rule;
-    if (!hole.empty()) constraints.holes = &hole;
-    constraints.edges = &edges;
-    constraints.segment_edges = &ranges;
-    Ids edge_segments, depths, regions;
-    if (arrays.depths != nullptr) {
-      edge_segments = minus(*arrays.edge_segments, edge, last_edge, all.segment_offsets[s]);
-      depths = minus(*arrays.depths, begin, end, 0);
-      regions = minus(*arrays.regions, begin, end, region);
-      constraints.edge_segments = &edge_segments;
-      constraints.depths = &depths;
-      constraints.regions = &regions;
-      region = regions.empty() ? region
-                               : static_cast<std::size_t>(*std::max_element(
-                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(begin),
-                                     arrays.regions->begin() + static_cast<std::ptrdiff_t>(end))) +
-                                     1;
-    }
-    const VerifyReport report = verify_constrained(batch[s].points.data(), batch[s].points.size() / 2,
-                                                   triangles, &neighbors, constraints);
-    if (!report.ok) return fmt::format("set {}: {}", s, report.problem);
-    edge = last_edge;
-  }
-  return edge == arrays.edges.size() / 2 ? "" : "constraint edges are not in the order of the sets";
-}
 
 /// Whether the verifier says what is wrong with the input of a set, before it looks for triangles.
 bool verifier_refuses(const SegmentBatch& batch, const Domain& domain) {
@@ -278,7 +221,7 @@ std::string check_split(const Flat& all) {
   const Triangulation delaunay = testing::delaunay_of(pieces.points, pieces.offsets);
   const Outcome outcome = constrain(pieces, delaunay, pieces.segments);
   if (!outcome.result) return "pieces cross: " + outcome.error;
-  return verify_sets(batch, pieces, arrays_of(delaunay, *outcome.result), {});
+  return verify(pieces.points.data(), pieces.offsets, constraints_of(pieces), {}, *outcome.result);
 }
 
 struct Verdict {
@@ -356,7 +299,7 @@ class Devices {
       try {
         const ConstrainedTriangulation result =
             tuned.triangulator->constrained(all.points.data(), all.offsets, constraints, options);
-        problem = verify_sets(batch, all, arrays_of(result), domain);
+        problem = verify(all.points.data(), all.offsets, constraints, options, result);
       } catch (const Error& error) {
         const bool is_fine = error.kind() == ErrorKind::input && verifier_refuses(batch, domain);
         if (!is_fine) problem = error.what();
@@ -367,13 +310,6 @@ class Devices {
   }
 
  private:
-  static Constraints constraints_of(const Flat& all) {
-    Constraints constraints;
-    constraints.segments = all.segments.data();
-    constraints.segment_count = all.segments.size() / 2;
-    return constraints;
-  }
-
   struct Tuned {
     std::string name;
     bool is_opencl;
@@ -425,7 +361,7 @@ std::string problem_of(const SegmentBatch& batch, const Flat& all, const Triangu
   if (!outcome.result) {
     return verifier_refuses(batch, {}) ? "" : "the verifier finds no crossing, but: " + outcome.error;
   }
-  problem = verify_sets(batch, all, arrays_of(delaunay, *outcome.result), {});
+  problem = verify(all.points.data(), all.offsets, constraints_of(all), {}, *outcome.result);
   return problem.empty() ? compare_with_reversed(all, delaunay, *outcome.result) : problem;
 }
 

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/verify.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -83,7 +84,7 @@ class PeriodicFuzzer : public Fuzzer {
                          const Period& period) {
     const PeriodicTriangulation mesh = triangulate_periodic(host_, points.data(), offsets, period);
     images_ += mesh.images;
-    const std::string problem = verify_periodic(host_, mesh);
+    const std::string problem = verify(mesh);
     if (!problem.empty()) return problem;
     const PeriodicTriangulation again = triangulate_periodic(host_, mesh.places.data(), offsets, mesh.period);
     if (again.triangles != mesh.triangles || again.offsets != mesh.offsets || again.places != mesh.places)

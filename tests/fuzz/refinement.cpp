@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/constrained.hpp"
 #include "constrained/refinement/refine.hpp"
+#include "prove/constrained_proof.hpp"
 #include "tests/constrained/nasty_domains.hpp"
 #include "tests/constrained/refined.hpp"
 #include "tests/fuzz/minimise.hpp"

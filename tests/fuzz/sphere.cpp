@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "derived/sphere/predicates.hpp"
+#include "flaunay/verify.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -127,7 +128,7 @@ class SphereFuzzer : public Fuzzer {
  private:
   std::string problem_of(const Numbers& points, const Offsets& offsets, FixtureRandom& random) {
     const SphericalTriangulation mesh = triangulate_sphere(host_, points.data(), offsets, coordinates_);
-    std::string problem = verify_sphere(host_, points.data(), offsets, coordinates_, mesh);
+    std::string problem = verify(points.data(), offsets, coordinates_, mesh);
     if (problem.empty()) problem = problem_of_order(points, mesh, random);
     const SphericalVoronoi dual = voronoi_on_sphere(host_, mesh);
     for (std::size_t s = 0; s + 1 < offsets.size() && problem.empty(); ++s)

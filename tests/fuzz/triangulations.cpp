@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/verify.hpp"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/research.hpp"
+#include "flaunay/verify.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/minimise.hpp"
 #include "tests/fuzz/run.hpp"
@@ -78,30 +78,12 @@ research::Triangulation triangulate(const Execution& execution, const Flat& poin
                                execution.options);
 }
 
-/// Set s of the result as if it had been triangulated alone.
-VerifyReport verify_set(const Coordinates& set, const research::Triangulation& mesh, std::size_t s,
-                        std::size_t first_point) {
-  const std::size_t begin = mesh.triangle_offsets[s], end = mesh.triangle_offsets[s + 1];
-  std::vector<std::int32_t> triangles, neighbors;
-  for (std::size_t i = 3 * begin; i < 3 * end; ++i) {
-    triangles.push_back(mesh.triangles[i] - static_cast<std::int32_t>(first_point));
-    neighbors.push_back(mesh.neighbors[i] < 0 ? -1 : mesh.neighbors[i] - static_cast<std::int32_t>(begin));
-  }
-  return verify(set.data(), set.size() / 2, triangles, neighbors);
-}
-
 /// What is wrong with a result beside the points alone; empty if nothing is.
 std::string problem_of(const Batch& batch, const Flat& points, const research::Triangulation& mesh) {
   constexpr std::size_t kMostForReference = 40;
   if (mesh.triangle_offsets.size() != batch.size() + 1) return "wrong number of sets";
-  for (std::size_t s = 0; s < batch.size(); ++s) {
-    const VerifyReport report = verify_set(batch[s], mesh, s, points.offsets[s]);
-    if (!report.ok) return fmt::format("set {}: {}", s, report.problem);
-    const std::size_t hull = mesh.hull_offsets[s + 1] - mesh.hull_offsets[s];
-    if (hull != report.hull_vertices) {
-      return fmt::format("set {}: {} hull vertices instead of {}", s, hull, report.hull_vertices);
-    }
-  }
+  const std::string problem = verify(points.points.data(), points.offsets, mesh);
+  if (!problem.empty()) return problem;
   if (mesh.halfedges != testing::reference_halfedges(mesh.triangles)) return "the halfedges are wrong";
   if (batch.size() == 1 && batch[0].size() / 2 <= kMostForReference &&
       testing::sorted_triangles(mesh.triangles) != testing::reference_delaunay(batch[0])) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/verify.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -36,9 +37,9 @@ class WeightedFuzzer : public Fuzzer {
     std::string problem;
     try {
       const WeightedTriangulation mesh = triangulated(host_, points, weights, offsets);
-      problem = verify_weighted(host_, points.data(), weights.data(), offsets, mesh);
+      problem = verify(points.data(), weights.data(), offsets, mesh);
       const WeightedTriangulation other = triangulated(small_blocks_, points, weights, offsets);
-      if (problem.empty()) problem = verify_weighted(host_, points.data(), weights.data(), offsets, other);
+      if (problem.empty()) problem = verify(points.data(), weights.data(), offsets, other);
       if (problem.empty() && (mesh.hidden != other.hidden || mesh.hull != other.hull))
         problem = "blocks differ";
       hidden_ += mesh.hidden.size();

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/test_kernels.hpp"

@@ -21,7 +21,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "blocks/run.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/locate/levels.hpp"
@@ -30,6 +29,7 @@
 #include "host/opencl/programs.hpp"
 #include "locate/nearest_search.h"
 #include "locate/off_grid.h"
+#include "prove/exact.hpp"
 #include "tests/locate/support.hpp"
 #include "tuning/tuning.hpp"
 

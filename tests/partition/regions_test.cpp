@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/verify.hpp"
 #include "flaunay/research.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/point_sets.hpp"
 #include "modes/dwyer/dwyer.hpp"
+#include "prove/delaunay_proof.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/reference.hpp"
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "flaunay/periodic.hpp"
+#include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/sanitized.hpp"
@@ -241,7 +242,7 @@ TEST(PeriodicChunks, GoToArrays) {
   mesh.representatives = representatives;
   mesh.point_offsets = {0, n};
   mesh.triangle_offsets = {0, statistics.triangles};
-  EXPECT_EQ("", verify_periodic(testing::triangulator(), mesh));
+  EXPECT_EQ("", verify(mesh));
   std::vector<std::int64_t> wide(6 * n);
   triangulate_periodic_chunks(points.data(), n, period, MeshArrays<std::int64_t>{wide.data()}, nullptr,
                               in_chunks_of(700));

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -74,7 +75,7 @@ std::size_t points_at_ends(const std::set<std::pair<double, double>>& points, co
 /// That triangles are counter-clockwise and empty among all images, that neighbours are right, and that
 /// cocircular polygons are fans.
 void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::size_t n) {
-  ASSERT_EQ("", verify_periodic(testing::triangulator(), mesh));
+  ASSERT_EQ("", verify(mesh));
   const Period& period = mesh.period;
   const bool is_across = std::isfinite(given.x), is_up = std::isfinite(given.y);
   if (is_across) {
@@ -455,7 +456,7 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
     const auto problem_of = [&](const auto& change) {
       PeriodicTriangulation wrong = right;
       change(wrong);
-      return verify_periodic(testing::triangulator(), wrong);
+      return verify(wrong);
     };
     EXPECT_EQ("", problem_of([](PeriodicTriangulation&) {}));
     const auto expect_problem = [&](const char* part, const auto& change) {
@@ -474,7 +475,8 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
       std::swap(mesh.triangles[1], mesh.triangles[2]);
       std::swap_ranges(&mesh.offsets[2], &mesh.offsets[4], &mesh.offsets[4]);
     });
-    expect_problem("no edge in common", [](Mesh& mesh) { std::swap(mesh.neighbors[0], mesh.neighbors[1]); });
+    expect_problem("not neighbors of each other",
+                   [](Mesh& mesh) { std::swap(mesh.neighbors[0], mesh.neighbors[1]); });
     expect_problem("has no neighbor", [](Mesh& mesh) {
       *std::find_if(mesh.neighbors.begin(), mesh.neighbors.end(), [](std::int32_t t) { return t >= 0; }) = -1;
     });
@@ -491,10 +493,10 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
   }
   // The other diagonal of a square.
   PeriodicTriangulation square = triangulated({0, 0}, {});
-  EXPECT_EQ("", verify_periodic(testing::triangulator(), square));
+  EXPECT_EQ("", verify(square));
   square.offsets = {0, 0, 0, 1, -1, 1, 0, 0, 1, 0, 0, 1};
   square.triangles.assign(6, 0);
-  EXPECT_NE("", verify_periodic(testing::triangulator(), square));
+  EXPECT_NE("", verify(square));
 }
 
 // Against the diagram of nine copies in the plane.

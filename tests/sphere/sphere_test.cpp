@@ -18,6 +18,7 @@
 
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/plane.hpp"
+#include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -131,7 +132,7 @@ SphericalTriangulation triangulated(const Numbers& points, SphereCoordinates coo
 std::string problem_of(const SphericalTriangulation& mesh, const Numbers& points,
                        SphereCoordinates coordinates) {
   const std::vector<std::size_t> offsets = {0, points.size() / (coordinates == kDirections ? 3 : 2)};
-  return verify_sphere(testing::triangulator(), points.data(), offsets, coordinates, mesh);
+  return verify(points.data(), offsets, coordinates, mesh);
 }
 
 struct Case {
@@ -273,7 +274,7 @@ TEST(Sphere, ManySetsAreEachAsAlone) {
   const SphericalTriangulation all =
       triangulate_sphere(testing::triangulator(), points.data(), offsets, kDirections);
   ASSERT_EQ(alone.size() + 1, all.triangle_offsets.size());
-  EXPECT_EQ("", verify_sphere(testing::triangulator(), points.data(), offsets, kDirections, all));
+  EXPECT_EQ("", verify(points.data(), offsets, kDirections, all));
   for (std::size_t s = 0; s < alone.size(); ++s) {
     const std::size_t first = all.triangle_offsets[s], last = all.triangle_offsets[s + 1];
     ASSERT_EQ(alone[s].triangles.size(), 3 * (last - first));

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/verify/exact.hpp"
 #include "mesh/records.h"
+#include "prove/exact.hpp"
 #include "tests/support/distribute_twin.hpp"
 
 namespace flaunay::testing {

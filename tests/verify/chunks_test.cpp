@@ -124,7 +124,7 @@ void expect_rejected(const Coordinates& coordinates, const Indices& triangles, c
 
 TEST(VertexIndex, NumbersIdsInOrder) {
   std::mt19937_64 random(1);
-  verification::VertexIndex index(5000);
+  prove::VertexIndex index(5000);
   for (const std::uint64_t first : {std::uint64_t{0}, std::uint64_t{77}, std::uint64_t{1} << 40}) {
     for (const std::uint64_t count : {1, 63, 64, 383, 384, 385, 5000}) {
       std::set<std::uint64_t> expected;
@@ -150,7 +150,7 @@ TEST(ExternalSorter, SortsWhatFitsAndWhatDoesNot) {
   std::mt19937_64 random(2);
   for (const std::size_t bytes : {1, 100, 1000, 100000}) {
     for (const std::size_t count : {0, 1, 2, 12, 13, 1000}) {
-      verification::ExternalSorter<std::uint64_t, std::less<std::uint64_t>> sorter("", bytes);
+      prove::ExternalSorter<std::uint64_t, std::less<std::uint64_t>> sorter("", bytes);
       std::vector<std::uint64_t> values(count), sorted;
       for (std::uint64_t& value : values) value = random() % 500;
       for (std::size_t i = 0; i < count; i += 7) sorter.add(&values[i], std::min<std::size_t>(7, count - i));

@@ -1,6 +1,4 @@
 // The checker must accept every right triangulation and reject every wrong one: all other tests rely on it.
-#include "app/verify/verify.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,8 @@
 #include <random>
 #include <string>
 
-#include "app/verify/exact.hpp"
+#include "prove/delaunay_proof.hpp"
+#include "prove/exact.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/sanitized.hpp"

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/verify.hpp"
 #include "predicates/power.h"
 #include "tests/support/errors.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -119,9 +120,7 @@ void expect_regular(const WeightedPoints& points, const WeightedTriangulation& m
     if (!by_brute_force) continue;
     ASSERT_EQ(hidden.count(numbers[k]), is_hidden(different, k)) << numbers[k];
   }
-  ASSERT_EQ(verify_weighted(testing::triangulator(), points.coordinates.data(), points.weights.data(), {0, n},
-                            mesh),
-            "");
+  ASSERT_EQ(verify(points.coordinates.data(), points.weights.data(), {0, n}, mesh), "");
   ASSERT_EQ(mesh.statistics.triangles, mesh.triangles.size() / 3);
   ASSERT_EQ(mesh.neighbors.size(), mesh.triangles.size());
   if (!mesh.triangles.empty()) {
@@ -390,8 +389,7 @@ TEST_F(WeightedTest, TheTriangleThatHidesAPointHasItBelow) {
 TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
   std::mt19937 random(9);
   const auto problem = [&](const WeightedPoints& points, const WeightedTriangulation& mesh) {
-    return verify_weighted(triangulator_, points.coordinates.data(), points.weights.data(),
-                           {0, points.size()}, mesh);
+    return verify(points.coordinates.data(), points.weights.data(), {0, points.size()}, mesh);
   };
   for (int round = 0; round < 60; ++round) {
     const WeightedPoints points =

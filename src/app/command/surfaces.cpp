@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include "app/command/chunks.hpp"
@@ -18,8 +20,8 @@ namespace flaunay::cli {
 namespace {
 
 // On the sphere, and with a period also the others.
-const std::vector<std::string> kCommon = {"--triangles", "--neighbors", "--duplicates", "--stats",
-                                          "--device",    "--index",     "--columns",    "--quiet"};
+const std::vector<std::string> kCommon = {"--output", "--triangles", "--neighbors", "--duplicates", "--stats",
+                                          "--device", "--index",     "--columns",   "--quiet"};
 const std::vector<std::string> kPeriodic = {"--period", "--offsets",      "--points",
                                             "--memory", "--chunk-points", "--scratch"};
 
@@ -38,6 +40,38 @@ research::Triangulation arrays_of(Mesh& mesh, std::size_t n) {
   result.neighbors = std::move(mesh.neighbors);
   result.representatives = std::move(mesh.representatives);
   return result;
+}
+
+/// The triangles in the plane, each once: corners in another period are points behind the others. Mesh files
+/// have no neighbours.
+void unfold(const Period& period, const std::vector<std::int32_t>& offsets, io::Points& points,
+            research::Triangulation& mesh) {
+  std::map<std::array<std::int32_t, 3>, std::int32_t> images;
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    const std::array<std::int32_t, 3> image = {mesh.triangles[c], offsets[2 * c], offsets[2 * c + 1]};
+    if (image[1] == 0 && image[2] == 0) continue;
+    const auto [place, is_new] = images.emplace(image, static_cast<std::int32_t>(points.size()));
+    if (is_new) {
+      // An infinite period has offsets of 0 only.
+      const auto moved = [&](std::size_t axis, double length) {
+        const double x = points.coordinates[2 * static_cast<std::size_t>(image[0]) + axis];
+        return image[1 + axis] == 0 ? x : x + image[1 + axis] * length;
+      };
+      points.coordinates.insert(points.coordinates.end(), {moved(0, period.x), moved(1, period.y)});
+    }
+    mesh.triangles[c] = place->second;
+  }
+}
+
+/// Points of the unit sphere in space, for files of meshes that have heights.
+io::Points in_space(const std::vector<double>& places) {
+  const std::vector<double> directions = directions_of(places);
+  io::Points points;
+  for (std::size_t i = 0; i < directions.size(); i += 3) {
+    points.coordinates.insert(points.coordinates.end(), {directions[i], directions[i + 1]});
+    points.heights.push_back(directions[i + 2]);
+  }
+  return points;
 }
 
 }  // namespace
@@ -62,6 +96,16 @@ bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
   if (!is_periodic && !request.is_sphere) return false;
   refuse_all_but(command, is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, kCommon);
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
+  const std::string output = command.get_option("--output")->as<std::string>();
+  const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh"};
+  if (request.is_sphere && !output.empty() &&
+      std::find(in_space.begin(), in_space.end(), io::ending_of(output)) == in_space.end()) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: triangles on the sphere are written to .obj, .off, .ply, .vtu, .msh and .npy",
+                    output));
+  }
+  if (in_chunks) refuse(command, "--output", "a triangulation in chunks writes arrays alone");
   if (in_chunks && request.is_sphere) refuse(command, "--device", "the sphere needs one device");
   if (in_chunks) refuse(command, "--points", "a triangulation in chunks does not write places");
   return true;
@@ -94,16 +138,20 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
   progress.update("triangulating");
   research::Triangulation mesh;
   std::vector<std::int32_t> offsets;
+  std::vector<double> on_sphere;  // places
+  Period period;
   const auto named = [&](const auto& work) { return naming_files({{"point ", task.input}}, work); };
   if (request.is_sphere) {
     SphericalTriangulation found =
         named([&] { return triangulate_sphere(triangulator, coordinates, n, SphereCoordinates::degrees); });
+    on_sphere = std::move(found.places);
     mesh = arrays_of(found, n);
   } else {
     PeriodicTriangulation found = named([&] {
       return triangulate_periodic(triangulator, coordinates, n, {request.period[0], request.period[1]});
     });
     offsets.assign(found.offsets.begin(), found.offsets.end());
+    period = found.period;
     points.coordinates = std::move(found.places);
     mesh = arrays_of(found, n);
   }
@@ -113,6 +161,17 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
     constexpr std::size_t kColumns = 6;
     if (!request.offsets.empty()) io::write_npy(outputs, request.offsets, offsets, kColumns);
     if (!places.empty()) io::write_points(outputs, places, points);
+    const std::string& output = task.results.mesh;
+    if (output.empty()) return;
+    if (request.is_sphere) {
+      io::write_mesh(outputs, output, {in_space(on_sphere), mesh});
+    } else {
+      io::Points images = points;
+      research::Triangulation planar;
+      planar.triangles = mesh.triangles;
+      unfold(period, offsets, images, planar);
+      io::write_mesh(outputs, output, {images, planar});
+    }
   };
   write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
   if (!task.quiet)

@@ -1,12 +1,16 @@
-#include "app/verify/verify.hpp"
+
+#include "flaunay/verify.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,6 +20,7 @@
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/command/weighted.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
@@ -23,16 +28,21 @@
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
 #include "app/verify/chunks.hpp"
-#include "app/verify/constrained.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "files/file.hpp"
 #include "host/memory/system_memory.hpp"
+#include "prove/constrained_proof.hpp"
+#include "prove/periodic_proof.hpp"
+#include "prove/planar_proof.hpp"
 
 namespace flaunay::cli {
 
 namespace {
 
 struct VerifyRequest {
+  bool is_weighted = false, is_sphere = false;
+  std::vector<double> period;  // x and y; empty: none
+  std::string offsets;         // of corners, with a period
   std::string points;
   io::Columns columns;
   std::string triangles;
@@ -47,6 +57,7 @@ struct VerifyRequest {
   std::string constraint_edges;
 
   bool is_refined() const { return min_angle > 0 || max_area > 0 || conforming; }
+  bool is_in_space() const { return is_weighted || is_sphere || !period.empty(); }
 };
 
 /// 0 if it is no regular file.
@@ -154,7 +165,124 @@ Checked verify_with_constraints(const VerifyRequest& request, Progress& progress
   return {report, stopwatch.seconds(), how};
 }
 
+/// The arrays that a proof needs, as triangles alone have them.
+template <typename Mesh>
+void read_rows(const VerifyRequest& request, std::size_t n, Mesh& mesh) {
+  mesh.triangles = io::read_triangles(request.triangles);
+  for (const std::int32_t v : mesh.triangles) {
+    if (static_cast<std::size_t>(v) >= n) {
+      throw Error(ErrorKind::input, fmt::format("{}: {} is none of the {} points", request.triangles, v, n));
+    }
+  }
+  mesh.triangle_offsets = {0, mesh.triangles.size() / 3};
+  if (!request.neighbors.empty()) mesh.neighbors = io::read_neighbors(request.neighbors);
+}
+
+/// For each point the smallest index of one with the same key.
+template <typename Key>
+std::vector<std::int32_t> representatives_by(std::size_t n, const Key& key) {
+  std::vector<std::int32_t> order(n), representatives(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_equal = i > 0 && !(key(order[i - 1]) < key(order[i]));
+    representatives[order[i]] = is_equal ? representatives[order[i - 1]] : order[i];
+  }
+  return representatives;
+}
+
+/// Points that no triangle has are hidden, unless they are represented by others; and the hull is where
+/// triangles have no neighbours.
+std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
+  const auto [points, weights] = read_weighted(request.points, request.columns);
+  n = points.size();
+  WeightedTriangulation mesh;
+  read_rows(request, n, mesh);
+  progress.update("verifying");
+  const std::vector<double>& at = points.coordinates;
+  mesh.representatives = representatives_by(n, [&, &weights = weights](std::int32_t i) {
+    return std::tuple(at[2 * i], at[2 * i + 1], weights[i]);
+  });
+  const std::vector<std::int32_t> made = prove::neighbors_of(mesh.triangles, n);
+  if (mesh.neighbors.empty()) mesh.neighbors = made;
+  std::vector<std::int32_t> next(n, -1);
+  std::vector<char> is_used(n, 0);
+  std::int32_t first = -1;
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    is_used[mesh.triangles[c]] = 1;
+    if (made[c] >= 0) continue;
+    const std::int32_t from = mesh.triangles[c - c % 3 + (c + 1) % 3];
+    next[from] = mesh.triangles[c - c % 3 + (c + 2) % 3];
+    const auto place = [&](std::int32_t v) { return std::pair(at[2 * v], at[2 * v + 1]); };
+    if (first < 0 || place(from) < place(first)) first = from;
+  }
+  for (std::int32_t v = first; v >= 0 && mesh.hull.size() <= n; v = next[v] == first ? -1 : next[v])
+    mesh.hull.push_back(v);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto own = static_cast<std::int32_t>(i);
+    if (is_used[i] == 0 && mesh.representatives[i] == own) mesh.hidden.push_back(own);
+  }
+  // Which points of a line are hidden, triangles do not say.
+  if (mesh.triangles.empty()) return flaunay::verify(at.data(), n, {}).problem;
+  mesh.hull_offsets = {0, mesh.hull.size()};
+  return flaunay::verify(at.data(), weights.data(), {0, n}, mesh);
+}
+
+std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progress& progress) {
+  PeriodicTriangulation mesh;
+  mesh.places = io::read_points(request.points, request.columns).coordinates;
+  n = mesh.places.size() / 2;
+  mesh.period = naming_files({{"point ", request.points}}, [&] {
+    return take_to_places({request.period[0], request.period[1]}, mesh.places.data(), n);
+  });
+  mesh.offsets = io::read_corner_offsets(request.offsets);
+  read_rows(request, n, mesh);
+  if (mesh.offsets.size() != 2 * mesh.triangles.size()) {
+    throw Error(ErrorKind::input, fmt::format("{}: there are {} rows, but {} triangles", request.offsets,
+                                              mesh.offsets.size() / 6, mesh.triangles.size() / 3));
+  }
+  mesh.point_offsets = {0, n};
+  progress.update("verifying");
+  mesh.representatives = representatives_by(
+      n, [&](std::int32_t i) { return std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]); });
+  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, mesh.offsets);
+  return flaunay::verify(mesh);
+}
+
+std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Progress& progress) {
+  const io::Points points = io::read_points(request.points, request.columns);
+  n = points.size();
+  SphericalTriangulation mesh;
+  read_rows(request, n, mesh);
+  mesh.point_offsets = {0, n};
+  progress.update("verifying");
+  mesh.places = naming_files({{"point ", request.points}}, [&] {
+    return places_on_sphere(points.coordinates.data(), n, SphereCoordinates::degrees);
+  });
+  mesh.representatives = representatives_by(
+      n, [&](std::int32_t i) { return std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]); });
+  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, n);
+  const auto open = std::find(mesh.neighbors.begin(), mesh.neighbors.end(), -1);
+  if (open != mesh.neighbors.end()) {
+    return fmt::format("triangle {} has no neighbor at an edge", (open - mesh.neighbors.begin()) / 3);
+  }
+  return flaunay::verify(points.coordinates.data(), {0, n}, SphereCoordinates::degrees, mesh);
+}
+
+Checked verify_in_space(const VerifyRequest& request, Progress& progress) {
+  const Stopwatch stopwatch;
+  Checked checked;
+  checked.report.problem = request.is_weighted ? problem_of_weighted(request, checked.report.points, progress)
+                           : request.is_sphere ? problem_on_sphere(request, checked.report.points, progress)
+                                               : problem_on_torus(request, checked.report.points, progress);
+  checked.report.ok = checked.report.problem.empty();
+  checked.seconds = stopwatch.seconds();
+  return checked;
+}
+
 Checked check(const VerifyRequest& request, Progress& progress) {
+  if (request.is_in_space()) return verify_in_space(request, progress);
   if (request.has_constraints || request.is_refined()) return verify_with_constraints(request, progress);
   const std::uint64_t memory = memory_for_chunks(request);
   return memory > 0 ? verify_in_chunks(request, memory, progress) : verify_in_memory(request, progress);
@@ -172,7 +300,9 @@ int verify(const VerifyRequest& request) {
   if (!report.ok) {
     report_error("flaunay", kFailure, fmt::format("{}: {}", request.triangles, report.problem));
   }
-  if (!request.quiet) {
+  if (!request.quiet && request.is_in_space()) {
+    print(fmt::format("{}: {} points, {:.3f} s\n", report.ok ? "right" : "wrong", report.points, seconds));
+  } else if (!request.quiet) {
     print(
         fmt::format("{}: {} points, {} distinct, {} triangles, {} hull vertices, {} cocircular edges; "
                     "{} exact evaluations, {:.3f} s{}\n",
@@ -180,6 +310,20 @@ int verify(const VerifyRequest& request) {
                     report.hull_vertices, report.cocircular_edges, report.exact_evaluations, seconds, how));
   }
   return report.ok ? kSuccess : kFailure;
+}
+
+/// Whether the points lie in another space than the plane. Throws Error(usage) for options that do not go
+/// together.
+void check_space(const CLI::App& command, const VerifyRequest& request) {
+  const bool is_periodic = !request.period.empty();
+  if (!is_periodic) refuse(command, "--offsets", "needs --period");
+  if (!request.is_in_space()) return;
+  const std::string space = request.is_weighted ? "--weighted" : request.is_sphere ? "--sphere" : "--period";
+  refuse_all_but(command,
+                 is_periodic ? std::vector<std::string>{space, "--offsets"} : std::vector<std::string>{space},
+                 {"--neighbors", "--columns", "--quiet"});
+  if (is_periodic && request.offsets.empty())
+    throw Error(ErrorKind::usage, "--period needs --offsets, as triangulate writes them");
 }
 
 void refuse_chunks(const CLI::App& command) {
@@ -220,6 +364,19 @@ void add_verify(CLI::App& app, Action& action) {
       ->required();
   add_columns(command, request->columns, "x and y");
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
+  command->add_flag("--weighted", request->is_weighted,
+                    "Each point has a weight behind x and y: check the regular triangulation");
+  command->add_flag(
+      "--sphere", request->is_sphere,
+      "The points are longitudes and latitudes in degrees: check the triangulation on the sphere");
+  command
+      ->add_option("--period", request->period,
+                   "Check the triangulation of a plane that repeats itself after LX in x and LY in y, or inf")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("LX,LY");
+  add_path(command, "--offsets", request->offsets,
+           "With --period: the corners' periods, as triangulate writes them: .npy");
   add_domain_options(command, request->constraints);
   add_path(command, "--constraint-edges", request->constraint_edges,
            "Constraint edges to check too, as triangulate writes them: .npy");
@@ -240,7 +397,8 @@ void add_verify(CLI::App& app, Action& action) {
   command->callback([request, command, &action] {
     constrained::quality_bounds(request->min_angle);
     constrained::check_areas(&request->max_area, 1, "--max-area");
-    request->has_constraints = has_constraints(*command, *request);
+    check_space(*command, *request);
+    request->has_constraints = !request->is_in_space() && has_constraints(*command, *request);
     action = [request] { return verify(*request); };
   });
   command->footer(

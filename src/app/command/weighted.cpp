@@ -32,6 +32,18 @@ bool asks_for_weighted(const CLI::App& command, const WeightedRequest& request) 
   return true;
 }
 
+WeightedPoints read_weighted(const std::string& path, const io::Columns& columns) {
+  io::Scan file({path}, {}, "", columns, "weight");
+  file.survey([](double) {});
+  const auto n = static_cast<std::size_t>(file.size());
+  WeightedPoints read;
+  read.points.coordinates.resize(2 * n);
+  read.weights.resize(n);
+  file.read(0, n, read.points.coordinates.data());
+  file.read_values(0, n, read.weights.data());
+  return read;
+}
+
 int triangulate_weighted(const Task& task, const WeightedRequest& request) {
   OutputFiles outputs({task.input});
   announce(outputs, task.results);
@@ -43,14 +55,8 @@ int triangulate_weighted(const Task& task, const WeightedRequest& request) {
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Scan file({task.input}, {}, "", task.columns, "weight");
-  file.survey([](double) {});
-  const auto n = static_cast<std::size_t>(file.size());
-  io::Points points;
-  points.coordinates.resize(2 * n);
-  std::vector<double> weights(n);
-  file.read(0, n, points.coordinates.data());
-  file.read_values(0, n, weights.data());
+  const auto [points, weights] = read_weighted(task.input, task.columns);
+  const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(task.index, n, task.results);
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "app/command/results.hpp"
 
@@ -18,6 +19,13 @@ void add_weighted_options(CLI::App* command, WeightedRequest& request);
 
 /// Whether points have weights. Throws Error(usage) for options that do not go together.
 bool asks_for_weighted(const CLI::App& command, const WeightedRequest& request);
+
+struct WeightedPoints {
+  io::Points points;
+  std::vector<double> weights;
+};
+/// Reads points and weights. Throws Error(input) that names the place.
+WeightedPoints read_weighted(const std::string& path, const io::Columns& columns);
 
 /// Reads, triangulates and writes. Returns the exit code.
 int triangulate_weighted(const Task& task, const WeightedRequest& request);

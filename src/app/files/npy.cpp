@@ -343,6 +343,22 @@ std::vector<std::int32_t> read_neighbors(const std::string& path) {
   return read_npy_rows(path, -1, "neighbour");
 }
 
+std::vector<std::int8_t> read_corner_offsets(const std::string& path) {
+  check_ending(path, ".npy");
+  InputFile file(path, "a NumPy array of shape (m, 6)");
+  const Layout layout = {"m", 6, {"<i4", "<i8", "|i1"}};
+  Array array(path, file, layout);
+  const auto check = [&](auto value, std::size_t i) {
+    if (-1 <= value && value <= 1) return;
+    fail(path, "row {} has offset {}, but offsets are -1, 0 or 1", i / 6, +value);
+  };
+  const std::string& dtype = array.dtype();
+  const std::vector<std::int32_t> values = dtype == "<i4"   ? indices_of<std::int32_t>(array, check)
+                                           : dtype == "<i8" ? indices_of<std::int64_t>(array, check)
+                                                            : indices_of<std::int8_t>(array, check);
+  return {values.begin(), values.end()};
+}
+
 std::vector<std::int32_t> read_npy_segments(const std::string& path, std::size_t points) {
   InputFile file(path, "a NumPy array of shape (s, 2)");
   const Layout layout = {"s", 2, {"<i4", "<i8", "<u4", "<u8", "<i2", "<u2", "|i1", "|u1"}};

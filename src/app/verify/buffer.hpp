@@ -7,7 +7,7 @@
 
 #include "host/system/pages.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Memory for values that are written before they are read. Pages that are not used cost nothing.
 template <typename Value>
@@ -37,4 +37,4 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

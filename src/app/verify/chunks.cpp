@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "app/verify/buffer.hpp"
-#include "app/verify/describe.hpp"
 #include "app/verify/open_edges.hpp"
 #include "app/verify/vertex_index.hpp"
 #include "app/verify/window.hpp"
 #include "files/scratch.hpp"
 #include "host/native/threads.hpp"
+#include "prove/describe.hpp"
 
 namespace flaunay {
-namespace verification {
+namespace prove {
 namespace {
 
 /// A point, and whether a row uses it.
@@ -471,7 +471,7 @@ class ChunkChecker {
 };
 
 }  // namespace
-}  // namespace verification
+}  // namespace prove
 
 VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::uint64_t rows, int threads) {
   constexpr std::uint64_t kLeast = std::uint64_t{64} << 20, kFixed = std::uint64_t{24} << 20;
@@ -482,7 +482,7 @@ VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::
   if (memory_bytes < kLeast) {
     throw Error(ErrorKind::usage, fmt::format("a check needs {} MiB of memory at least", kLeast >> 20));
   }
-  using verification::Window;
+  using prove::Window;
   const std::uint64_t memory = memory_bytes - kFixed;
   const std::uint64_t for_windows = memory / 8 * 5;
   VerifySizes sizes;
@@ -504,7 +504,7 @@ VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::
 
 VerifyChunksReport verify_chunks(PointSource& points, io::RowSource& triangles, io::RowSource* neighbors,
                                  const VerifySizes& sizes, const VerifyChunksOptions& options) {
-  return verification::ChunkChecker(points, triangles, neighbors, sizes, options).run();
+  return prove::ChunkChecker(points, triangles, neighbors, sizes, options).run();
 }
 
 }  // namespace flaunay

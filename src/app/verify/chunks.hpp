@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/files/npy.hpp"
-#include "app/verify/verify.hpp"
 #include "flaunay/chunks.hpp"
+#include "prove/delaunay_proof.hpp"
 
 namespace flaunay {
 

@@ -12,7 +12,7 @@
 #include "app/verify/buffer.hpp"
 #include "files/scratch.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Record: a plain struct. Less: a strict weak order, a function object without state.
 template <typename Record, typename Less>
@@ -111,4 +111,4 @@ class ExternalSorter {
   std::mutex mutex_;
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

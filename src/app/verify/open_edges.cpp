@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 namespace {
 
 std::string describe_triangle_of(const OpenEdge& edge) {
@@ -122,4 +122,4 @@ void check_boundary(Boundary& boundary, ExactPredicates& predicates) {
   check_corner(*before, *first);
 }
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <string>
 
-#include "app/verify/describe.hpp"
-#include "app/verify/exact.hpp"
 #include "app/verify/external_sort.hpp"
+#include "prove/describe.hpp"
+#include "prove/exact.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Half-edge 3 t + k is the side of triangle t opposite to its corner k: from corner k + 1 to corner k + 2.
 struct OpenEdge {
@@ -59,4 +59,4 @@ AcrossCounts check_across(OpenEdges& edges, bool has_neighbors, Boundary& bounda
 /// Checks that the half-edges are one convex counter-clockwise polygon. Throws a Violation.
 void check_boundary(Boundary& boundary, ExactPredicates& predicates);
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

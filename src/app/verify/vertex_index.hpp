@@ -7,7 +7,7 @@
 
 #include "app/verify/buffer.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// A set of ids of a range, with the number of smaller ids in the set for each of them. A block of 384 ids
 /// fills a cache line, so that each question reads one.
@@ -90,4 +90,4 @@ class VertexIndex {
   std::uint64_t first_ = 0;
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

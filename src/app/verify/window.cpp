@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 Window::Window(std::uint64_t most_rows, std::size_t piece_rows)
     : corners(3 * most_rows),
@@ -82,4 +82,4 @@ void Window::check_pair(std::uint32_t half_edge, std::uint32_t twin) {
   ++matched_;
 }
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

@@ -6,12 +6,12 @@
 
 #include "app/files/npy.hpp"
 #include "app/verify/buffer.hpp"
-#include "app/verify/describe.hpp"
-#include "app/verify/exact.hpp"
-#include "app/verify/half_edges.hpp"
 #include "app/verify/open_edges.hpp"
+#include "prove/describe.hpp"
+#include "prove/exact.hpp"
+#include "prove/half_edges.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Arrays for one window after the other. Vertices are named by their numbers in the window.
 class Window {
@@ -64,4 +64,4 @@ class Window {
   ExactPredicates predicates_;
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

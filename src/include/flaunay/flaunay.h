@@ -910,6 +910,14 @@ FLAUNAY_API flaunay_status flaunay_edge_circles(const double* coordinates, size_
 FLAUNAY_API flaunay_status flaunay_same_circles(const double* coordinates, size_t n, const int32_t* triangles,
                                                 size_t t, const int32_t* neighbors, int32_t* first);
 
+/// Checks exactly that a mesh is the canonical Delaunay triangulation of each of its sets, and that all of
+/// its arrays fit; if not, it is FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. The check has
+/// arithmetic and predicates of its own. mesh: of any call, or the caller's arrays; its statistics are not
+/// read. coordinates: of its points. offsets: its set_count sets, as for flaunay_triangulate; NULL: one set.
+/// FLAUNAY_ERROR_USAGE for arrays whose indices are out of range. O(n log n).
+FLAUNAY_API flaunay_status flaunay_mesh_verify(const flaunay_mesh* mesh, const double* coordinates,
+                                               const size_t* offsets);
+
 // ---- Constrained triangulations
 
 /// Triangulates points with segments as edges: the canonical constrained Delaunay triangulation, a function
@@ -946,6 +954,21 @@ FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
 /// How its refinement went.
 FLAUNAY_API const flaunay_refinement_report* flaunay_constrained_refinement(
     const flaunay_constrained* result);
+/// As flaunay_mesh_verify, for what flaunay_triangulate_constrained made of these coordinates, offsets and
+/// constraints: segments are edges, the others are Delaunay, and just those triangles are there which were to
+/// be kept. Of a refined mesh: no triangle has a smaller angle or a larger area than asked for, but those
+/// that the report lists. report: NULL if nothing was refined. O((n + s) log (n + s)) for s segments.
+FLAUNAY_API flaunay_status flaunay_mesh_verify_constrained(const flaunay_mesh* mesh,
+                                                           const flaunay_constrained_arrays* arrays,
+                                                           const flaunay_refinement_report* report,
+                                                           const double* coordinates, const size_t* offsets,
+                                                           const flaunay_constraints* constraints);
+/// As flaunay_mesh_verify_constrained, for what flaunay_triangulate_polygons made. Of a map, it is not
+/// checked which of several polygons a triangle is given to.
+FLAUNAY_API flaunay_status flaunay_mesh_verify_polygons(const flaunay_mesh* mesh,
+                                                        const flaunay_constrained_arrays* arrays,
+                                                        const flaunay_refinement_report* report,
+                                                        const flaunay_polygons* polygons);
 
 // ---- Triangulations that change
 
@@ -1498,9 +1521,9 @@ FLAUNAY_API const size_t* flaunay_spherical_triangle_offsets(const flaunay_spher
 FLAUNAY_API flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical,
                                                         double* directions);
 /// Checks exactly that this is the canonical triangulation of these points; if not, it is
-/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. points, coordinates: as it was made from. O(n).
-FLAUNAY_API flaunay_status flaunay_spherical_verify(flaunay_triangulator* triangulator,
-                                                    const flaunay_spherical* spherical, const double* points,
+/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. points, coordinates: as it was made from. O(n
+/// log n).
+FLAUNAY_API flaunay_status flaunay_spherical_verify(const flaunay_spherical* spherical, const double* points,
                                                     int coordinates);
 
 /// The arrays of triangulations on the sphere in device memory, as bits, with their types and their sizes in
@@ -1635,8 +1658,7 @@ FLAUNAY_API flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangul
 
 /// Checks exactly that this is the canonical triangulation of its places; if not, it is
 /// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
-FLAUNAY_API flaunay_status flaunay_periodic_verify(flaunay_triangulator* triangulator,
-                                                   const flaunay_periodic* periodic);
+FLAUNAY_API flaunay_status flaunay_periodic_verify(const flaunay_periodic* periodic);
 
 /// The arrays of a triangulation on a torus or a cylinder in device memory, as bits, with their types and the
 /// sizes in bytes that buffers need for n points.
@@ -1749,8 +1771,7 @@ FLAUNAY_API flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulato
                                                              const double* points, int32_t* triangles);
 /// Checks exactly that this is the canonical regular triangulation of these points; if not, it is
 /// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
-FLAUNAY_API flaunay_status flaunay_weighted_verify(flaunay_triangulator* triangulator,
-                                                   const flaunay_weighted* weighted, const double* points,
+FLAUNAY_API flaunay_status flaunay_weighted_verify(const flaunay_weighted* weighted, const double* points,
                                                    const double* weights);
 /// Computes the power cells of one set, clipped to a convex polygon, as flaunay_voronoi_clip does without
 /// weights: of each point the places whose squared distance less the weight is least for it.

@@ -137,12 +137,6 @@ FLAUNAY_API void triangulate_periodic(Triangulator& triangulator, const DevicePo
 FLAUNAY_API ClippedVoronoi periodic_cells(Triangulator& triangulator,
                                           const PeriodicTriangulation& triangulation);
 
-/// Checks a triangulation exactly: that it is the canonical one of its places. Returns what is wrong; nothing
-/// if it is right. Shares predicates with what makes triangulations, and nothing else. Throws Error(usage)
-/// for arrays that are none's. O(n log n).
-FLAUNAY_API std::string verify_periodic(Triangulator& triangulator,
-                                        const PeriodicTriangulation& triangulation);
-
 /// Answers queries on a torus or a cylinder with one set of points. Queries are any places of the plane, and
 /// are rounded to places as points are. They are answered in the plane, with images of points around the box.
 class FLAUNAY_API PeriodicLocator {

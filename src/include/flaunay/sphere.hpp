@@ -76,14 +76,10 @@ FLAUNAY_API void triangulate_sphere(Triangulator& triangulator, const DevicePoin
                                     SphereCoordinates coordinates, DeviceSphericalTriangulation& result,
                                     const Enqueue& enqueue = own_queue());
 
-/// Checks a triangulation exactly: that places are those of the points, that triangles and neighbours are
-/// those of the hull, with the canonical choice at ties, and that its other arrays fit. Returns what is
-/// wrong; nothing if it is right. Shares places and predicates with what makes triangulations, and nothing
-/// else. Errors for points are those of triangulate_sphere; Error(usage) also for arrays that are none's.
-/// O(n).
-FLAUNAY_API std::string verify_sphere(Triangulator& triangulator, const double* points,
-                                      const std::vector<std::size_t>& offsets, SphereCoordinates coordinates,
-                                      const SphericalTriangulation& triangulation);
+/// Returns x and y per point: its place, as SphericalTriangulation::places has it. Throws what
+/// triangulate_sphere throws for points. O(n).
+FLAUNAY_API std::vector<double> places_on_sphere(const double* points, std::size_t n,
+                                                 SphereCoordinates coordinates);
 
 /// Returns x y z per place: unit vectors, rounded.
 FLAUNAY_API std::vector<double> directions_of(const std::vector<double>& places);

@@ -43,12 +43,6 @@ FLAUNAY_API std::vector<std::int32_t> hiding_triangles(Triangulator& triangulato
                                                        const std::vector<std::size_t>& offsets,
                                                        const WeightedTriangulation& triangulation);
 
-/// Checks a triangulation exactly: that it is the regular one, with the canonical choice at ties, and that
-/// its other arrays fit. Returns what is wrong, or nothing. Errors as of hiding_triangles. O(n log n).
-FLAUNAY_API std::string verify_weighted(Triangulator& triangulator, const double* points,
-                                        const double* weights, const std::vector<std::size_t>& offsets,
-                                        const WeightedTriangulation& triangulation);
-
 /// Computes the power cells of n points, clipped to a convex polygon: of each point the places whose power,
 /// the squared distance less the weight, is least for it. Vertices, areas and centroids are rounded; polygons
 /// are simple, and tile. Points without a cell in the polygon, such as hidden ones, have no vertices.

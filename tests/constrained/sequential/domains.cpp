@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 
 namespace flaunay::sequential {
 namespace {

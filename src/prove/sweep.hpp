@@ -6,9 +6,9 @@
 #include <set>
 #include <vector>
 
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Distinct places in lexicographic order.
 struct Place {
@@ -122,4 +122,4 @@ class Sweep {
   std::size_t face_count_ = 1;
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

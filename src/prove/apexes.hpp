@@ -9,9 +9,9 @@
 #include <numeric>
 #include <vector>
 
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Places of points that refinement has put on edges and rounded, in units in which the largest coordinate is
 /// about 1, so that their squares are doubles.
@@ -169,4 +169,4 @@ class Apexes {
   std::vector<std::vector<std::int32_t>> junctions_;  // by chain: points that are on others, too; ascending
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

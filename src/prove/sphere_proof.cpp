@@ -24,139 +24,127 @@
 // If no triangle turns left, all edges must be flat. So triangles that are joined lie on one circle through
 // the pole, where orientation on that takes the place of turns: left ones are those of one side of the
 // circle's polygon, and the others are the same in reverse.
-#include "derived/sphere/verify.hpp"
+#include "prove/sphere_proof.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <utility>
 
-#include "derived/sphere/predicates.hpp"
-#include "geometry/problem.hpp"
+#include "prove/exact.hpp"
+#include "prove/rows.hpp"
 
-namespace flaunay::sphere {
+namespace flaunay::prove {
 namespace {
 
-using geometry::require;
-using geometry::operator==;
+// x and y in the plane of places; both are infinite at the pole.
+using SpherePlace = const double*;
+
+bool is_pole(SpherePlace p) { return std::isinf(p[0]); }
+bool is_same(SpherePlace a, SpherePlace b) { return a[0] == b[0] && a[1] == b[1]; }
+// The canonical order: the pole first, then by x, then by y.
+bool comes_first(SpherePlace a, SpherePlace b) { return !is_pole(b) && (is_pole(a) || comes_before(a, b)); }
 
 // How a triangle lies in the plane. Straight ones, and those with the pole, follow the canonical order up to
 // rotation, or go against it.
 enum Kind : std::int8_t { kLeft = 1, kRight = -1, kAlong = 2, kAgainst = -2 };
 
-Kind kind_of(Point a, Point b, Point c) {
-  if (!is_pole(a) && !is_pole(b) && !is_pole(c)) {
-    const int turn = kernel::orient_sign(a, b, c, ORIENT_BOUND);
-    if (turn != 0) return turn > 0 ? kLeft : kRight;
-  }
-  return comes_first(a, b) + comes_first(b, c) + comes_first(c, a) == 2 ? kAlong : kAgainst;
-}
-
-// 1 if d lies outside of the plane in space through a, b, c, which are counter-clockwise as seen from there;
-// -1 if inside, 0 if the four lie on one circle.
-int outside(Point a, Point b, Point c, Point d) {
-  Point p[] = {a, b, c, d};
-  if (p[2] == p[3]) return 0;
-  for (int k = 0; k < 3; ++k) {
-    if (!is_pole(p[k])) continue;
-    std::swap(p[k], p[3]);
-    std::swap(p[(k + 1) % 3], p[(k + 2) % 3]);
-  }
-  return is_pole(p[3]) ? -kernel::orient_sign(p[0], p[1], p[2], ORIENT_BOUND)
-                       : kernel::circle_sign(p[0], p[1], p[2], p[3], CIRCLE_BOUND);
-}
-
-class Checker {
+class SphereProof : RowsProof {
  public:
-  Checker(host::Runtime& runtime, const SphericalTriangulation& mesh)
-      : runtime_(runtime),
+  explicit SphereProof(const SphericalTriangulation& mesh)
+      : RowsProof({mesh.triangles, mesh.neighbors, mesh.representatives, mesh.point_offsets,
+                   mesh.triangle_offsets}),
         mesh_(mesh),
         kinds_(mesh.triangles.size() / 3),
         next_(mesh.representatives.size(), -1) {}
 
-  void check_set(std::size_t s) {
-    first_ = mesh_.point_offsets[s];
-    last_ = mesh_.point_offsets[s + 1];
-    begin_ = mesh_.triangle_offsets[s];
-    end_ = mesh_.triangle_offsets[s + 1];
-    const std::size_t points = check_representatives(), expected = points > 2 ? 2 * points - 4 : 0;
-    require(end_ - begin_ == expected, "set {} has {} triangles, not {}", s, end_ - begin_, expected);
-    if (expected == 0) return;
-    for_each(runtime_, expected, [&](std::size_t i) { kinds_[begin_ + i] = checked_kind(begin_ + i); });
-    const auto of_set = kinds_.begin() + static_cast<std::ptrdiff_t>(begin_);
-    const auto end = of_set + static_cast<std::ptrdiff_t>(expected);
-    is_flat_ = std::find(of_set, end, kLeft) == end;
-    for_each(runtime_, expected, [&](std::size_t i) { check_edges(begin_ + i); });
-    check_border();
+  void run() {
+    for (std::size_t s = 0; s < sets(); ++s) check_set(s);
   }
 
  private:
-  static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-  Point place(std::size_t i) const { return place_at(mesh_.places, i); }
-  Point place(std::int32_t v) const { return place(index(v)); }
-  const std::int32_t* corners(std::size_t t) const { return &mesh_.triangles[3 * t]; }
-  bool represents_itself(std::size_t i) const { return index(mesh_.representatives[i]) == i; }
+  SpherePlace place(std::int64_t i) const { return &mesh_.places[2 * index(i)]; }
 
-  /// Returns how many points represent themselves, and notes whether one is at the pole. That the places of
-  /// these are different is seen here if there are two, and else by the triangles.
-  std::size_t check_representatives() {
-    std::size_t count = 0;
+  void check_set(std::size_t s) {
+    enter(s);
+    check_representatives([&](std::size_t i) {
+      const SpherePlace at = place(static_cast<std::int64_t>(i));
+      return std::pair(at[0], at[1]);
+    });
+    std::size_t points = 0;
     has_pole_ = false;
     for (std::size_t i = first_; i < last_; ++i) {
-      const std::size_t r = index(mesh_.representatives[i]);
-      const bool is_right = r >= first_ && r <= i && represents_itself(r) && place(r) == place(i) &&
-                            (r != i || i == first_ || !(place(i) == place(first_)));
-      require(is_right, "point {} has a wrong representative", i);
-      if (r != i) continue;
-      ++count;
-      has_pole_ |= is_pole(place(i));
+      if (!represents_itself(i)) continue;
+      ++points;
+      has_pole_ |= is_pole(place(static_cast<std::int64_t>(i)));
     }
-    return count;
+    const std::size_t expected = points > 2 ? 2 * points - 4 : 0;
+    require(end_ - begin_ == expected, "set {} has {} triangles, not {}", s, end_ - begin_, expected);
+    if (expected == 0) return;
+    for (std::size_t t = begin_; t < end_; ++t) kinds_[t] = checked_kind(t);
+    const auto of_set = kinds_.begin() + static_cast<std::ptrdiff_t>(begin_);
+    const auto end = of_set + static_cast<std::ptrdiff_t>(expected);
+    is_flat_ = std::find(of_set, end, kLeft) == end;
+    for (std::size_t t = begin_; t < end_; ++t) check_edges(t);
+    check_border();
   }
 
-  Kind checked_kind(std::size_t t) const {
-    const std::int32_t* const v = corners(t);
-    Point p[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      require(index(v[k]) >= first_ && index(v[k]) < last_ && represents_itself(index(v[k])),
-              "triangle {} has a corner {} of another set, or that another point represents", t, v[k]);
-      p[k] = place(v[k]);
+  Kind kind_of(SpherePlace a, SpherePlace b, SpherePlace c) {
+    if (!is_pole(a) && !is_pole(b) && !is_pole(c)) {
+      const int turn = predicates_.orient2d(a, b, c);
+      if (turn != 0) return turn > 0 ? kLeft : kRight;
     }
+    return comes_first(a, b) + comes_first(b, c) + comes_first(c, a) == 2 ? kAlong : kAgainst;
+  }
+
+  // 1 if d lies outside of the plane in space through a, b, c, which are counter-clockwise as seen from
+  // there; -1 if inside, 0 if the four lie on one circle.
+  int outside(SpherePlace a, SpherePlace b, SpherePlace c, SpherePlace d) {
+    SpherePlace p[] = {a, b, c, d};
+    if (is_same(c, d)) return 0;
+    for (int k = 0; k < 3; ++k) {
+      if (!is_pole(p[k])) continue;
+      std::swap(p[k], p[3]);
+      std::swap(p[(k + 1) % 3], p[(k + 2) % 3]);
+    }
+    return is_pole(p[3]) ? -predicates_.orient2d(p[0], p[1], p[2])
+                         : predicates_.incircle(p[0], p[1], p[2], p[3]);
+  }
+
+  Kind checked_kind(std::size_t t) {
+    const std::int32_t* const v = corners(t);
+    for (std::size_t k = 0; k < 3; ++k) check_vertex(v[k], t);
     require(v[0] < v[1] && v[0] < v[2], "triangle {} does not begin with its smallest index", t);
-    require(!(p[0] == p[1] || p[1] == p[2] || p[2] == p[0]), "triangle {} has two equal corners", t);
-    return kind_of(p[0], p[1], p[2]);
+    require(v[1] != v[2], "triangle {} has two equal corners", t);
+    return kind_of(place(v[0]), place(v[1]), place(v[2]));
   }
 
-  void check_edges(std::size_t t) const {
+  void check_edges(std::size_t t) {
     const std::int32_t* const v = corners(t);
-    const Kind kind = kinds_[t];
     const bool has_pole = std::any_of(v, v + 3, [&](std::int32_t i) { return is_pole(place(i)); });
-    const bool fits = is_flat_ ? std::abs(kind) == kAlong : kind == kLeft || has_pole || !has_pole_;
+    const bool fits = is_flat_ ? std::abs(kinds_[t]) == kAlong : kinds_[t] == kLeft || has_pole || !has_pole_;
     require(fits, "triangle {} does not fit those around the south pole", t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t other = index(mesh_.neighbors[3 * t + k]);
-      require(other >= begin_ && other < end_, "triangle {} has a neighbor of another set", t);
-      const std::int32_t *const w = corners(other), from = v[(k + 1) % 3], to = v[(k + 2) % 3];
-      std::size_t m = 0;
-      while (m < 3 && !(w[(m + 1) % 3] == to && w[(m + 2) % 3] == from)) ++m;
-      require(m < 3 && index(mesh_.neighbors[3 * other + m]) == t,
-              "triangles {} and {} are not neighbors of each other", t, other);
-      if (t < other) check_edge(t, other, {place(from), place(to), place(v[k]), place(w[m])});
+    for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+      const std::size_t d = across(c);
+      if (t < d / 3) check_edge(c, d);
     }
   }
 
-  /// quad: the ends of the edge, and the corners opposite to it.
-  void check_edge(std::size_t t, std::size_t other, const std::array<Point, 4>& quad) const {
-    const auto& [a, b, c, d] = quad;
-    const int side = outside(a, b, c, d);
+  // c, d: the corners opposite to the edge.
+  void check_edge(std::size_t c, std::size_t d) {
+    const std::size_t t = c / 3, other = d / 3;
+    const SpherePlace a = place(from(c)), b = place(to(c)), p = place(mesh_.triangles[c]),
+                      q = place(mesh_.triangles[d]);
+    const int side = outside(a, b, p, q);
     require(side == 0 || (side < 0 && !is_flat_), "the edge between the triangles {} and {} is not convex", t,
             other);
     if (side != 0) return;
     if (kinds_[t] == kinds_[other]) {
-      const Point first = comes_first(a, b) ? a : b;
-      require(comes_first(first, c) && comes_first(first, d),
+      const SpherePlace first = comes_first(a, b) ? a : b;
+      require(comes_first(first, p) && comes_first(first, q),
               "the edge between the triangles {} and {} is not canonical", t, other);
     } else {
       // If all points lie on one circle, so do both sides of their polygon.
@@ -172,32 +160,31 @@ class Checker {
     std::size_t edges = 0, steps = 0, turns = 0;
     for (std::size_t c = 3 * begin_; c < 3 * end_; ++c) {
       if (kinds_[c / 3] != kind || kinds_[index(mesh_.neighbors[c])] == kind) continue;
-      start = corners(c / 3)[(c + 1) % 3];
+      start = from(c);
       std::int32_t& next = next_[index(start)];
       require(next < 0, "the triangles around the south pole meet twice at point {}", start);
-      next = corners(c / 3)[(c + 2) % 3];
+      next = to(c);
       ++edges;
     }
     require(start >= 0, "no triangles are around the south pole");
     std::int32_t v = start;
     do {
-      const std::int32_t to = next_[index(v)];
-      const Point a = place(v), b = place(to), c = place(next_[index(to)]);
+      const std::int32_t beyond = next_[index(v)];
+      const SpherePlace a = place(v), b = place(beyond), c = place(next_[index(beyond)]);
       const Kind turn = kind_of(a, b, c);
       require(is_flat_ ? turn == kAlong : turn != kRight, "the hull in the plane is not convex at point {}",
-              to);
+              beyond);
       turns += comes_first(a, b) != comes_first(b, c);
       ++steps;
-      v = to;
+      v = beyond;
     } while (v != start);
     require(steps == edges && turns == 2, "the triangles around the south pole go around more than once");
   }
 
-  host::Runtime& runtime_;
   const SphericalTriangulation& mesh_;
+  ExactPredicates predicates_;
   std::vector<Kind> kinds_;
   std::vector<std::int32_t> next_;  // along the border
-  std::size_t first_ = 0, last_ = 0, begin_ = 0, end_ = 0;
   bool has_pole_ = false;
   bool is_flat_ = false;  // whether all points have to lie on a circle through the pole
 };
@@ -211,13 +198,11 @@ void check_places(const std::vector<double>& places, const std::vector<double>& 
 
 }  // namespace
 
-std::string find_problem(host::Runtime& runtime, const std::vector<double>& places,
-                         const SphericalTriangulation& mesh) {
-  return geometry::problem_in([&] {
+std::string find_problem(const std::vector<double>& places, const SphericalTriangulation& mesh) {
+  return problem_in([&] {
     check_places(places, mesh.places);
-    Checker checker(runtime, mesh);
-    for (std::size_t s = 0; s + 1 < mesh.point_offsets.size(); ++s) checker.check_set(s);
+    SphereProof(mesh).run();
   });
 }
 
-}  // namespace flaunay::sphere
+}  // namespace flaunay::prove

@@ -1,10 +1,10 @@
-#include "app/verify/sweep.hpp"
+#include "prove/sweep.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 Sweep::Crossing Sweep::run(const std::vector<Span>& spans) {
   begin(spans);
@@ -194,4 +194,4 @@ void Sweep::sort_pieces() {
             [](const Piece& a, const Piece& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
 }
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

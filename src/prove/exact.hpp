@@ -66,6 +66,43 @@ class ExactPredicates {
     return exact_incircle(a, b, c, d);
   }
 
+  /// For weighted points, whose lifts are x^2 + y^2 - weight, and a, b, c counter-clockwise: +1 if the lift
+  /// of d is below the plane through those of the others, -1 if it is above, 0 if it is on it. Without
+  /// weights (null), that is `incircle`. weights: of a, b, c, d.
+  ///
+  /// The bound: a lift has an error below 5 eps of its magnitude, a minor one of 4 eps, their product adds
+  /// one, and the sum of three two. Of these 12 eps and what underflow adds (as above) we take 16.
+  int power(const double* a, const double* b, const double* c, const double* d, const double* weights) {
+    if (weights == nullptr) return incircle(a, b, c, d);
+    const double* const from[] = {a, b, c};
+    double x[3], y[3], lift[3], lift_magnitude[3], determinant = 0, magnitude = 0;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = from[k][0] - d[0];
+      y[k] = from[k][1] - d[1];
+      const double square = x[k] * x[k] + y[k] * y[k], heavier = weights[k] - weights[3];
+      lift[k] = square - heavier;
+      lift_magnitude[k] = square + std::fabs(heavier);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      determinant += lift[k] * (x[i] * y[j] - x[j] * y[i]);
+      magnitude += lift_magnitude[k] * (std::fabs(x[i] * y[j]) + std::fabs(x[j] * y[i]));
+    }
+    if (lift_magnitude[0] + lift_magnitude[1] + lift_magnitude[2] <= 0x1p500 && magnitude >= 0x1p-500 &&
+        std::fabs(determinant) > 16 * kEpsilon * magnitude) {
+      return determinant > 0 ? 1 : -1;
+    }
+    ++exact_evaluations_;
+    return exact_power(a, b, c, d, weights);
+  }
+
+  /// For weighted points on a line, b between a and c: +1 if the lift of b is below the line through the
+  /// others', -1 if it is above, 0 if it is on it.
+  int power_on_line(const double* a, const double* b, const double* c, const double* weights) {
+    ++exact_evaluations_;
+    return exact_power_on_line(a, b, c, weights);
+  }
+
   /// Compares p with the place where the segments a0-a1 and b0-b1 cross, in lexicographic order: +1 if p
   /// comes after it, -1 if before, 0 if it is there. The ends of both are strictly on different sides of the
   /// other.
@@ -171,6 +208,9 @@ class ExactPredicates {
 
   static int exact_orient2d(const double* a, const double* b, const double* c);
   static int exact_incircle(const double* a, const double* b, const double* c, const double* d);
+  static int exact_power(const double* a, const double* b, const double* c, const double* d,
+                         const double* weights);
+  static int exact_power_on_line(const double* a, const double* b, const double* c, const double* weights);
   static int exact_side_of_crossing(const double* a0, const double* a1, const double* b0, const double* b1,
                                     const double* p, int axis);
   static int exact_compare_cosine(const double* a, const double* b, const double* c, double square);
@@ -180,5 +220,17 @@ class ExactPredicates {
 
   std::size_t exact_evaluations_ = 0;
 };
+
+/// The lexicographic order, by x and then by y.
+inline bool comes_before(const double* a, const double* b) {
+  return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1];
+}
+
+/// Where triangles on one circle meet at an edge from a to b, with c and d opposite to it: whether that edge
+/// begins or ends at the lexicographically smallest of the four, as those of its fan do.
+inline bool is_of_fan(const double* a, const double* b, const double* c, const double* d) {
+  const double* const first = comes_before(a, b) ? a : b;
+  return comes_before(first, c) && comes_before(first, d);
+}
 
 }  // namespace flaunay

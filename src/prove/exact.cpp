@@ -1,4 +1,4 @@
-#include "app/verify/exact.hpp"
+#include "prove/exact.hpp"
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
@@ -116,6 +116,26 @@ int crossing_sign(const Scaled<5>& points, int axis) {
       Integer(points.difference<Integer>(0, axis) * at_a1 + points.difference<Integer>(1, axis) * at_a0));
 }
 
+/// The lifts of weighted points as the last one of them sees them: integers in a common unit.
+template <int kPoints>
+struct Lifts {
+  Scaled<kPoints> points;
+  BigInt lift[kPoints - 1];
+
+  // weights: 4.
+  Lifts(const double* const (&given)[kPoints], const double* weights) : points(given) {
+    const Scaled<2> of_weights({weights, weights + 2});
+    const int shift = 2 * points.unit - of_weights.unit;
+    for (int k = 0; k + 1 < kPoints; ++k) {
+      const BigInt x = points.template difference<BigInt>(k, 0), y = points.template difference<BigInt>(k, 1);
+      const BigInt square = x * x + y * y,
+                   heavier = of_weights.coordinate<BigInt>(k) - of_weights.coordinate<BigInt>(kPoints - 1);
+      const BigInt unit = BigInt(1) << std::abs(shift);
+      lift[k] = shift > 0 ? BigInt(square * unit - heavier) : BigInt(square - heavier * unit);
+    }
+  }
+};
+
 /// An integer times a power of two.
 struct Shifted {
   BigInt integer;
@@ -162,6 +182,28 @@ int ExactPredicates::exact_incircle(const double* a, const double* b, const doub
   if (4 * points.bits + 8 <= 127) return incircle_sign<WideLong>(points);
   if (4 * points.bits + 8 <= 512) return incircle_sign<Int512>(points);
   return incircle_sign<BigInt>(points);
+}
+
+int ExactPredicates::exact_power(const double* a, const double* b, const double* c, const double* d,
+                                 const double* weights) {
+  const Lifts<4> of({a, b, c, d}, weights);
+  BigInt sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    sum += of.lift[k] * (of.points.difference<BigInt>(i, 0) * of.points.difference<BigInt>(j, 1) -
+                         of.points.difference<BigInt>(j, 0) * of.points.difference<BigInt>(i, 1));
+  }
+  return sign(sum);
+}
+
+int ExactPredicates::exact_power_on_line(const double* a, const double* b, const double* c,
+                                         const double* weights) {
+  const double in_order[] = {weights[0], weights[2], weights[1], 0};
+  const Lifts<3> of({a, c, b}, in_order);
+  const int axis = a[0] == c[0] ? 1 : 0;
+  const BigInt to_a = of.points.difference<BigInt>(0, axis), to_c = of.points.difference<BigInt>(1, axis);
+  const int side = sign(BigInt(of.lift[0] * to_c - of.lift[1] * to_a));
+  return to_c > 0 ? side : -side;
 }
 
 int ExactPredicates::exact_side_of_crossing(const double* a0, const double* a1, const double* b0,

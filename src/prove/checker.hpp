@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/describe.hpp"
-#include "app/verify/exact.hpp"
-#include "app/verify/half_edges.hpp"
-#include "app/verify/verify.hpp"
+#include "prove/delaunay_proof.hpp"
+#include "prove/describe.hpp"
+#include "prove/exact.hpp"
+#include "prove/half_edges.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 constexpr std::int64_t kNone = -1;
 
@@ -171,4 +171,4 @@ class Checker {
   std::vector<std::int64_t> twins_;  // of each half-edge: the one that runs the other way, or kNone
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

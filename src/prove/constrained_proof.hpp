@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/verify/verify.hpp"
 #include "flaunay/constrained.hpp"
+#include "prove/delaunay_proof.hpp"
 
 namespace flaunay {
 
@@ -30,6 +30,8 @@ struct VerifyConstraints {
   /// If not 0: what a refined mesh has been asked for, in degrees and as an area.
   double min_angle = 0, max_area = 0;
   bool conforming = false;  ///< whether it has been asked to be Delaunay without constraints, too
+  /// If given: triangles that may be worse, ascending; and then no edge is checked to be seen at what angles.
+  const std::vector<std::int32_t>* worse = nullptr;
   /// If given: per triangle its depth by the fill rule, and the number of its region.
   const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
 };

@@ -16,32 +16,32 @@
 // 4. Of two triangles on one circle whose edge is no constraint, that edge begins at the lexicographically
 //    smallest of the four corners: the rule of `circle_canonical`, for which docs/constrained.md proves that
 //    every cell is then a fan from its smallest vertex.
-#include "app/verify/constrained.hpp"
+#include "prove/constrained_proof.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 
-#include "app/verify/apexes.hpp"
-#include "app/verify/checker.hpp"
-#include "app/verify/sweep.hpp"
 #include "constrained/refinement/bounds.hpp"
+#include "prove/apexes.hpp"
+#include "prove/checker.hpp"
+#include "prove/sweep.hpp"
 
 namespace flaunay {
 namespace {
 
-using verification::Apexes;
-using verification::Checker;
-using verification::is_before;
-using verification::kHull;
-using verification::kNone;
-using verification::Piece;
-using verification::Place;
-using verification::Span;
-using verification::Sweep;
-using verification::Vertex;
-using verification::violate;
+using prove::Apexes;
+using prove::Checker;
+using prove::is_before;
+using prove::kHull;
+using prove::kNone;
+using prove::Piece;
+using prove::Place;
+using prove::Span;
+using prove::Sweep;
+using prove::Vertex;
+using prove::violate;
 
 constexpr std::int32_t kNoPiece = -1, kNoPoint = -1;
 
@@ -106,7 +106,7 @@ class ConstrainedChecker : public Checker {
         sweep_(places_, predicates_) {}
 
   VerifyReport run() {
-    verification::run_checks(report_, [this] {
+    prove::run_checks(report_, [this] {
       check_form();
       check_coordinates();
       check_indices();
@@ -124,7 +124,7 @@ class ConstrainedChecker : public Checker {
       check_sides();
       check_places();
       if (constraints_.outside == Outside::keep && constraints_.holes == nullptr && covered_.size() > 1) {
-        verification::check_count(report_);
+        prove::check_count(report_);
       }
       check_circles();
       check_edges();
@@ -313,7 +313,7 @@ class ConstrainedChecker : public Checker {
         for (const double x : places_[place].at) largest = std::max(largest, std::fabs(x));
       }
     }
-    const verification::RoundedPlaces rounded(largest);
+    const prove::RoundedPlaces rounded(largest);
     std::vector<char> is_wide(covered_.size(), 0);
     for (const Piece& piece : sweep_.pieces()) {
       for (const std::int32_t face : {piece.below, piece.above}) {
@@ -745,7 +745,10 @@ class ConstrainedChecker : public Checker {
     if (!is_refined()) return;
     const double area = constraints_.max_area;
     const constrained::QualityBounds bounds = constrained::quality_bounds(constraints_.min_angle);
+    const std::vector<std::int32_t>* const worse = constraints_.worse;
     for (std::size_t t = 0; t < report_.triangles; ++t) {
+      if (worse != nullptr && std::binary_search(worse->begin(), worse->end(), static_cast<std::int32_t>(t)))
+        continue;
       const double *a = point(corners_[3 * t]), *b = point(corners_[3 * t + 1]),
                    *c = point(corners_[3 * t + 2]);
       if (area > 0 && std::isfinite(area) && predicates_.compare_area(a, b, c, area) > 0) {
@@ -754,7 +757,7 @@ class ConstrainedChecker : public Checker {
       }
       check_angles(t, bounds.squared_sine);
     }
-    for (std::size_t h = 0; h < corners_.size(); ++h) {
+    for (std::size_t h = 0; worse == nullptr && h < corners_.size(); ++h) {
       if (piece_of_[h] == kNoPiece) continue;
       const double *a = point(origin(h)), *b = point(target(h)), *c = point(corners_[h]);
       const double cosine = constraints_.conforming ? 0 : -bounds.squared_cosine;

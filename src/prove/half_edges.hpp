@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// Corner: an integer that names a vertex. Number: an integer that names a half-edge, or kNone for none.
 template <typename Corner, typename Number>
@@ -77,4 +77,4 @@ struct HalfEdges {
   }
 };
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "app/verify/verify.hpp"
+#include "prove/delaunay_proof.hpp"
 
-namespace flaunay::verification {
+namespace flaunay::prove {
 
 /// The first violation that a part of the check found; ends it.
 struct Violation {
@@ -21,14 +21,25 @@ template <typename... Arguments>
   throw Violation{fmt::format(text, std::forward<Arguments>(arguments)...)};
 }
 
-/// Runs checks, and writes the violation that ends them to the report.
+/// Ends the check unless the condition holds.
+template <typename... Arguments>
+void require(bool holds, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+  if (!holds) violate(text, std::forward<Arguments>(arguments)...);
+}
+
+/// Runs checks. Returns the violation that ends them, or nothing.
 template <typename Checks>
-void run_checks(VerifyReport& report, const Checks& checks) {
+std::string problem_in(const Checks& checks) {
   try {
     checks();
   } catch (const Violation& violation) {
-    report.problem = violation.problem;
+    return violation.problem;
   }
+  return {};
+}
+template <typename Checks>
+void run_checks(VerifyReport& report, const Checks& checks) {
+  report.problem = problem_in(checks);
   report.ok = report.problem.empty();
 }
 
@@ -61,4 +72,4 @@ inline void check_count(const VerifyReport& report) {
           report.triangles, report.distinct_points, report.hull_vertices, expected);
 }
 
-}  // namespace flaunay::verification
+}  // namespace flaunay::prove

@@ -9,25 +9,25 @@
 // there,
 //    and the polygon is the convex hull. With 1: a triangulation of the points.
 // 3. Every interior edge is locally Delaunay; by Delaunay's lemma ("Sur la sphère vide", 1934) the whole is.
-#include "app/verify/verify.hpp"
+#include "prove/delaunay_proof.hpp"
 
-#include "app/verify/checker.hpp"
+#include "prove/checker.hpp"
 
 namespace flaunay {
 namespace {
 
-using verification::Checker;
-using verification::is_same_place;
-using verification::kNone;
-using verification::Vertex;
-using verification::violate;
+using prove::Checker;
+using prove::is_same_place;
+using prove::kNone;
+using prove::Vertex;
+using prove::violate;
 
 class DelaunayChecker : public Checker {
  public:
   using Checker::Checker;
 
   VerifyReport run() {
-    verification::run_checks(report_, [this] {
+    prove::run_checks(report_, [this] {
       check_form();
       check_coordinates();
       check_indices();
@@ -42,7 +42,7 @@ class DelaunayChecker : public Checker {
       match_half_edges();
       check_boundary();
       check_circles();
-      verification::check_count(report_);
+      prove::check_count(report_);
       check_neighbors();
     });
     report_.exact_evaluations = predicates_.exact_evaluations();

@@ -1,0 +1,20 @@
+// An exact check of a triangulation on a torus or a cylinder.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flaunay/periodic.hpp"
+
+namespace flaunay::prove {
+
+/// Returns what is wrong, or nothing. The mesh must have been checked by call::check. O(n log n).
+std::string find_problem(const PeriodicTriangulation& mesh);
+
+/// The triangles beyond the edges opposite to corners, or -1. offsets: those of
+/// PeriodicTriangulation. Where an edge is there twice, it is one of them. O(t log t) for t triangles.
+std::vector<std::int32_t> neighbors_of(const std::vector<std::int32_t>& triangles,
+                                       const std::vector<std::int8_t>& offsets);
+
+}  // namespace flaunay::prove

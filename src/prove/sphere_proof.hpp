@@ -1,0 +1,15 @@
+// An exact check of a triangulation on the sphere.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flaunay/sphere.hpp"
+
+namespace flaunay::prove {
+
+/// Returns what is wrong, or nothing. places: those of the points. The mesh has arrays of fitting sizes, and
+/// indices in their range. O(n log n).
+std::string find_problem(const std::vector<double>& places, const SphericalTriangulation& mesh);
+
+}  // namespace flaunay::prove
