@@ -23,8 +23,13 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
                            flaunay_triangulation** result) {
   return create(result, [&] {
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    const std::vector<std::size_t> all = c::to_offsets(offsets, sets, n);
+    const research::Options wanted = c::to_options(options);
+    // The paper's modes have a call of their own.
     return std::make_unique<flaunay_triangulation>(
-        research::triangulate(cpp, coordinates, c::to_offsets(offsets, sets, n), c::to_options(options)));
+        wanted.mode == research::Mode::blocks
+            ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))
+            : research::triangulate(cpp, coordinates, all, wanted));
   });
 }
 

@@ -9,6 +9,7 @@
 #include "flaunay/constrained.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/predicates.hpp"
+#include "mesh/corners.hpp"
 
 namespace flaunay::call {
 namespace {
@@ -44,9 +45,7 @@ using Sides = std::vector<std::pair<std::int32_t, std::int32_t>>;
 // Those of which no triangle has the other direction.
 Sides border_of(const Ids& triangles) {
   Sides sides;
-  for (std::size_t t = 0; t < triangles.size(); t += 3) {
-    for (std::size_t k = 0; k < 3; ++k) sides.emplace_back(triangles[t + k], triangles[t + (k + 1) % 3]);
-  }
+  for (std::size_t c = 0; c < triangles.size(); ++c) sides.push_back(mesh::edge_opposite(triangles, c));
   std::sort(sides.begin(), sides.end());
   Sides border;
   std::copy_if(sides.begin(), sides.end(), std::back_inserter(border), [&](const auto& side) {
@@ -65,7 +64,7 @@ struct Inside {
     for (std::size_t c = 0; c < sides.size(); ++c) {
       if (mesh.constrained[c] == 0) continue;
       const std::size_t t = c / 3;
-      const std::int32_t a = mesh.triangles[3 * t + (c + 1) % 3], b = mesh.triangles[3 * t + (c + 2) % 3];
+      const auto [a, b] = mesh::edge_opposite(mesh.triangles, c);
       const bool is_left = std::binary_search(border.begin(), border.end(), std::pair(a, b));
       sides[c] = is_left || std::binary_search(border.begin(), border.end(), std::pair(b, a));
       if (is_left && std::exchange(triangles[t], 1) == 0) found.push_back(static_cast<std::int32_t>(t));

@@ -17,6 +17,7 @@
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
+#include "mesh/corners.hpp"
 #include "refinement/codes.h"
 #include "tuning/tuning.hpp"
 #include "updates/codes.h"
@@ -100,9 +101,8 @@ Ids segments_of_corners(const ConstrainedTriangulation& mesh, const Edges& edges
   Ids of_corners(mesh.triangles.size(), -1);
   for (std::size_t c = 0; c < of_corners.size(); ++c) {
     if (mesh.constrained[c] == 0) continue;
-    const std::size_t first = c - c % 3;
-    of_corners[c] =
-        edges.at(edge_between(mesh.triangles[first + (c + 1) % 3], mesh.triangles[first + (c + 2) % 3]));
+    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
+    of_corners[c] = edges.at(edge_between(from, to));
   }
   return of_corners;
 }

@@ -16,6 +16,7 @@
 #include "derived/sphere/walk.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
+#include "mesh/corners.hpp"
 #include "prove/sphere_proof.hpp"
 #include "sphere/places.h"
 
@@ -49,9 +50,8 @@ std::vector<sphere::OpenEdge> open_edges(const SphericalTriangulation& mesh, std
   const auto add = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       if (mesh.neighbors[c] >= 0) continue;
-      const std::size_t t = c / 3 * 3;
-      open.push_back({mesh.triangles[t + (c + 1) % 3], mesh.triangles[t + (c + 2) % 3],
-                      static_cast<std::int32_t>(c - 3 * first)});
+      const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
+      open.push_back({from, to, static_cast<std::int32_t>(c - 3 * first)});
     }
   };
   // They are few: most runs have none, and only these have no number below 0.
@@ -120,9 +120,8 @@ void check(const SphericalTriangulation& mesh) {
   }
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    const std::int32_t* const t = &mesh.triangles[c / 3 * 3];
     const std::int32_t* const other = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[c])];
-    const std::int32_t from = t[(c + 1) % 3], to = t[(c + 2) % 3];
+    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
     bool has_edge = false;
     for (int k = 0; k < 3; ++k) has_edge |= other[k] == to && other[(k + 1) % 3] == from;
     call::expect(has_edge, "the arrays are not those of a triangulation on the sphere");

@@ -9,6 +9,7 @@
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "geometry/sort.hpp"
+#include "mesh/corners.hpp"
 
 namespace flaunay::call {
 namespace {
@@ -68,11 +69,10 @@ bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
 Ids walls(const ConstrainedTriangulation& mesh) {
   Ids segments;
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    const std::size_t t = c / 3, k = c % 3;
     const std::int32_t beyond = mesh.neighbors[c];
-    if (beyond >= 0 && (mesh.constrained[c] == 0 || static_cast<std::size_t>(beyond) < t)) continue;
-    segments.push_back(mesh.triangles[3 * t + (k + 1) % 3]);
-    segments.push_back(mesh.triangles[3 * t + (k + 2) % 3]);
+    if (beyond >= 0 && (mesh.constrained[c] == 0 || static_cast<std::size_t>(beyond) < c / 3)) continue;
+    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
+    segments.insert(segments.end(), {from, to});
   }
   return segments;
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/corners.hpp"
 #include "prove/constrained_proof.hpp"
 #include "prove/exact.hpp"
 #include "prove/planar_proof.hpp"
@@ -84,9 +85,8 @@ class DomainProof {
       edges.emplace_back(std::minmax(mesh_.constraint_edges[e], mesh_.constraint_edges[e + 1]));
     std::sort(edges.begin(), edges.end());
     for (std::size_t c = 0; c < mesh_.triangles.size(); ++c) {
-      const std::size_t t = c - c % 3;
-      const std::pair<std::int32_t, std::int32_t> edge =
-          std::minmax(mesh_.triangles[t + (c + 1) % 3], mesh_.triangles[t + (c + 2) % 3]);
+      const auto [from, to] = mesh::edge_opposite(mesh_.triangles, c);
+      const std::pair<std::int32_t, std::int32_t> edge = std::minmax(from, to);
       require(
           (mesh_.constrained[c] != 0) == std::binary_search(edges.begin(), edges.end(), edge),
           "triangle {} says the wrong thing of the edge opposite to corner {}: whether it is a constraint",
@@ -291,10 +291,9 @@ class DomainProof {
     part.segments.clear();
     part.segment_edges.clear();
     for (std::size_t c = 0; c < part.triangles.size(); ++c) {
-      const std::size_t t = c - c % 3;
-      if (made[c] < 0)
-        part.segments.insert(part.segments.end(),
-                             {part.triangles[t + (c + 1) % 3], part.triangles[t + (c + 2) % 3]});
+      if (made[c] >= 0) continue;
+      const auto [from, to] = mesh::edge_opposite(part.triangles, c);
+      part.segments.insert(part.segments.end(), {from, to});
     }
     part.rings = {{0, part.segments.size() / 2}, {0, 1}, {0, 1}};
     for (std::size_t e = 0; e < mesh_.constraint_edges.size(); e += 2) {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "mesh/corners.hpp"
+
 namespace flaunay::prove {
 
 /// Corner: an integer that names a vertex. Number: an integer that names a half-edge, or kNone for none.
@@ -15,7 +17,7 @@ struct HalfEdges {
 
   const Corner* corners;
 
-  static Number successor(Number h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static Number successor(Number h) { return mesh::next_corner(h); }
   Corner origin(Number h) const { return corners[successor(h)]; }
   Corner target(Number h) const { return corners[successor(successor(h))]; }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/corners.hpp"
 #include "prove/exact.hpp"
 #include "prove/half_edges.hpp"
 #include "prove/rows.hpp"
@@ -222,14 +223,13 @@ std::string find_problem(const PlanarClaim& claim) {
 
 void check_halfedges_and_areas(const double* points, const Triangulation& mesh, const Ids& neighbors) {
   // Half-edge 3 t + k goes from corner k to the next one, so it is opposite to the one after.
-  const auto after = [](std::size_t c) { return c % 3 == 2 ? c - 2 : c + 1; };
   for (std::size_t h = 0; h < mesh.halfedges.size(); ++h) {
-    const std::int32_t twin = mesh.halfedges[h], beyond = neighbors[after(after(h))];
+    const std::int32_t twin = mesh.halfedges[h], beyond = neighbors[mesh::next_corner(mesh::next_corner(h))];
     const auto back = static_cast<std::size_t>(std::max(twin, 0));
     const bool is_right = beyond < 0 ? twin == -1
                                      : twin >= 0 && twin / 3 == beyond &&
-                                           mesh.triangles[back] == mesh.triangles[after(h)] &&
-                                           mesh.triangles[after(back)] == mesh.triangles[h];
+                                           mesh.triangles[back] == mesh.triangles[mesh::next_corner(h)] &&
+                                           mesh.triangles[mesh::next_corner(back)] == mesh.triangles[h];
     require(is_right, "halfedge {} has {} as the one that goes back, which is not it", h, twin);
   }
   ExactPredicates predicates;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/corners.hpp"
 #include "prove/describe.hpp"
 
 namespace flaunay::prove {
@@ -76,7 +77,7 @@ class RowsProof {
   /// Where the edge opposite to corner c begins and ends.
   std::int32_t from(std::size_t c) const { return rows_.triangles[after(c)]; }
   std::int32_t to(std::size_t c) const { return rows_.triangles[after(after(c))]; }
-  static std::size_t after(std::size_t c) { return c % 3 == 2 ? c - 2 : c + 1; }
+  static std::size_t after(std::size_t c) { return mesh::next_corner(c); }
 
   const Rows rows_;
   std::size_t first_ = 0, last_ = 0, begin_ = 0, end_ = 0;  // points and triangles of the set

@@ -165,12 +165,20 @@ int triangulate(const TriangulateRequest& request) {
     progress.update_slow("preparing the device", kCompiling);
     if (triangulator == nullptr) triangulator = std::make_unique<Triangulator>(request.device);
     facts.opening_seconds += stopwatch.restart();
+    const double* const coordinates = points.coordinates.data();
+    // The paper's modes have a call of their own.
+    const auto compute = [&](std::size_t n, const research::Options& wanted) {
+      if (request.mode != Mode::blocks) return research::triangulate(*triangulator, coordinates, n, wanted);
+      research::Triangulation plain;
+      static_cast<Triangulation&>(plain) =
+          triangulator->triangulate(coordinates, n, static_cast<const Options&>(wanted));
+      return plain;
+    };
     research::Options silent = options;
     silent.progress = nullptr;
-    facts.compiling_seconds = compile_kernels(points.size(), request.mode, [&](std::size_t n) {
-      note_compiling(research::triangulate(*triangulator, points.coordinates.data(), n, silent), facts);
-    });
-    mesh = research::triangulate(*triangulator, points.coordinates.data(), points.size(), options);
+    facts.compiling_seconds = compile_kernels(
+        points.size(), request.mode, [&](std::size_t n) { note_compiling(compute(n, silent), facts); });
+    mesh = compute(points.size(), options);
   }
 
   write_results(request.results, points, mesh, facts, progress, outputs, index);

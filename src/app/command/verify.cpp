@@ -31,6 +31,7 @@
 #include "constrained/refinement/bounds.hpp"
 #include "files/file.hpp"
 #include "host/memory/system_memory.hpp"
+#include "mesh/corners.hpp"
 #include "prove/constrained_proof.hpp"
 #include "prove/periodic_proof.hpp"
 #include "prove/planar_proof.hpp"
@@ -212,8 +213,8 @@ std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Pr
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
     is_used[mesh.triangles[c]] = 1;
     if (made[c] >= 0) continue;
-    const std::int32_t from = mesh.triangles[c - c % 3 + (c + 1) % 3];
-    next[from] = mesh.triangles[c - c % 3 + (c + 2) % 3];
+    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
+    next[from] = to;
     const auto place = [&](std::int32_t v) { return std::pair(at[2 * v], at[2 * v + 1]); };
     if (first < 0 || place(from) < place(first)) first = from;
   }

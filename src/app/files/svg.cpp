@@ -12,6 +12,7 @@
 #include "app/files/drawing.hpp"
 #include "app/files/formats.hpp"
 #include "files/output.hpp"
+#include "mesh/corners.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -70,14 +71,11 @@ class Picture {
     const std::int32_t* const v = contents_.corners(t);
     return {drawing_.position(v[0]), drawing_.position(v[1]), drawing_.position(v[2])};
   }
-  /// The corner after one, in its triangle.
-  static std::size_t next(std::size_t i) { return i % 3 == 2 ? i - 2 : i + 1; }
-
   /// Chooses line widths and the resolution of coordinates by the length of the typical visible edge.
   void choose_units() {
     std::vector<double> lengths;
     for (std::size_t i = 0; i < mesh_.triangles.size(); i += mesh_.triangles.size() / kSample + 1) {
-      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[next(i)];
+      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[mesh::next_corner(i)];
       if (!inside(v) || !inside(w)) continue;
       const Position &p = drawing_.position(v), &q = drawing_.position(w);
       lengths.push_back(std::hypot(p.x - q.x, p.y - q.y));
@@ -177,7 +175,7 @@ class Picture {
   bool is_drawn(std::size_t i) const {
     const bool is_border =
         is_constrained() && !mesh_.neighbors.empty() && mesh_.neighbors[i % 3 == 0 ? i + 2 : i - 1] < 0;
-    return is_border || mesh_.triangles[i] < mesh_.triangles[next(i)];
+    return is_border || mesh_.triangles[i] < mesh_.triangles[mesh::next_corner(i)];
   }
 
   /// Every edge once. Edges inside the view are joined to long trails, which takes half the characters of
@@ -187,7 +185,7 @@ class Picture {
     std::vector<std::size_t> begin(point_count() + 1, 0);  // of each point's edges in `around`
     begin_edges("edges");
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[next(i)];
+      const std::int32_t v = mesh_.triangles[i], w = mesh_.triangles[mesh::next_corner(i)];
       if (!is_drawn(i)) continue;
       if (!inside(v) || !inside(w)) {
         drawing_.edge(v, w);

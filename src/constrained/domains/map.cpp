@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/arguments.hpp"
+#include "mesh/corners.hpp"
 #include "predicates/planar.h"
 
 namespace flaunay::constrained {
@@ -32,10 +33,7 @@ struct Tree {
 
 Tree make_tree(const ConstrainedTriangulation& mesh, const Ids& regions, std::size_t count) {
   const auto halfedges = static_cast<std::int32_t>(mesh.triangles.size());
-  const auto edge_at = [&](std::int32_t c) {
-    const std::int32_t t = c - c % 3;
-    return std::pair(mesh.triangles[t + (c + 1) % 3], mesh.triangles[t + (c + 2) % 3]);
-  };
+  const auto edge_at = [&](std::int32_t c) { return mesh::edge_opposite(mesh.triangles, c); };
   // Corners whose opposite edge is a border, grouped by the region of their triangle.
   Ids offsets(count + 1, 0), corners, seen(count, 0);
   const auto is_border = [&](std::int32_t c) {

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "geometry/for_each.hpp"
+#include "mesh/corners.hpp"
 
 namespace flaunay::periodic {
 namespace {
@@ -222,9 +223,8 @@ Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangle
 // Adds the edge of a kept triangle. beyond: the corner in the plane, or -1.
 void add_edge(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond,
               Seams& seams) {
-  const std::size_t t = index(at) / 3 * 3, k = index(at) % 3;
-  const std::int32_t from = all.corners[t + (k + 1) % 3], to = all.corners[t + (k + 2) % 3];
-  seams.add({plane.image(from), plane.image(to), plane.image(all.corners[t + k]),
+  const auto [from, to] = mesh::edge_opposite(all.corners, at);
+  seams.add({plane.image(from), plane.image(to), plane.image(all.corners[index(at)]),
              beyond < 0 ? Image{-1, {}} : plane.image(beyond), static_cast<std::uint64_t>(at)},
             plane.place(from), plane.place(to));
 }

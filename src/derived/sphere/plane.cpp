@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "mesh/corners.hpp"
+
 namespace flaunay::sphere {
 namespace {
 
@@ -24,8 +26,7 @@ Ids border_of(const std::vector<double>& places, const Triangulation& planar) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   for (std::size_t c = 0; c < planar.neighbors.size(); ++c) {
     if (planar.neighbors[c] >= 0) continue;
-    const std::size_t t = c / 3 * 3;
-    edges.emplace_back(planar.triangles[t + (c + 1) % 3], planar.triangles[t + (c + 2) % 3]);
+    edges.push_back(mesh::edge_opposite(planar.triangles, c));
   }
   std::sort(edges.begin(), edges.end());
   const auto first = std::min_element(edges.begin(), edges.end(), [&](const auto& a, const auto& b) {
