@@ -1400,6 +1400,9 @@ static void test_periodic(void) {
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
   CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
   OK(flaunay_periodic_verify(periodic));
+  flaunay_point_tree* periodic_tree = NULL;
+  OK(flaunay_point_tree_create_periodic(triangulator, periodic, &periodic_tree));
+  flaunay_point_tree_destroy(periodic_tree);
   flaunay_clipped_voronoi* cells = NULL;
   OK(flaunay_periodic_cells(triangulator, periodic, &cells));
   const double* const areas = flaunay_clipped_voronoi_areas(cells);

@@ -1615,6 +1615,15 @@ class PointTree(_InTurns):
         given = triangulator.pointer, _as_doubles(points), self.count, self.place
         triangulator.call(library.point_tree_create, *given)
 
+    @classmethod
+    def of_periodic(cls, triangulator: Triangulator, periodic: Periodic) -> PointTree:
+        """A tree of the places of one set, where each point counts once, as it lies nearest."""
+        tree = cls.__new__(cls)
+        _InTurns.__init__(tree, triangulator)
+        given = triangulator.pointer, periodic.pointer, tree.place
+        triangulator.call(library.point_tree_create_periodic, *given)
+        return tree
+
     def nearest(
         self, queries: _Doubles, count: int, max_distance: float
     ) -> tuple[_Indices, _Doubles]:

@@ -66,6 +66,14 @@ def _given(answers: _Answers, shape: tuple[int, ...], out: Optional[_Answers]) -
     return out
 
 
+def count_and_bound(k: Optional[int], distance_upper_bound: Optional[float]) -> tuple[int, float]:
+    """What `nearest` is asked for, checked."""
+    most = math.inf if distance_upper_bound is None else distance_upper_bound
+    if not most >= 0:
+        raise UsageError(f"distance_upper_bound must be 0 or more, not {most}")
+    return 1 if k is None else as_count(k, "k", 1), most
+
+
 class Kept(Generic[_Made]):
     """What answers queries, made when the first one comes. Copies make their own, and so do other processes."""
 
@@ -269,10 +277,7 @@ class Queries:
         """
         queries, shape = as_queries(xi)
         is_alone = k is None
-        count = 1 if k is None else as_count(k, "k", 1)
-        most = math.inf if distance_upper_bound is None else distance_upper_bound
-        if not most >= 0:
-            raise UsageError(f"distance_upper_bound must be 0 or more, not {most}")
+        count, most = count_and_bound(k, distance_upper_bound)
         if not is_alone:
             shape = (*shape, count)
         if out is not None:

@@ -112,3 +112,29 @@ def test_sets(random):
 def test_errors_say_what_is_wrong(call, kind, message):
     with pytest.raises(kind, match=message):
         call(flaunay.periodic(ONE, (1, 1)))
+
+
+@pytest.mark.parametrize("period", [(1, 1), (1, 2), (1, None), (None, 0.5)])
+@pytest.mark.parametrize("n", [1, 2, 5, 300])
+def test_several_nearest_points(period, n):
+    # Few points have images that are nearer than others; many places are equal, or as far.
+    random = np.random.default_rng(n)
+    points = random.integers(-20, 20, (n, 2)) / 16
+    queries = random.integers(-40, 40, (50, 2)) / 32
+    tri = flaunay.periodic(points, period)
+    distances, found = tri.nearest(queries, k=7, return_distances=True)
+    steps = tri.places[None] - queries[:, None]
+    for axis, length in enumerate(period):
+        if length is not None:
+            steps[..., axis] -= length * np.round(steps[..., axis] / length)
+    expected = np.linalg.norm(steps, axis=-1)
+    wanted = np.full((50, 7), np.inf)
+    wanted[:, : min(n, 7)] = np.sort(expected, axis=1)[:, :7]
+    assert np.array_equal(distances, wanted)
+    assert (np.take_along_axis(expected, found.clip(0), 1) == wanted)[found >= 0].all()
+    assert ((found < 0) == np.isinf(wanted)).all()
+    assert all(len(set(row[row >= 0])) == min(n, 7) for row in found)
+    near, bound = tri.nearest(queries[0], return_distances=True), wanted[0, 0]
+    assert near == (bound, tri.representatives[near[1]])
+    assert tri.nearest(queries, k=1)[:, 0].tolist() == tri.nearest(queries).tolist()
+    assert (tri.nearest(queries, k=n, distance_upper_bound=0.25) >= 0).sum() == (expected <= 0.25).sum()

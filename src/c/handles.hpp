@@ -15,6 +15,7 @@
 #include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/neighbors.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/result_arrays.hpp"
 
@@ -188,6 +189,10 @@ struct flaunay_device_triangulation {
   flaunay_device_triangulation() { statistics.clear(); }
   flaunay::DeviceTriangulation cpp;
   flaunay::c::StatisticsView statistics;
+};
+
+struct flaunay_point_tree {
+  flaunay::PointTree cpp;
 };
 
 struct flaunay_clipped_voronoi {

@@ -23,10 +23,6 @@ struct flaunay_natural_weights {
   NaturalWeights cpp;
 };
 
-struct flaunay_point_tree {
-  PointTree cpp;
-};
-
 namespace {
 
 // compute(locator, offsets) returns one value per query; the values are copied to the caller's array.

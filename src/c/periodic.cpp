@@ -104,6 +104,16 @@ flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangulator, const 
   });
 }
 
+flaunay_status flaunay_point_tree_create_periodic(flaunay_triangulator* triangulator,
+                                                  const flaunay_periodic* periodic,
+                                                  flaunay_point_tree** tree) {
+  return create(tree, [&] {
+    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+    return std::make_unique<flaunay_point_tree>(
+        flaunay_point_tree{PointTree(cpp, required(periodic, "the triangulation").cpp)});
+  });
+}
+
 flaunay_status flaunay_periodic_verify(const flaunay_periodic* periodic) {
   return c::verified([&] { return verify(required(periodic, "the triangulation").cpp); });
 }

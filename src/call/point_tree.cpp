@@ -2,10 +2,14 @@
 #include "derived/nearest/point_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "call/frame.hpp"
+#include "call/periodic.hpp"
+#include "derived/periodic/torus.hpp"
 
 namespace flaunay {
 
@@ -17,15 +21,104 @@ constexpr std::size_t kRun = 512;
 }  // namespace
 
 struct PointTree::Implementation {
+  Implementation(std::shared_ptr<call::Implementation> of, const double* coordinates, std::size_t n)
+      : owner(std::move(of)), tree(coordinates, n) {}
+
+  // queries: in the period, if there is one.
+  Neighbors find(const double* queries, std::size_t m, const NeighborOptions& options) const {
+    check_count(options.count, "neighbours of each query",
+                std::min(kMostIndexed, kMostCountable / std::max<std::size_t>(m, 1)));
+    Neighbors result;
+    result.points.resize(m * options.count, -1);
+    result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());
+    call::Frame call(owner->native());
+    const points::QueryScaling scaling =
+        *points::query_scaling(call.runtime, tree.range(), call.in(queries, 2 * m), {0, m});
+    call.runtime.share((m + kRun - 1) / kRun, [&](std::size_t run) {
+      tree.find(queries, run * kRun, std::min(m, (run + 1) * kRun), scaling, options, result);
+    });
+    call.end();
+    return result;
+  }
+
+  // Each point once. At most nine images of one are in the tree, but mostly only one of them is near.
+  Neighbors find_on_torus(const double* queries, std::size_t m, const NeighborOptions& options) const {
+    constexpr std::size_t kMostImages = 9;
+    const std::vector<double> places =
+        periodic::to_places(owner->native().runtime, queries, m, *period, "query");
+    Neighbors result = find(places.data(), m, options);
+    if (has_repeated(result, options.count)) {
+      NeighborOptions of_images = options;
+      of_images.count = kMostImages * options.count;
+      Neighbors images = find(places.data(), m, of_images);
+      result.points.assign(m * options.count, -1);
+      result.distances.assign(m * options.count, std::numeric_limits<double>::infinity());
+      for (std::size_t i = 0; i < m; ++i) {
+        const auto row = result.points.begin() + static_cast<std::ptrdiff_t>(i * options.count);
+        auto end = row;
+        for (std::size_t k = i * of_images.count; k < (i + 1) * of_images.count; ++k) {
+          const std::int32_t point = original(images.points[k]);
+          if (point < 0 || end == row + static_cast<std::ptrdiff_t>(options.count)) break;
+          if (std::find(row, end, point) != end) continue;
+          result.distances[static_cast<std::size_t>(end - result.points.begin())] = images.distances[k];
+          *end++ = point;
+        }
+      }
+    } else {
+      for (std::int32_t& point : result.points) point = original(point);
+    }
+    return result;
+  }
+  std::int32_t original(std::int32_t image) const {
+    const auto i = static_cast<std::size_t>(std::max(image, 0));
+    return i < points ? image : originals[i - points];
+  }
+  bool has_repeated(const Neighbors& found, std::size_t count) const {
+    std::vector<std::int32_t> row;
+    for (std::size_t i = 0; i < found.points.size(); i += count) {
+      row.clear();
+      for (std::size_t k = i; k < i + count && found.points[k] >= 0; ++k)
+        row.push_back(original(found.points[k]));
+      std::sort(row.begin(), row.end());
+      if (std::adjacent_find(row.begin(), row.end()) != row.end()) return true;
+    }
+    return false;
+  }
+
   std::shared_ptr<call::Implementation> owner;
   nearest::PointTree tree;
+  std::optional<periodic::Pair<double>> period;  // none in the plane
+  std::size_t points = 0;                        // with a period: in front of their images
+  std::vector<std::int32_t> originals;           // of these
 };
 
 PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n)
     : implementation_(with_errors([&] {
         check_points(coordinates, n);
-        return std::make_unique<Implementation>(
-            Implementation{TriangulatorAccess::shared(triangulator), nearest::PointTree(coordinates, n)});
+        return std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator), coordinates, n);
+      })) {}
+
+PointTree::PointTree(Triangulator& triangulator, const PeriodicTriangulation& mesh)
+    : implementation_(with_errors([&] {
+        call::check_with_places(mesh);
+        call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
+        const periodic::Pair<double> period{mesh.period.x, mesh.period.y};
+        periodic::Box box = periodic::box_of(mesh.places, 0, mesh.places.size() / 2, period);
+        box.margin = 0;
+        for (const double length : period) {
+          if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
+        }
+        const periodic::Unrolled plane(nullptr, mesh.places, box);
+        auto self =
+            std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
+                                             plane.coordinates().data(), plane.points() + plane.images());
+        self->period = period;
+        self->points = plane.points();
+        for (std::size_t i = 0; i < plane.images(); ++i) {
+          const auto v = static_cast<std::int32_t>(plane.points() + i);
+          self->originals.push_back(static_cast<std::int32_t>(plane.image(v).point));
+        }
+        return self;
       })) {}
 
 PointTree::~PointTree() = default;
@@ -38,19 +131,7 @@ Neighbors PointTree::nearest(const double* queries, std::size_t m, const Neighbo
     call::expect(options.count > 0, "the number of nearest points must be 1 or more");
     call::expect(options.max_distance >= 0, "the largest distance must be 0 or more");
     check_queries(queries, m);
-    check_count(options.count, "neighbours of each query",
-                std::min(kMostIndexed, kMostCountable / std::max<std::size_t>(m, 1)));
-    Neighbors result;
-    result.points.resize(m * options.count, -1);
-    result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());
-    call::Frame call(self.owner->native());
-    const points::QueryScaling scaling =
-        *points::query_scaling(call.runtime, self.tree.range(), call.in(queries, 2 * m), {0, m});
-    call.runtime.share((m + kRun - 1) / kRun, [&](std::size_t run) {
-      self.tree.find(queries, run * kRun, std::min(m, (run + 1) * kRun), scaling, options, result);
-    });
-    call.end();
-    return result;
+    return self.period ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);
   });
 }
 

@@ -1656,6 +1656,13 @@ FLAUNAY_API flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangul
                                                   const flaunay_periodic* periodic,
                                                   flaunay_clipped_voronoi** cells);
 
+/// Makes a tree of the places of one set on a torus or a cylinder for flaunay_point_tree_nearest: queries are
+/// then any places of the plane, and each point counts once, as it lies nearest. The caller destroys it.
+/// FLAUNAY_ERROR_USAGE for several sets. O(n log n).
+FLAUNAY_API flaunay_status flaunay_point_tree_create_periodic(flaunay_triangulator* triangulator,
+                                                              const flaunay_periodic* periodic,
+                                                              flaunay_point_tree** tree);
+
 /// Checks exactly that this is the canonical triangulation of its places; if not, it is
 /// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
 FLAUNAY_API flaunay_status flaunay_periodic_verify(const flaunay_periodic* periodic);

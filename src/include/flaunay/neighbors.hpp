@@ -12,6 +12,8 @@
 
 namespace flaunay {
 
+struct PeriodicTriangulation;  // see flaunay/periodic.hpp
+
 /// The options of a query for nearest points.
 struct NeighborOptions {
   std::size_t count = 1;  ///< how many points
@@ -35,6 +37,10 @@ class FLAUNAY_API PointTree {
   /// Makes a tree of n points, x0 y0 x1 y1 ..., which may be equal. Throws Error(input) as a triangulation of
   /// them. O(n log n) work; 30 bytes per point.
   PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n);
+  /// Makes a tree of the places of one set of points on a torus or a cylinder, with their images up to half a
+  /// period away. Queries are then any places of the plane, and each point counts once, as it lies nearest.
+  /// Throws Error(usage) for several sets and for arrays that are none's. O(n log n) work.
+  PointTree(Triangulator& triangulator, const PeriodicTriangulation& triangulation);
   /// Releases its memory.
   ~PointTree();
   /// A tree that was moved from can only be destroyed or assigned to.
