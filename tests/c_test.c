@@ -1342,6 +1342,12 @@ static void test_sphere(void) {
   OK(flaunay_spherical_locator_nearest(locator, queries, 2, degrees, nearest));
   OK(flaunay_spherical_locator_interpolate(locator, values, 1, places, 2, degrees, between));
   CHECK(found[0] >= 0 && found[1] == -1 && nearest[0] == 0 && nearest[1] == 3);
+  int32_t rows[4] = {0};
+  double angles[4] = {0};
+  OK(flaunay_spherical_locator_nearest_points(locator, queries, 2, degrees, 2, INFINITY, rows, angles));
+  CHECK(rows[0] == 0 && rows[2] == 3 && rows[1] != 0 && angles[0] <= angles[1]);
+  REFUSED(flaunay_spherical_locator_nearest_points(locator, queries, 2, degrees, 0, INFINITY, rows, NULL),
+          "must be 1 or more");
   CHECK(between[0] == 1 && between[1] == 2);
   REFUSED(flaunay_spherical_locator_nearest(locator, queries, 2, 2, nearest),
           "2 is no flaunay_sphere_coordinates");

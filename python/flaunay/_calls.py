@@ -1830,6 +1830,18 @@ class SphericalLocator(SurfaceLocator):
     def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
         return (_sphere_coordinates(queries.shape[1]),)
 
+    def nearest_points(
+        self, queries: _Doubles, count: int, max_distance: float
+    ) -> tuple[_Indices, _Doubles]:
+        """As `PointTree.nearest`, with angles."""
+        m = len(queries)
+        points, distances = np.empty((m, count), _INT32), np.empty((m, count))
+        given = _as_doubles(queries), m, *self._kind_of(queries), count, max_distance
+        self._triangulator.call(
+            self._function("nearest_points"), *(self.pointer, *given, points, distances)
+        )
+        return points, distances
+
 
 # ---- Points on a torus or a cylinder
 

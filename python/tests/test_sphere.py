@@ -167,3 +167,28 @@ def test_cells_of_a_great_circle_can_be_drawn(random):
     np.testing.assert_array_equal(cells.polygon(-1), cells.vertices[cells.regions[-1]])
     with pytest.raises(IndexError):
         cells.polygon(50)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 40, 500])
+def test_several_nearest_points(n):
+    random = np.random.default_rng(n)
+    # Many are equal, and many equally far.
+    points = random.integers(-2, 3, (n, 3)) * 1.0
+    points[~points.any(axis=1)] = 0, 0, -1
+    queries = np.concatenate([points[:20], random.normal(size=(30, 3)), [[0, 0, 1], [0, 0, -1]]])
+    tri = flaunay.spherical(points)
+    angles, found = tri.nearest(queries, k=7, return_distances=True)
+
+    def unit(vectors):
+        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+    expected = np.arccos((unit(queries) @ unit(points).T).clip(-1, 1))
+    wanted = np.full((len(queries), 7), np.inf)
+    wanted[:, : min(n, 7)] = np.sort(expected, axis=1)[:, :7]
+    assert np.allclose(angles, wanted, atol=1e-7)
+    assert np.allclose(np.take_along_axis(expected, found.clip(0), 1), wanted, atol=1e-7) or n < 7
+    assert ((found < 0) == np.isinf(wanted)).all()
+    assert all(len(set(row[row >= 0])) == min(n, 7) for row in found)
+    assert tri.nearest(queries, k=1)[:, 0].tolist() == tri.nearest(queries).tolist()
+    near = tri.nearest(queries, k=n, distance_upper_bound=1)
+    assert (near >= 0).sum() == (expected <= 1).sum()

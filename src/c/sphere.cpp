@@ -1,6 +1,7 @@
 // The C interface to points on a sphere.
 #include "flaunay/sphere.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -170,6 +171,20 @@ flaunay_status flaunay_spherical_locator_nearest(flaunay_spherical_locator* loca
                                                  size_t m, int coordinates, int32_t* points) {
   return answer(locator, queries, m, coordinates, points,
                 [&](SphereLocator& cpp, SphereCoordinates given) { return cpp.nearest(queries, m, given); });
+}
+
+flaunay_status flaunay_spherical_locator_nearest_points(flaunay_spherical_locator* locator,
+                                                        const double* queries, size_t m, int coordinates,
+                                                        size_t count, double max_distance, int32_t* points,
+                                                        double* distances) {
+  return guarded([&] {
+    SphereLocator& cpp = required(locator, "the locator").cpp;
+    check_queries(queries, m);
+    check_array(points, m, "results");
+    const Neighbors found = cpp.nearest(queries, m, to_coordinates(coordinates), {count, max_distance});
+    std::copy(found.points.begin(), found.points.end(), points);
+    if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
+  });
 }
 
 flaunay_status flaunay_spherical_locator_interpolate(flaunay_spherical_locator* locator, const double* values,

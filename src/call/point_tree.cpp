@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "call/frame.hpp"
+#include "call/neighbors.hpp"
 #include "call/periodic.hpp"
 #include "derived/periodic/torus.hpp"
 
@@ -26,8 +27,7 @@ struct PointTree::Implementation {
 
   // queries: in the period, if there is one.
   Neighbors find(const double* queries, std::size_t m, const NeighborOptions& options) const {
-    check_count(options.count, "neighbours of each query",
-                std::min(kMostIndexed, kMostCountable / std::max<std::size_t>(m, 1)));
+    call::check(options, m);
     Neighbors result;
     result.points.resize(m * options.count, -1);
     result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());
@@ -128,8 +128,6 @@ PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 Neighbors PointTree::nearest(const double* queries, std::size_t m, const NeighborOptions& options) {
   const Implementation& self = *implementation_;
   return call::take_turn(*self.owner, [&] {
-    call::expect(options.count > 0, "the number of nearest points must be 1 or more");
-    call::expect(options.max_distance >= 0, "the largest distance must be 0 or more");
     check_queries(queries, m);
     return self.period ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);
   });

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "call/frame.hpp"
+#include "call/neighbors.hpp"
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
@@ -280,6 +281,30 @@ std::vector<std::int32_t> SphereLocator::nearest(const double* queries, std::siz
                                  [&](Point query, std::int32_t start, std::int32_t* point) {
                                    *point = implementation_->nearest(query, start);
                                  });
+}
+
+Neighbors SphereLocator::nearest(const double* queries, std::size_t m, SphereCoordinates coordinates,
+                                 const NeighborOptions& options) {
+  with_errors([&] { call::check(options, m); });
+  struct Near {
+    std::int32_t point = -1;
+    double angle = std::numeric_limits<double>::infinity();
+  };
+  const auto find = [&](Point query, std::int32_t start, Near* row) {
+    const sphere::Walker& walker = *implementation_->walker;
+    const sphere::Direction from = sphere::direction_of(query);
+    for (const std::int32_t v :
+         walker.nearest_points(query, implementation_->nearest(query, start), options.count)) {
+      const double angle = sphere::angle_between(from, sphere::direction_of(walker.place(v)));
+      if (angle <= options.max_distance) *row++ = {v, angle};
+    }
+  };
+  Neighbors result;
+  for (const Near& near : implementation_->answer(queries, m, coordinates, options.count, Near(), find)) {
+    result.points.push_back(near.point);
+    result.distances.push_back(near.angle);
+  }
+  return result;
 }
 
 std::vector<double> SphereLocator::interpolate(const double* values, std::size_t columns,

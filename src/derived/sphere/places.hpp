@@ -36,6 +36,12 @@ inline Direction cross(const Direction& a, const Direction& b) {
 /// The unit vector of a place, rounded.
 Direction direction_of(Point place);
 
+/// The angle between two unit vectors, in radians, rounded.
+inline double angle_between(const Direction& a, const Direction& b) {
+  const Direction difference = a - b, sum = {a.x + b.x, a.y + b.y, a.z + b.z};
+  return 2 * std::atan2(std::sqrt(dot(difference, difference)), std::sqrt(dot(sum, sum)));
+}
+
 /// The number of coordinates of a point.
 constexpr std::size_t width_of(SphereCoordinates coordinates) {
   return coordinates == SphereCoordinates::directions ? 3 : 2;

@@ -1,9 +1,21 @@
 #include "derived/sphere/walk.hpp"
 
+#include <algorithm>
+#include <unordered_set>
+#include <utility>
+
 namespace flaunay::sphere {
 
 Walker::Walker(const SphericalTriangulation& mesh)
-    : mesh_(mesh), is_seen_(mesh.triangles.size() / 3), triangle_at_(mesh.places.size() / 2, -1) {
+    : mesh_(mesh),
+      is_seen_(mesh.triangles.size() / 3),
+      next_equal_(mesh.places.size() / 2, -1),
+      triangle_at_(mesh.places.size() / 2, -1) {
+  for (std::size_t i = mesh.representatives.size(); i-- > 0;) {
+    const auto own = static_cast<std::int32_t>(i);
+    if (mesh.representatives[i] == own) continue;
+    next_equal_[i] = std::exchange(next_equal_[static_cast<std::size_t>(mesh.representatives[i])], own);
+  }
   const auto triangles = static_cast<std::int32_t>(is_seen_.size());
   for (std::int32_t t = triangles - 1; t >= 0; --t) {
     const bool is_seen = turn(place(corner(t, 0)), place(corner(t, 1)), place(corner(t, 2))) > 0;
@@ -42,6 +54,39 @@ std::int32_t Walker::nearest(Point query, std::int32_t v) const {
     } while (t != first);
   }
   return best;
+}
+
+std::vector<std::int32_t> Walker::nearest_points(Point query, std::int32_t v, std::size_t count) const {
+  const auto comes_later = [&](std::int32_t a, std::int32_t b) {
+    const int sign = nearer(query, place(a), place(b));
+    return sign != 0 ? sign < 0 : comes_first(place(b), place(a));
+  };
+  std::vector<std::int32_t> result, waiting;  // a heap
+  std::unordered_set<std::int32_t> known;
+  const auto add = [&](std::int32_t other) {
+    if (!known.insert(other).second) return;
+    waiting.push_back(other);
+    std::push_heap(waiting.begin(), waiting.end(), comes_later);
+  };
+  add(v);
+  // Sets without triangles have one or two points.
+  for (std::size_t i = 0; mesh_.triangles.empty() && i < mesh_.representatives.size(); ++i)
+    add(mesh_.representatives[i]);
+  while (!waiting.empty() && result.size() < count) {
+    std::pop_heap(waiting.begin(), waiting.end(), comes_later);
+    const std::int32_t best = waiting.back();
+    waiting.pop_back();
+    for (std::int32_t i = best; i >= 0 && result.size() < count; i = next_equal_[static_cast<std::size_t>(i)])
+      result.push_back(i);
+    const std::int32_t first = triangle_at_[static_cast<std::size_t>(best)];
+    for (std::int32_t t = first; t >= 0;) {
+      const int k = corner_of(t, best);
+      add(corner(t, k + 1));
+      t = beyond(t, k + 1);
+      if (t == first) break;
+    }
+  }
+  return result;
 }
 
 Found Walker::found(std::int32_t t, Point query) const {

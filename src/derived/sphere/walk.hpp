@@ -30,6 +30,11 @@ class Walker {
   /// neighbour. The nearest points are the corners of one face of the hull in space, in which all are
   /// neighbours of the first, so that no step is missing.
   std::int32_t nearest(Point query, std::int32_t v) const;
+  /// The nearest points in their order, equal ones by their indices; fewer than `count` only if there are no
+  /// more. The first one is the vertex v. Each of the others is a neighbour of one that is nearer: a circle
+  /// through it, within the circle of what is nearer, has no point inside but for some that are nearer than
+  /// itself.
+  std::vector<std::int32_t> nearest_points(Point query, std::int32_t v, std::size_t count) const;
   /// From a triangle at vertex v across arcs that the query lies beyond. In space, its ray's distance to the
   /// triangles' planes grows from step to step, and so the walk ends. No triangle, if none has the query.
   Found locate(Point query, std::int32_t v) const;
@@ -48,6 +53,8 @@ class Walker {
   /// Of each triangle whether it turns left, as seen from the sphere's centre: all do unless the points lie
   /// within a hemisphere.
   std::vector<std::uint8_t> is_seen_;
+  /// Of each point the next one that the same point represents, or -1.
+  std::vector<std::int32_t> next_equal_;
   /// Of each vertex a triangle, one that is seen if there is one; -1 if it has none.
   std::vector<std::int32_t> triangle_at_;
 };

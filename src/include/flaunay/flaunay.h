@@ -1602,6 +1602,15 @@ FLAUNAY_API flaunay_status flaunay_spherical_locator_locate(flaunay_spherical_lo
 FLAUNAY_API flaunay_status flaunay_spherical_locator_nearest(flaunay_spherical_locator* locator,
                                                              const double* queries, size_t m, int coordinates,
                                                              int32_t* points);
+/// Finds for each of m queries the `count` nearest points, the nearest first, exactly; equal points are in
+/// the order of their indices. Those whose distance is larger than max_distance (INFINITY for none) are left
+/// out. Distances are angles in radians, rounded. points, distances: room for m count values, -1 and INFINITY
+/// where there are no more points; distances may be NULL. Some O(count log count) per query.
+FLAUNAY_API flaunay_status flaunay_spherical_locator_nearest_points(flaunay_spherical_locator* locator,
+                                                                    const double* queries, size_t m,
+                                                                    int coordinates, size_t count,
+                                                                    double max_distance, int32_t* points,
+                                                                    double* distances);
 /// Computes for each of m queries the value at the place where its direction meets the triangle in space,
 /// which is linear there (Renka, 1984). values: `columns` numbers per point; results: so many per query. At a
 /// point it is that point's value; where there is no triangle, NaN.

@@ -9,6 +9,7 @@
 
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
+#include "flaunay/neighbors.hpp"
 
 namespace flaunay {
 
@@ -129,6 +130,12 @@ class FLAUNAY_API SphereLocator {
   /// Finds for each of m queries the nearest point, exactly; of several the south pole, or else the one with
   /// the smallest place. It is -1 if there are no points.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m, SphereCoordinates coordinates);
+  /// Finds for each of m queries the nearest points, in their order by exact comparisons; of several that are
+  /// as near, the first is the one above, and equal points are in the order of their indices. Distances, also
+  /// the largest one, are angles in radians, rounded. Throws Error(usage) as PointTree does. Some O(count log
+  /// count) per query.
+  Neighbors nearest(const double* queries, std::size_t m, SphereCoordinates coordinates,
+                    const NeighborOptions& options);
   /// Computes for each of m queries the value at the place where its direction meets the triangle in space,
   /// which is linear there (Renka, 1984): `columns` numbers per point and per query. At a point it is that
   /// point's value; where there is no triangle, NaN.
