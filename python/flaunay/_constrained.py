@@ -578,7 +578,7 @@ def arrays_of_constrained(
         *(rules, refinement, wanted),
     )
     holes, hole_offsets = places.get("hole", (None, None))
-    asked = {
+    asked: dict[str, Any] = {
         **rules,
         "offsets": None if offsets is None else offsets.copy(),
         "segments": pairs.copy(),

@@ -117,7 +117,11 @@ def _mesh(wanted: dict[str, Any]) -> dict[str, Any]:
 
 def provable(refinement: dict[str, Any]) -> dict[str, Any]:
     """Those members that a proof is about, with copies of arrays."""
-    kept = {name: refinement[name] for name in ("min_angle", "max_area", "conforming") if name in refinement}
+    kept: dict[str, Any] = {
+        name: refinement[name]
+        for name in ("min_angle", "max_area", "conforming")
+        if name in refinement
+    }
     if refinement.get("mesh"):
         rows = refinement["mesh"]["triangles"]
         kept["mesh"] = {"triangles": rows.copy(), "count": len(rows)}

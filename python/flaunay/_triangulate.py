@@ -277,6 +277,7 @@ def triangulate(
         "seeds": seeds,
         "seed_offsets": seed_offsets,
     }
+    asked: Optional[dict[str, Any]] = None
     if segments is None and refining:
         segments = np.empty((0, 2), np.int32)
     if segments is None:
@@ -285,7 +286,7 @@ def triangulate(
         unused += [name for name in rules if rules[name]]
         if unused:
             raise UsageError(f"{unused[0]} is for segments, of which there are none")
-        result, asked = arrays_of_mesh(as_points(points), sets, wanted, device, mode), {}
+        result = arrays_of_mesh(as_points(points), sets, wanted, device, mode)
     else:
         if mode != "blocks":
             raise UsageError(f"mode {mode!r} has no segments; mode 'blocks' has")
@@ -294,7 +295,7 @@ def triangulate(
         )
     if places:
         _write(result, places)
-    if segments is None:
+    if asked is None:
         return with_arrays(Triangulation, result)
     return with_arrays(ConstrainedTriangulation, result, _device=device, _asked=asked)
 

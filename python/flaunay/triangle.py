@@ -152,7 +152,10 @@ def _triangulated(given: Members, letters: Counter[str], options: Options) -> Me
     refining = cast(Refining, options)
 
     def arrays() -> Members:
-        return arrays_of_constrained(points, segments, None, others, rules, refining, {"neighbors"}, None)
+        made, _ = arrays_of_constrained(
+            *(points, segments, None, others, rules, refining, {"neighbors"}, None)
+        )
+        return made
 
     try:
         mesh = arrays()

@@ -25,11 +25,12 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
     Triangulator& cpp = required(triangulator, "the triangulator").cpp;
     const std::vector<std::size_t> all = c::to_offsets(offsets, sets, n);
     const research::Options wanted = c::to_options(options);
-    // The paper's modes have a call of their own.
+    // What is about the paper's modes has a call of its own, which refuses what does not go together.
+    const bool is_plain =
+        wanted.mode == research::Mode::blocks && wanted.hull != research::Hull::monotone_chain;
     return std::make_unique<flaunay_triangulation>(
-        wanted.mode == research::Mode::blocks
-            ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))
-            : research::triangulate(cpp, coordinates, all, wanted));
+        is_plain ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))
+                 : research::triangulate(cpp, coordinates, all, wanted));
   });
 }
 
