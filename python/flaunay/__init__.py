@@ -1,17 +1,36 @@
-"""Exact two-dimensional Delaunay triangulation on OpenCL devices.
+"""Exact Delaunay triangulations, meshes and maps in the plane, on any CPU at once and on any OpenCL GPU.
 
-``Delaunay`` and ``Voronoi`` have the attributes of SciPy's classes of these names. ``LinearInterpolator``,
-``NearestInterpolator``, ``CloughTocherInterpolator`` and ``griddata`` interpolate scattered values, with
-SciPy's calls, and ``NaturalNeighborInterpolator`` does likewise. ``Voronoi.clipped`` and
-``voronoi_polygons`` clip cells to a box or a convex polygon, ``relax`` spreads points evenly, and
-``alpha_shape`` finds the outline of points. ``triangulate`` is the plain call,
-for one set of points or many at once, also with segments that are to be edges, and ``polygons`` fills any
-number of polygons with triangles. ``triangulate_device`` takes and leaves everything in device
-memory, as ``pyopencl.array.Array``, and so do the queries, interpolation and Voronoi diagrams of its
-result, ``relax_device``, ``periodic_device`` and ``spherical_device``. ``triangulate_chunks`` is for more points than fit memory: it reads
-arrays that are mapped from files, and writes files; ``rasterize_chunks`` and ``contour_chunks`` make maps of them.
-``Delaunay(points, incremental=True)`` and ``DynamicTriangulation`` have points that are added, removed and moved. The module ``triangle`` has the calls of the package of
-that name.
+Triangulations
+    ``Delaunay`` has the attributes of SciPy's class, and with ``incremental=True`` points come and go, as in
+    ``DynamicTriangulation`` (``Changes``, ``TriangleRows``, ``LivingConstraints``). ``triangulate`` is the plain call,
+    for one set of points or many (``Triangulation``), also with segments as edges (``ConstrainedTriangulation``).
+    ``refine`` adds points until angles and areas are as asked for (``RefinementReport``). ``polygons`` fills polygons,
+    alone or as one map (``PolygonTriangulation``). ``triangle`` has the calls of the package of that name. ``modes``
+    lists the algorithms.
+
+Other spaces
+    ``weighted`` points (``WeightedDelaunay``), a torus or a cylinder (``periodic``, ``PeriodicDelaunay``,
+    ``to_places``), and the sphere (``spherical``, ``SphericalDelaunay``, ``SphericalVoronoi``).
+
+From points and triangulations
+    ``Voronoi`` diagrams as SciPy's, clipped cells (``voronoi_polygons``, ``ClippedVoronoi``, ``VoronoiPieces``),
+    evenly spread points (``relax``), outlines (``alpha_shape``, ``AlphaShape``). ``LinearInterpolator``,
+    ``NearestInterpolator``, ``CloughTocherInterpolator``, ``NaturalNeighborInterpolator`` and ``griddata`` interpolate
+    scattered values. Rasters and ``Contours`` are methods; ``terrain`` makes maps of laser scans (``Terrain``).
+
+Proofs
+    ``verify``, and methods of that name, check a result exactly, by predicates of their own.
+
+More points than memory
+    ``triangulate_chunks`` (``ChunkedTriangulation``), ``rasterize_chunks`` and ``contour_chunks`` read mapped arrays.
+
+Device memory, as ``pyopencl.array.Array``
+    ``triangulate_device`` (``DeviceTriangulation``, ``DeviceLocator``, ``DeviceVoronoi``, ``DeviceClippedVoronoi``),
+    ``relax_device``, ``periodic_device`` (``DevicePeriodic``), ``spherical_device`` (``DeviceSpherical``),
+    ``DeviceRows``. ``devices`` lists the devices.
+
+Errors
+    ``UsageError``, ``InputError``, ``DeviceError`` and ``InternalError`` are kinds of ``Error``.
 
 Without a GPU, calls on NumPy arrays run on the host's cores and need no OpenCL. On a device, the first
 call builds its kernels, which takes some seconds; they are kept on disk for later processes, and

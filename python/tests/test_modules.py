@@ -59,3 +59,8 @@ def test_one_module_calls_the_library():
 def test_classes_are_above_functions():
     for name in ("_export", "_graphs", "_plot", "_scipy"):
         assert IMPORTS[name] <= {"_arrays", "_calls", "_errors", "_optional"}
+
+
+def test_the_help_names_everything():
+    missing = [name for name in flaunay.__all__ if f"``{name}``" not in flaunay.__doc__]
+    assert missing == ["__version__"]
