@@ -1,5 +1,5 @@
 /// \file
-/// flaunay: exact two-dimensional Delaunay triangulation on any OpenCL device. This is the interface for C
+/// flaunay: exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU. This is the interface for C
 /// and for languages that call C; it compiles as C99, C11 and C++. The interface for C++ is flaunay.hpp.
 ///
 /// Functions that can fail return a flaunay_status; flaunay_last_error has the message. A function that makes
