@@ -1,6 +1,7 @@
 /// \file
-/// flaunay: exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU. This is the interface for C
-/// and for languages that call C; it compiles as C99, C11 and C++. The interface for C++ is flaunay.hpp.
+/// flaunay: exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU. This is the
+/// interface for C and for languages that call C; it compiles as C99, C11 and C++. The interface for C++ is
+/// flaunay.hpp.
 ///
 /// Functions that can fail return a flaunay_status; flaunay_last_error has the message. A function that makes
 /// a handle writes it to its last argument, or NULL if it fails. An accessor returns NULL or 0 if the handle
