@@ -965,6 +965,34 @@ TEST_F(CommandTriangulateTest, CountPrintsATableByComponent) {
 
 // ------------------------------------------------------------------------------------------------- surfaces
 
+// All of the globe, each place once, without a side across the date line.
+TEST_F(CommandTriangulateTest, TheGlobeAsGeoJson) {
+  std::string text = "170 10\n-170 -10\n0 90\n180 0\n-180 20\n";
+  for (int i = 0; i < 60; ++i)
+    text += std::to_string(i * 137 % 360 - 180) + " " + std::to_string(i * 61 % 170 - 85) + "\n";
+  for (const std::string more : {"", "5 -90\n"}) {
+    run_well({"triangulate", write("globe.txt", text + more), "--sphere", "-o", path("globe.geojson")});
+    double area = 0;
+    const nlohmann::json globe = json_of(path("globe.geojson"));
+    for (const auto& feature : globe["features"]) {
+      for (const auto& polygon : feature["geometry"]["coordinates"]) {
+        const auto& ring = polygon[0];
+        double twice = 0;
+        for (std::size_t k = 0; k + 1 < ring.size(); ++k) {
+          const double x = ring[k][0], y = ring[k][1], to = ring[k + 1][0], up = ring[k + 1][1];
+          EXPECT_TRUE(std::fabs(x) <= 180 && std::fabs(y) <= 90) << x << " " << y;
+          EXPECT_TRUE(std::fabs(to - x) <= 180 || std::fabs(y) == 90) << x << " " << to;
+          twice += x * up - to * y;
+        }
+        EXPECT_GT(twice, 0);
+        EXPECT_EQ(ring.front(), ring.back());
+        area += twice / 2;
+      }
+    }
+    EXPECT_NEAR(area, 360 * 180, 1e-6);
+  }
+}
+
 TEST_F(CommandTriangulateTest, OtherSurfaces) {
   const std::string points = write("points.xy", "0.5 0\n-7 9\n0.5 4\n30 40\n");
   // One of the points is given twice.

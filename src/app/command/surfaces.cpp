@@ -97,13 +97,14 @@ bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
   refuse_all_but(command, is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, kCommon);
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
   const std::string output = command.get_option("--output")->as<std::string>();
-  const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh"};
+  const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh", ".geojson"};
   if (request.is_sphere && !output.empty() &&
       std::find(in_space.begin(), in_space.end(), io::ending_of(output)) == in_space.end()) {
     throw Error(
         ErrorKind::usage,
-        fmt::format("{}: triangles on the sphere are written to .obj, .off, .ply, .vtu, .msh and .npy",
-                    output));
+        fmt::format(
+            "{}: triangles on the sphere are written to .obj, .off, .ply, .vtu, .msh, .geojson and .npy",
+            output));
   }
   if (in_chunks) refuse(command, "--output", "a triangulation in chunks writes arrays alone");
   if (in_chunks && request.is_sphere) refuse(command, "--device", "the sphere needs one device");
@@ -163,7 +164,11 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
     if (!places.empty()) io::write_points(outputs, places, points);
     const std::string& output = task.results.mesh;
     if (output.empty()) return;
-    if (request.is_sphere) {
+    if (request.is_sphere && io::ending_of(output) == ".geojson") {
+      io::MeshContents contents{points, mesh};
+      contents.is_on_globe = true;
+      io::write_mesh(outputs, output, contents);
+    } else if (request.is_sphere) {
       io::write_mesh(outputs, output, {in_space(on_sphere), mesh});
     } else {
       io::Points images = points;

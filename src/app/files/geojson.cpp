@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/files/formats.hpp"
+#include "app/files/globe.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
@@ -274,6 +275,26 @@ class GeoJsonReader {
 
 Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
 
+/// The rest of the feature of a triangle on the globe.
+void print_on_globe(OutputFile& file, const MeshContents& contents, std::size_t t) {
+  GlobeRing ring;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto corner = static_cast<std::size_t>(contents.corners(t)[k]);
+    ring.push_back({contents.points.coordinates[2 * corner], contents.points.coordinates[2 * corner + 1]});
+  }
+  file.print("\"geometry\":{{\"type\":\"MultiPolygon\",\"coordinates\":[");
+  const std::vector<GlobeRing> parts = cut_at_date_line(ring);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    file.print("{}[[", p == 0 ? "" : ",");
+    for (std::size_t k = 0; k <= parts[p].size(); ++k) {
+      const OnGlobe& at = parts[p][k % parts[p].size()];
+      file.print("{}[{},{}]", k == 0 ? "" : ",", at[0], at[1]);
+    }
+    file.print("]]");
+  }
+  file.print("]}}}}");
+}
+
 /// A feature per triangle, with its corners as a ring. It has the properties of its polygon, and its own
 /// ones, which have a longer name if a polygon has such a property.
 void write_geojson(OutputFile& file, const MeshContents& contents) {
@@ -299,6 +320,11 @@ void write_geojson(OutputFile& file, const MeshContents& contents) {
     const auto owner =
         constraints.polygons.empty() ? properties.size() : static_cast<std::size_t>(constraints.polygons[t]);
     if (owner < properties.size() && !properties[owner].empty()) file.print(",{}", properties[owner]);
+    if (contents.is_on_globe) {
+      file.print("}},");
+      print_on_globe(file, contents, t);
+      continue;
+    }
     file.print("}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[");
     for (std::size_t k = 0; k < 4; ++k) {
       const auto corner = static_cast<std::size_t>(contents.corners(t)[k % 3]);

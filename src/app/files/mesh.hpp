@@ -20,6 +20,7 @@ struct MeshContents {
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
   FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
+  bool is_on_globe = false;  ///< points are longitudes and latitudes, and triangles are those of the sphere
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
   double height(std::size_t point) const { return points.heights.empty() ? 0 : points.heights[point]; }
