@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -275,7 +276,7 @@ class Refining {
   // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
   // Vertices at which two edges meet so at a sharp angle are apexes.
   std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends,
-                                      std::vector<edge_place>& places) const {
+                                      std::vector<std::int32_t>& apexes) const {
     std::vector<std::int32_t> wedges(ends.size(), -1);
     const std::int32_t* const triangles = mesh_.triangles.data();
     for (int before = 0; before < static_cast<int>(mesh_.triangles.size()); ++before) {
@@ -293,7 +294,7 @@ class Refining {
       const auto beside = [&](int c) { return points_[place_of_[triangles[geometry::next_halfedge(c)]]]; };
       const double2 at = points_[v], from = beside(corner), to = beside(last);
       const bool is_convex = kernel::orient_sign(at, from, to, ORIENT_BOUND) > 0;
-      if (is_convex && kernel::is_sharp(at, from, to) != 0) places[v].apex = v;
+      if (is_convex && kernel::is_sharp(at, from, to) != 0) apexes.push_back(v);
     }
     return wedges;
   }
@@ -301,13 +302,14 @@ class Refining {
   void upload() {
     rows_ = mesh_.triangles.size() / 3;
     vertices_ = mesh_.points;
-    std::vector<std::int32_t> edges = mesh_.edges;
-    for (std::int32_t& e : edges) {
-      if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
+    std::vector<std::int32_t> ends = ordered_ends(), apexes, wedges = wedges_at(ends, apexes);
+    rules_.has_apexes = apexes.empty() ? 0 : 1;
+    std::vector<edge_place> places;
+    if (!apexes.empty()) {
+      places.assign(mesh_.points, edge_place{0, 0, -1, -1});
+      for (const std::int32_t v : apexes) places[v].apex = v;
+      add_far_ends(ends, places);
     }
-    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
-    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends, places);
-    add_far_ends(ends, places);
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     // With what the first phase takes.
@@ -317,17 +319,20 @@ class Refining {
             vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
     is_starting_ = false;
     known_ = vertices_;
-    rules_.has_apexes =
-        std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
-    runtime_.fill(arrays_.states, rows_, cl_uchar{kernel::ROW_NEW});
-    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
     start_blocks();
     {
       Arena::Scope scope(arena_);
-      runtime_.map(rows_, kernels::load_rows{.triangles = runtime_.upload(arena_, places_of(mesh_.triangles)),
-                                             .neighbors = runtime_.upload(arena_, mesh_.neighbors),
-                                             .edges = runtime_.upload(arena_, std::move(edges)),
-                                             .rows = arrays_.rows});
+      const bool has_kept = !mesh_.kept_edges.empty();
+      const auto view = [&](const auto& values) { return runtime_.view(values.data(), values.size()); };
+      runtime_.map(rows_, kernels::load_rows{.has_kept = has_kept ? 1 : 0,
+                                             .triangles = view(mesh_.triangles),
+                                             .neighbors = view(mesh_.neighbors),
+                                             .edges = view(mesh_.edges),
+                                             .kept = has_kept ? view(mesh_.kept_edges) : arrays_.states,
+                                             .numbers = view(place_of_),
+                                             .rows = arrays_.rows,
+                                             .states = arrays_.states});
+      runtime_.map(vertices_, kernels::load_vertices{.cells = arrays_.cells, .places = arrays_.places});
       runtime_.finish();
     }
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
@@ -552,6 +557,9 @@ class Refining {
   struct Cut {
     Pending all;
     std::vector<kernel::block_cut> cuts{};
+    Buffer<kernel::block_cut> cuts_there{};
+    Buffer<cl_ulong> leaves{};  // per row
+    Buffer<cl_int> rows{};      // a copy of the list
   };
 
   // Cuts the plane so that leaves have about `block` of these rows, by the places of a sample.
@@ -566,7 +574,15 @@ class Refining {
       const auto k = 2 * static_cast<std::size_t>(positions[i]);
       places[i] = {middles[k], middles[k + 1]};
     }
-    made.cuts = cut_plane(std::move(places), std::max<std::size_t>(1, block / sample), how);
+    made.cuts = cut_plane(runtime_, std::move(places), std::max<std::size_t>(1, block / sample), how);
+    made.cuts_there = runtime_.upload(arena_, made.cuts);
+    made.leaves = arena_.allocate<cl_ulong>(count);
+    made.rows = arena_.allocate<cl_int>(count);
+    runtime_.map(count, kernels::find_leaves{.list = list,
+                                             .middles = made.all.middles,
+                                             .cuts = made.cuts_there,
+                                             .keys = made.leaves,
+                                             .payloads = made.rows});
     return made;
   }
 
@@ -592,22 +608,17 @@ class Refining {
     return blocks;
   }
 
-  Blocks make_blocks(Cut made) {
-    const auto& [list, count] = std::pair(made.all.list, made.all.count);
+  Blocks make_blocks(const Cut& made) {
+    const std::size_t count = made.all.count;
     Blocks blocks;
     blocks.count = leaves_of(made.cuts);
-    blocks.cuts = runtime_.upload(arena_, std::move(made.cuts));
-    blocks.list = arena_.allocate<cl_int>(count);
+    blocks.cuts = made.cuts_there;
+    blocks.list = made.rows;
     blocks.starts = arena_.allocate<cl_int>(blocks.count + 1);
-    const auto keys = arena_.allocate<cl_ulong>(count);
-    runtime_.map(count, kernels::find_leaves{.list = list,
-                                             .middles = made.all.middles,
-                                             .cuts = blocks.cuts,
-                                             .keys = keys,
-                                             .payloads = blocks.list});
-    host::sort_by_key(runtime_, keys, blocks.list, count);
-    runtime_.map(count, kernels::find_starts{
-                            .leaves = static_cast<int>(blocks.count), .keys = keys, .starts = blocks.starts});
+    host::sort_by_key(runtime_, made.leaves, blocks.list, count);
+    runtime_.map(count,
+                 kernels::find_starts{
+                     .leaves = static_cast<int>(blocks.count), .keys = made.leaves, .starts = blocks.starts});
     const Here<cl_int> starts(runtime_, blocks.starts, blocks.count + 1);
     for (std::size_t b = 0; b < blocks.count; ++b)
       blocks.largest = std::max(blocks.largest, static_cast<std::size_t>(starts[b + 1] - starts[b]));
@@ -638,7 +649,7 @@ class Refining {
       bool is_whole = count <= block;
       if (!is_whole && (!made || count != all_count))
         made = cut(list, count, block, is_first ? Cuts::medians : Cuts::gaps);
-      Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(std::move(*made));
+      Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(*made);
       // Each has a part of what is left.
       if (!is_whole && (blocks.count == 1 || left < blocks.count)) {
         is_whole = true;
@@ -662,17 +673,16 @@ class Refining {
   // independent of each other: circumcentres, the largest circle first, one after the other. Returns whether
   // there were some.
   bool make_scaffold(const Cut& made) {
-    const auto& [all, cuts] = made;
+    const Pending& all = made.all;
     const std::size_t count = all.count;
+    const Here<cl_ulong> leaves(runtime_, made.leaves, count);
     const Here<double> middles(runtime_, all.middles.as<cl_double>(), 2 * count),
         radii(runtime_, all.radii, count);
     struct Box {
       double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     };
-    std::vector<Box> boxes(leaves_of(cuts));
-    std::vector<std::size_t> leaves(count);
+    std::vector<Box> boxes(leaves_of(made.cuts));
     for (std::size_t i = 0; i < count; ++i) {
-      leaves[i] = leaf_of(cuts, {middles[2 * i], middles[2 * i + 1]});
       Box& box = boxes[leaves[i]];
       for (std::size_t k = 0; k < 2; ++k) {
         box.low[k] = std::min(box.low[k], middles[2 * i + k]);
@@ -692,7 +702,7 @@ class Refining {
     if (chosen.empty()) return false;
     const std::size_t size = chosen.size();
     Blocks blocks = whole_plane(runtime_.upload(arena_, std::move(chosen)), size);
-    blocks.cuts = runtime_.upload(arena_, cuts);
+    blocks.cuts = made.cuts_there;
     kernel::refinement_phase phase{};
     phase.is_whole = phase.is_scaffold = 1;
     phase.level = 1;
@@ -1003,19 +1013,25 @@ class Refining {
     const Here<edge_place> places(runtime_, arrays_.places, vertices_);
     const Here<cl_int> numbers(runtime_, found.numbers, vertices_);
     const std::size_t added = known_ + found.made - mesh_.points;
-    refined.added.resize(2 * added);
-    refined.added_edges.resize(added);
-    refined.added_places.resize(added);
+    runtime_.resize(refined.added, 2 * added);
+    runtime_.resize(refined.added_edges, added);
+    runtime_.resize(refined.added_places, added);
     const kernel::scaling back = kernel::scale_of(-shift_);
-    for (std::size_t v = mesh_.points; v < vertices_; ++v) {
-      if (numbers[v] < 0) continue;
-      const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
-      for (std::size_t k = 0; k < 2; ++k)
-        refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
-      refined.added_edges[to] = places[v].edge;
-      refined.added_places[to] = places[v].part;
-      if (places[v].edge >= 0) ++report_.split_points;
-    }
+    std::atomic<std::size_t> split_points = 0;
+    runtime_.share_parts(vertices_ - mesh_.points, [&](std::size_t begin, std::size_t end) {
+      std::size_t splits = 0;
+      for (std::size_t v = mesh_.points + begin; v < mesh_.points + end; ++v) {
+        if (numbers[v] < 0) continue;
+        const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
+        for (std::size_t k = 0; k < 2; ++k)
+          refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
+        refined.added_edges[to] = places[v].edge;
+        refined.added_places[to] = places[v].part;
+        splits += places[v].edge >= 0 ? 1 : 0;
+      }
+      split_points += splits;
+    });
+    report_.split_points = split_points;
     const Excuse at_limit = report_.rounds >= wanted_.most_rounds ? Excuse::most_rounds : Excuse::most_points;
     for (std::size_t t = 0; t < found.rows; ++t) {
       if (excuses[t] == kernel::EXCUSED_NOT) continue;
