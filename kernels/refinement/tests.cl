@@ -28,11 +28,11 @@ kernel void load_rows(int n, int has_kept, global const int* restrict triangles,
     states[t] = ROW_NEW;
   }
 }
-kernel void load_vertices(int n, global int* restrict cells, global edge_place* restrict places) {
+kernel void load_vertices(int n, global int2* restrict births, global edge_place* restrict places) {
   const int v = get_global_id(0);
   if (v < n) {
     const edge_place nowhere = {0.0, 0.0, -1, -1};
-    cells[v] = 0;
+    births[v] = VECTOR(int2, -1, 0);
     places[v] = nowhere;
   }
 }

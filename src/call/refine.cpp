@@ -544,6 +544,7 @@ void measure_angles(Implementation& self, const double* coordinates, std::size_t
     constrained::Angles angles;
     double largest = 0;  // the largest coordinate
   };
+  const double* const points[] = {coordinates, result.added_points.data()};
   const auto measure = [&](int exponent) {
     const std::size_t count = result.triangles.size() / 3;
     std::vector<Part> parts(count / host::Runtime::kPart + 1, {constrained::Angles(with_mean)});
@@ -553,8 +554,10 @@ void measure_angles(Implementation& self, const double* coordinates, std::size_t
       for (std::size_t t = begin; t < end; ++t) {
         double places[6];
         for (std::size_t k = 0; k < 3; ++k) {
+          // Without branches, which could not be predicted.
           const auto v = static_cast<std::size_t>(result.triangles[3 * t + k]);
-          const double* const place = v < n ? coordinates + 2 * v : &result.added_points[2 * (v - n)];
+          const std::size_t is_added = v < n ? 0 : 1;
+          const double* const place = points[is_added] + 2 * (v - is_added * n);
           for (std::size_t axis = 0; axis < 2; ++axis) {
             own.largest = std::max(own.largest, std::fabs(place[axis]));
             places[2 * k + axis] = exponent == 0 ? place[axis] : std::ldexp(place[axis], -exponent);

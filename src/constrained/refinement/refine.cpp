@@ -65,8 +65,10 @@ constexpr double kScaffold = 0.5;
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
 // A launch has room for so many chunks of rows and of vertices, or for one per block.
 constexpr std::size_t kLeastChunks = 4;
-// For so many rows, a thread's loops take less time than passes of kernels.
+// A thread takes at least so many rows.
 constexpr std::size_t kFewRows = std::size_t{1} << 14;
+// So many vertices, and the rows around them, fit a core's cache.
+constexpr std::size_t kVerticesPerBucket = std::size_t{1} << 13;
 // Where loops of a work-item must be short, a launch takes so many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
@@ -87,8 +89,7 @@ struct Arrays {
   Buffer<cl_double> areas{};
   Buffer<cl_double2> points{};
   Buffer<edge_place> places{};
-  Buffer<cl_int> cells{};    // the phase and the leaf of vertices
-  Buffer<cl_int2> births{};  // the blocks that made them, and their numbers there
+  Buffer<cl_int2> births{};  // the blocks that made vertices, and their numbers there
 };
 
 // The lists of work-items.
@@ -332,7 +333,7 @@ class Refining {
                                              .numbers = view(place_of_),
                                              .rows = arrays_.rows,
                                              .states = arrays_.states});
-      runtime_.map(vertices_, kernels::load_vertices{.cells = arrays_.cells, .places = arrays_.places});
+      runtime_.map(vertices_, kernels::load_vertices{.births = arrays_.births, .places = arrays_.places});
       runtime_.finish();
     }
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
@@ -394,7 +395,6 @@ class Refining {
       const std::size_t size = with_spare(vertices);
       grow(arrays_.points, vertices_, size);
       grow(arrays_.places, vertices_, size);
-      grow(arrays_.cells, vertices_, size);
       grow(arrays_.births, vertices_, size);
       vertex_room_ = size;
     }
@@ -420,25 +420,35 @@ class Refining {
                                                            .states = arrays_.states});
   }
 
-  // Whether loops of this thread take less time than passes of kernels.
-  bool has_few_rows() const { return runtime_.is_native() && (rows_ <= kFewRows || runtime_.threads() == 1); }
+  // In so many parts rows are shared natively.
+  std::size_t parts_of_rows() const { return 1 + std::min(4 * (runtime_.threads() - 1), rows_ / kFewRows); }
 
   // Rows whose states have a bit of a mask.
   std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
-    if (has_few_rows()) {
-      const auto list = arena_.allocate<cl_int>(rows_);
-      const cl_uchar* const states = address_in(arrays_.states);
-      cl_int* const rows = address_in(list);
-      std::size_t count = 0;
-      for (std::size_t row = 0; row < rows_; ++row) {
-        rows[count] = static_cast<cl_int>(row);
-        count += (states[row] & mask) != 0 ? 1 : 0;
-      }
-      return {list, count};
+    if (!runtime_.is_native()) {
+      const auto flags = arena_.allocate<cl_uchar>(rows_);
+      runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
+      return host::pack_positions(runtime_, flags, rows_, 1);
     }
-    const auto flags = arena_.allocate<cl_uchar>(rows_);
-    runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
-    return host::pack_positions(runtime_, flags, rows_, 1);
+    const cl_uchar* const states = address_in(arrays_.states);
+    const std::size_t parts = parts_of_rows();
+    std::vector<std::size_t> to(parts + 1, 0);
+    const auto first_of = [&](std::size_t part) { return rows_ * part / parts; };
+    runtime_.share(parts, [&](std::size_t part) {
+      to[part + 1] =
+          static_cast<std::size_t>(std::count_if(states + first_of(part), states + first_of(part + 1),
+                                                 [mask](cl_uchar state) { return (state & mask) != 0; }));
+    });
+    std::partial_sum(to.begin(), to.end(), to.begin());
+    const auto list = arena_.allocate<cl_int>(to[parts] + 1);
+    runtime_.share(parts, [&](std::size_t part) {
+      cl_int* at = address_in(list) + to[part];
+      for (std::size_t row = first_of(part); at < address_in(list) + to[part + 1]; ++row) {
+        *at = static_cast<cl_int>(row);
+        at += (states[row] & mask) != 0 ? 1 : 0;
+      }
+    });
+    return {list, to[parts]};
   }
 
   // Finds the areas of rows that were made: those of parents, and what the caller's function says.
@@ -644,7 +654,6 @@ class Refining {
         }
       }
       const auto [list, count] = rows_at_level(all, all_count, levels);
-      while (count / block >> (kernel::LEAF_BITS - 1) != 0) block *= 2;
       const std::size_t left = wanted_.most_points - added_;
       bool is_whole = count <= block;
       if (!is_whole && (!made || count != all_count))
@@ -726,7 +735,6 @@ class Refining {
     runtime_.write(block_states_, 0, workers_, all.data());
     block_count_ = 0;
     inserted_by_.clear();
-    phase_ = 0;
   }
 
   // Makes lists of at least so many places for each work-item. keeps_tasks: whether they have some.
@@ -752,11 +760,6 @@ class Refining {
                          const Buffer<cl_double>& reaches) {
     const std::size_t at_once = std::min(workers_, blocks.count);
     reserve_lists(at_once, std::max(kLeastRoom, 4 * blocks.largest + kernel::SPARE_ROOM), false);
-    if (++phase_ >> (32 - kernel::LEAF_BITS) != 0) {
-      phase_ = 1;
-      runtime_.fill(arrays_.cells, vertices_, cl_int{0});
-    }
-    phase.number = phase_;
     phase.blocks = static_cast<int>(blocks.count);
     phase.first_block = static_cast<int>(block_count_);
     phase.steps = runtime_.capabilities().loops_end_early ? kFewSteps : std::numeric_limits<int>::max();
@@ -786,7 +789,6 @@ class Refining {
                                              .areas = refined_mesh().areas,
                                              .given = given_.size() > 0 ? given_ : arrays_.rows,
                                              .states = arrays_.states,
-                                             .cells = arrays_.cells,
                                              .births = arrays_.births,
                                              .cuts = blocks.cuts,
                                              .reaches = reaches,
@@ -854,7 +856,7 @@ class Refining {
                                                   .names = runtime_.upload(arena_, std::move(names)),
                                                   .numbers = found.numbers});
     runtime_.finish();
-    if (has_few_rows()) {
+    if (runtime_.is_native()) {
       order_here(found);
       return found;
     }
@@ -887,36 +889,82 @@ class Refining {
     return found;
   }
 
-  // What the passes above do with rows, in loops.
+  // What the passes above do with rows, natively: threads put the rows that were made into buckets of
+  // vertices, and sort each bucket by counting.
   void order_here(Order& found) {
     const mesh_row* const rows = address_in(arrays_.rows);
     const cl_int* const numbers = address_in(found.numbers);
     cl_int* const row_numbers = address_in(found.row_numbers);
-    found.order = arena_.allocate<cl_ulong>(rows_);
-    cl_ulong* const order = address_in(found.order);
-    std::vector<std::size_t> ends(known_ + found.made + 1, 0);  // per vertex, of the rows that it begins
-    const auto is_made = [&](const mesh_row& row) { return row.corner[0] >= 0 && row.changed != 0; };
-    for (std::size_t r = 0; r < rows_; ++r) {
-      if (is_made(rows[r])) {
-        ++ends[static_cast<std::size_t>(numbers[rows[r].corner[0]]) + 1];
-      } else if (rows[r].corner[0] >= 0) {
-        order[found.rows++] = r;
+    const std::size_t parts = parts_of_rows(), vertices = known_ + found.made,
+                      size = std::min(kVerticesPerBucket, vertices), buckets = (vertices + size - 1) / size;
+    // Per part where its rows go: first those that are as they were, then by buckets.
+    std::vector<std::vector<std::size_t>> to(parts, std::vector<std::size_t>(buckets + 1, 0));
+    const auto visit = [&](std::size_t part, const auto& kept, const auto& made) {
+      const std::size_t end = rows_ * (part + 1) / parts;
+      for (std::size_t r = rows_ * part / parts; r < end; ++r) {
+        if (rows[r].corner[0] < 0) continue;
+        if (rows[r].changed == 0) {
+          kept(r);
+        } else {
+          made(r, static_cast<std::size_t>(numbers[rows[r].corner[0]]));
+        }
       }
+    };
+    runtime_.share(parts, [&](std::size_t part) {
+      std::vector<std::size_t>& own = to[part];
+      visit(
+          part, [&](std::size_t) { ++own[0]; }, [&](std::size_t, std::size_t v) { ++own[1 + v / size]; });
+    });
+    std::vector<std::size_t> firsts;
+    for (std::size_t bucket = 0; bucket <= buckets; ++bucket) {
+      firsts.push_back(found.rows);
+      for (std::vector<std::size_t>& own : to) found.rows += std::exchange(own[bucket], found.rows);
     }
-    ends[0] = found.rows;
-    std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    found.rows = ends.back();
-    const std::vector<std::size_t> firsts = ends;
-    for (std::size_t r = 0; r < rows_; ++r) {
-      if (!is_made(rows[r])) continue;
-      const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
-      const cl_ulong placed = static_cast<cl_ulong>(numbers[rows[r].corner[1]]) << 32 | r;
-      std::size_t to = ends[v]++;
-      for (; to > firsts[v] && order[to - 1] > placed; --to) order[to] = order[to - 1];
-      order[to] = placed;
-    }
-    for (std::size_t i = 0; i < found.rows; ++i)
-      row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
+    firsts.push_back(found.rows);
+    found.order = arena_.allocate<cl_ulong>(found.rows);
+    cl_ulong* const order = address_in(found.order);
+    struct Made {
+      std::int32_t row, first, second;  // and its first two corners
+    };
+    const auto list = arena_.allocate<Made>(found.rows - firsts[1]);
+    Made* const of_buckets = address_in(list);
+    runtime_.share(parts, [&](std::size_t part) {
+      std::vector<std::size_t>& own = to[part];
+      visit(
+          part,
+          [&](std::size_t r) {
+            row_numbers[r] = static_cast<cl_int>(own[0]);
+            order[own[0]++] = r;
+          },
+          [&](std::size_t r, std::size_t v) {
+            of_buckets[own[1 + v / size]++ - firsts[1]] = {
+                static_cast<std::int32_t>(r), static_cast<std::int32_t>(v), numbers[rows[r].corner[1]]};
+          });
+    });
+    runtime_.share(buckets, [&](std::size_t bucket) {
+      const std::size_t begin = firsts[bucket + 1], first = begin - firsts[1],
+                        last = firsts[bucket + 2] - firsts[1];
+      // Where the rows of each vertex begin, and then where they end.
+      std::vector<std::size_t> places(size + 2, begin);
+      const auto place_of = [&](std::size_t k) -> std::size_t& {
+        return places[static_cast<std::size_t>(of_buckets[k].first) - bucket * size + 1];
+      };
+      for (std::size_t k = first; k < last; ++k) ++(&place_of(k))[1];
+      for (std::size_t v = 1, sum = 0; v < size + 2; ++v) places[v] = begin + (sum += places[v] - begin);
+      for (std::size_t k = first; k < last; ++k)
+        order[place_of(k)++] =
+            static_cast<cl_ulong>(of_buckets[k].second) << 32 | static_cast<cl_uint>(of_buckets[k].row);
+      for (std::size_t v = 0; v < size; ++v) {
+        for (std::size_t i = places[v]; i < places[v + 1]; ++i) {
+          const cl_ulong moved = order[i];
+          std::size_t at = i;
+          for (; at > places[v] && order[at - 1] > moved; --at) order[at] = order[at - 1];
+          order[at] = moved;
+        }
+        for (std::size_t i = places[v]; i < places[v + 1]; ++i)
+          row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
+      }
+    });
   }
 
   // Gives vertices and rows their numbers.
@@ -945,7 +993,7 @@ class Refining {
                                                .places = before.places,
                                                .moved_points = arrays_.points,
                                                .moved_places = arrays_.places});
-    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
+    runtime_.fill(arrays_.births, vertices_, cl_int2{{-1, 0}});
     runtime_.finish();
     start_blocks();
   }
@@ -1068,7 +1116,6 @@ class Refining {
   Lists lists_;
   bool is_starting_ = false;
   std::size_t workers_ = 0, room_ = 0;  // room: places in the lists of each work-item
-  cl_uint phase_ = 0;
   std::size_t block_count_ = 0;
   std::vector<cl_int> inserted_by_;  // points of each block of all phases
   RefinementReport report_;
