@@ -540,46 +540,47 @@ void renumber_regions(Ids& regions) {
 
 void measure_angles(Implementation& self, const double* coordinates, std::size_t n, bool with_mean,
                     ConstrainedTriangulation& result) {
-  struct Part {
-    constrained::Angles angles;
-    double largest = 0;  // the largest coordinate
-  };
-  const double* const points[] = {coordinates, result.added_points.data()};
-  const auto measure = [&](int exponent) {
-    const std::size_t count = result.triangles.size() / 3;
-    std::vector<Part> parts(count / host::Runtime::kPart + 1, {constrained::Angles(with_mean)});
-    threads_for(self, count).share_parts(count, [&](std::size_t begin, std::size_t end) {
-      constexpr std::int32_t kCorners[3] = {0, 1, 2};
-      Part own = parts[begin / host::Runtime::kPart];
-      for (std::size_t t = begin; t < end; ++t) {
-        double places[6];
-        for (std::size_t k = 0; k < 3; ++k) {
-          // Without branches, which could not be predicted.
-          const auto v = static_cast<std::size_t>(result.triangles[3 * t + k]);
-          const std::size_t is_added = v < n ? 0 : 1;
-          const double* const place = points[is_added] + 2 * (v - is_added * n);
-          for (std::size_t axis = 0; axis < 2; ++axis) {
-            own.largest = std::max(own.largest, std::fabs(place[axis]));
-            places[2 * k + axis] = exponent == 0 ? place[axis] : std::ldexp(place[axis], -exponent);
-          }
-        }
-        own.angles.add(places, kCorners);
-      }
-      parts[begin / host::Runtime::kPart] = own;
+  constexpr std::size_t kPart = host::Runtime::kPart;
+  const std::size_t count = result.triangles.size() / 3;
+  host::Runtime& threads = threads_for(self, count);
+  const std::vector<double>& added = result.added_points;
+  const auto largest_of = [&](const double* values, std::size_t size) {
+    std::vector<double> parts(size / kPart + 1, 0);
+    threads.share_parts(size, [&](std::size_t begin, std::size_t end) {
+      double largest = 0;
+      for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, std::fabs(values[i]));
+      parts[begin / kPart] = largest;
     });
-    for (std::size_t k = 1; k < parts.size(); ++k) {
-      parts[0].angles.add(parts[k].angles);
-      parts[0].largest = std::max(parts[0].largest, parts[k].largest);
-    }
-    return parts[0];
+    return *std::max_element(parts.begin(), parts.end());
   };
-  Part all = measure(0);
+  const double largest = std::max(largest_of(coordinates, 2 * n), largest_of(added.data(), added.size()));
   // With all binary places that there may be, squares of lengths are doubles if the largest one is near 1.
-  const int exponent = all.largest > 0 ? std::ilogb(all.largest) : 0;
-  if (exponent < -7 || exponent > 250) all = measure(exponent);
-  result.refinement.smallest_angle = all.angles.smallest();
-  result.refinement.largest_angle = all.angles.largest();
-  result.refinement.mean_angle = all.angles.mean();
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  const bool is_scaled = exponent < -7 || exponent > 250;
+  const double* const points[] = {coordinates, added.data()};
+  std::vector<constrained::Angles> parts(count / kPart + 1, constrained::Angles(with_mean));
+  threads.share_parts(count, [&](std::size_t begin, std::size_t end) {
+    constexpr std::int32_t kCorners[3] = {0, 1, 2};
+    constrained::Angles angles(with_mean);
+    for (std::size_t t = begin; t < end; ++t) {
+      double places[6];
+      for (std::size_t k = 0; k < 3; ++k) {
+        // Without branches, which could not be predicted.
+        const auto v = static_cast<std::size_t>(result.triangles[3 * t + k]);
+        const std::size_t is_added = v < n ? 0 : 1;
+        const double* const place = points[is_added] + 2 * (v - is_added * n);
+        places[2 * k] = place[0];
+        places[2 * k + 1] = place[1];
+      }
+      for (std::size_t i = 0; is_scaled && i < 6; ++i) places[i] = std::ldexp(places[i], -exponent);
+      angles.add(places, kCorners);
+    }
+    parts[begin / kPart] = angles;
+  });
+  for (std::size_t k = 1; k < parts.size(); ++k) parts[0].add(parts[k]);
+  result.refinement.smallest_angle = parts[0].smallest();
+  result.refinement.largest_angle = parts[0].largest();
+  result.refinement.mean_angle = parts[0].mean();
 }
 
 void check_refinement(const Refinement& wanted, std::size_t seeds) {

@@ -67,8 +67,8 @@ constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
 constexpr std::size_t kLeastChunks = 4;
 // A thread takes at least so many rows.
 constexpr std::size_t kFewRows = std::size_t{1} << 14;
-// So many vertices, and the rows around them, fit a core's cache.
-constexpr std::size_t kVerticesPerBucket = std::size_t{1} << 13;
+// 2 to the power of this many vertices, and the rows around them, fit a core's cache.
+constexpr int kBucketBits = 13;
 // Where loops of a work-item must be short, a launch takes so many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
@@ -99,6 +99,19 @@ struct Lists {
   Buffer<kernel::dug_side> stacks{};
   Buffer<kernel::star_side> sides{};
   Buffer<kernel::first_task> firsts{};
+};
+
+// Of places.
+struct Box {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+
+  void add(const double* place) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], place[k]);
+      high[k] = std::max(high[k], place[k]);
+    }
+  }
+  double extent() const { return std::max(high[0] - low[0], high[1] - low[1]); }
 };
 
 // Where an array is, if kernels run natively.
@@ -189,18 +202,25 @@ class Refining {
     order_vertices();
     points_.resize(mesh_.points);
     scale_ = kernel::scale_of(shift_);
-    double low[2] = {0, 0}, high[2] = {0, 0};
-    for (std::size_t i = 0; i < mesh_.points; ++i) {
-      double at[2];
-      for (int k = 0; k < 2; ++k) {
-        at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
-        low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
-        high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
-        largest_ = std::max(largest_, std::fabs(at[k]));
+    if (mesh_.points == 0) return;
+    std::vector<Box> boxes((mesh_.points - 1) / host::Runtime::kPart + 1);
+    runtime_.share_parts(mesh_.points, [&](std::size_t begin, std::size_t end) {
+      Box box;
+      for (std::size_t i = begin; i < end; ++i) {
+        double at[2];
+        for (int k = 0; k < 2; ++k) at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
+        box.add(at);
+        points_[place_of_[i]] = {at[0], at[1]};
       }
-      points_[place_of_[i]] = {at[0], at[1]};
+      boxes[begin / host::Runtime::kPart] = box;
+    });
+    for (const Box& box : boxes) {
+      boxes[0].add(box.low);
+      boxes[0].add(box.high);
     }
-    extent_ = std::max(high[0] - low[0], high[1] - low[1]);
+    extent_ = boxes[0].extent();
+    for (int k = 0; k < 2; ++k)
+      largest_ = std::max({largest_, std::fabs(boxes[0].low[k]), std::fabs(boxes[0].high[k])});
   }
 
   // An area that is too small to be scaled is still one: no triangle is as small.
@@ -314,8 +334,8 @@ class Refining {
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     // With what the first phase takes.
-    is_starting_ = runtime_.is_native() && rows_ <= kFewRows;
-    if (is_starting_) reserve_lists(1, kLeastRoom, false);
+    is_starting_ = runtime_.is_native();
+    if (is_starting_ && rows_ <= kFewRows) reserve_lists(1, kLeastRoom, false);
     reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
             vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
     is_starting_ = false;
@@ -687,20 +707,11 @@ class Refining {
     const Here<cl_ulong> leaves(runtime_, made.leaves, count);
     const Here<double> middles(runtime_, all.middles.as<cl_double>(), 2 * count),
         radii(runtime_, all.radii, count);
-    struct Box {
-      double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    };
     std::vector<Box> boxes(leaves_of(made.cuts));
-    for (std::size_t i = 0; i < count; ++i) {
-      Box& box = boxes[leaves[i]];
-      for (std::size_t k = 0; k < 2; ++k) {
-        box.low[k] = std::min(box.low[k], middles[2 * i + k]);
-        box.high[k] = std::max(box.high[k], middles[2 * i + k]);
-      }
-    }
+    for (std::size_t i = 0; i < count; ++i) boxes[leaves[i]].add(&middles[2 * i]);
     std::vector<double> reaches;
     for (const Box& box : boxes) {
-      const double reach = kScaffold * std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+      const double reach = kScaffold * box.extent();
       reaches.push_back(reach * reach);
     }
     const Here<cl_int> rows(runtime_, all.list, count);
@@ -896,7 +907,7 @@ class Refining {
     const cl_int* const numbers = address_in(found.numbers);
     cl_int* const row_numbers = address_in(found.row_numbers);
     const std::size_t parts = parts_of_rows(), vertices = known_ + found.made,
-                      size = std::min(kVerticesPerBucket, vertices), buckets = (vertices + size - 1) / size;
+                      buckets = (vertices >> kBucketBits) + 1;
     // Per part where its rows go: first those that are as they were, then by buckets.
     std::vector<std::vector<std::size_t>> to(parts, std::vector<std::size_t>(buckets + 1, 0));
     const auto visit = [&](std::size_t part, const auto& kept, const auto& made) {
@@ -913,7 +924,8 @@ class Refining {
     runtime_.share(parts, [&](std::size_t part) {
       std::vector<std::size_t>& own = to[part];
       visit(
-          part, [&](std::size_t) { ++own[0]; }, [&](std::size_t, std::size_t v) { ++own[1 + v / size]; });
+          part, [&](std::size_t) { ++own[0]; },
+          [&](std::size_t, std::size_t v) { ++own[1 + (v >> kBucketBits)]; });
     });
     std::vector<std::size_t> firsts;
     for (std::size_t bucket = 0; bucket <= buckets; ++bucket) {
@@ -937,33 +949,36 @@ class Refining {
             order[own[0]++] = r;
           },
           [&](std::size_t r, std::size_t v) {
-            of_buckets[own[1 + v / size]++ - firsts[1]] = {
+            of_buckets[own[1 + (v >> kBucketBits)]++ - firsts[1]] = {
                 static_cast<std::int32_t>(r), static_cast<std::int32_t>(v), numbers[rows[r].corner[1]]};
           });
     });
     runtime_.share(buckets, [&](std::size_t bucket) {
-      const std::size_t begin = firsts[bucket + 1], first = begin - firsts[1],
-                        last = firsts[bucket + 2] - firsts[1];
+      const std::size_t begin = firsts[bucket + 1], count = firsts[bucket + 2] - begin,
+                        first_vertex = bucket << kBucketBits,
+                        size = std::min(std::size_t{1} << kBucketBits, vertices - first_vertex);
+      const Made* const own = of_buckets + (begin - firsts[1]);
+      cl_ulong* const placed = order + begin;
       // Where the rows of each vertex begin, and then where they end.
-      std::vector<std::size_t> places(size + 2, begin);
-      const auto place_of = [&](std::size_t k) -> std::size_t& {
-        return places[static_cast<std::size_t>(of_buckets[k].first) - bucket * size + 1];
+      std::vector<std::uint32_t> places(size + 2, 0);
+      const auto ends = [&](const Made& made) {
+        return &places[static_cast<std::size_t>(made.first) - first_vertex + 1];
       };
-      for (std::size_t k = first; k < last; ++k) ++(&place_of(k))[1];
-      for (std::size_t v = 1, sum = 0; v < size + 2; ++v) places[v] = begin + (sum += places[v] - begin);
-      for (std::size_t k = first; k < last; ++k)
-        order[place_of(k)++] =
-            static_cast<cl_ulong>(of_buckets[k].second) << 32 | static_cast<cl_uint>(of_buckets[k].row);
+      for (std::size_t k = 0; k < count; ++k) ++ends(own[k])[1];
+      std::partial_sum(places.begin(), places.end(), places.begin());
+      for (std::size_t k = 0; k < count; ++k)
+        placed[(*ends(own[k]))++] =
+            static_cast<cl_ulong>(own[k].second) << 32 | static_cast<cl_uint>(own[k].row);
       for (std::size_t v = 0; v < size; ++v) {
-        for (std::size_t i = places[v]; i < places[v + 1]; ++i) {
-          const cl_ulong moved = order[i];
-          std::size_t at = i;
-          for (; at > places[v] && order[at - 1] > moved; --at) order[at] = order[at - 1];
-          order[at] = moved;
+        for (std::uint32_t i = places[v]; i < places[v + 1]; ++i) {
+          const cl_ulong moved = placed[i];
+          std::uint32_t at = i;
+          for (; at > places[v] && placed[at - 1] > moved; --at) placed[at] = placed[at - 1];
+          placed[at] = moved;
         }
-        for (std::size_t i = places[v]; i < places[v + 1]; ++i)
-          row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
       }
+      for (std::size_t i = 0; i < count; ++i)
+        row_numbers[static_cast<cl_uint>(placed[i])] = static_cast<cl_int>(begin + i);
     });
   }
 
