@@ -514,10 +514,11 @@ RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine
     offsets.triangles.push_back(offsets.triangles.back() + part.parents.size());
     offsets.added.push_back(offsets.added.back() + part.added.size() / 2);
   }
+  host::Runtime& threads = threads_for(self, offsets.triangles.back());
   for (Ids* array : {&joined.triangles, &joined.neighbors, &joined.edges})
-    array->resize(3 * offsets.triangles.back());
-  joined.parents.resize(offsets.triangles.back());
-  joined.added.resize(2 * offsets.added.back());
+    threads.resize(*array, 3 * offsets.triangles.back());
+  threads.resize(joined.parents, offsets.triangles.back());
+  threads.resize(joined.added, 2 * offsets.added.back());
   share(sets.size(), [&](std::size_t s) {
     write_set(parts[s], sets[s], all.points, offsets, s, joined);
     parts[s] = {};
