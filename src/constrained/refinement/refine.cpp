@@ -392,9 +392,10 @@ class Refining {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  // With what is likely to be needed later. Natively, memory that is not used costs nothing.
+  // With what is likely to be needed later. Natively, memory that is not used costs nothing; most polygons take
+  // less than six times as many rows as at first.
   std::size_t with_spare(std::size_t count) const {
-    return runtime_.is_native() ? 3 * count : count + count / 2;
+    return is_starting_ ? 6 * count : runtime_.is_native() ? 3 * count : count + count / 2;
   }
 
   void reserve(std::size_t rows, std::size_t vertices) {
