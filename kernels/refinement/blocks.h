@@ -353,54 +353,61 @@ static inline int dig(block_work* work, double2 p, int is_free, int most) {
   GLOBAL star_side* const sides = work->sides;
   GLOBAL int* const cavity = work->cavity;
   int depth = work->depth, count = work->side_count, size = work->cavity_size, outcome = DUG;
-  while (depth > 0) {
+  while (depth > 0 && outcome == DUG) {
     // One by one: they were written so just before.
     GLOBAL const dug_side* const side = &stack[--depth];
-    const double bx = side->bx, by = side->by, bl = side->bl, cx = side->cx, cy = side->cy, cl = side->cl,
-                 bc = side->bc;
-    const int row = side->edge >> 2, k = side->edge & 3, from = side->from;
-    GLOBAL const mesh_row* const at = &rows[row];
-    const int beyond = at->neighbor[k], edge = at->edge[k];
-    int facing = 0, hit = -1;
-    if (edge < 0) {
-      GLOBAL const mesh_row* const outside = &rows[beyond];
-      facing = number_facing(outside, row);
-      const int d = outside->corner[facing];
-      const double dx = points[d].x - p.x, dy = points[d].y - p.y, dl = dx * dx + dy * dy;
-      const double bd = bx * dy - dx * by, dc = dx * cy - cx * dy;
-      const double det = (bl * dc - dl * bc) + cl * bd;
-      const double error = DIG_BOUND * (dl * bl + cl * (dl + bl));
-      int is_inside = det > error;
-      if (fabs(det) <= error) is_inside = is_in_circle_of(&mesh, beyond, p);
-      if (is_inside) {
-        if (size >= most || !is_own_at(work, d, points[d])) {
-          outcome = size >= most ? DUG_MOST : DUG_OTHERS;
-          break;
+    double bx = side->bx, by = side->by, bl = side->bl, cx = side->cx, cy = side->cy, cl = side->cl, bc = side->bc;
+    int row = side->edge >> 2, k = side->edge & 3, from = side->from;
+    for (;;) {
+      GLOBAL const mesh_row* const at = &rows[row];
+      const int beyond = at->neighbor[k], edge = at->edge[k];
+      int facing = 0, hit = -1;
+      if (edge < 0) {
+        GLOBAL const mesh_row* const outside = &rows[beyond];
+        facing = number_facing(outside, row);
+        const int d = outside->corner[facing];
+        const double dx = points[d].x - p.x, dy = points[d].y - p.y, dl = dx * dx + dy * dy;
+        const double bd = bx * dy - dx * by, dc = dx * cy - cx * dy;
+        const double det = (bl * dc - dl * bc) + cl * bd;
+        const double error = DIG_BOUND * (dl * bl + cl * (dl + bl));
+        int is_inside = det > error;
+        if (fabs(det) <= error) is_inside = is_in_circle_of(&mesh, beyond, p);
+        if (is_inside) {
+          if (size >= most || !is_own_at(work, d, points[d])) {
+            outcome = size >= most ? DUG_MOST : DUG_OTHERS;
+            break;
+          }
+          cavity[size++] = beyond;
+          put_side(&stack[depth++], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
+          // The other side comes next: it need not be put there.
+          cx = dx;
+          cy = dy;
+          cl = dl;
+          bc = bd;
+          row = beyond;
+          k = corner_after_any(facing);
+          continue;
         }
-        cavity[size++] = beyond;
-        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
-        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | corner_after_any(facing), from);
-        depth += 2;
-        continue;
-      }
-    } else {
-      if (beyond >= 0) facing = number_facing(&rows[beyond], row);
-      if (is_free) {
-        const double2 b = points[at->corner[next_corner(k)]], c = points[at->corner[corner_before(k)]];
-        work->is_beyond |= orient_sign(b, c, p, ORIENT_BOUND) <= 0;
-        if (encroaches(b, c, p, work->rules.squared_cosine)) {
-          hit = 3 * row + k;
-          ++work->hits;
+      } else {
+        if (beyond >= 0) facing = number_facing(&rows[beyond], row);
+        if (is_free) {
+          const double2 b = points[at->corner[next_corner(k)]], c = points[at->corner[corner_before(k)]];
+          work->is_beyond |= orient_sign(b, c, p, ORIENT_BOUND) <= 0;
+          if (encroaches(b, c, p, work->rules.squared_cosine)) {
+            hit = 3 * row + k;
+            ++work->hits;
+          }
         }
       }
+      GLOBAL star_side* const found = &sides[count++];
+      found->from = from;
+      found->outside = beyond;
+      found->facing = facing;
+      found->edge = edge;
+      found->parent = at->parent;
+      found->row = hit;
+      break;
     }
-    GLOBAL star_side* const found = &sides[count++];
-    found->from = from;
-    found->outside = beyond;
-    found->facing = facing;
-    found->edge = edge;
-    found->parent = at->parent;
-    found->row = hit;
   }
   work->depth = depth;
   work->side_count = count;
