@@ -392,8 +392,8 @@ class Refining {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  // With what is likely to be needed later. Natively, memory that is not used costs nothing; most polygons take
-  // less than six times as many rows as at first.
+  // With what is likely to be needed later. Natively, memory that is not used costs nothing; most polygons
+  // take less than six times as many rows as at first.
   std::size_t with_spare(std::size_t count) const {
     return is_starting_ ? 6 * count : runtime_.is_native() ? 3 * count : count + count / 2;
   }
@@ -911,22 +911,16 @@ class Refining {
                       buckets = (vertices >> kBucketBits) + 1;
     // Per part where its rows go: first those that are as they were, then by buckets.
     std::vector<std::vector<std::size_t>> to(parts, std::vector<std::size_t>(buckets + 1, 0));
-    const auto visit = [&](std::size_t part, const auto& kept, const auto& made) {
+    const auto visit = [&](std::size_t part, const auto& each) {
       const std::size_t end = rows_ * (part + 1) / parts;
       for (std::size_t r = rows_ * part / parts; r < end; ++r) {
         if (rows[r].corner[0] < 0) continue;
-        if (rows[r].changed == 0) {
-          kept(r);
-        } else {
-          made(r, static_cast<std::size_t>(numbers[rows[r].corner[0]]));
-        }
+        const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
+        each(r, rows[r].changed == 0 ? 0 : 1 + (v >> kBucketBits));
       }
     };
     runtime_.share(parts, [&](std::size_t part) {
-      std::vector<std::size_t>& own = to[part];
-      visit(
-          part, [&](std::size_t) { ++own[0]; },
-          [&](std::size_t, std::size_t v) { ++own[1 + (v >> kBucketBits)]; });
+      visit(part, [&own = to[part]](std::size_t, std::size_t bucket) { ++own[bucket]; });
     });
     std::vector<std::size_t> firsts;
     for (std::size_t bucket = 0; bucket <= buckets; ++bucket) {
@@ -942,17 +936,16 @@ class Refining {
     const auto list = arena_.allocate<Made>(found.rows - firsts[1]);
     Made* const of_buckets = address_in(list);
     runtime_.share(parts, [&](std::size_t part) {
-      std::vector<std::size_t>& own = to[part];
-      visit(
-          part,
-          [&](std::size_t r) {
-            row_numbers[r] = static_cast<cl_int>(own[0]);
-            order[own[0]++] = r;
-          },
-          [&](std::size_t r, std::size_t v) {
-            of_buckets[own[1 + (v >> kBucketBits)]++ - firsts[1]] = {
-                static_cast<std::int32_t>(r), static_cast<std::int32_t>(v), numbers[rows[r].corner[1]]};
-          });
+      visit(part, [&, &own = to[part]](std::size_t r, std::size_t bucket) {
+        const std::size_t at = own[bucket]++;
+        if (bucket == 0) {
+          row_numbers[r] = static_cast<cl_int>(at);
+          order[at] = r;
+        } else {
+          of_buckets[at - firsts[1]] = {static_cast<std::int32_t>(r), numbers[rows[r].corner[0]],
+                                        numbers[rows[r].corner[1]]};
+        }
+      });
     });
     runtime_.share(buckets, [&](std::size_t bucket) {
       const std::size_t begin = firsts[bucket + 1], count = firsts[bucket + 2] - begin,
