@@ -65,6 +65,8 @@ constexpr double kScaffold = 0.5;
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
 // A launch has room for so many chunks of rows and of vertices, or for one per block.
 constexpr std::size_t kLeastChunks = 4;
+// From so many rows on, there is less spare room for them.
+constexpr std::size_t kManyRows = std::size_t{1} << 20;
 // A thread takes at least so many rows.
 constexpr std::size_t kFewRows = std::size_t{1} << 14;
 // 2 to the power of this many vertices, and the rows around them, fit a core's cache.
@@ -392,10 +394,11 @@ class Refining {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  // With what is likely to be needed later. Natively, memory that is not used costs nothing; most polygons
-  // take less than six times as many rows as at first.
+  // With what is likely to be needed later. Natively, memory that is not used costs nothing, but there must
+  // be so much; most polygons take less than six times as many rows as at first.
   std::size_t with_spare(std::size_t count) const {
-    return is_starting_ ? 6 * count : runtime_.is_native() ? 3 * count : count + count / 2;
+    if (!runtime_.is_native()) return count + count / 2;
+    return (is_starting_ && count < kManyRows ? 6 : 3) * count;
   }
 
   void reserve(std::size_t rows, std::size_t vertices) {
