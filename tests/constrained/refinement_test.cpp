@@ -748,5 +748,17 @@ TEST(Refinement, SameBytes) {
     expect_same(constrained::refine(Runtimes::get("gpu:32"), mesh, wanted), refined);
 }
 
+// So many rows, bad triangles and vertices that threads share the loops between phases and after them.
+TEST(Refinement, SameBytesOfMany) {
+  const DomainToRefine domain = nasty_detail::polygon(40000, 5);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 25;
+  host::Runtime one(native_tuning(), 1), three(native_tuning(), 3);
+  const RefinedMesh refined = constrained::refine(one, mesh, wanted);
+  EXPECT_GT(refined.parents.size(), 100000);
+  expect_same(constrained::refine(three, mesh, wanted), refined);
+}
+
 }  // namespace
 }  // namespace flaunay::testing
