@@ -73,8 +73,10 @@ class Backend {
   /// Launches a function that a kernel is compiled to. arguments: see NativeFunction.
   virtual void launch(const KernelName&, NativeFunction, void* const* /*arguments*/,
                       std::size_t /*work_items*/, std::size_t /*group*/) {}
-  /// Calls work(k) for each k below n, on all threads.
-  virtual void share(std::size_t /*n*/, const std::function<void(std::size_t)>& /*work*/) {}
+  /// Calls work(k) for each k below n, on all threads; on a device, on the calling one.
+  virtual void share(std::size_t n, const std::function<void(std::size_t)>& work) {
+    for (std::size_t k = 0; k < n; ++k) work(k);
+  }
 
   // What follows is for a device with queues. Without them, there is nothing to wait for.
 

@@ -70,6 +70,12 @@ class Runtime {
   std::size_t threads() const { return backend_->threads(); }
   /// Calls work(k) for each k below n, on the threads that run native kernels. It must not use this runtime.
   void share(std::size_t n, const std::function<void(std::size_t)>& work) { backend_->share(n, work); }
+  /// Calls work(begin, end) likewise, for parts of [0, n) with kPart elements each, or fewer at the end.
+  template <typename Work>
+  void share_parts(std::size_t n, const Work& work) {
+    share((n + kPart - 1) / kPart, [&](std::size_t k) { work(k * kPart, std::min(n, (k + 1) * kPart)); });
+  }
+  static constexpr std::size_t kPart = std::size_t{1} << 14;
   /// Where arenas and buffers get their memory from.
   MemorySource memory() const;
   /// What the device can do; the host can do everything.

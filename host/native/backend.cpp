@@ -34,7 +34,19 @@ void NativeBackend::read(cl_mem from, std::size_t offset, std::size_t bytes, voi
 }
 
 void NativeBackend::write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool) {
-  std::memcpy(address_of(to) + offset, from, bytes);
+  copy_bytes(address_of(to) + offset, static_cast<const char*>(from), bytes);
+}
+
+// Many bytes are copied by several threads, unless they overlap.
+void NativeBackend::copy_bytes(char* to, const char* from, std::size_t bytes) {
+  constexpr std::size_t kPart = std::size_t{1} << 19;
+  if (bytes <= kPart || (to < from + bytes && from < to + bytes)) {
+    std::memmove(to, from, bytes);
+    return;
+  }
+  threads_.share(bytes, kPart, [&](std::size_t first, std::size_t last) {
+    std::memcpy(to + first, from + first, last - first);
+  });
 }
 
 void NativeBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
@@ -51,7 +63,7 @@ void NativeBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const
 
 void NativeBackend::copy(cl_mem from, std::size_t from_offset, cl_mem to, std::size_t to_offset,
                          std::size_t bytes) {
-  std::memmove(address_of(to) + to_offset, address_of(from) + from_offset, bytes);
+  copy_bytes(address_of(to) + to_offset, address_of(from) + from_offset, bytes);
 }
 
 std::shared_ptr<_cl_mem> NativeBackend::wrap(void* memory, std::size_t, cl_mem_flags) {

@@ -32,6 +32,8 @@ class NativeBackend : public Backend {
   void use_queue(cl_command_queue, bool profiling) override { profiling_ = profiling; }
 
  private:
+  void copy_bytes(char* to, const char* from, std::size_t bytes);
+
   Threads threads_;
   bool profiling_ = false;
 };

@@ -69,13 +69,19 @@ static inline int cosine_sign(double2 a, double2 b, double2 c, double2 d, double
 // A sine is the cosine to the other vector turned by a right angle.
 static inline double2 turned_right(double2 p) { return VECTOR(double2, p.y, -p.x); }
 
-// Of a counter-clockwise triangle, the sign of its smallest angle's squared sine less this one, or UNDECIDED. All sines
-// have the same numerator, the cross product; the smallest has the largest denominator, that of the two longest sides.
+// Of a counter-clockwise triangle whose sides have the squared lengths u, v and w, and two of them this cross product:
+// whether its smallest angle's squared sine is below this one, or UNDECIDED. All sines have the same numerator, the
+// cross product; the smallest has the largest denominator, that of the two longest sides. The bound has room for what
+// the difference is rounded by.
+static inline int sine_of_sides_filtered(double cross, double u, double v, double w, double squared_sine) {
+  const double longer = u > v ? u : v, shorter = u < v ? u : v, lengths = longer * (shorter > w ? shorter : w);
+  const double excess = cross * fabs(cross) - squared_sine * lengths;
+  return fabs(excess) > SQUARE_BOUND * lengths ? excess < 0.0 : UNDECIDED;
+}
 static inline int sine_filtered(double2 a, double2 b, double2 c, double squared_sine) {
-  const double2 u = b - a, v = c - b, w = a - c;
-  const double u2 = squared_length(u), v2 = squared_length(v), w2 = squared_length(w);
-  const double longer = u2 > v2 ? u2 : v2, shorter = u2 < v2 ? u2 : v2;
-  return cosine_filtered(u.x * v.y - u.y * v.x, longer * (shorter > w2 ? shorter : w2), squared_sine);
+  const double2 u = b - a, v = c - b;
+  return sine_of_sides_filtered(u.x * v.y - u.y * v.x, squared_length(u), squared_length(v), squared_length(a - c),
+                                squared_sine);
 }
 
 OUT_OF_LINE static inline int is_angle_below_exact(double2 a, double2 b, double2 c, double squared_sine) {
@@ -92,8 +98,8 @@ OUT_OF_LINE static inline int is_angle_below_exact(double2 a, double2 b, double2
 // Whether an angle of a counter-clockwise triangle is smaller than the acute one of this squared sine, below 3/4. (If
 // an obtuse angle has a smaller sine, the other two angles are smaller than that.)
 static inline int is_angle_below(double2 a, double2 b, double2 c, double squared_sine) {
-  const int sign = sine_filtered(a, b, c, squared_sine);
-  return sign != UNDECIDED ? sign < 0 : is_angle_below_exact(a, b, c, squared_sine);
+  const int is_below = sine_filtered(a, b, c, squared_sine);
+  return is_below != UNDECIDED ? is_below : is_angle_below_exact(a, b, c, squared_sine);
 }
 
 OUT_OF_LINE static inline int is_area_above_exact(double2 a, double2 b, double2 c, double area) {

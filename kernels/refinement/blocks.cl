@@ -28,6 +28,10 @@ kernel void describe_rows(int n, uint mask, global const int* restrict list, REF
   const int i = get_global_id(0);
   if (i < n) {
     const seen_mesh mesh = {rows, points};
+    if (n > ROWS_IN_CACHE) {
+      fetch_row(&mesh, list[min(n - 1, i + ROWS_FAR_AHEAD)]);
+      fetch_corners(&mesh, list[min(n - 1, i + ROWS_AHEAD)]);
+    }
     const ordered_triangle triangle = ordered(&mesh, list[i]);
     middles[i] = middle_of_shortest(triangle.point);
     radii[i] = squared_circumradius(triangle.point);
@@ -77,11 +81,11 @@ kernel void find_starts(int n, int leaves, global const uint64* restrict keys, g
 kernel void refine_blocks(refinement_rules rules, refinement_phase phase, global mesh_row* rows, global double2* points,
                           global edge_place* places, global const int* ends, global const int* wedges,
                           global const double* areas, global const mesh_row* given, global uchar* states,
-                          global volatile int* cells, global int2* births, global const block_cut* cuts,
-                          global const double* reaches, global const int* list, global const int* starts,
-                          global volatile int* counters, global int* inserted, global block_state* block_states,
-                          global int* heads, global int* tails, global block_task* tasks, global dug_side* stacks,
-                          global int* cavities, global star_side* sides, global first_task* firsts) {
+                          global int2* births, global const block_cut* cuts, global const double* reaches,
+                          global const int* list, global const int* starts, global volatile int* counters,
+                          global int* inserted, global block_state* block_states, global int* heads, global int* tails,
+                          global block_task* tasks, global dug_side* stacks, global int* cavities,
+                          global star_side* sides, global first_task* firsts) {
   const size_t i = get_global_id(0), room = (size_t)(phase.room + SPARE_ROOM);
   block_work work;
   const seen_mesh mesh = {rows, points};
@@ -96,7 +100,6 @@ kernel void refine_blocks(refinement_rules rules, refinement_phase phase, global
   work.areas = areas;
   work.given = given;
   work.states = states;
-  work.cells = cells;
   work.births = births;
   work.cuts = cuts;
   work.reaches = reaches;
@@ -118,7 +121,6 @@ kernel void refine_blocks(refinement_rules rules, refinement_phase phase, global
       work.state.block = block;
       work.state.inserted = 0;
     }
-    work.cell = (int)(phase.number << LEAF_BITS) | work.state.block;
     if (is_new) start_block(&work, list, starts[work.state.block], starts[work.state.block + 1]);
     needs = run_block(&work, &steps);
     if (needs == 0) {
@@ -257,12 +259,13 @@ kernel void write_refined_rows(int n, refinement_rules rules, global const uint6
     const int from = row_in_order(order, i);
     global const mesh_row* const row = &rows[from];
     const int a = numbers[row->corner[0]], b = numbers[row->corner[1]], c = numbers[row->corner[2]];
-    const int first = a < b ? (a < c ? 0 : 2) : b < c ? 1 : 2;
-    for (int k = 0; k < 3; ++k) {
-      const int j = 3 * i + k - first + (k < first ? 3 : 0);
-      triangles[j] = k == 0 ? a : k == 1 ? b : c;
-      neighbors[j] = row->neighbor[k] < 0 ? -1 : row_numbers[row->neighbor[k]];
-      edges[j] = row->edge[k] < 0 ? -1 : row->edge[k] & EDGE_NUMBER;
+    // Without branches, which could not be predicted.
+    const int first = (b < a) & (b < c), is_last = (c < a) & (c < b);
+    for (int k = 0, j = first + 2 * is_last; k < 3; ++k, j = corner_after_any(j)) {
+      const int neighbor = row->neighbor[j], edge = row->edge[j];
+      triangles[3 * i + k] = numbers[row->corner[j]];
+      neighbors[3 * i + k] = neighbor < 0 ? -1 : row_numbers[neighbor];
+      edges[3 * i + k] = edge < 0 ? -1 : edge & EDGE_NUMBER;
     }
     parents[i] = row->parent;
     int excuse = states[from] & ROW_BAD ? (int)EXCUSED_LIMIT : states[from] & ROW_REFUSED;

@@ -36,7 +36,6 @@ typedef struct {
   GLOBAL const double* areas;
   GLOBAL const mesh_row* given;
   GLOBAL uchar* states;
-  GLOBAL volatile int* cells;
   GLOBAL int2* births;
   GLOBAL const block_cut* cuts;
   GLOBAL const double* reaches;
@@ -51,21 +50,36 @@ typedef struct {
   GLOBAL star_side* sides;
   GLOBAL first_task* firsts;
   block_state state;
-  int depth, cavity_size, side_count, hits, is_beyond, cell;
+  int depth, cavity_size, side_count, hits, is_beyond;
 } block_work;
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Leaves
 
-// Vertices that a block makes are its own, whatever rounding does. All that ask compute the same.
-static inline int is_own(const block_work* work, int v) {
-  if (work->phase.is_whole) return 1;
-  int cell = read_shared(&work->cells[v]);
-  if ((uint)cell >> LEAF_BITS != work->phase.number) {
-    cell = (int)(work->phase.number << LEAF_BITS) | leaf_at(work->cuts, work->points[v]);
-    write_shared(&work->cells[v], cell);
+// What a block calls itself where it notes which vertices it made.
+static inline int birth_of(const block_work* work) { return work->phase.first_block + work->state.block; }
+
+// Vertices that a block makes are its own, whatever rounding does. It meets none that others make in the same phase.
+static inline int is_own_at(const block_work* work, int v, double2 p) {
+  const block_state* const state = &work->state;
+  return work->phase.is_whole ||
+         ((p.x >= state->low[0]) & (p.x < state->high[0]) & (p.y >= state->low[1]) & (p.y < state->high[1])) ||
+         work->births[v].x == birth_of(work);
+}
+static inline int is_own(const block_work* work, int v) { return is_own_at(work, v, work->points[v]); }
+// The rectangle that is the leaf with a place.
+static inline void find_leaf(block_work* work, double2 p) {
+  GLOBAL const block_cut* at = work->cuts;
+  for (int axis = 0; axis < 2; ++axis) {
+    work->state.low[axis] = -INFINITY;
+    work->state.high[axis] = INFINITY;
   }
-  return cell == work->cell;
+  while (at->axis >= 0) {
+    const int is_above = !((at->axis ? p.y : p.x) < at->at);
+    if (is_above) work->state.low[at->axis] = at->at;
+    if (!is_above) work->state.high[at->axis] = at->at;
+    at = &work->cuts[at->child + is_above];
+  }
 }
 static inline int is_own_row(const block_work* work, int row) {
   GLOBAL const int* const corners = work->rows[row].corner;
@@ -80,6 +94,11 @@ static inline int is_own_constraint(const block_work* work, int corner) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // What is bad
+
+static inline double shorter(double l, double m, double n) {
+  const double first = l < m ? l : m;
+  return n < first ? n : first;
+}
 
 // Eight classes per factor of two.
 static inline int tier_of(double square, refinement_rules rules) {
@@ -160,11 +179,10 @@ static inline int tier_of_large(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 - 1 - tier_of(fabs(u.x * v.y - u.y * v.x), rules);
 }
 
-// Likewise of a triangle with a small angle: after those, the shortest sides first.
-static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules rules, GLOBAL const edge_place* places,
-                                GLOBAL const int* ends, GLOBAL const int* wedges) {
+// Likewise of a triangle with a small angle: after those, the shortest sides first, of this squared length.
+static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules rules, double shortest,
+                                GLOBAL const edge_place* places, GLOBAL const int* ends, GLOBAL const int* wedges) {
   GLOBAL const mesh_row* const at = &mesh->rows[row];
-  const double2 a = mesh->points[at->corner[0]], b = mesh->points[at->corner[1]], c = mesh->points[at->corner[2]];
   const int constraints = (at->edge[0] >= 0) + (at->edge[1] >= 0) + (at->edge[2] >= 0);
   // Only vertices on edges at apexes have some.
   int at_apexes = 0;
@@ -174,9 +192,7 @@ static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules
     const int excuse = excuse_of(mesh, &triangle, places, ends, wedges, rules.vertices);
     if (excuse != EXCUSED_NOT) return TIER_EXCUSED - excuse;
   }
-  const double l = squared_distance(a, b), m = squared_distance(b, c), n = squared_distance(c, a),
-               shorter = l < m ? l : m;
-  return TASK_CLASSES / 2 + tier_of(n < shorter ? n : shorter, rules);
+  return TASK_CLASSES / 2 + tier_of(shortest, rules);
 }
 
 // Likewise of any.
@@ -188,10 +204,10 @@ static inline int tier_of_row(const seen_mesh* mesh, int row, refinement_rules r
     if (large != TIER_GOOD) return large;
   }
   GLOBAL const int* const corners = mesh->rows[row].corner;
-  return is_angle_below(mesh->points[corners[0]], mesh->points[corners[1]], mesh->points[corners[2]],
-                        rules.squared_sine)
-             ? tier_of_small(mesh, row, rules, places, ends, wedges)
-             : TIER_GOOD;
+  const double2 a = mesh->points[corners[0]], b = mesh->points[corners[1]], c = mesh->points[corners[2]];
+  if (!is_angle_below(a, b, c, rules.squared_sine)) return TIER_GOOD;
+  const double shortest = shorter(squared_distance(a, b), squared_distance(b, c), squared_distance(c, a));
+  return tier_of_small(mesh, row, rules, shortest, places, ends, wedges);
 }
 
 // Whether an apex of the triangles beside a constraint, opposite to corner k of a row, encroaches it. The one beyond
@@ -275,14 +291,17 @@ static inline int tier_in_scaffold(GLOBAL const block_cut* cuts, GLOBAL const do
              : TIER_LATER;
 }
 
-// Tests a triangle that was made.
-static inline void test_made(block_work* work, int row) {
+// Tests a triangle that was made. is_small: whether it has a small angle; shortest: the square of its shortest side.
+static inline void test_made(block_work* work, int row, int is_small, double shortest) {
   GLOBAL const mesh_row* const at = &work->rows[row];
   int state = work->rules.area_kind == AREAS_BY_ROW ? ROW_NEW : 0;
   if (work->rules.has_given) work->rows[row].parent = parent_of(&work->mesh, work->given, row, work->rules);
   if (!work->phase.segments_only) {
-    int tier = tier_of_row(&work->mesh, row, work->rules, work->phase.level, work->areas, 1, work->places, work->ends,
-                           work->wedges);
+    int tier = TIER_GOOD;
+    if (work->rules.area > 0.0 || work->rules.area_kind != AREAS_NONE)
+      tier = tier_of_large(&work->mesh, row, work->rules, work->phase.level, work->areas, 1);
+    if (tier == TIER_GOOD && is_small)
+      tier = tier_of_small(&work->mesh, row, work->rules, shortest, work->places, work->ends, work->wedges);
     state |= state_of_tier(tier);
     if (tier >= TIER_LATER && work->phase.is_scaffold)
       tier = tier_in_scaffold(work->cuts, work->reaches, &work->mesh, row, work->rules);
@@ -334,54 +353,61 @@ static inline int dig(block_work* work, double2 p, int is_free, int most) {
   GLOBAL star_side* const sides = work->sides;
   GLOBAL int* const cavity = work->cavity;
   int depth = work->depth, count = work->side_count, size = work->cavity_size, outcome = DUG;
-  while (depth > 0) {
+  while (depth > 0 && outcome == DUG) {
     // One by one: they were written so just before.
     GLOBAL const dug_side* const side = &stack[--depth];
-    const double bx = side->bx, by = side->by, bl = side->bl, cx = side->cx, cy = side->cy, cl = side->cl,
-                 bc = side->bc;
-    const int row = side->edge >> 2, k = side->edge & 3, from = side->from;
-    GLOBAL const mesh_row* const at = &rows[row];
-    const int beyond = at->neighbor[k], edge = at->edge[k];
-    int facing = 0, hit = -1;
-    if (edge < 0) {
-      GLOBAL const mesh_row* const outside = &rows[beyond];
-      facing = number_facing(outside, row);
-      const int d = outside->corner[facing];
-      const double dx = points[d].x - p.x, dy = points[d].y - p.y, dl = dx * dx + dy * dy;
-      const double bd = bx * dy - dx * by, dc = dx * cy - cx * dy;
-      const double det = (bl * dc - dl * bc) + cl * bd;
-      const double error = DIG_BOUND * (dl * bl + cl * (dl + bl));
-      int is_inside = det > error;
-      if (fabs(det) <= error) is_inside = is_in_circle_of(&mesh, beyond, p);
-      if (is_inside) {
-        if (size >= most || !is_own(work, d)) {
-          outcome = size >= most ? DUG_MOST : DUG_OTHERS;
-          break;
+    double bx = side->bx, by = side->by, bl = side->bl, cx = side->cx, cy = side->cy, cl = side->cl, bc = side->bc;
+    int row = side->edge >> 2, k = side->edge & 3, from = side->from;
+    for (;;) {
+      GLOBAL const mesh_row* const at = &rows[row];
+      const int beyond = at->neighbor[k], edge = at->edge[k];
+      int facing = 0, hit = -1;
+      if (edge < 0) {
+        GLOBAL const mesh_row* const outside = &rows[beyond];
+        facing = number_facing(outside, row);
+        const int d = outside->corner[facing];
+        const double dx = points[d].x - p.x, dy = points[d].y - p.y, dl = dx * dx + dy * dy;
+        const double bd = bx * dy - dx * by, dc = dx * cy - cx * dy;
+        const double det = (bl * dc - dl * bc) + cl * bd;
+        const double error = DIG_BOUND * (dl * bl + cl * (dl + bl));
+        int is_inside = det > error;
+        if (fabs(det) <= error) is_inside = is_in_circle_of(&mesh, beyond, p);
+        if (is_inside) {
+          if (size >= most || !is_own_at(work, d, points[d])) {
+            outcome = size >= most ? DUG_MOST : DUG_OTHERS;
+            break;
+          }
+          cavity[size++] = beyond;
+          put_side(&stack[depth++], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
+          // The other side comes next: it need not be put there.
+          cx = dx;
+          cy = dy;
+          cl = dl;
+          bc = bd;
+          row = beyond;
+          k = corner_after_any(facing);
+          continue;
         }
-        cavity[size++] = beyond;
-        put_side(&stack[depth], dx, dy, dl, cx, cy, cl, dc, beyond << 2 | corner_before_any(facing), d);
-        put_side(&stack[depth + 1], bx, by, bl, dx, dy, dl, bd, beyond << 2 | corner_after_any(facing), from);
-        depth += 2;
-        continue;
-      }
-    } else {
-      if (beyond >= 0) facing = number_facing(&rows[beyond], row);
-      if (is_free) {
-        const double2 b = points[at->corner[next_corner(k)]], c = points[at->corner[corner_before(k)]];
-        work->is_beyond |= orient_sign(b, c, p, ORIENT_BOUND) <= 0;
-        if (encroaches(b, c, p, work->rules.squared_cosine)) {
-          hit = 3 * row + k;
-          ++work->hits;
+      } else {
+        if (beyond >= 0) facing = number_facing(&rows[beyond], row);
+        if (is_free) {
+          const double2 b = points[at->corner[next_corner(k)]], c = points[at->corner[corner_before(k)]];
+          work->is_beyond |= orient_sign(b, c, p, ORIENT_BOUND) <= 0;
+          if (encroaches(b, c, p, work->rules.squared_cosine)) {
+            hit = 3 * row + k;
+            ++work->hits;
+          }
         }
       }
+      GLOBAL star_side* const found = &sides[count++];
+      found->from = from;
+      found->outside = beyond;
+      found->facing = facing;
+      found->edge = edge;
+      found->parent = at->parent;
+      found->row = hit;
+      break;
     }
-    GLOBAL star_side* const found = &sides[count++];
-    found->from = from;
-    found->outside = beyond;
-    found->facing = facing;
-    found->edge = edge;
-    found->parent = at->parent;
-    found->row = hit;
   }
   work->depth = depth;
   work->side_count = count;
@@ -440,16 +466,16 @@ static inline void write_star(block_work* work, double2 p, edge_place place, int
   const int v = work->state.vertex++, count = work->side_count, size = work->cavity_size;
   work->points[v] = p;
   work->places[v] = place;
-  work->births[v] = VECTOR(int2, work->phase.first_block + work->state.block, work->state.inserted);
-  write_shared(&work->cells[v], work->cell);
+  work->births[v] = VECTOR(int2, birth_of(work), work->state.inserted);
   ++work->state.inserted;
   for (int i = size; i < count; ++i) work->cavity[i] = work->state.row++;
+  // What comes after the last one.
+  work->sides[count].from = is_open ? a : work->sides[0].from;
+  work->cavity[count] = is_open ? -1 : work->cavity[0];
   int before = is_open ? -1 : work->cavity[count - 1];
   for (int i = 0; i < count; ++i) {
     star_side side = work->sides[i];
-    const int row = work->cavity[i], is_last = i + 1 == count;
-    const int to = is_last ? (is_open ? a : work->sides[0].from) : work->sides[i + 1].from;
-    const int after = is_last ? (is_open ? -1 : work->cavity[0]) : work->cavity[i + 1];
+    const int row = work->cavity[i], to = work->sides[i + 1].from, after = work->cavity[i + 1];
     GLOBAL mesh_row* const written = &work->rows[row];
     side.edge = thawed(side.edge);
     write_star_row(written, v, side, to, after, before, edge, a, b);
@@ -461,7 +487,20 @@ static inline void write_star(block_work* work, double2 p, edge_place place, int
     }
     before = row;
   }
-  for (int i = 0; i < count; ++i) test_made(work, work->cavity[i]);
+  // Triangles that follow each other share a side: its other end, and that relative to the point.
+  double2 to = work->points[work->sides[0].from], w = to - p;
+  double ww = squared_length(w);
+  for (int i = 0; i < count; ++i) {
+    const double2 from = to, u = w;
+    const double uu = ww;
+    to = work->points[work->sides[i + 1].from];
+    w = to - p;
+    ww = squared_length(w);
+    const double opposite = squared_distance(from, to);
+    int is_small = sine_of_sides_filtered(u.x * w.y - w.x * u.y, uu, opposite, ww, work->rules.squared_sine);
+    if (is_small == UNDECIDED) is_small = is_angle_below_exact(p, from, to, work->rules.squared_sine);
+    test_made(work, work->cavity[i], is_small, shorter(uu, opposite, ww));
+  }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -507,10 +546,8 @@ OUT_OF_LINE static inline int split(block_work* work, int corner) {
 
 // The off-centre of a triangle (Uengoer, 2009): on the bisector of the shortest side, as far from it as the
 // circumcentre, but no farther than where an edge to it would make the smallest angle that is wanted. Relative to the
-// corner after the one opposite to that side.
-static inline double2 centre_of(const double2* p, int is_large, refinement_rules rules) {
-  const int k = opposite_to_shortest(p);
-  const double2 from = p[(k + 1) % 3], to = p[(k + 2) % 3], apex = p[k];
+// first end of that side. apex: the corner opposite.
+static inline double2 centre_of(double2 from, double2 to, double2 apex, int is_large, refinement_rules rules) {
   const double2 u = to - from, v = apex - from;
   const double uu = squared_length(u), vv = squared_length(v), scale = 0.5 / (u.x * v.y - u.y * v.x);
   double2 centre = VECTOR(double2, (v.y * uu - u.y * vv) * scale, (u.x * vv - v.x * uu) * scale);
@@ -564,8 +601,9 @@ static inline int want_split(block_work* work, int corner) {
 static inline int mend(block_work* work, int row, int is_large) {
   const refinement_rules rules = work->rules;
   const ordered_triangle triangle = ordered(&work->mesh, row);
-  const double2 from = triangle.point[(opposite_to_shortest(triangle.point) + 1) % 3],
-                centre = centre_of(triangle.point, is_large, rules),
+  const int k = opposite_to_shortest(triangle.point);
+  const double2 from = triangle.point[corner_after_any(k)],
+                centre = centre_of(from, triangle.point[corner_before_any(k)], triangle.point[k], is_large, rules),
                 p = VECTOR(double2, rounded_to(from.x + centre.x, rules.coarse),
                            rounded_to(from.y + centre.y, rules.coarse));
   // Farther points are not rounded by as much as an eighth of that, and all vertices are nearly as far away: the
@@ -653,6 +691,11 @@ static inline void sort_first(block_work* work, int count) {
 static inline void start_block(block_work* work, GLOBAL const int* list, int first, int end) {
   const refinement_rules rules = work->rules;
   int count = 0;
+  if (first < end) {
+    // Nobody changes a row with this place before its block does.
+    const ordered_triangle triangle = ordered(&work->mesh, list[first]);
+    find_leaf(work, middle_of_shortest(triangle.point));
+  }
   for (int i = first; i < end; ++i) {
     const int row = list[i], state = work->states[row];
 #if FETCH_AHEAD

@@ -11,8 +11,6 @@ INTEGER_CONSTANT(TASK_CLASSES, 2048);
 // Rows and vertices are handed out in chunks.
 INTEGER_CONSTANT(ROWS_PER_CHUNK, 128);
 INTEGER_CONSTANT(VERTICES_PER_CHUNK, 64);
-// The number of a leaf in what is known of a vertex; the phase is above it.
-INTEGER_CONSTANT(LEAF_BITS, 20);
 // Lists have so many places more than `room`.
 INTEGER_CONSTANT(SPARE_ROOM, 8);
 

@@ -23,13 +23,14 @@ typedef struct {
 static inline ordered_triangle ordered(const seen_mesh* mesh, int row) {
   GLOBAL const int* const corners = mesh->rows[row].corner;
   const double2 a = mesh->points[corners[0]], b = mesh->points[corners[1]], c = mesh->points[corners[2]];
-  int first = comes_before(b, a);
-  if (comes_before(c, first ? b : a)) first = 2;
+  // Without branches, which could not be predicted.
+  const int is_last = comes_before(c, a) & comes_before(c, b);
+  int first = 2 * is_last + (comes_before(b, a) & !is_last);
   ordered_triangle triangle;
   for (int k = 0; k < 3; ++k) {
     triangle.corner[k] = 3 * row + first;
     triangle.point[k] = mesh->points[corners[first]];
-    first = next_corner(first);
+    first = corner_after_any(first);
   }
   return triangle;
 }
@@ -37,7 +38,8 @@ static inline ordered_triangle ordered(const seen_mesh* mesh, int row) {
 // The corner, by its place among the three, that is opposite to the shortest side.
 static inline int opposite_to_shortest(const double2* p) {
   const double a = squared_distance(p[1], p[2]), b = squared_distance(p[2], p[0]), c = squared_distance(p[0], p[1]);
-  return a <= b && a <= c ? 0 : b <= c ? 1 : 2;
+  const int is_first = (a <= b) & (a <= c), is_second = (b <= c) & !is_first;
+  return 2 - is_second - 2 * is_first;
 }
 
 // Of two areas that triangles may have, 0 for any.

@@ -46,10 +46,9 @@ ASSERT_SIZE(refinement_rules, 80);
 // inserts at most so many points; steps: a launch takes so many of each block.
 typedef struct {
   double level;
-  uint number;
-  int is_whole, segments_only, is_scaffold, blocks, first_block, most, room, row_room, vertex_room, steps, spare;
+  int is_whole, segments_only, is_scaffold, blocks, first_block, most, room, row_room, vertex_room, steps;
 } refinement_phase;
-ASSERT_SIZE(refinement_phase, 56);
+ASSERT_SIZE(refinement_phase, 48);
 
 // A node of the tree of cuts: places below a cut along an axis, 0 or 1, belong to the node `child`, the others to the
 // one after it. A leaf has the axis -1 and its number for a child.
@@ -84,14 +83,16 @@ ASSERT_SIZE(dug_side, 64);
 
 // Where a work-item is in its block, so that it can go on when there is more room. block: less than 0 without one.
 // free_task: the first free place in the list of tasks, plus 1; used_tasks: how many places were used. retry: a row
-// that waits for the splits of constraints that it wants. rows and vertices: what is left of the last chunks.
+// that waits for the splits of constraints that it wants. rows and vertices: what is left of the last chunks. low and
+// high: the block's leaf, from the first ones on and below the second ones.
 typedef struct {
   uint64 classes[32];
+  double low[2], high[2];
   uint groups;
   int block, inserted, used_tasks, free_task, free_count, retry, retry_changed, retry_class, retry_inserted,
       retry_aside, retry_reason, row, row_end, vertex, vertex_end;
 } block_state;
-ASSERT_SIZE(block_state, 320);
+ASSERT_SIZE(block_state, 352);
 
 // A side of a cavity: the vertex at its beginning, what is beyond it and which corner there is opposite, whether it
 // must stay, and the parent of the row inside. Also one of the rows of the new triangles, which has nothing to do with

@@ -1,7 +1,8 @@
 // What is bad, of one triangle each. Segments: none; one pass each.
 //
-// load_rows: the rows of the mesh, from the arrays of the host. test_rows: what is to be done with them. retry_frozen:
-// triangles that are tried once more. write_centroids: places at which the host asks for areas, and set_areas.
+// load_rows and load_vertices: the mesh, from the arrays of the host. test_rows: what is to be done with them.
+// retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas, and
+// set_areas.
 
 #include "refinement/arguments.h"
 #include "refinement/blocks.h"
@@ -9,17 +10,30 @@
 
 #ifndef FIXED_POINT
 
-kernel void load_rows(int n, global const int* restrict triangles, global const int* restrict neighbors,
-                      global const int* restrict edges, global mesh_row* restrict rows) {
+// numbers: what vertices are called here. kept: per edge, if some must be kept.
+kernel void load_rows(int n, int has_kept, global const int* restrict triangles, global const int* restrict neighbors,
+                      global const int* restrict edges, global const uchar* restrict kept,
+                      global const int* restrict numbers, global mesh_row* restrict rows,
+                      global uchar* restrict states) {
   const int t = get_global_id(0);
   if (t < n) {
     for (int k = 0; k < 3; ++k) {
-      rows[t].corner[k] = triangles[3 * t + k];
+      const int edge = edges[3 * t + k];
+      rows[t].corner[k] = numbers[triangles[3 * t + k]];
       rows[t].neighbor[k] = neighbors[3 * t + k];
-      rows[t].edge[k] = edges[3 * t + k];
+      rows[t].edge[k] = edge >= 0 && has_kept && kept[edge] ? edge | EDGE_KEPT : edge;
     }
     rows[t].parent = t;
     rows[t].changed = 0;
+    states[t] = ROW_NEW;
+  }
+}
+kernel void load_vertices(int n, global int2* restrict births, global edge_place* restrict places) {
+  const int v = get_global_id(0);
+  if (v < n) {
+    const edge_place nowhere = {0.0, 0.0, -1, -1};
+    births[v] = VECTOR(int2, -1, 0);
+    places[v] = nowhere;
   }
 }
 

@@ -354,7 +354,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
   if (is_refined) {
     if (!at_once) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
     call::refine(self, points(), offsets, options, seeds, areas, result);
-    all = with_added(coordinates, offsets.back(), result.added_points);
+    if (options.areas) all = with_added(coordinates, offsets.back(), result.added_points);
   }
   carry_markers(constraints, offsets.back(), result);
   finish(self, points(), options, result);
@@ -378,7 +378,8 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
       constrain_and_refine(self, coordinates, offsets, mesh ? mesh->constraints() : constraints,
                            mesh ? mesh->options() : options, request, mesh ? &*mesh : nullptr);
   const Refinement& wanted = options.refinement;
-  if (wanted.measured && !wanted.is_wanted()) measure_angles(coordinates, offsets.back(), false, result);
+  if (wanted.measured && !wanted.is_wanted())
+    measure_angles(self, coordinates, offsets.back(), false, result);
   return result;
 }
 

@@ -23,6 +23,11 @@ using Ids = std::vector<std::int32_t>;
 using constrained::MeshToRefine;
 using constrained::RefinedMesh;
 
+// The threads for loops over so many triangles.
+host::Runtime& threads_for(Implementation& self, std::size_t triangles) {
+  return (triangles > host::Runtime::kPart ? self.native() : Engine::of_thread()).runtime;
+}
+
 // The ends of the edge opposite to a corner, with its triangle on the left.
 std::array<std::int32_t, 2> ends_of(const Ids& triangles, std::size_t corner) {
   const std::size_t k = corner % 3;
@@ -84,17 +89,37 @@ class EdgesByEnds {
   Ids degrees_, first_, edges_;
 };
 
-FixedEdges fixed_edges(const ConstrainedTriangulation& mesh, std::size_t points) {
+// The corners for which something is true, in their order.
+template <typename Is>
+Ids corners_that(host::Runtime& threads, std::size_t corners, const Is& is) {
+  std::vector<Ids> parts(corners / host::Runtime::kPart + 1);
+  threads.share_parts(corners, [&](std::size_t begin, std::size_t end) {
+    Ids found;
+    for (std::size_t c = begin; c < end; ++c) {
+      if (is(c)) found.push_back(static_cast<std::int32_t>(c));
+    }
+    parts[begin / host::Runtime::kPart] = std::move(found);
+  });
+  Ids all;
+  for (const Ids& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+FixedEdges fixed_edges(host::Runtime& threads, const ConstrainedTriangulation& mesh, std::size_t points) {
   const std::size_t constraint_count = mesh.constraint_edges.size() / 2;
-  const EdgesByEnds constraints(mesh.constraint_edges, points);
+  const EdgesByEnds constraints(mesh.constraint_edges, constraint_count > 0 ? points : 0);
   const HullPlaces hull(mesh, points);
   FixedEdges edges;
-  edges.of_corners.assign(mesh.triangles.size(), -1);
+  threads.resize(edges.of_corners, mesh.triangles.size());
   edges.of_constraints.assign(constraint_count, -1);
   edges.of_hull.assign(mesh.hull.size(), -1);
-  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+  const Ids corners = corners_that(threads, mesh.triangles.size(), [&](std::size_t c) {
+    edges.of_corners[c] = -1;
+    return mesh.neighbors[c] < 0 || mesh.constrained[c] != 0;
+  });
+  for (const std::int32_t corner : corners) {
+    const auto c = static_cast<std::size_t>(corner);
     const bool is_border = mesh.neighbors[c] < 0, is_constraint = mesh.constrained[c] != 0;
-    if (!is_border && !is_constraint) continue;
     auto [a, b] = ends_of(mesh.triangles, c);
     const std::int32_t place = is_border ? hull.of_points[a] : -1;
     std::int32_t border = -1, constraint = -1;
@@ -162,15 +187,18 @@ double expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t 
 // The points that were added on each edge, from its first end to its second one.
 class EdgeChains {
  public:
-  EdgeChains(const FixedEdges& edges, const RefinedMesh& mesh, std::size_t points) {
+  EdgeChains(host::Runtime& threads, const FixedEdges& edges, const RefinedMesh& mesh, std::size_t points) {
     const auto first_added = static_cast<std::int32_t>(points);
     // The points before and after each one that was added, and the first one of each edge.
     Ids links(mesh.added.size(), -1), first(edges.is_border.size(), -1);
-    for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-      const std::int32_t e = mesh.edges[c], beyond = mesh.neighbors[c];
+    const Ids corners = corners_that(threads, mesh.triangles.size(), [&](std::size_t c) {
       // A piece between two triangles counts once.
-      if (e < 0 || (beyond >= 0 && static_cast<std::size_t>(beyond) < c / 3)) continue;
-      const auto [a, b] = ends_of(mesh.triangles, c);
+      return mesh.edges[c] >= 0 &&
+             (mesh.neighbors[c] < 0 || static_cast<std::size_t>(mesh.neighbors[c]) >= c / 3);
+    });
+    for (const std::int32_t c : corners) {
+      const std::int32_t e = mesh.edges[c];
+      const auto [a, b] = ends_of(mesh.triangles, static_cast<std::size_t>(c));
       for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
         if (from >= first_added) {
           std::int32_t* const link = &links[2 * static_cast<std::size_t>(from - first_added)];
@@ -301,11 +329,15 @@ void sort_by_sets(std::size_t n, const SetOffsets& sets, ConstrainedTriangulatio
 }
 
 // Writes the mesh to the result, with its own numbers of points and triangles.
-void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& mesh,
+void write_mesh(host::Runtime& threads, const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& mesh,
                 ConstrainedTriangulation& result) {
-  result.added_points.insert(result.added_points.end(), mesh.added.begin(), mesh.added.end());
   const std::size_t before = result.representatives.size();
-  result.representatives.resize(before + mesh.added.size() / 2);
+  threads.resize(result.representatives, before + mesh.added.size() / 2);
+  if (result.added_points.empty()) {
+    result.added_points = std::move(mesh.added);
+  } else {
+    result.added_points.insert(result.added_points.end(), mesh.added.begin(), mesh.added.end());
+  }
   std::iota(result.representatives.begin() + static_cast<std::ptrdiff_t>(before),
             result.representatives.end(), static_cast<std::int32_t>(before));
   split_constraints(edges, chains, result);
@@ -314,9 +346,11 @@ void write_mesh(const FixedEdges& edges, const EdgeChains& chains, RefinedMesh& 
   for (const std::int32_t edge : edges.of_constraints) {
     if (edge >= 0) is_constraint[edge + 1] = 1;
   }
-  result.constrained.resize(mesh.edges.size());
-  for (std::size_t c = 0; c < mesh.edges.size(); ++c)
-    result.constrained[c] = is_constraint[mesh.edges[c] + 1];
+  result.constrained = {};
+  threads.resize(result.constrained, mesh.edges.size());
+  threads.share_parts(mesh.edges.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) result.constrained[c] = is_constraint[mesh.edges[c] + 1];
+  });
   result.triangles = std::move(mesh.triangles);
   result.neighbors = std::move(mesh.neighbors);
   for (Ids* labels : {&result.depths, &result.regions, &result.polygons}) inherit(mesh.parents, *labels);
@@ -480,10 +514,11 @@ RefinedMesh refine_sets(Implementation& self, Engine& engine, const MeshToRefine
     offsets.triangles.push_back(offsets.triangles.back() + part.parents.size());
     offsets.added.push_back(offsets.added.back() + part.added.size() / 2);
   }
+  host::Runtime& threads = threads_for(self, offsets.triangles.back());
   for (Ids* array : {&joined.triangles, &joined.neighbors, &joined.edges})
-    array->resize(3 * offsets.triangles.back());
-  joined.parents.resize(offsets.triangles.back());
-  joined.added.resize(2 * offsets.added.back());
+    threads.resize(*array, 3 * offsets.triangles.back());
+  threads.resize(joined.parents, offsets.triangles.back());
+  threads.resize(joined.added, 2 * offsets.added.back());
   share(sets.size(), [&](std::size_t s) {
     write_set(parts[s], sets[s], all.points, offsets, s, joined);
     parts[s] = {};
@@ -504,22 +539,49 @@ void renumber_regions(Ids& regions) {
   }
 }
 
-void measure_angles(const double* coordinates, std::size_t n, bool with_mean,
+void measure_angles(Implementation& self, const double* coordinates, std::size_t n, bool with_mean,
                     ConstrainedTriangulation& result) {
-  std::vector<double> all(coordinates, coordinates + 2 * n);
-  all.insert(all.end(), result.added_points.begin(), result.added_points.end());
-  double largest = 0;
-  for (const double x : all) largest = std::max(largest, std::fabs(x));
+  constexpr std::size_t kPart = host::Runtime::kPart;
+  const std::size_t count = result.triangles.size() / 3;
+  host::Runtime& threads = threads_for(self, count);
+  const std::vector<double>& added = result.added_points;
+  const auto largest_of = [&](const double* values, std::size_t size) {
+    std::vector<double> parts(size / kPart + 1, 0);
+    threads.share_parts(size, [&](std::size_t begin, std::size_t end) {
+      double largest = 0;
+      for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, std::fabs(values[i]));
+      parts[begin / kPart] = largest;
+    });
+    return *std::max_element(parts.begin(), parts.end());
+  };
+  const double largest = std::max(largest_of(coordinates, 2 * n), largest_of(added.data(), added.size()));
   // With all binary places that there may be, squares of lengths are doubles if the largest one is near 1.
   const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-  if (exponent < -7 || exponent > 250) {
-    for (double& x : all) x = std::ldexp(x, -exponent);
-  }
-  constrained::Angles angles(with_mean);
-  for (std::size_t t = 0; t < result.triangles.size(); t += 3) angles.add(all.data(), &result.triangles[t]);
-  result.refinement.smallest_angle = angles.smallest();
-  result.refinement.largest_angle = angles.largest();
-  result.refinement.mean_angle = angles.mean();
+  const bool is_scaled = exponent < -7 || exponent > 250;
+  const double* const points[] = {coordinates, added.data()};
+  std::vector<constrained::Angles> parts(count / kPart + 1, constrained::Angles(with_mean));
+  threads.share_parts(count, [&](std::size_t begin, std::size_t end) {
+    constexpr std::int32_t kCorners[3] = {0, 1, 2};
+    constrained::Angles angles(with_mean);
+    for (std::size_t t = begin; t < end; ++t) {
+      double places[6];
+      for (std::size_t k = 0; k < 3; ++k) {
+        // Without branches, which could not be predicted.
+        const auto v = static_cast<std::size_t>(result.triangles[3 * t + k]);
+        const std::size_t is_added = v < n ? 0 : 1;
+        const double* const place = points[is_added] + 2 * (v - is_added * n);
+        places[2 * k] = place[0];
+        places[2 * k + 1] = place[1];
+      }
+      for (std::size_t i = 0; is_scaled && i < 6; ++i) places[i] = std::ldexp(places[i], -exponent);
+      angles.add(places, kCorners);
+    }
+    parts[begin / kPart] = angles;
+  });
+  for (std::size_t k = 1; k < parts.size(); ++k) parts[0].add(parts[k]);
+  result.refinement.smallest_angle = parts[0].smallest();
+  result.refinement.largest_angle = parts[0].largest();
+  result.refinement.mean_angle = parts[0].mean();
 }
 
 void check_refinement(const Refinement& wanted, std::size_t seeds) {
@@ -538,7 +600,8 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
             ConstrainedTriangulation& result) {
   const Refinement& wanted = options.refinement;
   const std::size_t n = offsets.back(), points = n + result.added_points.size() / 2;
-  FixedEdges edges = fixed_edges(result, points);
+  host::Runtime& threads = threads_for(self, result.triangles.size() / 3);
+  FixedEdges edges = fixed_edges(threads, result, points);
   MeshToRefine mesh;
   mesh.coordinates = coordinates;
   mesh.points = points;
@@ -566,10 +629,11 @@ void refine(Implementation& self, const double* coordinates, const std::vector<s
                             : refine_on(engine, mesh, options.profile, wanted, result.statistics);
   if (offsets.size() == 2) sets = {{0, refined.parents.size()}, {0, refined.added.size() / 2}};
 
-  write_mesh(edges, EdgeChains(edges, refined, points), refined, result);
+  host::Runtime& more_threads = threads_for(self, refined.parents.size());
+  write_mesh(more_threads, edges, EdgeChains(more_threads, edges, refined, points), refined, result);
   sort_by_sets(n, sets, result);
   renumber_regions(result.regions);
-  measure_angles(coordinates, n, wanted.smoothing_steps > 0, result);
+  measure_angles(self, coordinates, n, wanted.smoothing_steps > 0, result);
   result.refinement.smallest_angle_before = refined.before_smoothing.smallest();
   result.refinement.mean_angle_before = refined.before_smoothing.mean();
   result.statistics.points += result.refinement.added_points;

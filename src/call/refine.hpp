@@ -14,7 +14,7 @@ namespace flaunay::call {
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
 /// Reports the angles of a result. coordinates: of the n points of the caller. with_mean: also their mean.
-void measure_angles(const double* coordinates, std::size_t n, bool with_mean,
+void measure_angles(Implementation& self, const double* coordinates, std::size_t n, bool with_mean,
                     ConstrainedTriangulation& result);
 
 /// Numbers regions by their first triangles.

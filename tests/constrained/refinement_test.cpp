@@ -9,15 +9,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "constrained/refinement/angles.hpp"
+#include "constrained/refinement/cuts.hpp"
 #include "constrained/refinement/refine.hpp"
 #include "launchers/refinement/smooth.cl.hpp"
 #include "prove/exact.hpp"
 #include "refinement/codes.h"
+#include "refinement/leaves.h"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/moved.hpp"
 #include "tests/constrained/nasty_domains.hpp"
@@ -746,6 +749,36 @@ TEST(Refinement, SameBytes) {
   }
   if (std::getenv("FLAUNAY_TUNING") == nullptr)
     expect_same(constrained::refine(Runtimes::get("gpu:32"), mesh, wanted), refined);
+}
+
+// Few places are cut by one thread, many by several.
+TEST(Refinement, LeavesHaveNumbersOfTheirOwn) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> coordinate;
+  for (const std::size_t n : {1000, 20000}) {
+    std::vector<kernel::double2> places(n);
+    for (kernel::double2& place : places) place = {coordinate(random), coordinate(random)};
+    for (const constrained::Cuts how : {constrained::Cuts::medians, constrained::Cuts::gaps}) {
+      const auto cuts = constrained::cut_plane(native_runtime(), places, 50, how);
+      std::vector<std::size_t> counts(constrained::leaves_of(cuts), 0);
+      for (const kernel::double2 place : places)
+        ++counts.at(static_cast<std::size_t>(kernel::leaf_at(cuts.data(), place)));
+      EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 0);
+      EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 50);
+    }
+  }
+}
+
+// So many rows, bad triangles and vertices that threads share the loops between phases and after them.
+TEST(Refinement, SameBytesOfMany) {
+  const DomainToRefine domain = nasty_detail::polygon(40000, 5);
+  const MeshToRefine mesh = mesh_to_refine(domain);
+  Refinement wanted;
+  wanted.min_angle = 25;
+  host::Runtime one(native_tuning(), 1), three(native_tuning(), 3);
+  const RefinedMesh refined = constrained::refine(one, mesh, wanted);
+  EXPECT_GT(refined.parents.size(), 100000);
+  expect_same(constrained::refine(three, mesh, wanted), refined);
 }
 
 }  // namespace

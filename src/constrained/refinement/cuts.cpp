@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "refinement/leaves.h"
-
 namespace flaunay::constrained {
 namespace {
 
@@ -16,34 +14,47 @@ constexpr double kLowQuantile = 0.3, kHighQuantile = 0.7;
 // Places that are nearly the same have no leaf each.
 constexpr int kMostDepth = 60;
 
+// Many places are cut so often before threads share what is left.
+constexpr std::size_t kManyPlaces = 4096;
+constexpr int kLevelsBefore = 4;
+
 class Cutting {
  public:
-  Cutting(std::vector<double2> places, std::size_t most, Cuts how)
-      : places_(std::move(places)), most_(most), how_(how), cuts_(1) {
-    cut(0, 0, places_.size(), 0);
+  Cutting(std::vector<double2>& places, std::size_t most, Cuts how)
+      : places_(places), most_(most), how_(how) {}
+
+  // A tree of the places in a range, the root first; leaves are numbered from left to right.
+  std::vector<block_cut> cut_all(std::size_t begin, std::size_t end, int depth) {
+    cuts_.resize(1);
+    cut(0, begin, end, depth);
+    return std::move(cuts_);
   }
-  std::vector<block_cut> cuts() { return std::move(cuts_); }
+
+  // Cuts a range once. middle: where places beyond the cut begin, or the end if it is a leaf.
+  block_cut cut_once(std::size_t begin, std::size_t end, int depth, std::size_t& middle) {
+    if (end - begin > most_ && depth < kMostDepth) {
+      const block_cut found = how_ == Cuts::medians ? median(begin, end) : gap(begin, end);
+      const auto beyond =
+          std::partition(at(begin), at(end), [&](double2 p) { return along(p, found.axis) < found.at; });
+      middle = static_cast<std::size_t>(beyond - places_.begin());
+      if (middle > begin && middle < end) return found;
+    }
+    middle = end;
+    return {0, -1, 0};
+  }
 
  private:
   static double along(double2 p, int axis) { return axis == 0 ? p.x : p.y; }
 
   void cut(std::size_t node, std::size_t begin, std::size_t end, int depth) {
-    cuts_[node] = {0, -1, leaves_};
-    if (end - begin > most_ && depth < kMostDepth) {
-      const block_cut found = how_ == Cuts::medians ? median(begin, end) : gap(begin, end);
-      const auto middle =
-          std::partition(at(begin), at(end), [&](double2 p) { return along(p, found.axis) < found.at; });
-      const auto first = static_cast<std::size_t>(middle - places_.begin());
-      if (first > begin && first < end) {
-        const std::size_t child = cuts_.size();
-        cuts_.resize(child + 2);
-        cuts_[node] = {found.at, found.axis, static_cast<int>(child)};
-        cut(child, begin, first, depth + 1);
-        cut(child + 1, first, end, depth + 1);
-        return;
-      }
-    }
-    ++leaves_;
+    std::size_t middle;
+    block_cut made = cut_once(begin, end, depth, middle);
+    made.child = middle == end ? leaves_++ : static_cast<int>(cuts_.size());
+    cuts_[node] = made;
+    if (middle == end) return;
+    cuts_.resize(cuts_.size() + 2);
+    cut(static_cast<std::size_t>(made.child), begin, middle, depth + 1);
+    cut(static_cast<std::size_t>(made.child) + 1, middle, end, depth + 1);
   }
 
   std::vector<double2>::iterator at(std::size_t i) {
@@ -92,7 +103,7 @@ class Cutting {
     return best;
   }
 
-  std::vector<double2> places_;
+  std::vector<double2>& places_;
   std::vector<double> values_;
   std::size_t most_;
   Cuts how_;
@@ -102,12 +113,55 @@ class Cutting {
 
 }  // namespace
 
-std::vector<block_cut> cut_plane(std::vector<double2> places, std::size_t most, Cuts how) {
-  return Cutting(std::move(places), most, how).cuts();
-}
-
-std::size_t leaf_of(const std::vector<block_cut>& cuts, double2 place) {
-  return static_cast<std::size_t>(kernel::leaf_at(cuts.data(), place));
+std::vector<block_cut> cut_plane(host::Runtime& runtime, std::vector<double2> places, std::size_t most,
+                                 Cuts how) {
+  struct Range {
+    std::size_t begin, end, node;
+    int depth;
+    std::size_t middle = 0;
+    std::vector<block_cut> cuts{};
+  };
+  const auto each = [&](std::vector<Range>& ranges, const auto& work) {
+    runtime.share(ranges.size(), [&](std::size_t k) {
+      Cutting cutting(places, most, how);
+      work(cutting, ranges[k]);
+    });
+  };
+  std::vector<block_cut> cuts(1);
+  std::vector<Range> ranges{{0, places.size(), 0, 0}};
+  for (int level = 0; level < (places.size() < kManyPlaces ? 0 : kLevelsBefore); ++level) {
+    each(ranges, [](Cutting& cutting, Range& range) {
+      range.cuts = {cutting.cut_once(range.begin, range.end, range.depth, range.middle)};
+    });
+    std::vector<Range> next;
+    for (const auto& [begin, end, node, depth, middle, made] : ranges) {
+      cuts[node] = made[0];
+      if (middle == end) {
+        next.push_back({begin, end, node, depth});
+        continue;
+      }
+      cuts[node].child = static_cast<int>(cuts.size());
+      next.push_back({begin, middle, cuts.size(), depth + 1});
+      next.push_back({middle, end, cuts.size() + 1, depth + 1});
+      cuts.resize(cuts.size() + 2);
+    }
+    ranges = std::move(next);
+  }
+  each(ranges, [](Cutting& cutting, Range& range) {
+    range.cuts = cutting.cut_all(range.begin, range.end, range.depth);
+  });
+  int leaves = 0;
+  for (const Range& range : ranges) {
+    const auto shift = static_cast<int>(cuts.size()) - 1, first = leaves;
+    for (std::size_t k = 0; k < range.cuts.size(); ++k) {
+      block_cut made = range.cuts[k];
+      leaves += made.axis < 0 ? 1 : 0;
+      made.child += made.axis < 0 ? first : shift;
+      if (k == 0) cuts[range.node] = made;
+      if (k > 0) cuts.push_back(made);
+    }
+  }
+  return cuts;
 }
 
 std::size_t leaves_of(const std::vector<block_cut>& cuts) { return (cuts.size() + 1) / 2; }

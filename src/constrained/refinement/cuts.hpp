@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "host/runtime.hpp"
 #include "refinement/records.h"
 
 namespace flaunay::constrained {
@@ -15,11 +16,9 @@ enum class Cuts {
 };
 
 /// A tree of cuts, the root first, whose leaves have at most `most` of these places each, as far as they
-/// differ. It does not depend on the order of places.
-std::vector<kernel::block_cut> cut_plane(std::vector<kernel::double2> places, std::size_t most, Cuts how);
-
-/// The leaf in which a place is.
-std::size_t leaf_of(const std::vector<kernel::block_cut>& cuts, kernel::double2 place);
+/// differ. It does not depend on the order of places. Threads of the runtime share many.
+std::vector<kernel::block_cut> cut_plane(host::Runtime& runtime, std::vector<kernel::double2> places,
+                                         std::size_t most, Cuts how);
 
 /// The number of its leaves.
 std::size_t leaves_of(const std::vector<kernel::block_cut>& cuts);

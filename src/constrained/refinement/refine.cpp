@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -64,8 +65,12 @@ constexpr double kScaffold = 0.5;
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
 // A launch has room for so many chunks of rows and of vertices, or for one per block.
 constexpr std::size_t kLeastChunks = 4;
-// For so many rows, a thread's loops take less time than passes of kernels.
+// From so many rows on, there is less spare room for them.
+constexpr std::size_t kManyRows = std::size_t{1} << 20;
+// A thread takes at least so many rows.
 constexpr std::size_t kFewRows = std::size_t{1} << 14;
+// 2 to the power of this many vertices, and the rows around them, fit a core's cache.
+constexpr int kBucketBits = 13;
 // Where loops of a work-item must be short, a launch takes so many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
@@ -86,8 +91,7 @@ struct Arrays {
   Buffer<cl_double> areas{};
   Buffer<cl_double2> points{};
   Buffer<edge_place> places{};
-  Buffer<cl_int> cells{};    // the phase and the leaf of vertices
-  Buffer<cl_int2> births{};  // the blocks that made them, and their numbers there
+  Buffer<cl_int2> births{};  // the blocks that made vertices, and their numbers there
 };
 
 // The lists of work-items.
@@ -97,6 +101,19 @@ struct Lists {
   Buffer<kernel::dug_side> stacks{};
   Buffer<kernel::star_side> sides{};
   Buffer<kernel::first_task> firsts{};
+};
+
+// Of places.
+struct Box {
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+
+  void add(const double* place) {
+    for (int k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], place[k]);
+      high[k] = std::max(high[k], place[k]);
+    }
+  }
+  double extent() const { return std::max(high[0] - low[0], high[1] - low[1]); }
 };
 
 // Where an array is, if kernels run natively.
@@ -187,18 +204,25 @@ class Refining {
     order_vertices();
     points_.resize(mesh_.points);
     scale_ = kernel::scale_of(shift_);
-    double low[2] = {0, 0}, high[2] = {0, 0};
-    for (std::size_t i = 0; i < mesh_.points; ++i) {
-      double at[2];
-      for (int k = 0; k < 2; ++k) {
-        at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
-        low[k] = i == 0 ? at[k] : std::min(low[k], at[k]);
-        high[k] = i == 0 ? at[k] : std::max(high[k], at[k]);
-        largest_ = std::max(largest_, std::fabs(at[k]));
+    if (mesh_.points == 0) return;
+    std::vector<Box> boxes((mesh_.points - 1) / host::Runtime::kPart + 1);
+    runtime_.share_parts(mesh_.points, [&](std::size_t begin, std::size_t end) {
+      Box box;
+      for (std::size_t i = begin; i < end; ++i) {
+        double at[2];
+        for (int k = 0; k < 2; ++k) at[k] = kernel::scaled(mesh_.coordinates[2 * i + k], scale_) + 0.0;
+        box.add(at);
+        points_[place_of_[i]] = {at[0], at[1]};
       }
-      points_[place_of_[i]] = {at[0], at[1]};
+      boxes[begin / host::Runtime::kPart] = box;
+    });
+    for (const Box& box : boxes) {
+      boxes[0].add(box.low);
+      boxes[0].add(box.high);
     }
-    extent_ = std::max(high[0] - low[0], high[1] - low[1]);
+    extent_ = boxes[0].extent();
+    for (int k = 0; k < 2; ++k)
+      largest_ = std::max({largest_, std::fabs(boxes[0].low[k]), std::fabs(boxes[0].high[k])});
   }
 
   // An area that is too small to be scaled is still one: no triangle is as small.
@@ -275,7 +299,7 @@ class Refining {
   // For each end of an edge the next edge counter-clockwise around it, or -1 if no triangles are between.
   // Vertices at which two edges meet so at a sharp angle are apexes.
   std::vector<std::int32_t> wedges_at(const std::vector<std::int32_t>& ends,
-                                      std::vector<edge_place>& places) const {
+                                      std::vector<std::int32_t>& apexes) const {
     std::vector<std::int32_t> wedges(ends.size(), -1);
     const std::int32_t* const triangles = mesh_.triangles.data();
     for (int before = 0; before < static_cast<int>(mesh_.triangles.size()); ++before) {
@@ -293,7 +317,7 @@ class Refining {
       const auto beside = [&](int c) { return points_[place_of_[triangles[geometry::next_halfedge(c)]]]; };
       const double2 at = points_[v], from = beside(corner), to = beside(last);
       const bool is_convex = kernel::orient_sign(at, from, to, ORIENT_BOUND) > 0;
-      if (is_convex && kernel::is_sharp(at, from, to) != 0) places[v].apex = v;
+      if (is_convex && kernel::is_sharp(at, from, to) != 0) apexes.push_back(v);
     }
     return wedges;
   }
@@ -301,33 +325,37 @@ class Refining {
   void upload() {
     rows_ = mesh_.triangles.size() / 3;
     vertices_ = mesh_.points;
-    std::vector<std::int32_t> edges = mesh_.edges;
-    for (std::int32_t& e : edges) {
-      if (e >= 0 && !mesh_.kept_edges.empty() && mesh_.kept_edges[e] != 0) e |= kernel::EDGE_KEPT;
+    std::vector<std::int32_t> ends = ordered_ends(), apexes, wedges = wedges_at(ends, apexes);
+    rules_.has_apexes = apexes.empty() ? 0 : 1;
+    std::vector<edge_place> places;
+    if (!apexes.empty()) {
+      places.assign(mesh_.points, edge_place{0, 0, -1, -1});
+      for (const std::int32_t v : apexes) places[v].apex = v;
+      add_far_ends(ends, places);
     }
-    std::vector<edge_place> places(mesh_.points, edge_place{0, 0, -1, -1});
-    std::vector<std::int32_t> ends = ordered_ends(), wedges = wedges_at(ends, places);
-    add_far_ends(ends, places);
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
     // With what the first phase takes.
-    is_starting_ = runtime_.is_native() && rows_ <= kFewRows;
-    if (is_starting_) reserve_lists(1, kLeastRoom, false);
+    is_starting_ = runtime_.is_native();
+    if (is_starting_ && rows_ <= kFewRows) reserve_lists(1, kLeastRoom, false);
     reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
             vertices_ + kLeastChunks * kernel::VERTICES_PER_CHUNK);
     is_starting_ = false;
     known_ = vertices_;
-    rules_.has_apexes =
-        std::any_of(places.begin(), places.end(), [](const edge_place& p) { return p.apex >= 0; });
-    runtime_.fill(arrays_.states, rows_, cl_uchar{kernel::ROW_NEW});
-    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
     start_blocks();
     {
       Arena::Scope scope(arena_);
-      runtime_.map(rows_, kernels::load_rows{.triangles = runtime_.upload(arena_, places_of(mesh_.triangles)),
-                                             .neighbors = runtime_.upload(arena_, mesh_.neighbors),
-                                             .edges = runtime_.upload(arena_, std::move(edges)),
-                                             .rows = arrays_.rows});
+      const bool has_kept = !mesh_.kept_edges.empty();
+      const auto view = [&](const auto& values) { return runtime_.view(values.data(), values.size()); };
+      runtime_.map(rows_, kernels::load_rows{.has_kept = has_kept ? 1 : 0,
+                                             .triangles = view(mesh_.triangles),
+                                             .neighbors = view(mesh_.neighbors),
+                                             .edges = view(mesh_.edges),
+                                             .kept = has_kept ? view(mesh_.kept_edges) : arrays_.states,
+                                             .numbers = view(place_of_),
+                                             .rows = arrays_.rows,
+                                             .states = arrays_.states});
+      runtime_.map(vertices_, kernels::load_vertices{.births = arrays_.births, .places = arrays_.places});
       runtime_.finish();
     }
     runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
@@ -366,9 +394,11 @@ class Refining {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  // With what is likely to be needed later. Natively, memory that is not used costs nothing.
+  // With what is likely to be needed later. Natively, memory that is not used costs nothing, but there must
+  // be so much; most polygons take less than six times as many rows as at first.
   std::size_t with_spare(std::size_t count) const {
-    return runtime_.is_native() ? 3 * count : count + count / 2;
+    if (!runtime_.is_native()) return count + count / 2;
+    return (is_starting_ && count < kManyRows ? 6 : 3) * count;
   }
 
   void reserve(std::size_t rows, std::size_t vertices) {
@@ -389,7 +419,6 @@ class Refining {
       const std::size_t size = with_spare(vertices);
       grow(arrays_.points, vertices_, size);
       grow(arrays_.places, vertices_, size);
-      grow(arrays_.cells, vertices_, size);
       grow(arrays_.births, vertices_, size);
       vertex_room_ = size;
     }
@@ -415,25 +444,35 @@ class Refining {
                                                            .states = arrays_.states});
   }
 
-  // Whether loops of this thread take less time than passes of kernels.
-  bool has_few_rows() const { return runtime_.is_native() && (rows_ <= kFewRows || runtime_.threads() == 1); }
+  // In so many parts rows are shared natively.
+  std::size_t parts_of_rows() const { return 1 + std::min(4 * (runtime_.threads() - 1), rows_ / kFewRows); }
 
   // Rows whose states have a bit of a mask.
   std::pair<Buffer<cl_int>, std::size_t> rows_with(int mask) {
-    if (has_few_rows()) {
-      const auto list = arena_.allocate<cl_int>(rows_);
-      const cl_uchar* const states = address_in(arrays_.states);
-      cl_int* const rows = address_in(list);
-      std::size_t count = 0;
-      for (std::size_t row = 0; row < rows_; ++row) {
-        rows[count] = static_cast<cl_int>(row);
-        count += (states[row] & mask) != 0 ? 1 : 0;
-      }
-      return {list, count};
+    if (!runtime_.is_native()) {
+      const auto flags = arena_.allocate<cl_uchar>(rows_);
+      runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
+      return host::pack_positions(runtime_, flags, rows_, 1);
     }
-    const auto flags = arena_.allocate<cl_uchar>(rows_);
-    runtime_.map(rows_, kernels::mark_pending{.mask = mask, .states = arrays_.states, .flags = flags});
-    return host::pack_positions(runtime_, flags, rows_, 1);
+    const cl_uchar* const states = address_in(arrays_.states);
+    const std::size_t parts = parts_of_rows();
+    std::vector<std::size_t> to(parts + 1, 0);
+    const auto first_of = [&](std::size_t part) { return rows_ * part / parts; };
+    runtime_.share(parts, [&](std::size_t part) {
+      to[part + 1] =
+          static_cast<std::size_t>(std::count_if(states + first_of(part), states + first_of(part + 1),
+                                                 [mask](cl_uchar state) { return (state & mask) != 0; }));
+    });
+    std::partial_sum(to.begin(), to.end(), to.begin());
+    const auto list = arena_.allocate<cl_int>(to[parts] + 1);
+    runtime_.share(parts, [&](std::size_t part) {
+      cl_int* at = address_in(list) + to[part];
+      for (std::size_t row = first_of(part); at < address_in(list) + to[part + 1]; ++row) {
+        *at = static_cast<cl_int>(row);
+        at += (states[row] & mask) != 0 ? 1 : 0;
+      }
+    });
+    return {list, to[parts]};
   }
 
   // Finds the areas of rows that were made: those of parents, and what the caller's function says.
@@ -552,6 +591,9 @@ class Refining {
   struct Cut {
     Pending all;
     std::vector<kernel::block_cut> cuts{};
+    Buffer<kernel::block_cut> cuts_there{};
+    Buffer<cl_ulong> leaves{};  // per row
+    Buffer<cl_int> rows{};      // a copy of the list
   };
 
   // Cuts the plane so that leaves have about `block` of these rows, by the places of a sample.
@@ -566,7 +608,15 @@ class Refining {
       const auto k = 2 * static_cast<std::size_t>(positions[i]);
       places[i] = {middles[k], middles[k + 1]};
     }
-    made.cuts = cut_plane(std::move(places), std::max<std::size_t>(1, block / sample), how);
+    made.cuts = cut_plane(runtime_, std::move(places), std::max<std::size_t>(1, block / sample), how);
+    made.cuts_there = runtime_.upload(arena_, made.cuts);
+    made.leaves = arena_.allocate<cl_ulong>(count);
+    made.rows = arena_.allocate<cl_int>(count);
+    runtime_.map(count, kernels::find_leaves{.list = list,
+                                             .middles = made.all.middles,
+                                             .cuts = made.cuts_there,
+                                             .keys = made.leaves,
+                                             .payloads = made.rows});
     return made;
   }
 
@@ -592,22 +642,17 @@ class Refining {
     return blocks;
   }
 
-  Blocks make_blocks(Cut made) {
-    const auto& [list, count] = std::pair(made.all.list, made.all.count);
+  Blocks make_blocks(const Cut& made) {
+    const std::size_t count = made.all.count;
     Blocks blocks;
     blocks.count = leaves_of(made.cuts);
-    blocks.cuts = runtime_.upload(arena_, std::move(made.cuts));
-    blocks.list = arena_.allocate<cl_int>(count);
+    blocks.cuts = made.cuts_there;
+    blocks.list = made.rows;
     blocks.starts = arena_.allocate<cl_int>(blocks.count + 1);
-    const auto keys = arena_.allocate<cl_ulong>(count);
-    runtime_.map(count, kernels::find_leaves{.list = list,
-                                             .middles = made.all.middles,
-                                             .cuts = blocks.cuts,
-                                             .keys = keys,
-                                             .payloads = blocks.list});
-    host::sort_by_key(runtime_, keys, blocks.list, count);
-    runtime_.map(count, kernels::find_starts{
-                            .leaves = static_cast<int>(blocks.count), .keys = keys, .starts = blocks.starts});
+    host::sort_by_key(runtime_, made.leaves, blocks.list, count);
+    runtime_.map(count,
+                 kernels::find_starts{
+                     .leaves = static_cast<int>(blocks.count), .keys = made.leaves, .starts = blocks.starts});
     const Here<cl_int> starts(runtime_, blocks.starts, blocks.count + 1);
     for (std::size_t b = 0; b < blocks.count; ++b)
       blocks.largest = std::max(blocks.largest, static_cast<std::size_t>(starts[b + 1] - starts[b]));
@@ -633,12 +678,11 @@ class Refining {
         }
       }
       const auto [list, count] = rows_at_level(all, all_count, levels);
-      while (count / block >> (kernel::LEAF_BITS - 1) != 0) block *= 2;
       const std::size_t left = wanted_.most_points - added_;
       bool is_whole = count <= block;
       if (!is_whole && (!made || count != all_count))
         made = cut(list, count, block, is_first ? Cuts::medians : Cuts::gaps);
-      Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(std::move(*made));
+      Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(*made);
       // Each has a part of what is left.
       if (!is_whole && (blocks.count == 1 || left < blocks.count)) {
         is_whole = true;
@@ -662,26 +706,16 @@ class Refining {
   // independent of each other: circumcentres, the largest circle first, one after the other. Returns whether
   // there were some.
   bool make_scaffold(const Cut& made) {
-    const auto& [all, cuts] = made;
+    const Pending& all = made.all;
     const std::size_t count = all.count;
+    const Here<cl_ulong> leaves(runtime_, made.leaves, count);
     const Here<double> middles(runtime_, all.middles.as<cl_double>(), 2 * count),
         radii(runtime_, all.radii, count);
-    struct Box {
-      double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    };
-    std::vector<Box> boxes(leaves_of(cuts));
-    std::vector<std::size_t> leaves(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      leaves[i] = leaf_of(cuts, {middles[2 * i], middles[2 * i + 1]});
-      Box& box = boxes[leaves[i]];
-      for (std::size_t k = 0; k < 2; ++k) {
-        box.low[k] = std::min(box.low[k], middles[2 * i + k]);
-        box.high[k] = std::max(box.high[k], middles[2 * i + k]);
-      }
-    }
+    std::vector<Box> boxes(leaves_of(made.cuts));
+    for (std::size_t i = 0; i < count; ++i) boxes[leaves[i]].add(&middles[2 * i]);
     std::vector<double> reaches;
     for (const Box& box : boxes) {
-      const double reach = kScaffold * std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+      const double reach = kScaffold * box.extent();
       reaches.push_back(reach * reach);
     }
     const Here<cl_int> rows(runtime_, all.list, count);
@@ -692,7 +726,7 @@ class Refining {
     if (chosen.empty()) return false;
     const std::size_t size = chosen.size();
     Blocks blocks = whole_plane(runtime_.upload(arena_, std::move(chosen)), size);
-    blocks.cuts = runtime_.upload(arena_, cuts);
+    blocks.cuts = made.cuts_there;
     kernel::refinement_phase phase{};
     phase.is_whole = phase.is_scaffold = 1;
     phase.level = 1;
@@ -716,7 +750,6 @@ class Refining {
     runtime_.write(block_states_, 0, workers_, all.data());
     block_count_ = 0;
     inserted_by_.clear();
-    phase_ = 0;
   }
 
   // Makes lists of at least so many places for each work-item. keeps_tasks: whether they have some.
@@ -742,11 +775,6 @@ class Refining {
                          const Buffer<cl_double>& reaches) {
     const std::size_t at_once = std::min(workers_, blocks.count);
     reserve_lists(at_once, std::max(kLeastRoom, 4 * blocks.largest + kernel::SPARE_ROOM), false);
-    if (++phase_ >> (32 - kernel::LEAF_BITS) != 0) {
-      phase_ = 1;
-      runtime_.fill(arrays_.cells, vertices_, cl_int{0});
-    }
-    phase.number = phase_;
     phase.blocks = static_cast<int>(blocks.count);
     phase.first_block = static_cast<int>(block_count_);
     phase.steps = runtime_.capabilities().loops_end_early ? kFewSteps : std::numeric_limits<int>::max();
@@ -776,7 +804,6 @@ class Refining {
                                              .areas = refined_mesh().areas,
                                              .given = given_.size() > 0 ? given_ : arrays_.rows,
                                              .states = arrays_.states,
-                                             .cells = arrays_.cells,
                                              .births = arrays_.births,
                                              .cuts = blocks.cuts,
                                              .reaches = reaches,
@@ -844,7 +871,7 @@ class Refining {
                                                   .names = runtime_.upload(arena_, std::move(names)),
                                                   .numbers = found.numbers});
     runtime_.finish();
-    if (has_few_rows()) {
+    if (runtime_.is_native()) {
       order_here(found);
       return found;
     }
@@ -877,36 +904,79 @@ class Refining {
     return found;
   }
 
-  // What the passes above do with rows, in loops.
+  // What the passes above do with rows, natively: threads put the rows that were made into buckets of
+  // vertices, and sort each bucket by counting.
   void order_here(Order& found) {
     const mesh_row* const rows = address_in(arrays_.rows);
     const cl_int* const numbers = address_in(found.numbers);
     cl_int* const row_numbers = address_in(found.row_numbers);
-    found.order = arena_.allocate<cl_ulong>(rows_);
-    cl_ulong* const order = address_in(found.order);
-    std::vector<std::size_t> ends(known_ + found.made + 1, 0);  // per vertex, of the rows that it begins
-    const auto is_made = [&](const mesh_row& row) { return row.corner[0] >= 0 && row.changed != 0; };
-    for (std::size_t r = 0; r < rows_; ++r) {
-      if (is_made(rows[r])) {
-        ++ends[static_cast<std::size_t>(numbers[rows[r].corner[0]]) + 1];
-      } else if (rows[r].corner[0] >= 0) {
-        order[found.rows++] = r;
+    const std::size_t parts = parts_of_rows(), vertices = known_ + found.made,
+                      buckets = (vertices >> kBucketBits) + 1;
+    // Per part where its rows go: first those that are as they were, then by buckets.
+    std::vector<std::vector<std::size_t>> to(parts, std::vector<std::size_t>(buckets + 1, 0));
+    const auto visit = [&](std::size_t part, const auto& each) {
+      const std::size_t end = rows_ * (part + 1) / parts;
+      for (std::size_t r = rows_ * part / parts; r < end; ++r) {
+        if (rows[r].corner[0] < 0) continue;
+        const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
+        each(r, rows[r].changed == 0 ? 0 : 1 + (v >> kBucketBits));
       }
+    };
+    runtime_.share(parts, [&](std::size_t part) {
+      visit(part, [&own = to[part]](std::size_t, std::size_t bucket) { ++own[bucket]; });
+    });
+    std::vector<std::size_t> firsts;
+    for (std::size_t bucket = 0; bucket <= buckets; ++bucket) {
+      firsts.push_back(found.rows);
+      for (std::vector<std::size_t>& own : to) found.rows += std::exchange(own[bucket], found.rows);
     }
-    ends[0] = found.rows;
-    std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    found.rows = ends.back();
-    const std::vector<std::size_t> firsts = ends;
-    for (std::size_t r = 0; r < rows_; ++r) {
-      if (!is_made(rows[r])) continue;
-      const auto v = static_cast<std::size_t>(numbers[rows[r].corner[0]]);
-      const cl_ulong placed = static_cast<cl_ulong>(numbers[rows[r].corner[1]]) << 32 | r;
-      std::size_t to = ends[v]++;
-      for (; to > firsts[v] && order[to - 1] > placed; --to) order[to] = order[to - 1];
-      order[to] = placed;
-    }
-    for (std::size_t i = 0; i < found.rows; ++i)
-      row_numbers[static_cast<cl_uint>(order[i])] = static_cast<cl_int>(i);
+    firsts.push_back(found.rows);
+    found.order = arena_.allocate<cl_ulong>(found.rows);
+    cl_ulong* const order = address_in(found.order);
+    struct Made {
+      std::int32_t row, first, second;  // and its first two corners
+    };
+    const auto list = arena_.allocate<Made>(found.rows - firsts[1]);
+    Made* const of_buckets = address_in(list);
+    runtime_.share(parts, [&](std::size_t part) {
+      visit(part, [&, &own = to[part]](std::size_t r, std::size_t bucket) {
+        const std::size_t at = own[bucket]++;
+        if (bucket == 0) {
+          row_numbers[r] = static_cast<cl_int>(at);
+          order[at] = r;
+        } else {
+          of_buckets[at - firsts[1]] = {static_cast<std::int32_t>(r), numbers[rows[r].corner[0]],
+                                        numbers[rows[r].corner[1]]};
+        }
+      });
+    });
+    runtime_.share(buckets, [&](std::size_t bucket) {
+      const std::size_t begin = firsts[bucket + 1], count = firsts[bucket + 2] - begin,
+                        first_vertex = bucket << kBucketBits,
+                        size = std::min(std::size_t{1} << kBucketBits, vertices - first_vertex);
+      const Made* const own = of_buckets + (begin - firsts[1]);
+      cl_ulong* const placed = order + begin;
+      // Where the rows of each vertex begin, and then where they end.
+      std::vector<std::uint32_t> places(size + 2, 0);
+      const auto ends = [&](const Made& made) {
+        return &places[static_cast<std::size_t>(made.first) - first_vertex + 1];
+      };
+      for (std::size_t k = 0; k < count; ++k) ++ends(own[k])[1];
+      std::partial_sum(places.begin(), places.end(), places.begin());
+      for (std::size_t k = 0; k < count; ++k)
+        placed[(*ends(own[k]))++] =
+            static_cast<cl_ulong>(own[k].second) << 32 | static_cast<cl_uint>(own[k].row);
+      for (std::size_t v = 0; v < size; ++v) {
+        for (std::uint32_t i = places[v]; i < places[v + 1]; ++i) {
+          const cl_ulong moved = placed[i];
+          std::uint32_t at = i;
+          for (; at > places[v] && placed[at - 1] > moved; --at) placed[at] = placed[at - 1];
+          placed[at] = moved;
+        }
+      }
+      for (std::size_t i = 0; i < count; ++i)
+        row_numbers[static_cast<cl_uint>(placed[i])] = static_cast<cl_int>(begin + i);
+    });
   }
 
   // Gives vertices and rows their numbers.
@@ -935,7 +1005,7 @@ class Refining {
                                                .places = before.places,
                                                .moved_points = arrays_.points,
                                                .moved_places = arrays_.places});
-    runtime_.fill(arrays_.cells, vertices_, cl_int{0});
+    runtime_.fill(arrays_.births, vertices_, cl_int2{{-1, 0}});
     runtime_.finish();
     start_blocks();
   }
@@ -1003,19 +1073,25 @@ class Refining {
     const Here<edge_place> places(runtime_, arrays_.places, vertices_);
     const Here<cl_int> numbers(runtime_, found.numbers, vertices_);
     const std::size_t added = known_ + found.made - mesh_.points;
-    refined.added.resize(2 * added);
-    refined.added_edges.resize(added);
-    refined.added_places.resize(added);
+    runtime_.resize(refined.added, 2 * added);
+    runtime_.resize(refined.added_edges, added);
+    runtime_.resize(refined.added_places, added);
     const kernel::scaling back = kernel::scale_of(-shift_);
-    for (std::size_t v = mesh_.points; v < vertices_; ++v) {
-      if (numbers[v] < 0) continue;
-      const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
-      for (std::size_t k = 0; k < 2; ++k)
-        refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
-      refined.added_edges[to] = places[v].edge;
-      refined.added_places[to] = places[v].part;
-      if (places[v].edge >= 0) ++report_.split_points;
-    }
+    std::atomic<std::size_t> split_points = 0;
+    runtime_.share_parts(vertices_ - mesh_.points, [&](std::size_t begin, std::size_t end) {
+      std::size_t splits = 0;
+      for (std::size_t v = mesh_.points + begin; v < mesh_.points + end; ++v) {
+        if (numbers[v] < 0) continue;
+        const std::size_t to = static_cast<std::size_t>(numbers[v]) - mesh_.points;
+        for (std::size_t k = 0; k < 2; ++k)
+          refined.added[2 * to + k] = kernel::scaled(coordinates[2 * v + k], back);
+        refined.added_edges[to] = places[v].edge;
+        refined.added_places[to] = places[v].part;
+        splits += places[v].edge >= 0 ? 1 : 0;
+      }
+      split_points += splits;
+    });
+    report_.split_points = split_points;
     const Excuse at_limit = report_.rounds >= wanted_.most_rounds ? Excuse::most_rounds : Excuse::most_points;
     for (std::size_t t = 0; t < found.rows; ++t) {
       if (excuses[t] == kernel::EXCUSED_NOT) continue;
@@ -1052,7 +1128,6 @@ class Refining {
   Lists lists_;
   bool is_starting_ = false;
   std::size_t workers_ = 0, room_ = 0;  // room: places in the lists of each work-item
-  cl_uint phase_ = 0;
   std::size_t block_count_ = 0;
   std::vector<cl_int> inserted_by_;  // points of each block of all phases
   RefinementReport report_;
