@@ -1,6 +1,7 @@
 #include "call/groups.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "tuning/tuning.hpp"
@@ -151,7 +152,8 @@ ConstrainedTriangulation join(host::Runtime& runtime, const std::vector<Group>& 
   joining.array(&Part::piece_edges, [&](const std::vector<std::int32_t>& from, std::size_t i, std::size_t k) {
     return from[i | 1] == 0 ? 0 : from[i] + static_cast<std::int32_t>(edges[k]);
   });
-  joining.offsets(&Part::piece_offsets);
+  joining.result.piece_offsets.resize(segments.back() + 1);
+  std::iota(joining.result.piece_offsets.begin(), joining.result.piece_offsets.end(), 0);
   joining.offsets(&Part::added_offsets);
   return std::move(joining.result);
 }

@@ -39,7 +39,10 @@ class Inside {
     steps_left_ = static_cast<std::int64_t>(request.most_steps * (n + constraints.segment_count));
     order(coordinates, offsets);
     if (!link_segments()) return false;
-    result.triangles.clear();
+    // At most two triangles per point.
+    triangles_ = sized(all_triangles, 6 * n);
+    neighbors_ = sized(all_neighbors, 6 * n);
+    constrained_ = sized(all_constrained, 6 * n);
     result.triangle_offsets.assign(1, 0);
     result.hull_offsets.assign(1, 0);
     for (std::size_t s = 0; s < sets; ++s) {
@@ -49,6 +52,10 @@ class Inside {
       write_rows(begin, sets_[s].end, request.neighbors);
       write_hull();
     }
+    const std::size_t rows = 3 * result.triangle_offsets.back();
+    result.triangles.assign(triangles_, triangles_ + rows);
+    result.constrained.assign(constrained_, constrained_ + rows);
+    if (request.neighbors) result.neighbors.assign(neighbors_, neighbors_ + rows);
     write_edges(n);
     result.added_offsets.assign(sets + 1, 0);
     Statistics& statistics = result.statistics;
@@ -404,20 +411,22 @@ class Inside {
     int* const places = sized(all_places, 2 * count + 1);
     int* const rows = sized(all_rows, static_cast<std::size_t>(edge_count_));
     std::fill(places, places + 2 * count, kNone);
-    const auto put = [&](int e) {
-      const int next = edges_[e].next;
-      if (next == kNone) {
-        rows[e] = kNone;
-        return;
-      }
-      const int from = edges_[e ^ 1].to, v = edges_[e].to, to = edges_[next].to;
+    const auto put = [&](int e, int from, HalfEdge edge) {
+      const int v = edge.to, to = edges_[edge.next].to;
       const int is_second = v < to, is_middle = static_cast<int>(from < v) == is_second;
       places[is_middle != 0 ? 2 * leaf_[v] + is_second : 2 * static_cast<int>(count)] = e;
     };
     for (int v = begin; v < end; ++v) {
-      for (const int e : corners_[v].edges) put(e);
+      for (const int e : corners_[v].edges) {
+        rows[e] = kNone;
+        if (edges_[e].next != kNone) put(e, v, edges_[e]);
+      }
     }
-    for (int e = 2 * segment_count_; e < edge_count_; ++e) put(e);
+    for (int e = 2 * segment_count_; e < edge_count_; e += 2) {
+      const HalfEdge one = edges_[e], other = edges_[e + 1];
+      put(e, other.to, one);
+      put(e + 1, one.to, other);
+    }
     int row = static_cast<int>(result_->triangle_offsets.back());
     const int first_row = row;
     int kept = 0;
@@ -430,14 +439,9 @@ class Inside {
       const int e = places[k], second = edges_[e].next;
       rows[e] = rows[second] = rows[edges_[second].next] = row;
     }
-    const auto size = static_cast<std::size_t>(3 * row);
     result_->triangle_offsets.push_back(static_cast<std::size_t>(row));
-    result_->triangles.resize(size);
-    result_->constrained.resize(size);
-    if (with_neighbors) result_->neighbors.resize(size);
-    std::int32_t* const triangles = result_->triangles.data();
-    std::uint8_t* const constrained = result_->constrained.data();
-    std::int32_t* const neighbors = with_neighbors ? result_->neighbors.data() : nullptr;
+    std::int32_t *const triangles = triangles_, *const neighbors = with_neighbors ? neighbors_ : nullptr;
+    std::uint8_t* const constrained = constrained_;
     for (int k = 0, corner = 3 * first_row; k < kept; ++k, corner += 3) {
       const int e = places[k], e1 = edges_[e].next, e2 = edges_[e1].next;
       const std::int32_t v = source_[edges_[e].to], a = source_[edges_[e1].to], b = source_[edges_[e2].to];
@@ -508,6 +512,8 @@ class Inside {
   // Arrays, and what they are for this call: the compiler keeps pointers in registers.
   std::vector<kernel::double2> points, given_points;
   std::vector<int> source, leaf, vertex_of, given_sources, open, all_places, all_rows;
+  std::vector<std::int32_t> all_triangles, all_neighbors;
+  std::vector<std::uint8_t> all_constrained;
   std::vector<kernel::uint64> ranks;
   std::vector<kernel::uchar> axes;
   std::vector<Corner> corners;
@@ -518,6 +524,8 @@ class Inside {
   int *source_ = nullptr, *leaf_ = nullptr,
       *vertex_of_ = nullptr;  // source_: by vertex; vertex_of_: by point
   int* open_ = nullptr;
+  std::int32_t *triangles_ = nullptr, *neighbors_ = nullptr;
+  std::uint8_t* constrained_ = nullptr;
   Corner* corners_ = nullptr;
   Crossed* crossed_ = nullptr;  // by segment, and the bottom
   Node* nodes_ = nullptr;

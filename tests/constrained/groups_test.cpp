@@ -406,7 +406,7 @@ void add_curve(SegmentInput& input, double x, double y, double radius, bool is_w
 TEST(SmallSets, InsideOfCurves) {
   HereAndTogether by;
   int inside = 0, others = 0;
-  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     FixtureRandom random(seed);
     const double grid = seed % 3 == 0 ? 0 : static_cast<double>(random.integer(1, 40));
@@ -428,8 +428,8 @@ TEST(SmallSets, InsideOfCurves) {
            ? inside
            : others);
   }
-  EXPECT_GT(inside, 40);
-  EXPECT_GT(others, 10);
+  EXPECT_GT(inside, 12);
+  EXPECT_GT(others, 4);
 }
 
 // Rings along the triangles of a grid's triangulation, as borders, holes and parts in any order.
