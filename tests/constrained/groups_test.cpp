@@ -23,7 +23,8 @@ namespace flaunay::testing {
 namespace {
 
 Triangulator host(const char* tuning) {
-  const ScopedEnvironment scope("FLAUNAY_TUNING", tuning);
+  // So that not all groups are joined at once.
+  const ScopedEnvironment scope("FLAUNAY_TUNING", tuning), threads("FLAUNAY_THREADS", "2");
   return Triangulator("host");
 }
 
