@@ -113,12 +113,12 @@ class Inside {
     auto& representatives = result_->representatives;
     representatives.resize(n);
     std::iota(representatives.begin(), representatives.end(), 0);
-    points_ = sized(points, n);
-    source_ = sized(source, n);
-    leaf_ = sized(leaf, n);
-    vertex_of_ = sized(vertex_of, n);
-    kernel::double2* const given = sized(given_points, n);
-    int* const given_source = sized(given_sources, n);
+    points_ = sized(all_points, n);
+    source_ = sized(all_source, n);
+    leaf_ = sized(all_leaf, n);
+    vertex_of_ = sized(all_vertex_of, n);
+    kernel::double2* const given = sized(all_given, n);
+    int* const given_source = sized(all_given_sources, n);
     kernel::uint64* const all_ranks = sized(ranks, 3 * n);
     kernel::uchar* const all_axes = sized(axes, 2 * n);
     sets_.clear();
@@ -145,7 +145,7 @@ class Inside {
       sets_.push_back({begin + distinct, kernel::errors_within(std::max(width, highest - lowest), bounds_)});
       vertex_count_ += static_cast<std::size_t>(distinct);
     }
-    corners_ = sized(corners, n);
+    corners_ = sized(all_corners, n);
     for (std::size_t i = 0; i < n; ++i) corners_[i].count = 0;
   }
 
@@ -210,11 +210,11 @@ class Inside {
   bool sweep(int begin, int end) {
     const int bottom = segment_count_;
     const auto n = static_cast<std::size_t>(end - begin);
-    crossed_ = sized(crossed, segment_count_ + 1);
+    crossed_ = sized(all_crossed, segment_count_ + 1);
     // Each of at most two fronts gets a node per vertex, and a front that is cut one more.
-    nodes_ = sized(nodes, 3 * n);
-    edges_ = sized(edges, 2 * (segment_count_ + 4 * n));
-    open_ = sized(open, 2 * (segment_count_ + 4 * n));
+    nodes_ = sized(all_nodes, 3 * n);
+    edges_ = sized(all_edges, 2 * (segment_count_ + 4 * n));
+    open_ = sized(all_open, 2 * (segment_count_ + 4 * n));
     node_count_ = 0;
     edge_count_ = 2 * segment_count_;
     crossed_[bottom].above = kNone;
@@ -383,20 +383,22 @@ class Inside {
 
   // Flips the edge on whose left a new triangle is, if need be, and then those beyond it.
   void flip_around(int base) {
-    int* top = open_;
+    HalfEdge* const edges = edges_;
+    int *const open = open_, *top = open;
+    const int inner = 2 * segment_count_;
     *top++ = base;
-    while (top != open_) {
+    while (top != open) {
       const int e = *--top, twin = e ^ 1;
-      if (e < 2 * segment_count_ || edges_[twin].next == kNone) continue;
-      const int e1 = edges_[e].next, t1 = edges_[twin].next, apex = edges_[e1].to, beyond = edges_[t1].to;
-      if (!is_inside(edges_[twin].to, edges_[e].to, apex, beyond)) continue;
-      const int e2 = edges_[e1].next, t2 = edges_[t1].next;
-      edges_[e] = {apex, e2};
-      edges_[e2].next = t1;
-      edges_[t1].next = e;
-      edges_[twin] = {beyond, t2};
-      edges_[t2].next = e1;
-      edges_[e1].next = twin;
+      if (e < inner || edges[twin].next == kNone) continue;
+      const int e1 = edges[e].next, t1 = edges[twin].next, apex = edges[e1].to, beyond = edges[t1].to;
+      if (!is_inside(edges[twin].to, edges[e].to, apex, beyond)) continue;
+      const int e2 = edges[e1].next, t2 = edges[t1].next;
+      edges[e] = {apex, e2};
+      edges[e2].next = t1;
+      edges[t1].next = e;
+      edges[twin] = {beyond, t2};
+      edges[t2].next = e1;
+      edges[e1].next = twin;
       *top++ = t1;
       *top++ = t2;
     }
@@ -411,19 +413,23 @@ class Inside {
     int* const places = sized(all_places, 2 * count + 1);
     int* const rows = sized(all_rows, static_cast<std::size_t>(edge_count_));
     std::fill(places, places + 2 * count, kNone);
+    const HalfEdge* const edges = edges_;
+    const int *const leaf = leaf_, *const source = source_;
+    const int inner = 2 * segment_count_, edge_count = edge_count_, unused = 2 * static_cast<int>(count);
     const auto put = [&](int e, int from, HalfEdge edge) {
-      const int v = edge.to, to = edges_[edge.next].to;
-      const int is_second = v < to, is_middle = static_cast<int>(from < v) == is_second;
-      places[is_middle != 0 ? 2 * leaf_[v] + is_second : 2 * static_cast<int>(count)] = e;
+      const int v = edge.to, is_second = static_cast<int>(v < edges[edge.next].to);
+      // Without a branch, since it could not be predicted.
+      const int is_middle = static_cast<int>(from < v) ^ is_second ^ 1;
+      places[unused ^ ((unused ^ (2 * leaf[v] + is_second)) & -is_middle)] = e;
     };
     for (int v = begin; v < end; ++v) {
       for (const int e : corners_[v].edges) {
         rows[e] = kNone;
-        if (edges_[e].next != kNone) put(e, v, edges_[e]);
+        if (edges[e].next != kNone) put(e, v, edges[e]);
       }
     }
-    for (int e = 2 * segment_count_; e < edge_count_; e += 2) {
-      const HalfEdge one = edges_[e], other = edges_[e + 1];
+    for (int e = inner; e < edge_count; e += 2) {
+      const HalfEdge one = edges[e], other = edges[e + 1];
       put(e, other.to, one);
       put(e + 1, one.to, other);
     }
@@ -436,19 +442,19 @@ class Inside {
       kept += e != kNone;
     }
     for (int k = 0; k < kept; ++k, ++row) {
-      const int e = places[k], second = edges_[e].next;
-      rows[e] = rows[second] = rows[edges_[second].next] = row;
+      const int e = places[k], second = edges[e].next;
+      rows[e] = rows[second] = rows[edges[second].next] = row;
     }
     result_->triangle_offsets.push_back(static_cast<std::size_t>(row));
     std::int32_t *const triangles = triangles_, *const neighbors = with_neighbors ? neighbors_ : nullptr;
     std::uint8_t* const constrained = constrained_;
     for (int k = 0, corner = 3 * first_row; k < kept; ++k, corner += 3) {
-      const int e = places[k], e1 = edges_[e].next, e2 = edges_[e1].next;
-      const std::int32_t v = source_[edges_[e].to], a = source_[edges_[e1].to], b = source_[edges_[e2].to];
+      const int e = places[k], e1 = edges[e].next, e2 = edges[e1].next;
+      const std::int32_t v = source[edges[e].to], a = source[edges[e1].to], b = source[edges[e2].to];
       const kernel::row_places at = kernel::places_in_row(v, a, b);
       const auto write = [&](std::int32_t to, std::int32_t id, int opposite) {
         triangles[to] = id;
-        constrained[to] = opposite < 2 * segment_count_;
+        constrained[to] = opposite < inner;
         if (neighbors != nullptr) neighbors[to] = rows[opposite ^ 1];
       };
       write(corner + at.v, v, e2);
@@ -475,24 +481,29 @@ class Inside {
 
   // Constraint edges in the order of their lower ends, and then of the others.
   void write_edges(std::size_t n) {
-    result_->constraint_edges.resize(2 * vertex_count_);
-    result_->edge_segments.resize(vertex_count_);
-    result_->piece_edges.assign(2 * static_cast<std::size_t>(segment_count_), 0);
+    // What is written for upper ends is written over, and at last left out.
+    result_->constraint_edges.resize(2 * vertex_count_ + 2);
+    result_->edge_segments.resize(vertex_count_ + 1);
+    std::int32_t *const ends = result_->constraint_edges.data(), *const of = result_->edge_segments.data();
     std::int32_t number = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (result_->representatives[i] != static_cast<std::int32_t>(i)) continue;
       const int v = vertex_of_[i];
       const Corner& at = corners_[v];
-      const int first = source_[at.others[0]] > source_[at.others[1]];
+      const int first = static_cast<int>(source_[at.others[0]] > source_[at.others[1]]);
       for (const int k : {first, 1 - first}) {
-        if (at.others[k] < v) continue;
-        const int segment = at.edges[k] >> 1;
-        result_->constraint_edges[2 * number] = static_cast<std::int32_t>(i);
-        result_->constraint_edges[2 * number + 1] = source_[at.others[k]];
-        result_->edge_segments[number] = segment;
-        result_->piece_edges[2 * segment] = number++;
-        result_->piece_edges[2 * segment + 1] = number;
+        ends[2 * number] = static_cast<std::int32_t>(i);
+        ends[2 * number + 1] = source_[at.others[k]];
+        of[number] = at.edges[k] >> 1;
+        number += static_cast<std::int32_t>(v < at.others[k]);
       }
+    }
+    result_->constraint_edges.resize(2 * vertex_count_);
+    result_->edge_segments.resize(vertex_count_);
+    result_->piece_edges.assign(2 * static_cast<std::size_t>(segment_count_), 0);
+    for (std::int32_t edge = 0; edge < number; ++edge) {
+      result_->piece_edges[2 * of[edge]] = edge;
+      result_->piece_edges[2 * of[edge] + 1] = edge + 1;
     }
     result_->piece_offsets.resize(segment_count_ + 1);
     std::iota(result_->piece_offsets.begin(), result_->piece_offsets.end(), 0);
@@ -509,17 +520,17 @@ class Inside {
   kernel::largest_errors errors_{};
   std::vector<int> lower_, upper_;  // what the sweep has of the hull
 
-  // Arrays, and what they are for this call: the compiler keeps pointers in registers.
-  std::vector<kernel::double2> points, given_points;
-  std::vector<int> source, leaf, vertex_of, given_sources, open, all_places, all_rows;
+  // Arrays, and what they are for this call.
+  std::vector<kernel::double2> all_points, all_given;
+  std::vector<int> all_source, all_leaf, all_vertex_of, all_given_sources, all_open, all_places, all_rows;
   std::vector<std::int32_t> all_triangles, all_neighbors;
   std::vector<std::uint8_t> all_constrained;
   std::vector<kernel::uint64> ranks;
   std::vector<kernel::uchar> axes;
-  std::vector<Corner> corners;
-  std::vector<Crossed> crossed;
-  std::vector<Node> nodes;
-  std::vector<HalfEdge> edges;
+  std::vector<Corner> all_corners;
+  std::vector<Crossed> all_crossed;
+  std::vector<Node> all_nodes;
+  std::vector<HalfEdge> all_edges;
   kernel::double2* points_ = nullptr;
   int *source_ = nullptr, *leaf_ = nullptr,
       *vertex_of_ = nullptr;  // source_: by vertex; vertex_of_: by point
