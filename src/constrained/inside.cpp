@@ -36,20 +36,22 @@ class Inside {
     result_ = &result;
     undecided_ = 0;
     const std::size_t sets = offsets.size() - 1, n = offsets.back();
+    if (!find_leaving(n)) return false;
     steps_left_ = static_cast<std::int64_t>(request.most_steps * (n + constraints.segment_count));
-    order(coordinates, offsets);
-    if (!link_segments()) return false;
-    // At most two triangles per point.
-    triangles_ = sized(all_triangles, 6 * n);
-    neighbors_ = sized(all_neighbors, 6 * n);
-    constrained_ = sized(all_constrained, 6 * n);
+    const geometry::SetScalings scalings =
+        geometry::set_scalings(coordinates, offsets, [coordinates](std::size_t first, std::size_t last) {
+          return geometry::inspect(coordinates, first, last);
+        });
+    bounds_ = scalings.bounds;
+    reserve(n);
     result.triangle_offsets.assign(1, 0);
     result.hull_offsets.assign(1, 0);
     for (std::size_t s = 0; s < sets; ++s) {
-      const int begin = static_cast<int>(offsets[s]);
-      errors_ = sets_[s].errors;
-      if (!sweep(begin, sets_[s].end)) return false;
-      write_rows(begin, sets_[s].end, request.neighbors);
+      const int begin = static_cast<int>(offsets[s]), end_of_points = static_cast<int>(offsets[s + 1]);
+      const int end = order(coordinates, begin, end_of_points, kernel::scale_of(scalings.shift(s)));
+      if (!link(begin, end_of_points, end) || !sweep(begin, end)) return false;
+      vertex_count_ += static_cast<std::size_t>(end - begin);
+      write_rows(begin, end, request.neighbors);
       write_hull();
     }
     const std::size_t rows = 3 * result.triangle_offsets.back();
@@ -72,11 +74,6 @@ class Inside {
   // The ends of segments at a vertex: half-edges that leave it, and the vertices at which these arrive.
   struct Corner {
     int edges[2], others[2], count;
-  };
-  // The end of a set's vertices, and what predicates of them err by at most.
-  struct Set {
-    int end;
-    kernel::largest_errors errors;
   };
   struct HalfEdge {
     int to, next;  // next: within the triangle; none if that is not made, or if there is none
@@ -103,13 +100,22 @@ class Inside {
     return array.data();
   }
 
-  void order(const double* coordinates, const std::vector<std::size_t>& offsets) {
-    const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-    const geometry::SetScalings scalings =
-        geometry::set_scalings(coordinates, offsets, [coordinates](std::size_t first, std::size_t last) {
-          return geometry::inspect(coordinates, first, last);
-        });
-    bounds_ = scalings.bounds;
+  // The half-edges that leave each point. Returns false if these are not two everywhere, which takes no time
+  // to know beside what follows.
+  bool find_leaving(std::size_t n) {
+    if (static_cast<std::size_t>(segment_count_) != n) return false;
+    int* const counts = sized(all_places, n);
+    leaving_ = sized(all_leaving, 2 * n);
+    std::fill(counts, counts + n, 0);
+    for (std::size_t e = 0; e < 2 * n; ++e) {
+      const auto i = static_cast<std::size_t>(segments_[e]);
+      if (i >= n || counts[i] == 2) return false;
+      leaving_[2 * i + static_cast<std::size_t>(counts[i]++)] = static_cast<int>(e);
+    }
+    return true;
+  }
+
+  void reserve(std::size_t n) {
     auto& representatives = result_->representatives;
     representatives.resize(n);
     std::iota(representatives.begin(), representatives.end(), 0);
@@ -117,56 +123,59 @@ class Inside {
     source_ = sized(all_source, n);
     leaf_ = sized(all_leaf, n);
     vertex_of_ = sized(all_vertex_of, n);
-    kernel::double2* const given = sized(all_given, n);
-    int* const given_source = sized(all_given_sources, n);
-    kernel::uint64* const all_ranks = sized(ranks, 3 * n);
-    kernel::uchar* const all_axes = sized(axes, 2 * n);
-    sets_.clear();
-    vertex_count_ = 0;
-    for (std::size_t s = 0; s < sets; ++s) {
-      const auto begin = static_cast<int>(offsets[s]), count = static_cast<int>(offsets[s + 1]) - begin;
-      const kernel::scaling scale = kernel::scale_of(scalings.shift(s));
-      double lowest = 0, highest = 0;
-      for (int i = begin; i < begin + count; ++i) {
-        given[i] = kernel::scaled_point(i, coordinates, scale);
-        given_source[i] = i;
-        lowest = i == begin || given[i].y < lowest ? given[i].y : lowest;
-        highest = i == begin || given[i].y > highest ? given[i].y : highest;
-      }
-      kernel::block_scratch scratch =
-          kernel::scratch_from(0, count, points_ + begin, source_ + begin, all_ranks, all_axes);
-      const int distinct =
-          kernel::order_block(begin, count, nullptr, &scratch, given, given_source, representatives.data());
-      for (int k = 0; k < distinct; ++k) {
-        vertex_of_[source_[begin + k]] = begin + k;
-        leaf_[begin + kernel::own_rank(scratch.by_x[k])] = k;
-      }
-      const double width = distinct > 0 ? points_[begin + distinct - 1].x - points_[begin].x : 0;
-      sets_.push_back({begin + distinct, kernel::errors_within(std::max(width, highest - lowest), bounds_)});
-      vertex_count_ += static_cast<std::size_t>(distinct);
-    }
     corners_ = sized(all_corners, n);
-    for (std::size_t i = 0; i < n; ++i) corners_[i].count = 0;
+    sized(given, n);
+    sized(given_source, n);
+    sized(ranks, 3 * n);
+    sized(axes, 2 * n);
+    // At most two triangles per point.
+    triangles_ = sized(all_triangles, 6 * n);
+    neighbors_ = sized(all_neighbors, 6 * n);
+    constrained_ = sized(all_constrained, 6 * n);
+    vertex_count_ = 0;
   }
 
-  bool link_segments() {
-    const auto n = static_cast<std::uint32_t>(result_->representatives.size());
-    std::size_t count = 0;
-    for (int s = 0; s < segment_count_; ++s) {
-      const std::int32_t a = segments_[2 * s], b = segments_[2 * s + 1];
-      if (static_cast<std::uint32_t>(a) >= n || static_cast<std::uint32_t>(b) >= n) return false;
-      const int from = vertex_of_[result_->representatives[a]], to = vertex_of_[result_->representatives[b]];
-      if (from == to) continue;
-      Corner &first = corners_[from], &second = corners_[to];
-      if (first.count == 2 || second.count == 2) return false;
-      first.others[first.count] = to;
-      first.edges[first.count++] = 2 * s;
-      second.others[second.count] = from;
-      second.edges[second.count++] = 2 * s + 1;
-      ++count;
+  // Orders the points of a set. Returns the end of its vertices.
+  int order(const double* coordinates, int begin, int end, kernel::scaling scale) {
+    double lowest = 0, highest = 0;
+    for (int i = begin; i < end; ++i) {
+      const kernel::double2 p = kernel::scaled_point(i, coordinates, scale);
+      given[i] = p;
+      given_source[i] = i;
+      lowest = i == begin || p.y < lowest ? p.y : lowest;
+      highest = i == begin || p.y > highest ? p.y : highest;
     }
-    // With at most two at each vertex, there are two at each.
-    return count == vertex_count_;
+    kernel::block_scratch scratch =
+        kernel::scratch_from(0, end - begin, points_ + begin, source_ + begin, ranks.data(), axes.data());
+    const int distinct = kernel::order_block(begin, end - begin, nullptr, &scratch, given.data(),
+                                             given_source.data(), result_->representatives.data());
+    for (int k = 0; k < distinct; ++k) {
+      vertex_of_[source_[begin + k]] = begin + k;
+      leaf_[begin + kernel::own_rank(scratch.by_x[k])] = k;
+    }
+    const double width = distinct > 0 ? points_[begin + distinct - 1].x - points_[begin].x : 0;
+    errors_ = kernel::errors_within(std::max(width, highest - lowest), bounds_);
+    return begin + distinct;
+  }
+
+  // Finds the corners of curves at the vertices of a set. Returns false if there is not one at each.
+  bool link(int begin, int end_of_points, int end) {
+    const std::int32_t* const representatives = result_->representatives.data();
+    for (int v = begin; v < end; ++v) corners_[v].count = 0;
+    for (int i = begin; i < end_of_points; ++i) {
+      const int v = vertex_of_[representatives[i]];
+      Corner& at = corners_[v];
+      for (const int e : {leaving_[2 * i], leaving_[2 * i + 1]}) {
+        const std::int32_t to = segments_[e ^ 1];
+        if (to < begin || to >= end_of_points) return false;
+        const int other = vertex_of_[representatives[to]];
+        if (other == v) continue;
+        if (at.count == 2) return false;
+        at.edges[at.count] = e;
+        at.others[at.count++] = other;
+      }
+    }
+    return std::all_of(corners_ + begin, corners_ + end, [](const Corner& at) { return at.count == 2; });
   }
 
   // ---------------------------------------------------------------------------------------------------------
@@ -223,8 +232,6 @@ class Inside {
     upper_.clear();
     for (int v = begin; v < end; ++v) {
       const Corner& at = corners_[v];
-      if (at.others[0] < begin || at.others[1] < begin || at.others[0] >= end || at.others[1] >= end)
-        return false;
       if (is_winding_ && ((at.edges[0] ^ at.edges[1]) & 1) == 0) return false;
       const bool first_ends = at.others[0] < v, second_ends = at.others[1] < v;
       if (!(first_ends != second_ends ? pass(v, at, first_ends) : first_ends ? finish(v, at) : start(v, at)))
@@ -516,13 +523,13 @@ class Inside {
   kernel::filter_bounds bounds_{};
   std::size_t undecided_ = 0, vertex_count_ = 0;
   std::int64_t steps_left_ = 0;
-  std::vector<Set> sets_;
-  kernel::largest_errors errors_{};
-  std::vector<int> lower_, upper_;  // what the sweep has of the hull
+  kernel::largest_errors errors_{};  // of predicates of a set's vertices
+  std::vector<int> lower_, upper_;   // what the sweep has of the hull
 
   // Arrays, and what they are for this call.
-  std::vector<kernel::double2> all_points, all_given;
-  std::vector<int> all_source, all_leaf, all_vertex_of, all_given_sources, all_open, all_places, all_rows;
+  std::vector<kernel::double2> all_points, given;
+  std::vector<int> all_leaving, all_source, all_leaf, all_vertex_of, given_source, all_open, all_places,
+      all_rows;
   std::vector<std::int32_t> all_triangles, all_neighbors;
   std::vector<std::uint8_t> all_constrained;
   std::vector<kernel::uint64> ranks;
@@ -532,8 +539,8 @@ class Inside {
   std::vector<Node> all_nodes;
   std::vector<HalfEdge> all_edges;
   kernel::double2* points_ = nullptr;
-  int *source_ = nullptr, *leaf_ = nullptr,
-      *vertex_of_ = nullptr;  // source_: by vertex; vertex_of_: by point
+  int *source_ = nullptr, *leaf_ = nullptr;        // by vertex
+  int *vertex_of_ = nullptr, *leaving_ = nullptr;  // by point; leaving_: two for each
   int* open_ = nullptr;
   std::int32_t *triangles_ = nullptr, *neighbors_ = nullptr;
   std::uint8_t* constrained_ = nullptr;
