@@ -20,9 +20,11 @@ namespace {
 // a path of edges from one segment's left end to the other one's. A point makes triangles with all edges of
 // the front that it sees from the end at which it joins, so that the front stays concave. Each new triangle
 // is made Delaunay at once, by flips around the new point. Edges between two new triangles need none: the
-// front was concave, so these cannot be flipped. What crosses or touches is found at the first end of a
-// segment behind the place, or where a curve begins: such points are not strictly between the segments above
-// and below.
+// front was concave where they begin, so the triangles are no convex quadrilateral.
+//
+// Each point must be strictly between the segments right above and below. As long as none have crossed, these
+// are right. Two that do are neighbours, and as nothing is between them from then on, they stay neighbours
+// until one ends: at a point that is on the wrong side of the other.
 //
 // Vertices have numbers in the order of sets and, within these, in lexicographic order. A half-edge e has its
 // triangle on the left; e ^ 1 is the other one. Those of segment s are 2 s, in its direction, and 2 s + 1.
@@ -65,6 +67,7 @@ class Inside {
     statistics.duplicates = n - vertex_count_;
     statistics.hull_vertices = result.hull.size();
     statistics.undecided = undecided_;
+    statistics.device_bytes_peak = bytes();
     return true;
   }
 
@@ -98,6 +101,15 @@ class Inside {
   static T* sized(std::vector<T>& array, std::size_t size) {
     if (array.size() < size) array.resize(size);
     return array.data();
+  }
+
+  std::size_t bytes() const {
+    const auto sum = [](const auto&... arrays) {
+      return (... + (arrays.capacity() * sizeof(*arrays.data())));
+    };
+    return sum(all_points, given, all_leaving, all_source, all_leaf, all_vertex_of, given_source, all_open,
+               all_places, all_rows, all_triangles, all_neighbors, all_constrained, ranks, axes, all_corners,
+               all_crossed, all_nodes, all_edges);
   }
 
   // The half-edges that leave each point. Returns false if these are not two everywhere, which takes no time
