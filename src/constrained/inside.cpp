@@ -48,11 +48,18 @@ class Inside {
     reserve(n);
     result.triangle_offsets.assign(1, 0);
     result.hull_offsets.assign(1, 0);
+    // One stage after the other takes less than one set after the other.
+    sets_.clear();
     for (std::size_t s = 0; s < sets; ++s) {
       const int begin = static_cast<int>(offsets[s]), end_of_points = static_cast<int>(offsets[s + 1]);
-      const int end = order(coordinates, begin, end_of_points, kernel::scale_of(scalings.shift(s)));
-      if (!link(begin, end_of_points, end) || !sweep(begin, end)) return false;
-      vertex_count_ += static_cast<std::size_t>(end - begin);
+      sets_.push_back(order(coordinates, begin, end_of_points, kernel::scale_of(scalings.shift(s))));
+      if (!link(begin, end_of_points, sets_.back().end)) return false;
+      vertex_count_ += static_cast<std::size_t>(sets_.back().end - begin);
+    }
+    for (std::size_t s = 0; s < sets; ++s) {
+      const int begin = static_cast<int>(offsets[s]), end = sets_[s].end;
+      errors_ = sets_[s].errors;
+      if (!sweep(begin, end)) return false;
       write_rows(begin, end, request.neighbors);
       write_hull();
     }
@@ -77,6 +84,11 @@ class Inside {
   // The ends of segments at a vertex: half-edges that leave it, and the vertices at which these arrive.
   struct Corner {
     int edges[2], others[2], count;
+  };
+  // The end of a set's vertices, and what predicates of them err by at most.
+  struct Set {
+    int end;
+    kernel::largest_errors errors;
   };
   struct HalfEdge {
     int to, next;  // next: within the triangle; none if that is not made, or if there is none
@@ -147,8 +159,8 @@ class Inside {
     vertex_count_ = 0;
   }
 
-  // Orders the points of a set. Returns the end of its vertices.
-  int order(const double* coordinates, int begin, int end, kernel::scaling scale) {
+  // Orders the points of a set.
+  Set order(const double* coordinates, int begin, int end, kernel::scaling scale) {
     double lowest = 0, highest = 0;
     for (int i = begin; i < end; ++i) {
       const kernel::double2 p = kernel::scaled_point(i, coordinates, scale);
@@ -166,8 +178,7 @@ class Inside {
       leaf_[begin + kernel::own_rank(scratch.by_x[k])] = k;
     }
     const double width = distinct > 0 ? points_[begin + distinct - 1].x - points_[begin].x : 0;
-    errors_ = kernel::errors_within(std::max(width, highest - lowest), bounds_);
-    return begin + distinct;
+    return {begin + distinct, kernel::errors_within(std::max(width, highest - lowest), bounds_)};
   }
 
   // Finds the corners of curves at the vertices of a set. Returns false if there is not one at each.
@@ -535,7 +546,8 @@ class Inside {
   kernel::filter_bounds bounds_{};
   std::size_t undecided_ = 0, vertex_count_ = 0;
   std::int64_t steps_left_ = 0;
-  kernel::largest_errors errors_{};  // of predicates of a set's vertices
+  std::vector<Set> sets_;
+  kernel::largest_errors errors_{};  // of the set that is being swept
   std::vector<int> lower_, upper_;   // what the sweep has of the hull
 
   // Arrays, and what they are for this call.
