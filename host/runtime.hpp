@@ -232,6 +232,12 @@ class Runtime {
     }
     values.resize(size);
   }
+  /// Makes room for a vector that will be so long, as resize does for one that is.
+  template <typename T>
+  void reserve(std::vector<T>& values, std::size_t size) {
+    values.reserve(size);
+    touch_new(values.data() + values.size(), (size - values.size()) * sizeof(T));
+  }
   /// Returns a buffer in which kernels write results for `values`. On a device that works in host memory it
   /// is the vector's own memory, otherwise it comes from the arena. Call fetch_later after the kernels.
   template <typename T>

@@ -16,6 +16,7 @@
 #include "call/triangulate.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
+#include "constrained/inside.hpp"
 #include "constrained/small.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
@@ -96,10 +97,6 @@ std::optional<ConstrainedTriangulation> constrain_small(
   const statistics::Phases phases(options);
   phases.progress("triangulate", 0);
   double begin = host::now();
-  std::optional<ConstrainedTriangulation> result(std::in_place);
-  const auto rings = blocks::small_rings(coordinates, offsets, *result);
-  if (!rings) return {};
-  end_phase("triangulate", std::exchange(begin, host::now()), result->statistics);
   constrained::SmallRequest wanted{request.rules};
   wanted.has_depths = request.needs_depths();
   wanted.labels = request.labels;
@@ -107,7 +104,13 @@ std::optional<ConstrainedTriangulation> constrain_small(
   wanted.most_steps = self.host_tuning().segment_steps;
   if (wanted.has_depths) wanted.curves = request.curves;
   if (leaves_holes) wanted.with_holes = coordinates;
-  if (!constrained::constrain_small(*rings, offsets, constraints, wanted, *result)) return {};
+  std::optional<ConstrainedTriangulation> result(std::in_place);
+  if (!constrained::triangulate_inside(coordinates, offsets, constraints, wanted, *result)) {
+    const auto rings = blocks::small_rings(coordinates, offsets, result.emplace());
+    if (!rings) return {};
+    end_phase("triangulate", std::exchange(begin, host::now()), result->statistics);
+    if (!constrained::constrain_small(*rings, offsets, constraints, wanted, *result)) return {};
+  }
   result->statistics.device = host::kHostName;
   end_phase("constrain", begin, result->statistics);
   phases.progress("output", 1);

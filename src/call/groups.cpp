@@ -8,32 +8,46 @@
 namespace flaunay::call {
 namespace {
 
-// Joins arrays of parts, all threads one part each.
+// Adds arrays of parts, all threads one part each.
 template <typename Result>
 class Joining {
  public:
-  Joining(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Result>& parts)
-      : runtime_(runtime), groups_(groups), parts_(parts) {}
+  Joining(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Result>& parts,
+          Joined<Result>& joined)
+      : result(joined.result),
+        runtime_(runtime),
+        group_(&groups[joined.groups]),
+        parts_(parts),
+        is_first_(joined.groups == 0),
+        times_as_many_(static_cast<double>(groups.size()) /
+                       static_cast<double>(joined.groups + parts.size())) {
+    joined.groups += parts.size();
+  }
 
-  // How many rows the parts before each one have.
+  // How many rows are before those of each part. first: how many there are already.
   template <typename Count>
-  std::vector<std::size_t> before(const Count& count) const {
-    std::vector<std::size_t> sums(parts_.size() + 1, 0);
+  std::vector<std::size_t> before(std::size_t first, const Count& count) const {
+    std::vector<std::size_t> sums(parts_.size() + 1, first);
     for (std::size_t k = 0; k < parts_.size(); ++k) sums[k + 1] = sums[k] + count(parts_[k]);
     return sums;
   }
   template <typename T, typename Base>
   std::vector<std::size_t> before(std::vector<T> Base::*array, std::size_t columns) const {
-    return before([&](const Result& part) { return (part.*array).size() / columns; });
+    return before((result.*array).size() / columns,
+                  [&](const Result& part) { return (part.*array).size() / columns; });
   }
 
   // change(values, i, k): what becomes of value i of part k.
   template <typename T, typename Base, typename Change>
   void array(std::vector<T> Base::*array, const Change& change) {
-    const std::vector<std::size_t> first = before([&](const Base& part) { return (part.*array).size(); });
-    if (first.back() == 0) return;
+    const std::vector<std::size_t> first = before(array, 1);
     std::vector<T>& all = result.*array;
-    runtime_.resize(all, first.back());
+    if (first.back() == all.size()) return;
+    // A little more than all parts will have, if they are like these.
+    if (first.back() > all.capacity())
+      runtime_.reserve(all,
+                       static_cast<std::size_t>(1.02 * times_as_many_ * static_cast<double>(first.back())));
+    all.resize(first.back());
     runtime_.share(parts_.size(), [&](std::size_t k) {
       std::vector<T> from = std::move(parts_[k].*array);
       T* const to = all.data() + first[k];
@@ -55,7 +69,7 @@ class Joining {
   template <typename T, typename Base>
   void offsets(std::vector<T> Base::*values) {
     std::vector<T>& all = result.*values;
-    all.assign(1, 0);
+    if (is_first_) all.assign(1, 0);
     for (const Result& part : parts_) {
       const std::vector<T>& own = part.*values;
       const T base = all.back();
@@ -67,7 +81,7 @@ class Joining {
   std::vector<std::size_t> triangulation() {
     const std::vector<std::size_t> triangles = before(&Triangulation::triangles, 3);
     std::vector<std::size_t> points, corners;
-    for (const Group& group : groups_) points.push_back(group.first_point);
+    for (std::size_t k = 0; k < parts_.size(); ++k) points.push_back(group_[k].first_point);
     for (const std::size_t t : triangles) corners.push_back(3 * t);
     indices(&Triangulation::triangles, points);
     indices(&Triangulation::neighbors, triangles);
@@ -81,12 +95,13 @@ class Joining {
     return triangles;
   }
 
-  Result result;
+  Result& result;
 
  private:
   void statistics() {
     Statistics& all = result.statistics;
     all.device = parts_[0].statistics.device;
+    const std::size_t workers = std::min(runtime_.threads(), parts_.size());
     for (const Result& part : parts_) {
       const Statistics& own = part.statistics;
       all.points += own.points;
@@ -94,14 +109,15 @@ class Joining {
       all.triangles += own.triangles;
       all.hull_vertices += own.hull_vertices;
       all.undecided += own.undecided;
-      all.device_bytes_peak = std::max(all.device_bytes_peak, own.device_bytes_peak);
+      all.device_bytes_peak = std::max(all.device_bytes_peak, workers * own.device_bytes_peak);
     }
-    all.device_bytes_peak *= std::min(runtime_.threads(), parts_.size());
   }
 
   host::Runtime& runtime_;
-  const std::vector<Group>& groups_;
+  const Group* group_;  // of the first part
   std::vector<Result>& parts_;
+  bool is_first_;
+  double times_as_many_;  // rows of all groups as of those that are joined with these parts
 };
 
 }  // namespace
@@ -121,25 +137,24 @@ std::vector<Group> groups_of(const Engine& engine, const std::vector<std::size_t
   return groups.size() > 1 ? groups : std::vector<Group>();
 }
 
-Triangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
-                   std::vector<Triangulation>& parts) {
-  Joining<Triangulation> joining(runtime, groups, parts);
-  joining.triangulation();
-  return std::move(joining.result);
+void join(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Triangulation>& parts,
+          Joined<Triangulation>& joined) {
+  Joining<Triangulation>(runtime, groups, parts, joined).triangulation();
 }
 
-ConstrainedTriangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
-                              std::vector<ConstrainedTriangulation>& parts) {
+void join(host::Runtime& runtime, const std::vector<Group>& groups,
+          std::vector<ConstrainedTriangulation>& parts, Joined<ConstrainedTriangulation>& joined) {
   using Part = ConstrainedTriangulation;
-  Joining<Part> joining(runtime, groups, parts);
+  std::vector<std::size_t> points;
+  for (std::size_t k = 0; k < parts.size(); ++k) points.push_back(groups[joined.groups + k].first_point);
+  Joining<Part> joining(runtime, groups, parts, joined);
   const std::vector<std::size_t> segments = joining.before(&Part::piece_edges, 2),
                                  edges = joining.before(&Part::constraint_edges, 2);
-  const auto regions = joining.before([](const Part& part) {
+  const auto regions = joining.before(joined.regions, [](const Part& part) {
     return part.regions.empty() ? 0 : *std::max_element(part.regions.begin(), part.regions.end()) + 1;
   });
+  joined.regions = regions.back();
   joining.triangulation();
-  std::vector<std::size_t> points;
-  for (const Group& group : groups) points.push_back(group.first_point);
   joining.indices(&Part::constraint_edges, points);
   joining.indices(&Part::edge_segments, segments);
   joining.array(&Part::constrained);
@@ -153,7 +168,6 @@ ConstrainedTriangulation join(host::Runtime& runtime, const std::vector<Group>& 
   });
   joining.offsets(&Part::piece_offsets);
   joining.offsets(&Part::added_offsets);
-  return std::move(joining.result);
 }
 
 }  // namespace flaunay::call

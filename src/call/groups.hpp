@@ -2,8 +2,10 @@
 // last, while all that it needs is in that core's cache.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "call/implementation.hpp"
@@ -23,35 +25,54 @@ struct Group {
 /// is a device.
 std::vector<Group> groups_of(const Engine& engine, const std::vector<std::size_t>& offsets);
 
-/// The sets of all groups together. Takes the memory of the parts.
-Triangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
-                   std::vector<Triangulation>& parts);
+/// The sets of the first groups together.
+template <typename Result>
+struct Joined {
+  Result result;
+  std::size_t groups = 0;   ///< how many
+  std::size_t regions = 0;  ///< how many these have, if they have labels
+};
+
+/// Adds the parts of the next groups. Takes their memory.
+void join(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Triangulation>& parts,
+          Joined<Triangulation>& joined);
 /// parts: without added points, each segment is one piece.
-ConstrainedTriangulation join(host::Runtime& runtime, const std::vector<Group>& groups,
-                              std::vector<ConstrainedTriangulation>& parts);
+void join(host::Runtime& runtime, const std::vector<Group>& groups,
+          std::vector<ConstrainedTriangulation>& parts, Joined<ConstrainedTriangulation>& joined);
 
 /// Joins work(group k) of all groups, which must use no runtime but that of its thread. Returns nothing if
 /// one ends by an exception: the sets together tell which error is the first one.
 template <typename Result, typename Work>
 std::optional<Result> by_groups(Engine& engine, const std::vector<Group>& groups, const Options& options,
                                 const Work& work) {
+  // So many are joined while they are in caches, and the next ones get their memory.
+  constexpr std::size_t kGroupsOfAThread = 32;
   const statistics::Phases phases(options);
   phases.progress("triangulate", 0);
-  const double begin = host::now();
-  std::vector<Result> parts(groups.size());
-  try {
-    engine.runtime.share(groups.size(), [&](std::size_t k) { parts[k] = work(k); });
-  } catch (const Error&) {
-    return {};
+  double computing = 0, joining = 0, begin = host::now();
+  Joined<Result> joined;
+  std::vector<Result> parts;
+  while (joined.groups < groups.size()) {
+    const std::size_t first = joined.groups;
+    parts.clear();
+    parts.resize(std::min(groups.size() - first, kGroupsOfAThread * engine.runtime.threads()));
+    try {
+      engine.runtime.share(parts.size(), [&](std::size_t k) { parts[k] = work(first + k); });
+    } catch (const Error&) {
+      return {};
+    }
+    const double computed = host::now();
+    join(engine.runtime, groups, parts, joined);
+    computing += computed - std::exchange(begin, host::now());
+    joining += begin - computed;
+    phases.progress("triangulate",
+                    0.9 * static_cast<double>(joined.groups) / static_cast<double>(groups.size()));
   }
-  phases.progress("output", 0.9);
-  const double computed = host::now();
-  Result result = join(engine.runtime, groups, parts);
-  const double end = host::now();
-  result.statistics.seconds = end - begin;
-  result.statistics.phases = {{"triangulate", computed - begin}, {"output", end - computed}};
+  Statistics& statistics = joined.result.statistics;
+  statistics.seconds = computing + joining;
+  statistics.phases = {{"triangulate", computing}, {"output", joining}};
   phases.progress("output", 1);
-  return result;
+  return std::move(joined.result);
 }
 
 }  // namespace flaunay::call

@@ -39,7 +39,6 @@ class Small {
     if (!insert_all() || (is_counted && !are_closed())) return false;
     number_edges();
     visit_all();
-    sort_changed();
     holes_.clear();
     if (request.with_holes != nullptr && !find_holes()) return false;
     leave();
@@ -71,12 +70,8 @@ class Small {
     std::int32_t edge, region;
   };
 
-  // Of both directions of an edge: whether it is a constraint, and whether it is no edge without segments.
-  enum Flag : kernel::uchar { kConstraint = 1, kNew = 2 };
-
-  kernel::uchar& flags(int e) { return flags_[static_cast<std::size_t>(e >> 1)]; }
+  kernel::uchar& is_constraint(int e) { return is_constraint_[static_cast<std::size_t>(e >> 1)]; }
   Pair& pair(int e) { return pairs_[static_cast<std::size_t>(e >> 1)]; }
-  bool is_constraint(int e) { return (flags(e) & kConstraint) != 0; }
   int origin(int e) const { return edges_[e ^ 1].to; }
   std::int32_t id_at(int vertex) const { return rings_.source[vertex]; }
   int precedes(int v, int w) const { return kernel::precedes(rings_.points[v], rings_.points[w], 0); }
@@ -97,8 +92,8 @@ class Small {
   bool insert_all() {
     const std::size_t n = rings_.vertices, count = constraints_->segment_count;
     steps_left_ = static_cast<std::int64_t>(request_->most_steps * (n + count));
-    flags_.assign(kernel::PAIRS_PER_VERTEX * n, 0);
-    if (pairs_.size() < flags_.size()) pairs_.resize(flags_.size());
+    is_constraint_.assign(kernel::PAIRS_PER_VERTEX * n, 0);
+    if (pairs_.size() < is_constraint_.size()) pairs_.resize(is_constraint_.size());
     vertex_of_.resize(n);
     lows_.clear();
     covers_.clear();
@@ -160,7 +155,7 @@ class Small {
     Pair& covered = pair(low);
     if (!is_constraint(low)) {
       covered = {.segment = s};
-      flags(low) |= kConstraint;
+      is_constraint(low) = 1;
       lows_.push_back({id_at(origin(low)), id_at(edges_[low].to), low});
     }
     const int along = is_backward ? low ^ 1 : low;
@@ -235,7 +230,6 @@ class Small {
     const int e = kernel::make_edge(&g, origin(behind), origin(before));
     kernel::insert_before(&g, e, behind);
     kernel::insert_after(&g, e ^ 1, before);
-    flags(e) = kNew;
     return e;
   }
 
@@ -323,7 +317,6 @@ class Small {
     faces_.resize(rows);
     open_.resize(3 * rows + 1);
     regions_.clear();
-    changed_.clear();
     for (std::size_t set = 0; set + 1 < offsets_->size(); ++set) {
       if (result_->triangle_offsets[set] == result_->triangle_offsets[set + 1]) continue;
       const std::size_t hull = result_->hull_offsets[set];
@@ -342,11 +335,6 @@ class Small {
 
   // A visited edge has the complement of its triangle's row in place of `previous`.
   bool is_visited(int e) const { return edges_[e].previous < 0; }
-  void put_row(int e, std::int32_t row) {
-    const auto [second, third] = after(e);
-    edges_[e].previous = edges_[second].previous = edges_[third].previous = ~row;
-  }
-
   void enter(Face entry) {
     if (is_visited(entry.edge)) return;
     Region region{entry.region, 0, 0, entry.edge};
@@ -370,7 +358,7 @@ class Small {
     kernel::ring_edge* const edges = edges_;
     const auto* const points = rings_.points;
     const auto* const first_rows = rings_.first_rows;
-    const auto* const all_flags = flags_.data();
+    const auto* const is_constraint = is_constraint_.data();
     Face* const faces = faces_.data();
     const auto region = static_cast<std::int32_t>(regions_.size()) - 1;
     int* const open = open_.data();
@@ -397,40 +385,17 @@ class Small {
       const std::int32_t row = static_cast<std::int32_t>(begin) + is_second;
       faces[row] = {e, region};
       edges[e].previous = ~row;
-      kernel::uchar any_flags = all_flags[e >> 1];
       // Beyond the first side it is visited, or outside.
       for (const int side : {second, third}) {
         edges[side].previous = ~row;
-        const kernel::uchar of_side = all_flags[side >> 1];
         const int twin = side ^ 1;
-        any_flags |= of_side;
         if ((edges[twin].next | edges[twin].previous) < 0) continue;
-        if ((of_side & kConstraint) != 0) {
+        if (is_constraint[side >> 1] != 0) {
           entries_.push_back({twin, region});
         } else {
           *top++ = twin;
         }
       }
-      if ((any_flags & kNew) != 0) changed_.push_back(row);
-    }
-  }
-
-  // Rows that are none without segments are in the order of their corners.
-  void sort_changed() {
-    std::sort(changed_.begin(), changed_.end());
-    moved_.clear();
-    for (const std::int32_t row : changed_) {
-      const auto [edge, region] = faces_[row];
-      const auto [second, third] = after(edge);
-      const std::int32_t v = id_at(origin(edge)), a = id_at(edges_[edge].to), b = id_at(edges_[second].to);
-      const auto key = v < a && v < b ? std::pair(v, a) : a < b ? std::pair(a, b) : std::pair(b, v);
-      moved_.emplace_back(key, faces_[row]);
-    }
-    std::sort(moved_.begin(), moved_.end(),
-              [](const auto& one, const auto& other) { return one.first < other.first; });
-    for (std::size_t i = 0; i < moved_.size(); ++i) {
-      faces_[changed_[i]] = moved_[i].second;
-      put_row(moved_[i].second.edge, changed_[i]);
     }
   }
 
@@ -528,7 +493,7 @@ class Small {
     if (request_->neighbors) result_->neighbors.resize(corners);
     const kernel::ring_edge* const edges = edges_;
     const auto* const source = rings_.source;
-    const auto* const all_flags = flags_.data();
+    const auto* const is_constraint = is_constraint_.data();
     const auto* const numbers = rows_.data();
     auto* const triangles = result_->triangles.data();
     auto* const constrained = result_->constrained.data();
@@ -541,7 +506,7 @@ class Small {
       const kernel::row_places at = kernel::places_in_row(v, a, b);
       const auto write = [&](std::int32_t corner, std::int32_t id, int opposite) {
         triangles[corner] = id;
-        constrained[corner] = all_flags[opposite >> 1] & kConstraint;
+        constrained[corner] = is_constraint[opposite >> 1];
         if (neighbors == nullptr) return;
         const kernel::ring_edge twin = edges[opposite ^ 1];
         neighbors[corner] = twin.next < 0 ? -1 : numbers[~twin.previous];
@@ -562,7 +527,7 @@ class Small {
 
   std::int32_t backward_weight_ = 1;  // of segments in the direction of the second half of a pair
   std::int64_t steps_left_ = 0;
-  std::vector<kernel::uchar> flags_;
+  std::vector<kernel::uchar> is_constraint_;  // by pair of edges
   std::vector<Pair> pairs_;
   Ids vertex_of_;  // by point, if that is its own representative
   std::vector<Low> lows_, sorted_;
@@ -574,8 +539,7 @@ class Small {
   std::vector<Face> faces_;  // by row
   std::vector<Face> entries_;
   std::vector<Region> regions_;
-  Ids open_, changed_, holes_;
-  std::vector<std::pair<std::pair<std::int32_t, std::int32_t>, Face>> moved_;
+  Ids open_, holes_;
   Ids rows_;  // by row its number if it is left
 };
 

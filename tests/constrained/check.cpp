@@ -163,19 +163,15 @@ void expect_canonical(const Coordinates& points, const Triangulation& delaunay,
   }
   EXPECT_EQ(std::count(is_missing.begin(), is_missing.end(), true), 0) << "constraints are no edges";
   EXPECT_EQ(find_no_fan(points, result, result.constrained), -1);
-  // Rows that are not among the Delaunay triangles take the places of those that are not among the result.
-  std::vector<Row> rows;
-  for (std::size_t t = 0; t < triangles.size() / 3; ++t) rows.push_back(row_of(result, t));
-  const std::vector<Row> in_order = sorted(rows);
-  Row last{-1, -1, -1};
-  for (std::size_t t = 0; t < rows.size(); ++t) {
-    const Row &row = rows[t], was = row_of(delaunay, t);
-    if (std::binary_search(in_order.begin(), in_order.end(), was)) {
-      EXPECT_EQ(row, was);
-    } else {
-      EXPECT_LT(last, row);
-      last = row;
-    }
+  // Each row has the triangle above or below the middle vertex, along x, of the Delaunay triangle there.
+  const auto at = [&](std::int32_t v) { return std::pair(points[2 * v], points[2 * v + 1]); };
+  const auto precedes = [&](std::int32_t v, std::int32_t w) { return at(v) < at(w); };
+  const auto place = [&](Row row) {
+    while (precedes(row[0], row[1]) != precedes(row[1], row[2])) std::rotate(&row[0], &row[1], row.end());
+    return std::pair(row[1], precedes(row[1], row[2]));
+  };
+  for (std::size_t t = 0; t < triangles.size() / 3; ++t) {
+    EXPECT_EQ(place(row_of(result, t)), place(row_of(delaunay, t))) << "row " << t;
   }
 }
 

@@ -2,6 +2,7 @@
 // computes segment by segment: the same bytes as of all sets together and of passes over all segments.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "blocks/small.hpp"
+#include "constrained/inside.hpp"
 #include "constrained/small.hpp"
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/nasty.hpp"
@@ -21,7 +23,8 @@ namespace flaunay::testing {
 namespace {
 
 Triangulator host(const char* tuning) {
-  const ScopedEnvironment scope("FLAUNAY_TUNING", tuning);
+  // So that not all groups are joined at once.
+  const ScopedEnvironment scope("FLAUNAY_TUNING", tuning), threads("FLAUNAY_THREADS", "2");
   return Triangulator("host");
 }
 
@@ -377,6 +380,57 @@ TEST(SmallSets, OfHoles) {
     }
   }
   EXPECT_GT(right, 50);
+}
+
+// A ring about a place, whose corners it sees, or a band that is wound around it.
+void add_curve(SegmentInput& input, double x, double y, double radius, bool is_wound, double grid,
+               FixtureRandom& random) {
+  const auto n = static_cast<int>(random.integer(4, 24)), half = n / 2;
+  const auto first = static_cast<std::int32_t>(input.points.size() / 2);
+  const double varies = random.unit(), turn = 2 * std::acos(-1);
+  for (int k = 0; k < n; ++k) {
+    const int along = k < half ? k : n - 1 - k;
+    const double angle = is_wound ? 3 * turn * along / half : turn * k / n;
+    const double at = is_wound ? (k < half ? 0.2 : 0.25) + 0.7 * along / half : 1 - varies * random.unit();
+    for (const double to : {x + radius * at * std::cos(angle), y + radius * at * std::sin(angle)})
+      input.points.push_back(grid > 0 ? std::round(to * grid) : to);
+  }
+  const bool is_turned = random.integer(0, 1) == 0;
+  for (int k = 0; k < n; ++k) {
+    const int from = is_turned ? n - 1 - k : k, to = is_turned ? (from + n - 1) % n : (k + 1) % n;
+    input.segments.insert(input.segments.end(), {first + from, first + to});
+  }
+}
+
+// Curves in each other and side by side; on grids, many points are on lines and circles, curves have corners
+// twice, touch and cross.
+TEST(SmallSets, InsideOfCurves) {
+  HereAndTogether by;
+  int inside = 0, others = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    FixtureRandom random(seed);
+    const double grid = seed % 3 == 0 ? 0 : static_cast<double>(random.integer(1, 40));
+    SegmentInput input;
+    for (int k = 0; k <= static_cast<int>(seed % 5); ++k) {
+      add_curve(input, k / 3 * 2.5, 0, std::pow(0.4, k % 3), seed % 7 == 0 && k % 3 == 2 - k / 3, grid,
+                random);
+    }
+    by.compare_all(input);
+    by.compare_all(duplicated(input, seed));
+    Constraints constraints;
+    constraints.segments = input.segments.data();
+    constraints.segment_count = input.segments.size() / 2;
+    constrained::SmallRequest request{{FillRule::even_odd, Outside::holes}};
+    request.most_steps = native_tuning()->segment_steps;
+    ConstrainedTriangulation result;
+    ++(constrained::triangulate_inside(input.points.data(), {0, input.points.size() / 2}, constraints,
+                                       request, result)
+           ? inside
+           : others);
+  }
+  EXPECT_GT(inside, 12);
+  EXPECT_GT(others, 4);
 }
 
 // Rings along the triangles of a grid's triangulation, as borders, holes and parts in any order.

@@ -98,7 +98,7 @@ class Insertion {
                {std::min(kMostPieces, tuning.pieces_most * (n_ + segment_count_)),
                 std::min(kMostRows, tuning.walked_most * (rows_ + segment_count_))},
                result_.piece_edges, provide);
-    sort_rows();
+    order_rows();
     runtime_.map(rows_, kernels::write_constrained{.flags = flags_, .constrained = result_.constrained});
     write_halfedges();
   }
@@ -225,9 +225,9 @@ class Insertion {
   }
 
   void copy_rows() {
-    if (result_.triangles.memory() != delaunay_.triangles.memory()) {
-      runtime_.copy(delaunay_.triangles, 0, result_.triangles, 0, 3 * rows_);
-    }
+    const bool is_in_place = result_.triangles.memory() == delaunay_.triangles.memory();
+    before_ = is_in_place ? arena_.allocate<cl_int>(3 * rows_) : delaunay_.triangles;
+    runtime_.copy(delaunay_.triangles, 0, is_in_place ? before_ : result_.triangles, 0, 3 * rows_);
     if (result_.neighbors.memory() != delaunay_.neighbors.memory()) {
       runtime_.copy(delaunay_.neighbors, 0, result_.neighbors, 0, 3 * rows_);
     }
@@ -618,22 +618,21 @@ class Insertion {
                                                              .segment_edges = ranges});
   }
 
-  void sort_rows() {
+  void order_rows() {
     Arena::Scope scope(arena_);
     const auto [changed, count] = host::pack_positions(runtime_, changed_, rows_, 1);
     if (count == 0) return;
-    const auto keys = arena_.allocate<cl_ulong>(count);
-    const auto sorted = arena_.allocate<cl_int>(count);
-    runtime_.map(
-        count,
-        kernels::row_keys{.rows = changed, .triangles = result_.triangles, .keys = keys, .payloads = sorted});
-    host::sort_by_key(runtime_, keys, sorted, count);
+    const auto row_at = arena_.allocate<cl_int>(2 * n_);
+    runtime_.map(count,
+                 kernels::note_rows{
+                     .rows = changed, .triangles = before_, .points = points_.coordinates, .row_at = row_at});
     const auto triangles = arena_.allocate<cl_int>(3 * count);
     const auto neighbors = arena_.allocate<cl_uint>(3 * count);
     const auto flags = arena_.allocate<cl_uchar>(count);
     // Claims are not needed any more.
     runtime_.map(count, kernels::take_rows{.rows = changed,
-                                           .sorted = sorted,
+                                           .row_at = row_at,
+                                           .points = points_.coordinates,
                                            .triangles = result_.triangles,
                                            .neighbors = result_.neighbors,
                                            .flags = flags_,
@@ -667,6 +666,7 @@ class Insertion {
   const ConstrainedBuffers& result_;
   std::size_t n_, rows_;
 
+  Buffer<cl_int> before_{};  // the Delaunay triangles
   Buffer<cl_uint> status_{};
   cl_uint last_status_[kernel::INSERTION_NUMBERS] = {};
   Buffer<cl_uint> marks_{};       // a bit per vertex: whether it is an end of a constraint

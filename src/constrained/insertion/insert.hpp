@@ -18,7 +18,8 @@ using host::Buffer;
 /// Where results go.
 struct ConstrainedBuffers {
   /// Those of the Delaunay triangulation, which are then changed, or others. Rows that no segment crosses
-  /// stay at their places; the other places have the new triangles in ascending order.
+  /// stay at their places; a new triangle has the place of the Delaunay triangle that is in the same place at
+  /// the same middle vertex.
   Buffer<cl_int> triangles{}, neighbors{};
   Buffer<cl_int> halfedges{};  ///< may be null
   // As in ConstrainedTriangulation. Each segment is one piece.
