@@ -223,5 +223,18 @@ TEST(ResultProof, AcceptsPolygonsAndMaps) {
   }
 }
 
+// A triangle that is too large by less than a rounding was waited for at a level of areas, without end.
+TEST(ResultProof, AcceptsAreasThatAreNearlyRight) {
+  const Coordinates points = {5, 3, 4, 5, 2, 3, 1, 5, 0, 4};
+  Polygons polygons;
+  polygons.coordinates = points.data();
+  polygons.ring_offsets = {0, 5};
+  polygons.polygon_offsets = {0, 1};
+  PolygonOptions options;
+  options.crossings = Crossings::split;
+  options.refinement.max_area = 1;
+  EXPECT_EQ(verify(polygons, options, triangulator().polygons(polygons, options)), "");
+}
+
 }  // namespace
 }  // namespace flaunay

@@ -695,7 +695,10 @@ class Refining {
       phase.most =
           static_cast<int>(std::min({kMostPerTriangle * block, left / blocks.count, kMostTriangles}));
       const std::size_t inserted = run_blocks(phase, blocks, blocks.cuts.as<cl_double>());
-      if (is_whole && inserted == 0 && levels.current == 0) return;
+      if (is_whole && inserted == 0) {
+        if (levels.current == 0) return;
+        levels.at_first = std::numeric_limits<std::size_t>::max();  // on to the next level
+      }
       if (static_cast<double>(inserted) < kLeastProgress * static_cast<double>(count))
         block = std::min(2 * block, kMostTriangles);
       is_first = false;
