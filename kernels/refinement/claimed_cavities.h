@@ -80,8 +80,8 @@ static inline void write_star_row(GLOBAL mesh_row* row, int vertex, star_side si
   row->neighbor[1] = after;
   row->neighbor[2] = before;
   row->edge[0] = side.edge;
-  row->edge[1] = (to == a) | (to == b) ? edge : NO_EDGE_THERE;
-  row->edge[2] = (side.from == a) | (side.from == b) ? edge : NO_EDGE_THERE;
+  row->edge[1] = ((to == a) | (to == b)) ? edge : NO_EDGE_THERE;
+  row->edge[2] = ((side.from == a) | (side.from == b)) ? edge : NO_EDGE_THERE;
 }
 
 END_SHARED

@@ -173,13 +173,17 @@ constexpr const char* kMayBeNull[] = {"offsets",    "options", "enqueue", "const
                                       "distances",  "device",  "context", "contours",
                                       "breaklines", "arrays",  "files"};
 // Nothing is wrong with these here, or something else: there is no hidden point, no mode of the host, no
-// period.
+// period, no point in a mesh, and nothing refined.
 constexpr const char* kOther[] = {"flaunay_dynamic_rows(triangles)",
                                   "flaunay_dynamic_rows(neighbors)",
                                   "flaunay_weighted_hiding_triangles(triangles)",
                                   "flaunay_triangulate_on_host(n)",
                                   "flaunay_triangulate_on_host(coordinates)",
-                                  "flaunay_take_to_places(n)"};
+                                  "flaunay_take_to_places(n)",
+                                  "flaunay_mesh_verify(coordinates)",
+                                  "flaunay_mesh_verify_constrained(coordinates)",
+                                  "flaunay_mesh_verify_constrained(report)",
+                                  "flaunay_mesh_verify_polygons(report)"};
 
 template <std::size_t N>
 bool is_one_of(const char* const (&names)[N], const std::string& name) {
