@@ -684,15 +684,19 @@ def verify(points: _Doubles, offsets: Optional[_Offsets], arrays: dict[str, Any]
 
 
 def verify_constrained(
-    points: _Doubles, arrays: dict[str, Any], bad_triangles: Optional[_Indices], asked: dict[str, Any]
+    points: _Doubles,
+    arrays: dict[str, Any],
+    refined: Optional[tuple[int, _Indices]],
+    asked: dict[str, Any],
 ) -> None:
     """Checks a triangulation with constraints. points: with those that were added. arrays: as of `_mesh_of`.
 
-    bad_triangles: None if nothing was refined. asked: members of flaunay_constraints or flaunay_polygons, of
-    flaunay_refinement in its member `refinement`, and of points `offsets`.
+    refined: how many points refinement added, and the triangles that are worse. asked: members of
+    flaunay_constraints or flaunay_polygons, of flaunay_refinement in its member `refinement`, the number of `points`
+    that were given, and their `offsets`.
     """
-    added = int(arrays["added_offsets"][-1])
-    given, n = _as_doubles(points), len(points) - added
+    given, n = _as_doubles(points), asked["points"]
+    added = len(points) - n
     members = {name: _address_or_none(arrays.get(name)) for name in _CONSTRAINED}
     more = _declarations.ConstrainedArrays(
         **members | {"added_points": _address_or_none(given[n:])},
@@ -702,14 +706,15 @@ def verify_constrained(
         piece_count=len(arrays["piece_edges"]),
     )
     report = None
-    if bad_triangles is not None:
+    if refined is not None:
+        count, bad_triangles = refined
         report = _declarations.RefinementReport(
-            added_points=added,
+            added_points=count,
             bad_count=len(bad_triangles),
             bad_triangles=_address_or_none(bad_triangles),
         )
     refining = _Refinement(asked["refinement"])
-    rest = {name: value for name, value in asked.items() if name not in ("refinement", "offsets")}
+    rest = {name: value for name, value in asked.items() if name not in ("refinement", "offsets", "points")}
     wanted = _Refinement._members(rest) | {"refinement": refining.pointer}
     mesh = _mesh_of(arrays, len(points))
     if "ring_offsets" in rest:

@@ -233,7 +233,7 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
         _calls.verify_constrained(
             self.points,
             self._contiguous_arrays(),
-            None if report is None else np.ascontiguousarray(report.bad_triangles),
+            report and (report.added_points, np.ascontiguousarray(report.bad_triangles)),
             self.__dict__["_asked"],
         )
 
@@ -580,6 +580,7 @@ def arrays_of_constrained(
     holes, hole_offsets = places.get("hole", (None, None))
     asked: dict[str, Any] = {
         **rules,
+        "points": len(coordinates),
         "offsets": None if offsets is None else offsets.copy(),
         "segments": pairs.copy(),
         "segment_count": len(pairs),

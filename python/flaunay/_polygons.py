@@ -433,6 +433,7 @@ def polygons(
     asked = {
         **rules,
         **offsets,
+        "points": len(points),
         "ring_count": len(rings) - 1,
         "polygon_count": len(outer) - 1,
         "has_outside": 1,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "mesh/corners.hpp"
@@ -37,6 +38,7 @@ class DomainProof {
 
   void run() {
     check_flags();
+    check_edge_segments();
     for (std::size_t s = 0; s + 1 < offsets_.size(); ++s) {
       const std::string problem = problem_of(s);
       require(problem.empty(), "set {}: {}", s, problem);
@@ -53,7 +55,7 @@ class DomainProof {
     Ids segments;
     Rings rings;
     std::vector<double> holes;
-    Ids edges, segment_edges, edge_segments, depths, regions, worse;
+    Ids edges, segment_edges, depths, regions, worse;
   };
 
   std::size_t given() const { return offsets_.back(); }
@@ -94,6 +96,89 @@ class DomainProof {
     }
   }
 
+  /// Segments claim their edges in ascending order, and skip those that have been claimed.
+  void check_edge_segments() const {
+    const std::size_t edges = mesh_.edge_segments.size();
+    std::vector<std::size_t> next(edges + 1);
+    std::iota(next.begin(), next.end(), 0);
+    const auto unclaimed = [&](std::size_t e) {
+      while (next[e] != e) e = next[e] = next[next[e]];
+      return e;
+    };
+    for (std::size_t s = 0; s + 1 < mesh_.piece_offsets.size(); ++s) {
+      for (auto p = static_cast<std::size_t>(mesh_.piece_offsets[s]);
+           p < static_cast<std::size_t>(mesh_.piece_offsets[s + 1]); ++p) {
+        const auto end = static_cast<std::size_t>(mesh_.piece_edges[2 * p + 1]);
+        for (std::size_t e = unclaimed(static_cast<std::size_t>(mesh_.piece_edges[2 * p])); e < end;
+             e = unclaimed(e)) {
+          require(mesh_.edge_segments[e] == static_cast<std::int32_t>(s),
+                  "constraint edge {} is said to be a part of segment {} first, but it is one of segment {}",
+                  e, mesh_.edge_segments[e], s);
+          next[e] = e + 1;
+        }
+      }
+    }
+    require(unclaimed(0) == edges, "constraint edge {} is a part of no segment", unclaimed(0));
+  }
+
+  /// The hull is that of the points, with those on its edges; or where refinement has split these, the border
+  /// of the triangles, if all are there.
+  void check_hull(std::size_t s, const Part& part) const {
+    Ids hull;
+    for (std::size_t k = mesh_.hull_offsets[s]; k < mesh_.hull_offsets[s + 1]; ++k)
+      hull.push_back(number(s, mesh_.hull[k]));
+    if (mesh_.refinement.added_points == 0) {
+      require(hull == hull_of(part), "the hull is not that of the points");
+      return;
+    }
+    if (options_.outside != Outside::keep || !part.holes.empty() || options_.refinement.mesh.count > 0)
+      return;
+    const Ids beyond = neighbors_of(part.triangles, part.points.size() / 2);
+    Ids next(part.points.size() / 2, -1);
+    std::size_t open = 0;
+    for (std::size_t c = 0; c < beyond.size(); ++c) {
+      if (beyond[c] >= 0) continue;
+      const auto [from, to] = mesh::edge_opposite(part.triangles, c);
+      next[static_cast<std::size_t>(from)] = to;
+      ++open;
+    }
+    require(open == hull.size(), "the hull has {} points, but the border of the triangles has {}",
+            hull.size(), open);
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+      require(next[static_cast<std::size_t>(hull[k])] == hull[(k + 1) % hull.size()],
+              "the hull is not the border of the triangles at point {}", hull[k]);
+    }
+  }
+  /// Andrew's chains (1979), from the lexicographically smallest point on. Of a line, its points in their
+  /// order.
+  static Ids hull_of(const Part& part) {
+    const auto place = [&](std::int32_t v) { return &part.points[2 * static_cast<std::size_t>(v)]; };
+    Ids order;
+    for (std::int32_t v = 0; v < static_cast<std::int32_t>(part.representatives.size()); ++v) {
+      if (part.representatives[static_cast<std::size_t>(v)] == v) order.push_back(v);
+    }
+    std::sort(order.begin(), order.end(),
+              [&](std::int32_t a, std::int32_t b) { return comes_before(place(a), place(b)); });
+    ExactPredicates predicates;
+    const auto is_straight = [&](std::int32_t v) {
+      return predicates.orient2d(place(order.front()), place(order.back()), place(v)) == 0;
+    };
+    if (std::all_of(order.begin(), order.end(), is_straight)) return order;
+    Ids hull;
+    for (int side = 0; side < 2; ++side) {
+      Ids chain;
+      for (const std::int32_t v : order) {
+        while (chain.size() > 1 &&
+               predicates.orient2d(place(chain[chain.size() - 2]), place(chain.back()), place(v)) < 0)
+          chain.pop_back();
+        chain.push_back(v);
+      }
+      hull.insert(hull.end(), chain.begin(), chain.end() - 1);
+      std::reverse(order.begin(), order.end());
+    }
+    return hull;
+  }
+
   std::string problem_of(std::size_t s) {
     Part part;
     const auto copy = [&](std::size_t first, std::size_t last) {
@@ -112,12 +197,13 @@ class DomainProof {
           mesh_.neighbors[c] < 0 ? -1 : mesh_.neighbors[c] - static_cast<std::int32_t>(begin));
     }
     Representatives(part.points, part.representatives, part.triangles).run();
+    list_holes(s, part);
+    check_hull(s, part);
 
     VerifyConstraints asked;
     asked.outside = options_.outside;
     asked.fill_rule = options_.fill_rule;
-    std::vector<std::size_t> positions = list_segments(s, part);
-    list_holes(s, part);
+    const std::vector<std::size_t> positions = list_segments(s, part);
     if (options_.refinement.mesh.count > 0) {
       use_own_border(s, part);
       asked.outside = Outside::hull;
@@ -148,7 +234,6 @@ class DomainProof {
     if (!part.segment_edges.empty()) {
       asked.edges = &part.edges;
       asked.segment_edges = &part.segment_edges;
-      asked.edge_segments = &part.edge_segments;
     }
     ask_for_quality(begin, end, part, asked);
     return verify_constrained(part.points.data(), part.points.size() / 2, part.triangles,
@@ -211,10 +296,6 @@ class DomainProof {
     for (std::int32_t e = first_edge; e < end_edge; ++e) {
       for (std::int32_t k = 2 * e; k < 2 * e + 2; ++k)
         part.edges.push_back(number(s, mesh_.constraint_edges[k]));
-      const auto& of_set = segments_of_[s];
-      const auto claimed =
-          std::lower_bound(of_set.begin(), of_set.end(), static_cast<std::size_t>(mesh_.edge_segments[e]));
-      part.edge_segments.push_back(static_cast<std::int32_t>(claimed - of_set.begin()));
     }
     return positions;
   }

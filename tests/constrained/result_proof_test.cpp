@@ -122,9 +122,9 @@ TEST(ResultProof, FindsWhatIsWrongWithConstraints) {
   using Mesh = ConstrainedTriangulation;
   expect_each_number_to_count(
       asked.result(), [&](const Mesh& mesh) { return asked.problem_of(mesh); }, &Mesh::triangles,
-      &Mesh::neighbors, &Mesh::halfedges, &Mesh::representatives, &Mesh::areas, &Mesh::constraint_edges,
-      &Mesh::edge_segments, &Mesh::piece_edges, &Mesh::piece_offsets, &Mesh::depths, &Mesh::regions,
-      &Mesh::triangle_offsets);
+      &Mesh::neighbors, &Mesh::halfedges, &Mesh::hull, &Mesh::representatives, &Mesh::areas,
+      &Mesh::constraint_edges, &Mesh::edge_segments, &Mesh::piece_edges, &Mesh::piece_offsets, &Mesh::depths,
+      &Mesh::regions, &Mesh::triangle_offsets);
   const Mesh right = asked.result();
   for (std::size_t c = 0; c < right.constrained.size(); ++c) {
     EXPECT_NE(problem_after(

@@ -32,8 +32,9 @@ FLAUNAY_API std::string verify(const double* coordinates, const double* weights,
 /// triangles are there which constraints and options ask for, with depths, regions and other arrays that fit.
 /// Of a refined mesh it checks the smallest angle and the largest area, except of triangles that the result
 /// lists as worse, and whether it is conforming if it has none of these; areas by seeds, triangles and
-/// functions are not checked. A mesh that was refined from given triangles must cover as much as these.
-/// constraints, options: those of the call. Errors as above. O((n + s) log (n + s)) for s segments.
+/// functions are not checked, nor is the hull where triangles are left out. A mesh that was refined from
+/// given triangles must cover as much as these. constraints, options: those of the call. Errors as above.
+/// O((n + s) log (n + s)) for s segments.
 FLAUNAY_API std::string verify(const double* coordinates, const std::vector<std::size_t>& offsets,
                                const Constraints& constraints, const ConstrainedOptions& options,
                                const ConstrainedTriangulation& triangulation);
