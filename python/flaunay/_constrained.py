@@ -233,7 +233,9 @@ class ConstrainedTriangulation(Queries, ExportMethods, MapMethods, Triangulation
         _calls.verify_constrained(
             self.points,
             self._contiguous_arrays(),
-            report and (report.added_points, np.ascontiguousarray(report.bad_triangles)),
+            None
+            if report is None
+            else (report.added_points, np.ascontiguousarray(report.bad_triangles)),
             self.__dict__["_asked"],
         )
 
