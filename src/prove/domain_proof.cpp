@@ -127,6 +127,10 @@ class DomainProof {
     Ids hull;
     for (std::size_t k = mesh_.hull_offsets[s]; k < mesh_.hull_offsets[s + 1]; ++k)
       hull.push_back(number(s, mesh_.hull[k]));
+    const auto n = static_cast<std::int32_t>(part.representatives.size());
+    const bool is_here =
+        std::all_of(hull.begin(), hull.end(), [n](std::int32_t v) { return v >= 0 && v < n; });
+    require(is_here, "the hull has a point of another set");
     if (mesh_.refinement.added_points == 0) {
       require(hull == hull_of(part), "the hull is not that of the points");
       return;
@@ -283,8 +287,11 @@ class DomainProof {
       } else {
         for (std::size_t k = 1; k < chains[i].size(); ++k) add(chains[i][k - 1], chains[i][k]);
       }
+      const bool has_none = mesh_.piece_offsets[segment] == mesh_.piece_offsets[segment + 1];
+      constexpr std::int32_t kNoEdges[] = {0, 0};
       const std::int32_t* const range =
-          &mesh_.piece_edges[2 * static_cast<std::size_t>(mesh_.piece_offsets[segment])];
+          has_none ? kNoEdges
+                   : &mesh_.piece_edges[2 * static_cast<std::size_t>(mesh_.piece_offsets[segment])];
       part.segment_edges.insert(part.segment_edges.end(), {range[0], range[1]});
       if (range[0] == range[1]) continue;
       first_edge = std::min(first_edge, range[0]);
