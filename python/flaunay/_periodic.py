@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, Optional, Union, overload
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from flaunay._arrays import (
 from flaunay._cells import ClippedVoronoi
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
-from flaunay._queries import Kept, count_and_bound
+from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
 if TYPE_CHECKING:
@@ -166,72 +166,15 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         """
         return self._find(_as_queries(xi), _calls.SurfaceLocator.locate)
 
-    @overload
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: Literal[False] = False,
-    ) -> Indices: ...
-    @overload
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: Literal[True],
-    ) -> tuple[Doubles, Indices]: ...
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: bool = False,
-    ) -> Union[Indices, tuple[Doubles, Indices]]:
-        """The points that are nearest to others, exactly.
+    _as_queries = staticmethod(_as_queries)
 
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Any places of the plane.
-        k, distance_upper_bound, return_distances
-            As of `Delaunay.nearest`. Each point counts once, as it lies nearest.
-
-        Returns
-        -------
-        ndarray of int32, shape (...) or (..., k), or distances and these
-            Of several the first one in the order of x, then y, as they lie around the query's place; -1 if
-            there are no more points.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
-        >>> tri.nearest([[3.75, 3.75], [9, 10]])
-        array([0, 1], dtype=int32)
-        >>> tri.nearest([3.75, 3.75], k=2, return_distances=True)[1]
-        array([0, 2], dtype=int32)
-        """
-        queries = _as_queries(xi)
-        if k is None and distance_upper_bound is None and not return_distances:
-            return self._find(queries, _calls.SurfaceLocator.nearest)
-        count, most = count_and_bound(k, distance_upper_bound)
-        shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
+    def _nearest_points(
+        self, queries: Doubles, count: int, most: float
+    ) -> tuple[Indices, Doubles]:
         tree = self._kept_tree.get(
             lambda: _calls.PointTree.of_periodic(self._triangulator, self._handle)
         )
-        found, distances = tree.nearest(queries.reshape(-1, 2), count, most)
-        found = found.reshape(shape)
-        return (distances.reshape(shape), found) if return_distances else found
+        return tree.nearest(queries, count, most)
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
         """Values between points, by linear interpolation in triangles.

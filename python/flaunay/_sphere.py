@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from functools import cached_property
-from typing import Any, Literal, Optional, Union, overload
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, hint_for, summary
 from flaunay._errors import UsageError
-from flaunay._queries import Kept, count_and_bound
+from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
 
@@ -219,70 +219,14 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         """
         return self._find(_as_points(xi, "xi"), _calls.SurfaceLocator.locate)
 
-    @overload
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: Literal[False] = False,
-    ) -> Indices: ...
-    @overload
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: Literal[True],
-    ) -> tuple[Doubles, Indices]: ...
-    def nearest(
-        self,
-        xi: ArrayLike,
-        *,
-        k: Optional[int] = None,
-        distance_upper_bound: Optional[float] = None,
-        return_distances: bool = False,
-    ) -> Union[Indices, tuple[Doubles, Indices]]:
-        """The points that are nearest to others, exactly; of several the first one.
+    @staticmethod
+    def _as_queries(given: ArrayLike) -> Doubles:
+        return _as_points(given, "xi")
 
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2) or (..., 3)
-            Longitudes and latitudes in degrees, or x, y and z.
-        k, distance_upper_bound, return_distances
-            As of `Delaunay.nearest`. Distances are angles in radians.
-
-        Returns
-        -------
-        ndarray of int32, shape (...) or (..., k), or distances and these
-            Of several equally near the south pole, or else the one with the smallest place, x before y;
-            -1 if there are no more points.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.spherical([[179, 0], [-150, 0], [0, 90], [0, -90]])
-        >>> tri.nearest([[-175, 10], [60, 80]])
-        array([0, 2], dtype=int32)
-        >>> tri.nearest([-175, 10], k=2)
-        array([0, 1], dtype=int32)
-        """
-        queries = _as_points(xi, "xi")
-        if k is None and distance_upper_bound is None and not return_distances:
-            return self._find(queries, _calls.SurfaceLocator.nearest)
-        count, most = count_and_bound(k, distance_upper_bound)
-        shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
-        rows = queries.reshape(-1, queries.shape[-1])
-        found, distances = self._locator.nearest_points(rows, count, most)
-        found = found.reshape(shape)
-        return (distances.reshape(shape), found) if return_distances else found
+    def _nearest_points(
+        self, queries: Doubles, count: int, most: float
+    ) -> tuple[Indices, Doubles]:
+        return self._locator.nearest_points(queries, count, most)
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
         """Values between points, by linear interpolation in the triangles in space (Renka, 1984).

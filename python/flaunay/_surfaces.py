@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, ClassVar, Generic, TypeVar
+from typing import Any, Callable, ClassVar, Generic, Literal, Optional, TypeVar, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, summary
 from flaunay._errors import UsageError
-from flaunay._queries import Kept
+from flaunay._queries import Kept, count_and_bound
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -64,6 +64,88 @@ class WithLocator(OfPoints, Generic[Locator]):
         """What a method of the locator finds. Queries are checked before there is one."""
         found = search(self._locator, queries.reshape(-1, queries.shape[-1]))
         return found.reshape(queries.shape[:-1])
+
+    @staticmethod
+    def _as_queries(given: ArrayLike) -> Doubles:
+        """Queries as they are taken, checked."""
+        raise NotImplementedError
+
+    def _nearest_points(
+        self, queries: Doubles, count: int, most: float
+    ) -> tuple[Indices, Doubles]:
+        """Rows of so many points, within a distance, and of their distances."""
+        raise NotImplementedError
+
+    @overload
+    def nearest(
+        self,
+        xi: ArrayLike,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: Literal[False] = False,
+    ) -> Indices: ...
+    @overload
+    def nearest(
+        self,
+        xi: ArrayLike,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: Literal[True],
+    ) -> tuple[Doubles, Indices]: ...
+    def nearest(
+        self,
+        xi: ArrayLike,
+        *,
+        k: Optional[int] = None,
+        distance_upper_bound: Optional[float] = None,
+        return_distances: bool = False,
+    ) -> Union[Indices, tuple[Doubles, Indices]]:
+        """The points that are nearest to others, exactly.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2), or on the sphere also (..., 3)
+            Any places of the plane, or longitudes and latitudes in degrees, or x, y and z.
+        k, distance_upper_bound, return_distances
+            As of `Delaunay.nearest`. On a torus each point counts once, as it lies nearest; on the sphere distances
+            are angles in radians.
+
+        Returns
+        -------
+        ndarray of int32, shape (...) or (..., k), or distances and these
+            Of several equally near the first one in the order of x, then y: as they lie around the query's place, or
+            on the sphere the south pole and then by places. -1 if there are no more points.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.nearest([[3.75, 3.75], [9, 10]])
+        array([0, 1], dtype=int32)
+        >>> tri.nearest([3.75, 3.75], k=2, return_distances=True)[1]
+        array([0, 2], dtype=int32)
+        >>> globe = flaunay.spherical([[179, 0], [-150, 0], [0, 90], [0, -90]])
+        >>> globe.nearest([[-175, 10], [60, 80]])
+        array([0, 2], dtype=int32)
+        >>> globe.nearest([-175, 10], k=2)
+        array([0, 1], dtype=int32)
+        """
+        queries = self._as_queries(xi)
+        if k is None and distance_upper_bound is None and not return_distances:
+            return self._find(queries, _calls.SurfaceLocator.nearest)
+        count, most = count_and_bound(k, distance_upper_bound)
+        shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
+        rows = queries.reshape(-1, queries.shape[-1])
+        found, distances = self._nearest_points(rows, count, most)
+        found = found.reshape(shape)
+        return (distances.reshape(shape), found) if return_distances else found
 
     def _interpolate(self, values: ArrayLike, queries: Doubles) -> Doubles:
         numbers = np.asarray(as_floats(values, "values"), np.float64)

@@ -62,6 +62,11 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
 
 /// A copy of the caller's arrays. Throws Error(usage) for one that is null but has elements.
 void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh);
+/// Copies rows of points, and their distances unless these are null.
+inline void copy_to(const Neighbors& found, std::int32_t* points, double* distances) {
+  std::copy(found.points.begin(), found.points.end(), points);
+  if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
+}
 /// `count` values; none for null, if that is allowed.
 template <typename T>
 std::vector<T> copied(const T* values, std::size_t count, const char* name, bool may_be_null = false) {

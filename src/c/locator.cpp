@@ -220,8 +220,6 @@ flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double
     PointTree& cpp = required(tree, "the tree").cpp;
     check_queries(queries, m);
     check_array(points, m, "results");
-    const Neighbors found = cpp.nearest(queries, m, {count, max_distance});
-    std::copy(found.points.begin(), found.points.end(), points);
-    if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
+    c::copy_to(cpp.nearest(queries, m, {count, max_distance}), points, distances);
   });
 }

@@ -181,9 +181,8 @@ flaunay_status flaunay_spherical_locator_nearest_points(flaunay_spherical_locato
     SphereLocator& cpp = required(locator, "the locator").cpp;
     check_queries(queries, m);
     check_array(points, m, "results");
-    const Neighbors found = cpp.nearest(queries, m, to_coordinates(coordinates), {count, max_distance});
-    std::copy(found.points.begin(), found.points.end(), points);
-    if (distances != nullptr) std::copy(found.distances.begin(), found.distances.end(), distances);
+    c::copy_to(cpp.nearest(queries, m, to_coordinates(coordinates), {count, max_distance}), points,
+               distances);
   });
 }
 

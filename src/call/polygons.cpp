@@ -52,6 +52,13 @@ Ids segments_of(const Polygons& polygons) {
   return segments;
 }
 
+Constraints constraints_of(const Ids& segments) {
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = segments.size() / 2;
+  return constraints;
+}
+
 std::size_t polygon_of(const std::vector<std::size_t>& points, std::size_t segment) {
   return static_cast<std::size_t>(std::upper_bound(points.begin(), points.end(), segment) - points.begin()) -
          1;
@@ -83,9 +90,7 @@ ConstrainedTriangulation compute(call::Implementation& self, const Polygons& pol
   check(polygons, options);
   const std::vector<std::size_t> points = points_of(polygons);
   const Ids segments = segments_of(polygons);
-  Constraints constraints;
-  constraints.segments = segments.data();
-  constraints.segment_count = segments.size() / 2;
+  const Constraints constraints = constraints_of(segments);
   call::DomainRequest request = call::request_of(options, true);
   request.polygons = options.map;
   if (options.map) request.overlaps = options.overlaps;
@@ -123,9 +128,7 @@ std::string verify(const Polygons& polygons, const PolygonOptions& options,
   check(polygons, options);
   const std::vector<std::size_t> points = points_of(polygons);
   const Ids segments = segments_of(polygons);
-  Constraints constraints;
-  constraints.segments = segments.data();
-  constraints.segment_count = segments.size() / 2;
+  Constraints constraints = constraints_of(segments);
   if (!polygons.part_offsets.empty() && options.fill_rule != FillRule::nesting) {
     constraints.rings = {polygons.ring_offsets, polygons.part_offsets, polygons.polygon_offsets};
     constrained::check_rings(constraints.rings, constraints.segment_count, options.fill_rule);

@@ -129,7 +129,6 @@ class ConstrainedChecker : public Checker {
       check_circles();
       check_edges();
       check_segment_edges();
-      check_edge_segments();
       check_labels();
       check_neighbors();
       check_quality();
@@ -659,39 +658,6 @@ class ConstrainedChecker : public Checker {
                                       place_of_point_[edges[2 * last - 1]] == last_place(s) &&
                                       bends[last - 1] == bends[first];
       if (!is_right) violate("the edges [{}, {}) are not those of {}", first, last, describe_segment(s));
-    }
-  }
-
-  /// Segments claim their pieces in ascending order, and skip those that have been claimed.
-  void check_edge_segments() {
-    if (constraints_.edge_segments == nullptr || constraints_.edges == nullptr) return;
-    const std::vector<std::int32_t>& claimed = *constraints_.edge_segments;
-    if (2 * claimed.size() != constraints_.edges->size()) {
-      violate("there are {} segments of edges, but there are {} constraint edges", claimed.size(),
-              constraints_.edges->size() / 2);
-    }
-    const PiecesByLine pieces(sweep_);
-    std::vector<std::int32_t> smallest(pieces.order.size(), -1);
-    std::vector<std::size_t> next(pieces.order.size() + 1);
-    for (std::size_t i = 0; i < next.size(); ++i) next[i] = i;
-    const auto unclaimed = [&next](std::size_t i) {
-      while (next[i] != i) i = next[i] = next[next[i]];
-      return i;
-    };
-    for (std::size_t s = 0; s < segments_.size() / 2; ++s) {
-      if (first_place(s) == last_place(s)) continue;
-      const std::size_t end = pieces.position(s, last_place(s));
-      for (std::size_t i = unclaimed(pieces.position(s, first_place(s))); i < end; i = unclaimed(i)) {
-        smallest[pieces.order[i]] = static_cast<std::int32_t>(s);
-        next[i] = i + 1;
-      }
-    }
-    for (std::size_t e = 0; e < claimed.size(); ++e) {
-      const std::int32_t expected =
-          smallest[piece_between((*constraints_.edges)[2 * e], (*constraints_.edges)[2 * e + 1])];
-      if (claimed[e] == expected) continue;
-      violate("constraint edge {} is said to be a part of segment {} first, but it is one of segment {}", e,
-              claimed[e], expected);
     }
   }
 

@@ -25,8 +25,6 @@ struct VerifyConstraints {
   /// and the one after its last.
   const std::vector<std::int32_t>* edges = nullptr;
   const std::vector<std::int32_t>* segment_edges = nullptr;
-  /// If given: per constraint edge the smallest index of a segment that has it.
-  const std::vector<std::int32_t>* edge_segments = nullptr;
   /// If not 0: what a refined mesh has been asked for, in degrees and as an area.
   double min_angle = 0, max_area = 0;
   bool conforming = false;  ///< whether it has been asked to be Delaunay without constraints, too
