@@ -9,14 +9,15 @@
 #include "blocks/small.hpp"
 #include "call/areas.hpp"
 #include "call/domains.hpp"
-#include "call/given_mesh.hpp"
 #include "call/groups.hpp"
 #include "call/insert_segments.hpp"
 #include "call/refine.hpp"
 #include "call/triangulate.hpp"
+#include "constrained/carry.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
 #include "constrained/inside.hpp"
+#include "constrained/refinement/given_mesh.hpp"
 #include "constrained/small.hpp"
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
@@ -71,11 +72,10 @@ Options plain_options(const ConstrainedOptions& options) {
 }
 
 // Whether all stages are done on the calling thread.
-bool stays_here(const call::Implementation& self, const std::vector<std::size_t>& offsets,
-                const Constraints& constraints, const Options& options) {
-  const Tuning& tuning = self.host_tuning();
-  return !self.is_named() && !options.profile && call::are_small(tuning, offsets) &&
-         offsets.back() + constraints.segment_count <= tuning.host_points;
+bool are_small(call::Implementation& self, const std::vector<std::size_t>& offsets,
+               const Constraints& constraints, const Options& options) {
+  return call::are_small(self, offsets, options.profile) &&
+         self.stays_here(offsets.back() + constraints.segment_count, options.profile);
 }
 
 // Whether all holes are as near to the points as places may be.
@@ -123,7 +123,7 @@ ConstrainedTriangulation constrain(call::Implementation& self, const double* coo
                                    const std::vector<std::size_t>& offsets, const Constraints& constraints,
                                    const ConstrainedOptions& options, bool may_be_small = true) {
   const Options plain = plain_options(options);
-  if (may_be_small && stays_here(self, offsets, constraints, options)) {
+  if (may_be_small && are_small(self, offsets, constraints, options)) {
     ConstrainedOptions wanted = options;
     wanted.neighbors = true;
     if (auto small = constrain_small(self, coordinates, offsets, constraints, wanted, {}))
@@ -173,47 +173,9 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   pieces.segments = split.pieces.data();
   pieces.segment_count = split.pieces.size() / 2;
   result = constrain(self, all.coordinates.data(), all.offsets, pieces, options);
-  for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
-    for (std::int32_t& v : *vertices) v = all.index[v];
-  }
-  Ids representatives(result.representatives.size());
-  for (std::size_t i = 0; i < representatives.size(); ++i) {
-    representatives[all.index[i]] = result.representatives[i];
-  }
-  result.representatives.swap(representatives);
-  result.piece_offsets = std::move(split.piece_offsets);
-  Ids segment_of(result.piece_edges.size() / 2);
-  for (std::size_t s = 0; s + 1 < result.piece_offsets.size(); ++s) {
-    std::fill(segment_of.begin() + result.piece_offsets[s], segment_of.begin() + result.piece_offsets[s + 1],
-              static_cast<std::int32_t>(s));
-  }
-  for (std::int32_t& piece : result.edge_segments) piece = segment_of[piece];
-  result.added_points = std::move(split.added_points);
-  result.added_offsets = std::move(split.added_offsets);
+  constrained::carry_split(all, std::move(split), result);
   end_split(seconds);
   return result;
-}
-
-// Edges have the markers of their segments, and so have points that were added on them.
-void carry_markers(const Constraints& constraints, std::size_t n, ConstrainedTriangulation& result) {
-  const std::int32_t* const of_segments = constraints.segment_markers;
-  if (of_segments != nullptr) {
-    result.edge_markers.clear();
-    for (const std::int32_t segment : result.edge_segments) {
-      result.edge_markers.push_back(of_segments[segment]);
-    }
-  }
-  if (constraints.point_markers == nullptr) return;
-  result.vertex_markers.assign(constraints.point_markers, constraints.point_markers + n);
-  constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
-  Ids first(result.added_points.size() / 2, kNone);
-  for (std::size_t i = 0; i < result.constraint_edges.size(); ++i) {
-    const auto v = static_cast<std::size_t>(result.constraint_edges[i]);
-    if (v >= n) first[v - n] = std::min(first[v - n], result.edge_segments[i / 2]);
-  }
-  for (const std::int32_t segment : first) {
-    result.vertex_markers.push_back(of_segments != nullptr && segment != kNone ? of_segments[segment] : 0);
-  }
 }
 
 // Makes half-edges and areas, or leaves out neighbours, as the options say, and counts the triangles.
@@ -245,7 +207,7 @@ std::vector<std::size_t> group_segments(const std::vector<call::Group>& groups,
 // What comes after all stages.
 void end_small(call::Implementation& self, const double* coordinates, const Constraints& constraints,
                std::size_t n, const ConstrainedOptions& options, ConstrainedTriangulation& result) {
-  carry_markers(constraints, n, result);
+  constrained::carry_markers(constraints, n, result);
   finish(self, coordinates, options, result);
 }
 
@@ -299,7 +261,7 @@ bool can_be_grouped(const Constraints& constraints, const ConstrainedOptions& op
 std::optional<ConstrainedTriangulation> constrain_by_groups(
     call::Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
     const Constraints& constraints, const ConstrainedOptions& options, const call::DomainRequest& request) {
-  if (!self.is_named() && offsets.back() <= self.host_tuning().host_points) return {};
+  if (self.stays_here(offsets.back())) return {};
   call::Engine& engine = self.for_host_memory();
   const std::vector<call::Group> groups = call::groups_of(engine, offsets);
   if (groups.empty()) return {};
@@ -320,7 +282,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
                                               const Constraints& constraints,
                                               const ConstrainedOptions& options,
                                               const call::DomainRequest& request,
-                                              const call::GivenMesh* mesh) {
+                                              const constrained::GivenMesh* mesh) {
   const bool is_refined = options.refinement.is_wanted();
   // What is made of the triangles that are left comes after their refinement.
   ConstrainedOptions first = options;
@@ -330,8 +292,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
   }
   const bool has_holes = constraints.hole_count > 0, splits = options.crossings == Crossings::split;
   const bool can_be_at_once = can_be_grouped(constraints, first) && (!has_holes || offsets.size() == 2);
-  const bool is_small =
-      can_be_at_once && !request.polygons && stays_here(self, offsets, constraints, options);
+  const bool is_small = can_be_at_once && !request.polygons && are_small(self, offsets, constraints, options);
   std::optional<ConstrainedTriangulation> at_once;
   if (has_holes) constrained::holes_of(constraints, offsets.size() - 1);
   if (is_small) {
@@ -359,7 +320,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
     call::refine(self, points(), offsets, options, seeds, areas, result);
     if (options.areas) all = with_added(coordinates, offsets.back(), result.added_points);
   }
-  carry_markers(constraints, offsets.back(), result);
+  constrained::carry_markers(constraints, offsets.back(), result);
   finish(self, points(), options, result);
   end_phase(is_refined ? "refine" : "domains", begin, result.statistics);
   return result;
@@ -375,14 +336,13 @@ ConstrainedTriangulation call::constrain_and_leave(Implementation& self, const d
   check_offsets(offsets);
   check_points(coordinates, offsets.back());
   check(constraints, options);
-  std::optional<GivenMesh> mesh;
+  std::optional<constrained::GivenMesh> mesh;
   if (options.refinement.mesh.count > 0) mesh.emplace(coordinates, offsets.back(), constraints, options);
   ConstrainedTriangulation result =
       constrain_and_refine(self, coordinates, offsets, mesh ? mesh->constraints() : constraints,
                            mesh ? mesh->options() : options, request, mesh ? &*mesh : nullptr);
   const Refinement& wanted = options.refinement;
-  if (wanted.measured && !wanted.is_wanted())
-    measure_angles(self, coordinates, offsets.back(), false, result);
+  if (wanted.measured && !wanted.is_wanted()) measure_angles(self, coordinates, offsets.back(), result);
   return result;
 }
 

@@ -110,9 +110,7 @@ std::vector<std::int32_t> apply_domains(Implementation& self, const double* coor
                                         ConstrainedTriangulation& result) {
   const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
   if (!request.needs_depths() && !has_places) return {};
-  // About two triangles per point.
-  const bool is_small = !self.is_named() && result.triangles.size() / 6 <= self.host_tuning().host_points;
-  Engine& engine = is_small ? Engine::of_thread() : self.for_host_memory();
+  Engine& engine = self.for_points(result.triangles.size() / 6);  // about two triangles per point
   Engine& with_doubles = has_places ? self.with_doubles(engine) : engine;
   return apply_domains_on(engine, with_doubles, coordinates, offsets, constraints, request, result);
 }

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "call/areas.hpp"
@@ -17,12 +16,13 @@
 #include "geometry/halfedges.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/clock.hpp"
-#include "mesh/corners.hpp"
 #include "refinement/codes.h"
 #include "tuning/tuning.hpp"
 #include "updates/codes.h"
+#include "updates/edges.hpp"
 #include "updates/mesh.hpp"
 #include "updates/points.hpp"
+#include "updates/rows.hpp"
 
 namespace flaunay {
 namespace {
@@ -38,73 +38,6 @@ void check_supported(const Constraints& constraints, const ConstrainedOptions& o
   call::expect(!options.refinement.is_wanted(), "a triangulation that changes cannot be refined");
   call::expect(constraints.segment_markers == nullptr && constraints.point_markers == nullptr,
                "a triangulation that changes has no markers");
-}
-
-bool is_triangle(const kernel::mesh_row& row) {
-  return row.corner[0] >= 0 && row.corner[1] >= 0 && row.corner[2] >= 0;
-}
-
-// The hull from its lexicographically smallest vertex on. A ghost has its edge between its other corners.
-Ids hull_of(const std::vector<kernel::mesh_row>& rows, const std::vector<double>& coordinates) {
-  const auto end_of = [](const kernel::mesh_row& row) {
-    return static_cast<std::size_t>(std::find(row.corner, row.corner + 3, kernel::INFINITE_VERTEX) -
-                                    row.corner);
-  };
-  const auto place = [&](std::int32_t v) {
-    const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
-    return std::pair(p[0], p[1]);
-  };
-  std::size_t first = rows.size();
-  const auto from = [&](std::size_t t) { return rows[t].corner[(end_of(rows[t]) + 2) % 3]; };
-  for (std::size_t t = 0; t < rows.size(); ++t) {
-    if (rows[t].corner[0] == kernel::NO_TRIANGLE || is_triangle(rows[t])) continue;
-    if (first == rows.size() || place(from(t)) < place(from(first))) first = t;
-  }
-  Ids hull;
-  std::size_t at = first;
-  do {
-    hull.push_back(from(at));
-    at = static_cast<std::size_t>(rows[at].neighbor[(end_of(rows[at]) + 2) % 3]);
-  } while (at != first);
-  return hull;
-}
-
-// The edges of constraints: per pair of ends the smallest index of a segment that has it.
-using Edges = std::unordered_map<std::uint64_t, std::int32_t>;
-
-std::uint64_t edge_between(std::int32_t a, std::int32_t b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
-}
-std::int32_t smaller_end(std::uint64_t edge) { return static_cast<std::int32_t>(edge >> 32); }
-std::int32_t larger_end(std::uint64_t edge) { return static_cast<std::int32_t>(edge & 0xffffffff); }
-
-// Sorted by the numbers of their ends.
-LivingConstraints listed(const Edges& edges, const std::vector<double>& coordinates) {
-  std::vector<std::pair<std::uint64_t, std::int32_t>> sorted(edges.begin(), edges.end());
-  std::sort(sorted.begin(), sorted.end());
-  const auto place = [&](std::int32_t v) {
-    const double* const p = &coordinates[2 * static_cast<std::size_t>(v)];
-    return std::pair(p[0], p[1]);
-  };
-  LivingConstraints list;
-  for (const auto& [edge, segment] : sorted) {
-    std::int32_t a = smaller_end(edge), b = larger_end(edge);
-    if (place(b) < place(a)) std::swap(a, b);
-    list.edges.insert(list.edges.end(), {a, b});
-    list.segments.push_back(segment);
-  }
-  return list;
-}
-
-// Per corner of a triangulation the segment of the edge opposite, or -1.
-Ids segments_of_corners(const ConstrainedTriangulation& mesh, const Edges& edges) {
-  Ids of_corners(mesh.triangles.size(), -1);
-  for (std::size_t c = 0; c < of_corners.size(); ++c) {
-    if (mesh.constrained[c] == 0) continue;
-    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
-    of_corners[c] = edges.at(edge_between(from, to));
-  }
-  return of_corners;
 }
 
 }  // namespace
@@ -169,7 +102,7 @@ struct DynamicTriangulation::Implementation {
     if (edges.empty()) {
       static_cast<Triangulation&>(fresh) = call::triangulate(*owner, {coordinates, nullptr, n}, {0, n}, all);
     } else {
-      LivingConstraints old = listed(edges, points.coordinates());
+      LivingConstraints old = edges.listed(points.coordinates());
       if (!living.are_all) {
         for (std::int32_t& v : old.edges) v = living.places[v];
       }
@@ -191,17 +124,11 @@ struct DynamicTriangulation::Implementation {
         for (std::int32_t& v : *vertices) v = living.numbers[v];
       }
     }
-    Edges fresh_edges(fresh.edge_segments.size());
-    for (std::size_t e = 0; e < fresh.edge_segments.size(); ++e) {
-      fresh_edges.emplace(edge_between(fresh.constraint_edges[2 * e], fresh.constraint_edges[2 * e + 1]),
-                          fresh.edge_segments[e]);
-    }
-    std::vector<std::uint8_t> are_ends(is_constrained ? points.numbers() : 0, 0);
-    for (const std::int32_t v : fresh.constraint_edges) are_ends[v] = 1;
+    updates::ConstraintEdges fresh_edges;
+    if (is_constrained) fresh_edges = updates::ConstraintEdges(fresh, points.numbers());
     points.set_representatives(living, fresh.representatives);
     // From here on nothing throws.
-    edges.swap(fresh_edges);
-    on_constraint.swap(are_ends);
+    std::swap(edges, fresh_edges);
     made = std::move(fresh);
     triangle_count = made.triangles.size() / 3;
     row_count = triangle_count == 0 ? 0 : triangle_count + made.hull.size();
@@ -210,8 +137,7 @@ struct DynamicTriangulation::Implementation {
 
   // Brings what was triangulated anew to the memory of the engine, where batches change it.
   void load() {
-    mesh->load(points.coordinates(), points.shift(), made,
-               edges.empty() ? Ids() : segments_of_corners(made, edges));
+    mesh->load(points.coordinates(), points.shift(), made, edges.segments_of_corners(made));
     made = {};
     is_loaded = true;
   }
@@ -258,38 +184,6 @@ struct DynamicTriangulation::Implementation {
     return true;
   }
 
-  // Edges of constraints after these splits, of which some are of parts that others have made.
-  void split_edges(const std::vector<updates::SplitEdge>& splits) {
-    if (!is_constrained) return;
-    std::unordered_map<std::uint64_t, std::int32_t> vertex_on;
-    for (const auto& [from, to, vertex] : splits) vertex_on.emplace(edge_between(from, to), vertex);
-    Edges parts;
-    std::vector<std::uint64_t> gone, waiting;
-    for (const auto& [from, to, vertex] : splits) {
-      const auto whole = edges.find(edge_between(from, to));
-      if (whole == edges.end()) continue;
-      gone.push_back(whole->first);
-      waiting.push_back(whole->first);
-      while (!waiting.empty()) {
-        const std::uint64_t edge = waiting.back();
-        waiting.pop_back();
-        if (const auto at = vertex_on.find(edge); at != vertex_on.end()) {
-          for (const std::int32_t end : {smaller_end(edge), larger_end(edge)}) {
-            waiting.push_back(edge_between(end, at->second));
-          }
-        } else {
-          parts.emplace(edge, whole->second);
-        }
-      }
-    }
-    on_constraint.resize(points.numbers(), 0);
-    edges.reserve(edges.size() + parts.size());
-    // From here on nothing throws.
-    for (const auto& split : splits) on_constraint[split.vertex] = 1;
-    for (const std::uint64_t edge : gone) edges.erase(edge);
-    edges.merge(parts);
-  }
-
   static std::size_t share(std::size_t percent, std::size_t n) { return n * percent / 100; }
 
   Ids old_triangles() {
@@ -313,7 +207,7 @@ struct DynamicTriangulation::Implementation {
       mesh->begin_batch();
       std::vector<updates::SplitEdge> splits;
       if (change(prepare(), splits, changes)) {
-        split_edges(splits);
+        if (is_constrained) edges.split(splits, points.numbers());
         triangle_count = mesh->triangles();
         row_count = mesh->rows();
         return;
@@ -432,6 +326,18 @@ struct DynamicTriangulation::Implementation {
     return changes;
   }
 
+  TriangleRows rows() {
+    recover();
+    if (!is_loaded) {
+      TriangleRows result = {made.triangles, made.neighbors};
+      result.triangles.resize(3 * row_count, -1);
+      result.neighbors.resize(3 * row_count, -1);
+      return result;
+    }
+    const call::Frame frame(*engine);
+    return updates::rows_of(mesh->read_rows());
+  }
+
   Changes nothing() const {
     Changes changes;
     changes.first_point = points.numbers();
@@ -453,8 +359,8 @@ struct DynamicTriangulation::Implementation {
     if (!is_constrained) return;
     for (std::size_t i = 0; i < m; ++i) {
       const std::int32_t v = numbers[i];
-      if (on_constraint[v] == 0) continue;
-      const auto [ends, segments] = listed(edges, points.coordinates());
+      if (!edges.has_end(v)) continue;
+      const auto [ends, segments] = edges.listed(points.coordinates());
       const auto at = static_cast<std::size_t>(std::find(ends.begin(), ends.end(), v) - ends.begin());
       throw Error(ErrorKind::input,
                   fmt::format("point {} cannot be {}: it is on segment {} ({} to {})", v, what,
@@ -467,8 +373,7 @@ struct DynamicTriangulation::Implementation {
   call::Engine* engine = nullptr;
   updates::Points points;
   bool is_constrained = false;
-  Edges edges;
-  std::vector<std::uint8_t> on_constraint;  // per number: whether it is a vertex of edges
+  updates::ConstraintEdges edges;
   // The triangles: until a batch changes them, those that all points were triangulated to, with a row for
   // each edge of the hull behind them; then those of the mesh. None if an error has come in between.
   ConstrainedTriangulation made;
@@ -539,36 +444,13 @@ std::vector<double> DynamicTriangulation::coordinates() const {
 }
 
 TriangleRows DynamicTriangulation::rows() {
-  Implementation& self = *implementation_;
-  return self.take_turn([&] {
-    TriangleRows result;
-    self.recover();
-    if (!self.is_loaded) {
-      result = {self.made.triangles, self.made.neighbors};
-      result.triangles.resize(3 * self.row_count, -1);
-      result.neighbors.resize(3 * self.row_count, -1);
-      return result;
-    }
-    const call::Frame frame(*self.engine);
-    const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
-    result.triangles.assign(3 * rows.size(), -1);
-    result.neighbors.assign(3 * rows.size(), -1);
-    for (std::size_t t = 0; t < rows.size(); ++t) {
-      if (!is_triangle(rows[t])) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t beyond = rows[t].neighbor[k];
-        result.triangles[3 * t + k] = rows[t].corner[k];
-        if (is_triangle(rows[static_cast<std::size_t>(beyond)])) result.neighbors[3 * t + k] = beyond;
-      }
-    }
-    return result;
-  });
+  return implementation_->take_turn([&] { return implementation_->rows(); });
 }
 
 void DynamicTriangulation::rows(DeviceRows& result, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
-  TriangleRows all = rows();
   call::take_turn(*self.owner, enqueue, [&] {
+    TriangleRows all = self.rows();
     std::vector<cl_double> places = self.points.coordinates();
     call::Engine& device = self.owner->on_device();
     call::Frame frame(*self.owner, {device, &device}, enqueue);
@@ -597,25 +479,7 @@ Triangulation DynamicTriangulation::triangulation() {
       result.hull = self.made.hull;
     } else {
       const call::Frame frame(*self.engine);
-      const std::vector<kernel::mesh_row> rows = self.mesh->read_rows();
-      result.hull = hull_of(rows, self.points.coordinates());
-      Ids triangle_of(rows.size(), -1);
-      std::int32_t count = 0;
-      for (std::size_t t = 0; t < rows.size(); ++t) {
-        if (is_triangle(rows[t])) triangle_of[t] = count++;
-      }
-      result.triangles.resize(3 * static_cast<std::size_t>(count));
-      result.neighbors.resize(result.triangles.size());
-      for (std::size_t t = 0; t < rows.size(); ++t) {
-        if (triangle_of[t] < 0) continue;
-        const std::int32_t* const corner = rows[t].corner;
-        const auto smallest = static_cast<std::size_t>(std::min_element(corner, corner + 3) - corner);
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t to = 3 * static_cast<std::size_t>(triangle_of[t]) + k, at = (smallest + k) % 3;
-          result.triangles[to] = corner[at];
-          result.neighbors[to] = triangle_of[static_cast<std::size_t>(rows[t].neighbor[at])];
-        }
-      }
+      result = updates::triangles_of(self.mesh->read_rows(), self.points.coordinates());
     }
     result.representatives = self.points.representatives();
     result.triangle_offsets = {0, result.triangles.size() / 3};
@@ -639,7 +503,7 @@ Triangulation DynamicTriangulation::triangulation() {
 
 LivingConstraints DynamicTriangulation::constraints() {
   return implementation_->take_turn(
-      [&] { return listed(implementation_->edges, implementation_->points.coordinates()); });
+      [&] { return implementation_->edges.listed(implementation_->points.coordinates()); });
 }
 
 }  // namespace flaunay

@@ -9,36 +9,17 @@
 #include <vector>
 
 #include "call/implementation.hpp"
-#include "flaunay/constrained.hpp"
 #include "host/clock.hpp"
+#include "mesh/join.hpp"
 #include "statistics/phases.hpp"
 
 namespace flaunay::call {
 
-/// A group of sets that follow each other.
-struct Group {
-  std::vector<std::size_t> offsets;  ///< of its sets, from its first point on
-  std::size_t first_point = 0;
-};
+using mesh::Group;
 
 /// The groups of all sets for an engine. Empty if sets are too large, if all are one group, or if the engine
 /// is a device.
 std::vector<Group> groups_of(const Engine& engine, const std::vector<std::size_t>& offsets);
-
-/// The sets of the first groups together.
-template <typename Result>
-struct Joined {
-  Result result;
-  std::size_t groups = 0;   ///< how many
-  std::size_t regions = 0;  ///< how many these have, if they have labels
-};
-
-/// Adds the parts of the next groups. Takes their memory.
-void join(host::Runtime& runtime, const std::vector<Group>& groups, std::vector<Triangulation>& parts,
-          Joined<Triangulation>& joined);
-/// parts: without added points, each segment is one piece.
-void join(host::Runtime& runtime, const std::vector<Group>& groups,
-          std::vector<ConstrainedTriangulation>& parts, Joined<ConstrainedTriangulation>& joined);
 
 /// Joins work(group k) of all groups, which must use no runtime but that of its thread. Returns nothing if
 /// one ends by an exception: the sets together tell which error is the first one.
@@ -50,7 +31,7 @@ std::optional<Result> by_groups(Engine& engine, const std::vector<Group>& groups
   const statistics::Phases phases(options);
   phases.progress("triangulate", 0);
   double computing = 0, joining = 0, begin = host::now();
-  Joined<Result> joined;
+  mesh::Joined<Result> joined;
   std::vector<Result> parts;
   while (joined.groups < groups.size()) {
     const std::size_t first = joined.groups;
@@ -62,7 +43,7 @@ std::optional<Result> by_groups(Engine& engine, const std::vector<Group>& groups
       return {};
     }
     const double computed = host::now();
-    join(engine.runtime, groups, parts, joined);
+    mesh::join(engine.runtime, groups, parts, joined);
     computing += computed - std::exchange(begin, host::now());
     joining += begin - computed;
     phases.progress("triangulate",

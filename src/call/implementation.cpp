@@ -75,6 +75,15 @@ Engine& Triangulator::Implementation::for_host_memory() {
   return uses_device_for_host_memory() ? on_device() : native();
 }
 
+bool Triangulator::Implementation::stays_here(std::size_t points, bool profile) {
+  if (is_named_ || profile) return false;
+  return points <= host_tuning_->host_points || points <= tuning_of(for_host_memory().runtime).host_points;
+}
+
+Engine& Triangulator::Implementation::for_points(std::size_t points, bool profile) {
+  return stays_here(points, profile) ? Engine::of_thread() : for_host_memory();
+}
+
 Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
   const std::lock_guard lock(making_);
   // Without OpenCL, the first is known to the compiler, which leaves out the rest.

@@ -27,6 +27,11 @@ struct Triangulator::Implementation {
   call::Engine& on_device();
   /// The engine of calls on host memory. Throws as on_device if it is a device that cannot be used.
   call::Engine& for_host_memory();
+  /// Whether work on so many points in host memory is done on the calling thread: no device was named, and it
+  /// takes less time than other threads or a device need to begin. What is profiled is never done there.
+  bool stays_here(std::size_t points, bool profile = false);
+  /// The engine for work on so many points in host memory: the calling thread's own, or for_host_memory().
+  call::Engine& for_points(std::size_t points, bool profile = false);
   /// What runs natively, made when it is first needed.
   call::Engine& native();
   /// The engine that has doubles in place of this one, which is on_device() or for_host_memory(): itself, or

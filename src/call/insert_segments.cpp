@@ -98,9 +98,7 @@ void insert_segments(Implementation& self, const double* coordinates, const std:
   if (constraints.segment_count > kFewSegments) {
     constrained::check_first_segments(coordinates, offsets, constraints.segments, constraints.segment_count);
   }
-  const bool may_stay = !self.is_named() && !options.profile;
-  const std::size_t size = offsets.back() + constraints.segment_count;
-  if (may_stay && size <= self.host_tuning().host_points) {
+  if (self.stays_here(offsets.back() + constraints.segment_count, options.profile)) {
     *insert_segments_on(Engine::of_thread(), coordinates, offsets, constraints, options, result);
     return;
   }

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "blocks/run.hpp"
+#include "call/constrained.hpp"
 #include "call/mesh_of.hpp"
 #include "call/triangulate.hpp"
-#include "call/whole_mesh.hpp"
+#include "constrained/whole_mesh.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/read_back.hpp"
@@ -301,11 +302,17 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates, std::siz
                  const ConstrainedTriangulation& triangulation)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
-  call::WholeMesh whole =
-      with_errors([&] { return call::fill(triangulator, coordinates, n, triangulation); });
-  self.all_points = std::move(whole.coordinates);
-  self.constrained = std::make_shared<const std::vector<std::uint8_t>>(std::move(whole.constrained));
   call::take_turn(*self.owner, [&] {
+    constrained::WholeMesh whole = constrained::fill(
+        coordinates, n, triangulation,
+        [&](const std::vector<double>& points, const Constraints& constraints) -> Triangulation {
+          ConstrainedOptions options;
+          options.neighbors = true;
+          return call::constrain_and_leave(*self.owner, points.data(), {0, points.size() / 2}, constraints,
+                                           options, call::request_of(options, false));
+        });
+    self.all_points = std::move(whole.coordinates);
+    self.constrained = std::make_shared<const std::vector<std::uint8_t>>(std::move(whole.constrained));
     self.make_from(self.all_points.data(), {0, self.all_points.size() / 2}, whole.mesh);
   });
 }

@@ -77,12 +77,12 @@ Box box_of(const Places& places, const Pair<double>& period) {
 }
 
 // Points and, after them, the images within the margin.
-class Plane : public PointSource {
+class UnrolledPlane : public PointSource {
  public:
   // Bytes that an image may take: 24 for itself, the rest for edges where triangles are joined.
   static constexpr std::uint64_t kBytesPerImage = 48;
 
-  Plane(const Places& places, const Box& box, std::uint64_t memory) : places_(places) {
+  UnrolledPlane(const Places& places, const Box& box, std::uint64_t memory) : places_(places) {
     const std::uint64_t most = (memory - call::kLeastChunkBytes) / kBytesPerImage;
     places.for_each([&](std::uint64_t i, Point p) {
       periodic::for_each_image(box, p, [&](const Pair<int>& at, Point place) {
@@ -134,7 +134,7 @@ class Plane : public PointSource {
 // Takes the edges where triangles that are kept end.
 class Folding : public chunks::Folding {
  public:
-  Folding(const Plane& plane, std::uint64_t points, const Box& box)
+  Folding(const UnrolledPlane& plane, std::uint64_t points, const Box& box)
       : plane_(plane), points_(points), seams_(box) {}
 
   std::int64_t first_image() const override { return static_cast<std::int64_t>(points_); }
@@ -165,7 +165,7 @@ class Folding : public chunks::Folding {
   }
 
  private:
-  const Plane& plane_;
+  const UnrolledPlane& plane_;
   std::uint64_t points_;
   periodic::Seams seams_;
 };
@@ -173,7 +173,7 @@ class Folding : public chunks::Folding {
 // Turns images into points and offsets, and counts duplicates.
 class FoldedSink : public MeshSink {
  public:
-  FoldedSink(PeriodicMeshSink& sink, const Plane& plane, std::uint64_t points)
+  FoldedSink(PeriodicMeshSink& sink, const UnrolledPlane& plane, std::uint64_t points)
       : sink_(sink), plane_(plane), points_(points) {}
 
   std::uint64_t duplicates() const { return duplicates_; }
@@ -223,7 +223,7 @@ class FoldedSink : public MeshSink {
   }
 
   PeriodicMeshSink& sink_;
-  const Plane& plane_;
+  const UnrolledPlane& plane_;
   std::uint64_t points_, duplicates_ = 0;
   std::vector<std::int64_t> corners_;
   std::vector<std::int8_t> offsets_;
@@ -234,7 +234,7 @@ std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& b
                                               ChunkOptions options) {
   const std::uint64_t n = places.size(), memory = call::chunk_memory(options);
   const double begin = host::now();
-  Plane plane(places, box, memory);
+  UnrolledPlane plane(places, box, memory);
   const double end = host::now();
   options.memory_bytes = memory - plane.bytes();
   Folding folding(plane, n, box);

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "call/breaklines.hpp"
 #include "call/chunks.hpp"
 #include "call/frame.hpp"
 #include "derived/contours/contours.hpp"
 #include "derived/raster/raster.hpp"
+#include "large/chunks/breaklines.hpp"
 
 namespace flaunay {
 namespace {
@@ -45,7 +45,10 @@ class Scanner {
 
   // To be called at the end.
   void finish() {
-    const chunks::ChunkSurface surface = crossed_.triangulated(host_);
+    const chunks::ChunkSurface surface =
+        crossed_.triangulated([&](const std::vector<double>& points, const Constraints& constraints) {
+          return host_.constrained(points.data(), points.size() / 2, constraints);
+        });
     call::Frame call(TriangulatorAccess::implementation(host_).native());
     scan(call, surface);
     call.end();
@@ -81,7 +84,7 @@ class Scanner {
   const RasterOptions& options_;
   double* pixels_;
   contours::Lines lines_;
-  call::CrossedTriangles crossed_;
+  chunks::CrossedTriangles crossed_;
   Triangulator host_{"host"};
   std::vector<raster::SidePixel> on_sides_;
   std::mutex mutex_;
@@ -101,7 +104,7 @@ ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, co
     check_array(pixels, count, "pixels", kMostCountable);
     contours::check(heights, options.max_edge);
     Scanner scanner(grid, options, pixels, heights, breaklines);
-    call::PointsWithLines all(breaklines, points);
+    chunks::PointsWithLines all(breaklines, points);
     const chunks::Values values{all, duplicates, breaklines.points,
                                 [&](chunks::ChunkSurface&& surface) { scanner.take(std::move(surface)); }};
     NoArrays no_arrays;

@@ -13,12 +13,9 @@ namespace flaunay::call {
 /// Throws Error(usage), which names the member, if a refinement cannot be what is meant.
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
-/// Reports the angles of a result. coordinates: of the n points of the caller. with_mean: also their mean.
-void measure_angles(Implementation& self, const double* coordinates, std::size_t n, bool with_mean,
+/// Reports the angles of a result that was not refined. coordinates: of the n points of the caller.
+void measure_angles(Implementation& self, const double* coordinates, std::size_t n,
                     ConstrainedTriangulation& result);
-
-/// Numbers regions by their first triangles.
-void renumber_regions(std::vector<std::int32_t>& regions);
 
 /// Refines the result, which must have neighbours: on the engine for host memory or, if little is expected
 /// and no device was named, on the calling thread. Several sets are refined one by one, so that each is as if

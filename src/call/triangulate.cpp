@@ -206,12 +206,11 @@ Triangulation empty_result(Engine& self, std::size_t sets) {
   return result;
 }
 
-bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets) {
-  if (offsets.back() > tuning.host_points) return false;
+bool are_small(Implementation& self, const std::vector<std::size_t>& offsets, bool profile) {
   for (std::size_t s = 1; s < offsets.size(); ++s) {
-    if (offsets[s] - offsets[s - 1] > tuning.block_points) return false;
+    if (offsets[s] - offsets[s - 1] > self.host_tuning().block_points) return false;
   }
-  return true;
+  return self.stays_here(offsets.back(), profile);
 }
 
 Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
@@ -238,15 +237,9 @@ Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, con
 
 Triangulation triangulate(Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options) {
-  const bool may_be_small = !self.is_named() && !options.profile;
-  if (may_be_small && are_small(self.host_tuning(), offsets)) {
-    return triangulate_small(points, offsets, options);
-  }
+  if (are_small(self, offsets, options.profile)) return triangulate_small(points, offsets, options);
   Engine& engine = self.for_host_memory();
   engine.check_size(points.count);
-  if (may_be_small && are_small(tuning_of(engine.runtime), offsets)) {
-    return triangulate_small(points, offsets, options);
-  }
   const std::vector<Group> groups = options.profile ? std::vector<Group>() : groups_of(engine, offsets);
   if (!groups.empty()) {
     Options of_group = options;

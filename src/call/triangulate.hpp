@@ -21,8 +21,8 @@ std::vector<double> widened(const HostPoints& points);
 Triangulation triangulate(Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
 
-/// Whether sets are triangulated on the calling thread if no device was named.
-bool are_small(const Tuning& tuning, const std::vector<std::size_t>& offsets);
+/// Whether sets are triangulated on the calling thread: they stay there, and each is one block.
+bool are_small(Implementation& self, const std::vector<std::size_t>& offsets, bool profile);
 
 /// Triangulates sets of at most a block's points each on the calling thread.
 Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,

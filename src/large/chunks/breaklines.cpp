@@ -1,4 +1,4 @@
-#include "call/breaklines.hpp"
+#include "large/chunks/breaklines.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,18 +6,18 @@
 #include <limits>
 #include <utility>
 
-#include "flaunay/constrained.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/predicates.hpp"
 #include "mesh/corners.hpp"
+#include "mesh/rows.hpp"
 
-namespace flaunay::call {
+namespace flaunay::chunks {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// Triangles are shared among threads in runs of so many.
-constexpr std::size_t kRun = 1 << 16;
+// Threads take so many triangles at once.
+constexpr std::size_t kTrianglesAtOnce = 1 << 16;
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -82,16 +82,13 @@ struct Inside {
 };
 
 // Leaves some triangles. Sides between these and others become open.
-void leave(const std::vector<char>& is_left, const std::vector<char>& is_open,
-           chunks::ChunkSurface& surface) {
-  Ids rows(is_left.size(), -1);
-  std::int32_t count = 0;
-  for (std::size_t t = 0; t < rows.size(); ++t) {
-    if (is_left[t] != 0) rows[t] = count++;
-  }
+void leave(const std::vector<char>& is_left, const std::vector<char>& is_open, ChunkSurface& surface) {
+  const Ids rows = mesh::numbers_of_kept(is_left);
+  std::size_t count = 0;
   surface.open.clear();
   for (std::size_t t = 0; t < rows.size(); ++t) {
     if (rows[t] < 0) continue;
+    ++count;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t beyond = surface.neighbors[3 * t + k];
       const bool is_inner = (is_open.empty() || is_open[3 * t + k] == 0) && beyond >= 0 &&
@@ -102,8 +99,8 @@ void leave(const std::vector<char>& is_left, const std::vector<char>& is_open,
       if (!is_inner) surface.open.push_back(static_cast<std::int32_t>(to));
     }
   }
-  surface.triangles.resize(3 * at(count));
-  surface.neighbors.resize(3 * at(count));
+  surface.triangles.resize(3 * count);
+  surface.neighbors.resize(3 * count);
 }
 
 }  // namespace
@@ -176,7 +173,7 @@ void CrossedTriangles::for_each_near(const Box& box, const Visit& visit) const {
   }
 }
 
-void CrossedTriangles::take_from(host::Runtime& runtime, chunks::ChunkSurface& surface) {
+void CrossedTriangles::take_from(host::Runtime& runtime, ChunkSurface& surface) {
   if (lines_.segment_count == 0) return;
   const std::size_t n = surface.coordinates.size() / 2, count = surface.triangles.size() / 3;
   const geometry::Scaling scaling = geometry::scaling_for(
@@ -186,8 +183,8 @@ void CrossedTriangles::take_from(host::Runtime& runtime, chunks::ChunkSurface& s
     return kernel::scaled_point(i, coordinates, scaling.powers());
   };
   std::vector<char> is_left(count, 1);
-  runtime.share((count + kRun - 1) / kRun, [&](std::size_t run) {
-    for (std::size_t t = run * kRun; t < std::min(count, (run + 1) * kRun); ++t) {
+  runtime.share((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](std::size_t run) {
+    for (std::size_t t = run * kTrianglesAtOnce; t < std::min(count, (run + 1) * kTrianglesAtOnce); ++t) {
       const std::int32_t* const v = &surface.triangles[3 * t];
       std::array<const double*, 3> p{};
       for (std::size_t k = 0; k < 3; ++k) p[k] = &surface.coordinates[2 * at(v[k])];
@@ -217,8 +214,10 @@ void CrossedTriangles::take_from(host::Runtime& runtime, chunks::ChunkSurface& s
   if (is_changed) leave(is_left, {}, surface);
 }
 
-chunks::ChunkSurface CrossedTriangles::triangulated(Triangulator& triangulator) const {
-  chunks::ChunkSurface surface;
+ChunkSurface CrossedTriangles::triangulated(
+    const std::function<ConstrainedTriangulation(const std::vector<double>&, const Constraints&)>& constrain)
+    const {
+  ChunkSurface surface;
   if (values_.empty()) return surface;
   surface.coordinates.assign(lines_.coordinates, lines_.coordinates + 2 * lines_.points);
   surface.coordinates.insert(surface.coordinates.end(), coordinates_.begin(), coordinates_.end());
@@ -227,7 +226,7 @@ chunks::ChunkSurface CrossedTriangles::triangulated(Triangulator& triangulator) 
   const std::size_t n = surface.values.size();
   expect(n <= std::numeric_limits<std::int32_t>::max() / 2, "breaklines cross too many triangles");
   // The border is between representatives of corners, of which each triangle has some of its own.
-  const Ids representatives = triangulator.triangulate(surface.coordinates.data(), n).representatives;
+  const Ids representatives = constrain(surface.coordinates, {}).representatives;
   const Ids corners(representatives.begin() + static_cast<std::ptrdiff_t>(lines_.points),
                     representatives.end());
   const Sides border = border_of(corners);
@@ -236,7 +235,7 @@ chunks::ChunkSurface CrossedTriangles::triangulated(Triangulator& triangulator) 
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
-  ConstrainedTriangulation mesh = triangulator.constrained(surface.coordinates.data(), n, constraints);
+  ConstrainedTriangulation mesh = constrain(surface.coordinates, constraints);
   const Inside inside(mesh, border);
   surface.triangles = std::move(mesh.triangles);
   surface.neighbors = std::move(mesh.neighbors);
@@ -244,4 +243,4 @@ chunks::ChunkSurface CrossedTriangles::triangulated(Triangulator& triangulator) 
   return surface;
 }
 
-}  // namespace flaunay::call
+}  // namespace flaunay::chunks

@@ -1,17 +1,18 @@
-#include "call/whole_mesh.hpp"
+#include "constrained/whole_mesh.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "call/frame.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "geometry/sort.hpp"
 #include "mesh/corners.hpp"
+#include "mesh/rows.hpp"
 
-namespace flaunay::call {
+namespace flaunay::constrained {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
@@ -92,9 +93,9 @@ std::vector<geometry::Keyed> by_edge(const Ids& triangles) {
 
 // Brings the triangles of `mesh` to the front of those of `whole`, in their order.
 void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
-  const std::size_t kept = mesh.triangles.size() / 3, all = whole.triangles.size() / 3;
+  const std::size_t all = whole.triangles.size() / 3;
   const std::vector<geometry::Keyed> of_whole = by_edge(whole.triangles);
-  Ids order(all), place(all, -1);
+  Ids place(all, -1);
   auto from = of_whole.begin();
   for (const auto& [edge, t] : by_edge(mesh.triangles)) {
     while (from != of_whole.end() && from->key < edge) ++from;
@@ -103,32 +104,19 @@ void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
         !std::equal(corners, corners + 3, whole.triangles.begin() + 3 * std::ptrdiff_t{from->index})) {
       refuse(static_cast<std::size_t>(t));
     }
-    order[static_cast<std::size_t>(t)] = from->index;
     place[static_cast<std::size_t>(from->index)] = t;
   }
-  std::size_t next = kept;
-  for (std::size_t t = 0; t < all; ++t) {
-    if (place[t] >= 0) continue;
-    order[next] = static_cast<std::int32_t>(t);
-    place[t] = static_cast<std::int32_t>(next++);
-  }
-  Ids triangles(3 * all), neighbors(3 * all);
-  for (std::size_t t = 0; t < all; ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t c = 3 * static_cast<std::size_t>(order[t]) + k;
-      const std::int32_t beyond = whole.neighbors[c];
-      triangles[3 * t + k] = whole.triangles[c];
-      neighbors[3 * t + k] = beyond < 0 ? -1 : place[static_cast<std::size_t>(beyond)];
-    }
-  }
-  whole.triangles.swap(triangles);
-  whole.neighbors.swap(neighbors);
+  auto next = static_cast<std::int32_t>(mesh.triangles.size() / 3);
+  for (std::int32_t& t : place) t = t < 0 ? next++ : t;
+  mesh::permute(place, 3, whole.triangles);
+  mesh::permute(place, 3, whole.neighbors);
+  for (std::int32_t& t : whole.neighbors) t = t < 0 ? t : place[static_cast<std::size_t>(t)];
 }
 
 }  // namespace
 
-WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_t n,
-               const ConstrainedTriangulation& mesh) {
+WholeMesh fill(const double* coordinates, std::size_t n, const ConstrainedTriangulation& mesh,
+               const Constrain& constrain) {
   check_points(coordinates, n);
   WholeMesh filled;
   filled.coordinates.assign(coordinates, coordinates + 2 * n);
@@ -143,12 +131,9 @@ WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
-  ConstrainedOptions options;
-  options.neighbors = true;
-  filled.mesh = triangulator.constrained(filled.coordinates.data(), filled.coordinates.size() / 2,
-                                         constraints, options);
+  filled.mesh = constrain(filled.coordinates, constraints);
   reorder(mesh, filled.mesh);
   return filled;
 }
 
-}  // namespace flaunay::call
+}  // namespace flaunay::constrained

@@ -1,4 +1,4 @@
-#include "call/given_mesh.hpp"
+#include "constrained/refinement/given_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -8,51 +8,45 @@
 #include <unordered_map>
 #include <utility>
 
-#include "call/implementation.hpp"
-#include "call/refine.hpp"
-#include "geometry/halfedges.hpp"
+#include "geometry/arguments.hpp"
+#include "mesh/corners.hpp"
+#include "mesh/rows.hpp"
 
-namespace flaunay::call {
+namespace flaunay::constrained {
 namespace {
 
 using Ids = std::vector<std::int32_t>;
-using geometry::next_halfedge;
 using geometry::Point;
-using geometry::previous_halfedge;
 
 std::uint64_t directed(std::int32_t from, std::int32_t to) {
   return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
 }
 
-// Keeps the elements of rows that are left.
-template <typename T>
-void keep(const std::vector<bool>& is_left, std::size_t columns, std::vector<T>& values) {
-  if (values.empty()) return;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (is_left[i / columns]) values[to++] = values[i];
-  }
-  values.resize(to);
+// The number of a directed edge: that opposite to a corner, with its triangle on the left, or its twin.
+std::uint64_t edge_at(const Ids& triangles, std::size_t c) {
+  const auto [from, to] = mesh::edge_opposite(triangles, c);
+  return directed(from, to);
+}
+std::uint64_t twin_at(const Ids& triangles, std::size_t c) {
+  const auto [from, to] = mesh::edge_opposite(triangles, c);
+  return directed(to, from);
 }
 
 // Leaves out triangles of a result.
 void leave_only(const std::vector<bool>& is_left, ConstrainedTriangulation& result) {
-  Ids numbers(is_left.size(), -1);
-  std::int32_t count = 0;
-  std::size_t t = 0;
+  const Ids numbers = mesh::numbers_of_kept(is_left);
+  std::size_t t = 0, count = 0;
   for (std::size_t& end : result.triangle_offsets) {
-    for (; t < end; ++t) {
-      if (is_left[t]) numbers[t] = count++;
-    }
-    end = static_cast<std::size_t>(count);
+    for (; t < end; ++t) count += is_left[t] ? 1 : 0;
+    end = count;
   }
-  keep(is_left, 3, result.triangles);
-  keep(is_left, 3, result.neighbors);
-  keep(is_left, 3, result.constrained);
+  mesh::keep(is_left, 3, result.triangles);
+  mesh::keep(is_left, 3, result.neighbors);
+  mesh::keep(is_left, 3, result.constrained);
   for (std::int32_t& neighbor : result.neighbors) neighbor = neighbor < 0 ? neighbor : numbers[neighbor];
-  keep(is_left, 1, result.depths);
-  keep(is_left, 1, result.regions);
-  renumber_regions(result.regions);
+  mesh::keep(is_left, 1, result.depths);
+  mesh::keep(is_left, 1, result.regions);
+  mesh::renumber_labels(result.regions);
 }
 
 }  // namespace
@@ -103,8 +97,7 @@ void GivenMesh::turn_left() {
 void GivenMesh::find_neighbors() {
   std::unordered_map<std::uint64_t, std::size_t> sides(triangles_.size());
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto [side, is_new] =
-        sides.emplace(directed(triangles_[next_halfedge(c)], triangles_[previous_halfedge(c)]), c);
+    const auto [side, is_new] = sides.emplace(edge_at(triangles_, c), c);
     if (is_new) continue;
     throw Error(ErrorKind::input,
                 fmt::format("triangles {} and {} of the mesh that is to be refined lie on each other",
@@ -113,7 +106,7 @@ void GivenMesh::find_neighbors() {
   neighbors_.assign(triangles_.size(), -1);
   first_corner_.assign(points_.size() + 1, 0);
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto beyond = sides.find(directed(triangles_[previous_halfedge(c)], triangles_[next_halfedge(c)]));
+    const auto beyond = sides.find(twin_at(triangles_, c));
     if (beyond != sides.end()) neighbors_[c] = static_cast<std::int32_t>(beyond->second / 3);
     ++first_corner_[static_cast<std::size_t>(triangles_[c]) + 1];
   }
@@ -130,7 +123,8 @@ void GivenMesh::add_segments(const Constraints& constraints) {
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
     const auto t = static_cast<std::int32_t>(c / 3), beyond = neighbors_[c];
     if (beyond >= 0 && (beyond < t || have_same_attributes(t, beyond))) continue;
-    segments_.insert(segments_.end(), {triangles_[next_halfedge(c)], triangles_[previous_halfedge(c)]});
+    const auto [from, to] = mesh::edge_opposite(triangles_, c);
+    segments_.insert(segments_.end(), {from, to});
     border_.push_back(static_cast<std::int32_t>(c));
   }
   constraints_.segments = segments_.data();
@@ -154,8 +148,7 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
   std::unordered_map<std::uint64_t, std::int32_t> sides;  // directed, with the triangle on the left
   for (std::size_t c = 0; c < result.triangles.size(); ++c) {
     if (result.constrained[c] == 0 && result.neighbors[c] >= 0) continue;
-    sides.emplace(directed(result.triangles[next_halfedge(c)], result.triangles[previous_halfedge(c)]),
-                  static_cast<std::int32_t>(c / 3));
+    sides.emplace(edge_at(result.triangles, c), static_cast<std::int32_t>(c / 3));
   }
   Ids labels(result.triangles.size() / 3, -1), open;
   const auto label = [&](std::int32_t t, std::int32_t of) {
@@ -173,9 +166,8 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
   for (std::size_t i = 0; i < border_.size(); ++i) {
     const auto c = static_cast<std::size_t>(border_[i]);
     // Edges run from the lexicographically smaller end of the segment.
-    const Point a = point(coordinates, triangles_[next_halfedge(c)]),
-                b = point(coordinates, triangles_[previous_halfedge(c)]);
-    const bool is_turned = kernel::comes_before(b, a);
+    const auto [from, to] = mesh::edge_opposite(triangles_, c);
+    const bool is_turned = kernel::comes_before(point(coordinates, to), point(coordinates, from));
     for (std::int32_t p = result.piece_offsets[first + i]; p < result.piece_offsets[first + i + 1]; ++p) {
       for (std::int32_t e = result.piece_edges[2 * p]; e < result.piece_edges[2 * p + 1]; ++e) {
         const std::int32_t u = result.constraint_edges[2 * e], v = result.constraint_edges[2 * e + 1];
@@ -193,9 +185,7 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
     open.pop_back();
     for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
       if (result.neighbors[c] < 0) continue;
-      if (result.constrained[c] != 0 && is_border.count(directed(result.triangles[next_halfedge(c)],
-                                                                 result.triangles[previous_halfedge(c)])) > 0)
-        continue;
+      if (result.constrained[c] != 0 && is_border.count(edge_at(result.triangles, c)) > 0) continue;
       label(result.neighbors[c], labels[t]);
     }
   }
@@ -209,7 +199,7 @@ std::int32_t GivenMesh::triangle_with(Point place, std::int32_t vertex) const {
   const Point from = points_[vertex];
   for (std::int32_t i = first_corner_[vertex]; i < first_corner_[vertex + 1]; ++i) {
     auto corner = static_cast<std::size_t>(corners_at_[i]);
-    std::int32_t a = triangles_[next_halfedge(corner)], b = triangles_[previous_halfedge(corner)];
+    auto [a, b] = mesh::edge_opposite(triangles_, corner);
     if (predicates.orient(from, points_[a], place) < 0 || predicates.orient(from, place, points_[b]) <= 0)
       continue;
     for (std::size_t steps = 0; steps < given_.count; ++steps) {
@@ -252,9 +242,9 @@ std::vector<double> GivenMesh::leave(const double* coordinates, ConstrainedTrian
   Ids labels = labels_of(coordinates, result);
   std::vector<bool> is_left;
   for (const std::int32_t label : labels) is_left.push_back(label >= 0);
-  keep(is_left, 1, result.triangle_attributes);
-  keep(is_left, 1, seeds);
-  keep(is_left, 1, labels);
+  mesh::keep(is_left, 1, result.triangle_attributes);
+  mesh::keep(is_left, 1, seeds);
+  mesh::keep(is_left, 1, labels);
   leave_only(is_left, result);
   std::vector<double> areas;
   if (given_.areas != nullptr) {
@@ -267,4 +257,4 @@ std::vector<double> GivenMesh::leave(const double* coordinates, ConstrainedTrian
   return areas;
 }
 
-}  // namespace flaunay::call
+}  // namespace flaunay::constrained

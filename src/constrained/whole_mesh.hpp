@@ -3,11 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "flaunay/constrained.hpp"
 
-namespace flaunay::call {
+namespace flaunay::constrained {
 
 /// A mesh up to the convex hull of its points. Its first triangles are those of another one, in their order.
 struct WholeMesh {
@@ -17,11 +18,14 @@ struct WholeMesh {
   std::vector<std::uint8_t> constrained;
 };
 
+/// Triangulates points with constraints, of one set. The result has neighbours.
+using Constrain = std::function<Triangulation(const std::vector<double>& coordinates, const Constraints&)>;
+
 /// Fills the holes of a mesh with constraints, of one set of n points and those that it has added, and what
 /// is between its border and the convex hull. Throws Error(usage) for several sets and for arrays of other
 /// lengths, Error(input) for what is no constrained triangulation of these points. If the mesh is convex,
 /// O(n); otherwise its points are triangulated with its edges.
-WholeMesh fill(Triangulator& triangulator, const double* coordinates, std::size_t n,
-               const ConstrainedTriangulation& mesh);
+WholeMesh fill(const double* coordinates, std::size_t n, const ConstrainedTriangulation& mesh,
+               const Constrain& constrain);
 
-}  // namespace flaunay::call
+}  // namespace flaunay::constrained

@@ -4,13 +4,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "flaunay/constrained.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
 #include "large/chunks/values.hpp"
 
-namespace flaunay::call {
+namespace flaunay::chunks {
 
 /// Points of breaklines, and then others.
 class PointsWithLines : public ValuedPoints {
@@ -31,9 +33,11 @@ class CrossedTriangles {
   explicit CrossedTriangles(const Breaklines& lines);
 
   /// Moves the triangles of a chunk that lines cross here.
-  void take_from(host::Runtime& runtime, chunks::ChunkSurface& surface);
-  /// What these cover, with lines as edges. Throws what Triangulator::constrained throws.
-  chunks::ChunkSurface triangulated(Triangulator& triangulator) const;
+  void take_from(host::Runtime& runtime, ChunkSurface& surface);
+  /// What these cover, with lines as edges. constrain: triangulates points with constraints, with neighbours.
+  ChunkSurface triangulated(
+      const std::function<ConstrainedTriangulation(const std::vector<double>&, const Constraints&)>&
+          constrain) const;
 
  private:
   struct Box {
@@ -53,4 +57,4 @@ class CrossedTriangles {
   std::vector<double> coordinates_, values_;
 };
 
-}  // namespace flaunay::call
+}  // namespace flaunay::chunks

@@ -8,7 +8,7 @@
 #include "flaunay/constrained.hpp"
 #include "geometry/predicates.hpp"
 
-namespace flaunay::call {
+namespace flaunay::constrained {
 
 /// The triangles of Refinement::mesh, and the segments of a call with those that they need.
 class GivenMesh {
@@ -59,4 +59,4 @@ class GivenMesh {
   Ids border_;  // per further segment: the corner opposite to it
 };
 
-}  // namespace flaunay::call
+}  // namespace flaunay::constrained
