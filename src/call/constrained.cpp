@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "blocks/small.hpp"
-#include "call/areas.hpp"
 #include "call/domains.hpp"
 #include "call/groups.hpp"
 #include "call/insert_segments.hpp"

@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "call/areas.hpp"
 #include "call/constrained.hpp"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"

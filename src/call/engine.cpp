@@ -7,9 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "call/arithmetic.hpp"
 #include "call/device_info.hpp"
-#include "call/self_test.hpp"
 #include "host/error.hpp"
 #include "host/note.hpp"
 #include "host/of_thread.hpp"
@@ -17,6 +15,8 @@
 #include "host/opencl/program_cache.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
+#include "tuning/arithmetic.hpp"
+#include "tuning/self_test.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::call {
@@ -77,7 +77,7 @@ Engine::Engine(const boost::compute::context& context, const boost::compute::dev
                const std::string& tuning)
     : Engine(context.get() == nullptr ? boost::compute::context(device) : context, device,
              settings_for(device, tuning)) {
-  choose_arithmetic(runtime);
+  tuning::choose_arithmetic(runtime);
   check_arithmetic();
 }
 
@@ -94,14 +94,14 @@ std::unique_ptr<Engine> Engine::with_doubles() const {
   host::Settings settings{runtime.sizes().copy(), runtime.capabilities()};
   settings.capabilities.fixed_point = false;
   std::unique_ptr<Engine> engine(new Engine(runtime.context(), device, std::move(settings)));
-  if (!self_test_failure(engine->runtime).empty()) return nullptr;
+  if (!tuning::self_test_failure(engine->runtime).empty()) return nullptr;
   return engine;
 }
 
 bool Engine::has_doubles() const { return !runtime.capabilities().fixed_point; }
 
 void Engine::check_arithmetic() {
-  const std::string failure = make_exact(runtime);
+  const std::string failure = tuning::make_exact(runtime);
   if (!failure.empty()) {
     throw Error(ErrorKind::device,
                 fmt::format("{} cannot be used, its arithmetic is not exact enough: {}; try "

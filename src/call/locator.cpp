@@ -55,6 +55,13 @@ struct Locator::Implementation {
   Implementation(std::shared_ptr<Triangulator::Implementation> used, call::Engine& asked)
       : owner(std::move(used)), asked_(asked) {}
 
+  template <typename... Work>
+  auto take_turn(const Work&... work) {
+    return call::take_turn(*owner, work...);
+  }
+
+  // What follows is done in a turn of the owner's.
+
   /// Makes the locator, in fixed point if that is what the engine computes in and the points fit.
   /// make(answerer).
   template <typename Make>
@@ -74,7 +81,7 @@ struct Locator::Implementation {
     call::in_fixed_point_or([&] { return make(*fixed); }, with_doubles);
   }
 
-  /// Makes the locator of a mesh in host memory. It is the owner's turn.
+  /// Makes the locator of a mesh in host memory.
   void make_from(const double* coordinates, const std::vector<std::size_t>& offsets,
                  const Triangulation& mesh) {
     const call::HostPoints points{coordinates, nullptr, offsets.empty() ? 0 : offsets.back()};
@@ -91,17 +98,14 @@ struct Locator::Implementation {
   Implementation& for_nearest() {
     if (all_points.empty()) return *this;
     if (!without_constraints_) {
-      call::take_turn(*owner, [&] {
-        if (without_constraints_) return;  // of a call on another thread
-        const std::vector<std::size_t> offsets = {0, all_points.size() / 2};
-        Options options;
-        options.neighbors = true;
-        const Triangulation mesh =
-            call::triangulate(*owner, {all_points.data(), nullptr, offsets.back()}, offsets, options);
-        auto made = std::make_unique<Implementation>(owner, asked_);
-        made->make_from(all_points.data(), offsets, mesh);
-        without_constraints_ = std::move(made);
-      });
+      const std::vector<std::size_t> offsets = {0, all_points.size() / 2};
+      Options options;
+      options.neighbors = true;
+      const Triangulation mesh =
+          call::triangulate(*owner, {all_points.data(), nullptr, offsets.back()}, offsets, options);
+      auto made = std::make_unique<Implementation>(owner, asked_);
+      made->make_from(all_points.data(), offsets, mesh);
+      without_constraints_ = std::move(made);
     }
     return *without_constraints_;
   }
@@ -113,16 +117,13 @@ struct Locator::Implementation {
   /// The locator with doubles; made of the other one when it is first needed.
   call::Answerer& doubles() {
     if (!doubles_) {
-      call::take_turn(*owner, [&] {
-        if (doubles_) return;  // of a call on another thread
-        auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
-        made->constrained = constrained;
-        const call::Frame from(asked_);
-        call::Frame call(made->place.engine);
-        call.check_size(point_count);
-        *made->make(call, locate::read_back(from.runtime, fixed->locator, call.runtime));
-        doubles_ = std::move(made);
-      });
+      auto made = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
+      made->constrained = constrained;
+      const call::Frame from(asked_);
+      call::Frame call(made->place.engine);
+      call.check_size(point_count);
+      *made->make(call, locate::read_back(from.runtime, fixed->locator, call.runtime));
+      doubles_ = std::move(made);
     }
     return *doubles_;
   }
@@ -141,34 +142,29 @@ struct Locator::Implementation {
   geometry::Fitted<std::vector<Result>> answer(call::Answerer& by, const double* queries,
                                                const std::vector<std::size_t>& offsets, std::size_t columns,
                                                const Work& work) {
-    return call::take_turn(*owner, [&] {
-      check_offsets(offsets);
-      const std::size_t m = offsets.back();
-      check_queries(queries, m);
-      const std::size_t numbers = check_columns(columns, m);
-      std::vector<Result> results;
-      call::Frame call(by.place.engine);
-      const auto output = call.out<Result>(results, numbers);
-      const geometry::Fitted<geometry::Done> done =
-          work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
-      if (!done) return geometry::Fitted<std::vector<Result>>(done.too_wide());
-      call.end();
-      return geometry::Fitted<std::vector<Result>>(std::move(results));
-    });
+    check_offsets(offsets);
+    const std::size_t m = offsets.back();
+    check_queries(queries, m);
+    const std::size_t numbers = check_columns(columns, m);
+    std::vector<Result> results;
+    call::Frame call(by.place.engine);
+    const auto output = call.out<Result>(results, numbers);
+    const geometry::Fitted<geometry::Done> done =
+        work(call, by.locator, call.points(call::HostPoints{queries, nullptr, m}), m, offsets, output);
+    if (!done) return done.too_wide();
+    call.end();
+    return results;
   }
 
   /// Runs a call on device memory. work(call) enqueues it, and ends the call if its input fits.
   template <typename Work>
   auto on_device(call::Answerer& by, const Enqueue& enqueue, const Work& work) {
-    return call::take_turn(*owner, enqueue, [&] {
-      call::expect(
-          by.place.device != nullptr,
-          "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
-          "make it from device memory, or name a device");
-      call::Frame call(*owner, by.place, enqueue);
-      call.begin();
-      return work(call);
-    });
+    call::expect(by.place.device != nullptr,
+                 "the locator was made in host memory without OpenCL, so it has no queries in device memory; "
+                 "make it from device memory, or name a device");
+    call::Frame call(*owner, by.place, enqueue);
+    call.begin();
+    return work(call);
   }
 
   /// Answers queries in device memory. columns and work: as above. read: further buffers that are read, or
@@ -190,6 +186,20 @@ struct Locator::Implementation {
       if (done) call.end();
       return done;
     });
+  }
+
+  /// Answers queries by one number each.
+  template <typename Work>
+  std::vector<std::int32_t> answer_all(const double* queries, const std::vector<std::size_t>& offsets,
+                                       const Work& work) {
+    return answer_with(
+        [&](call::Answerer& by) { return answer<std::int32_t>(by, queries, offsets, 1, work); });
+  }
+  template <typename Work>
+  void answer_all(const DevicePoints& queries, DeviceBuffer& result, const char* what, const Enqueue& enqueue,
+                  const Work& work) {
+    answer_with(
+        [&](call::Answerer& by) { return answer<cl_int>(by, queries, {}, result, 1, what, enqueue, work); });
   }
 
   /// The length of the array of values.
@@ -321,11 +331,13 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
                  const DeviceTriangulation& triangulation, const Enqueue& enqueue)
     : implementation_(make(triangulator, true)) {
   Implementation& self = *implementation_;
-  self.make_with([&](call::Answerer& by) {
-    return self.on_device(by, enqueue, [&](call::Frame& call) {
-      call.check(points, "points");
-      call.check_size(points.count);
-      return by.make(call, points, call::mesh_of(call, points, triangulation));
+  self.take_turn(enqueue, [&] {
+    self.make_with([&](call::Answerer& by) {
+      return self.on_device(by, enqueue, [&](call::Frame& call) {
+        call.check(points, "points");
+        call.check_size(points.count);
+        return by.make(call, points, call::mesh_of(call, points, triangulation));
+      });
     });
   });
   self.point_count = points.count;
@@ -340,15 +352,12 @@ std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) 
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
-  return implementation_->answer_with([&](call::Answerer& by) {
-    return implementation_->answer<std::int32_t>(by, queries, offsets, 1, kLocate);
-  });
+  return implementation_->take_turn([&] { return implementation_->answer_all(queries, offsets, kLocate); });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
-  implementation_->answer_with([&](call::Answerer& by) {
-    return implementation_->answer<cl_int>(by, queries, {}, triangles, 1, "located triangles", enqueue,
-                                           kLocate);
+  implementation_->take_turn(enqueue, [&] {
+    implementation_->answer_all(queries, triangles, "located triangles", enqueue, kLocate);
   });
 }
 
@@ -357,15 +366,13 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  Implementation& self = implementation_->for_nearest();
-  return self.answer_with(
-      [&](call::Answerer& by) { return self.answer<std::int32_t>(by, queries, offsets, 1, kNearest); });
+  return implementation_->take_turn(
+      [&] { return implementation_->for_nearest().answer_all(queries, offsets, kNearest); });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
-  Implementation& self = implementation_->for_nearest();
-  self.answer_with([&](call::Answerer& by) {
-    return self.answer<cl_int>(by, queries, {}, points, 1, "nearest points", enqueue, kNearest);
+  implementation_->take_turn(enqueue, [&] {
+    implementation_->for_nearest().answer_all(queries, points, "nearest points", enqueue, kNearest);
   });
 }
 
@@ -394,28 +401,32 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
   check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   check_enumerator(options.method, Interpolation::laplace, "Interpolation");
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
-  Implementation& self = implementation_->for_method(options.method);
-  return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
-                              self.interpolation(options, values, options.gradients));
+  return implementation_->take_turn([&] {
+    Implementation& self = implementation_->for_method(options.method);
+    return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
+                                self.interpolation(options, values, options.gradients));
+  });
 }
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
   check_enumerator(options.method, Interpolation::laplace, "Interpolation");
-  Implementation& self = implementation_->for_method(options.method);
-  const auto work = self.interpolation(options, values, options.device_gradients);
-  *self.answer<cl_double>(self.doubles(), queries, {values, options.device_gradients}, results,
-                          options.columns, "interpolated values", enqueue, [&](auto&&... all) {
-                            call::expect(options.gradients == nullptr,
-                                         "gradients in host memory of values in device memory");
-                            return work(all...);
-                          });
+  implementation_->take_turn(enqueue, [&] {
+    Implementation& self = implementation_->for_method(options.method);
+    const auto work = self.interpolation(options, values, options.device_gradients);
+    *self.answer<cl_double>(self.doubles(), queries, {values, options.device_gradients}, results,
+                            options.columns, "interpolated values", enqueue, [&](auto&&... all) {
+                              call::expect(options.gradients == nullptr,
+                                           "gradients in host memory of values in device memory");
+                              return work(all...);
+                            });
+  });
 }
 
 NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
   Implementation& self = *implementation_;
-  call::Answerer& by = self.doubles();
-  return call::take_turn(*self.owner, [&] {
+  return self.take_turn([&] {
+    call::Answerer& by = self.doubles();
     check_queries(queries, m);
     check_enumerator(method, Interpolation::laplace, "Interpolation");
     const auto weighed = Implementation::natural_weights(method);
@@ -434,8 +445,8 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;
-  call::Answerer& by = self.doubles();
-  return call::take_turn(*self.owner, [&] {
+  return self.take_turn([&] {
+    call::Answerer& by = self.doubles();
     check_array(values, self.numbers(columns), "values", kMostCountable);
     std::vector<double> results;
     call::Frame call(by.place.engine);
@@ -448,10 +459,12 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
 void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
                         const GradientOptions& options, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
-  call::Answerer& by = self.doubles();
-  self.on_device(by, enqueue, [&](call::Frame& call) {
-    self.estimate_gradients(call, by.locator, values, columns, options, gradients);
-    call.end();
+  self.take_turn(enqueue, [&] {
+    call::Answerer& by = self.doubles();
+    self.on_device(by, enqueue, [&](call::Frame& call) {
+      self.estimate_gradients(call, by.locator, values, columns, options, gradients);
+      call.end();
+    });
   });
 }
 

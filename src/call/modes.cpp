@@ -7,8 +7,8 @@
 
 #include "blocks/pipeline.hpp"
 #include "call/frame.hpp"
-#include "call/host_modes.hpp"
 #include "modes/dwyer/dwyer.hpp"
+#include "modes/on_host.hpp"
 #include "modes/partition/regions.hpp"
 #include "modes/recursive/run.hpp"
 #include "operations/counters.h"
@@ -128,21 +128,22 @@ research::Triangulation run_partition(TriangulatorAccess::Implementation& self, 
 }
 
 research::Triangulation run_recursive(const double* coordinates, const Request& request) {
-  return run_on_host(coordinates, request,
-                     [](const geometry::PointSets& sets, const research::Options& options,
-                        const statistics::Phases&, research::Triangulation& result) {
-                       // Regions too large for the end game are triangulated like those of a partition.
-                       const auto solve_region = [&sets](const geometry::RegionArrays& region,
-                                                         research::Work& work) {
-                         return partition::solve_region(sets.predicates, sets.points.data(), region, 0,
-                                                        dwyer::triangulate, &work);
-                       };
-                       return geometry::Mesh{recursive::run(sets, options, solve_region, result), {}};
-                     });
+  return modes::run_on_host(coordinates, request.offsets, request.options,
+                            [](const geometry::PointSets& sets, const research::Options& options,
+                               const statistics::Phases&, research::Triangulation& result) {
+                              // Regions too large for the end game are triangulated like those of a
+                              // partition.
+                              const auto solve_region = [&sets](const geometry::RegionArrays& region,
+                                                                research::Work& work) {
+                                return partition::solve_region(sets.predicates, sets.points.data(), region, 0,
+                                                               dwyer::triangulate, &work);
+                              };
+                              return geometry::Mesh{recursive::run(sets, options, solve_region, result), {}};
+                            });
 }
 
 research::Triangulation run_dwyer(const double* coordinates, const Request& request) {
-  return run_on_host(coordinates, request, dwyer::run);
+  return modes::run_on_host(coordinates, request.offsets, request.options, dwyer::run);
 }
 
 const std::array<ModeRow, 6> kModes = {{

@@ -1,7 +1,6 @@
 // The functions of flaunay/research.hpp that triangulate.
 #include <fmt/format.h>
 
-#include "call/areas.hpp"
 #include "call/frame.hpp"
 #include "call/implementation.hpp"
 #include "call/modes.hpp"

@@ -16,6 +16,12 @@ HostPoints checked_points(const double* wide, const float* narrow, const std::ve
 /// Converts the points to double precision. Returns an empty vector if they already are in it.
 std::vector<double> widened(const HostPoints& points);
 
+/// Writes Triangulation::areas, which the engine computes unless they are few. The points are finite. Resets
+/// the engine's accounts.
+void write_areas(Engine& engine, const HostPoints& points, Triangulation& result);
+/// Computes them on the calling thread.
+void write_areas(const HostPoints& points, Triangulation& result);
+
 /// Implements Triangulator::triangulate for host memory: small sets on the calling thread if no device was
 /// named, others on the triangulator's engine for host memory. The offsets must have been checked.
 Triangulation triangulate(Implementation& self, const HostPoints& points,

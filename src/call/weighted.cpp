@@ -11,13 +11,13 @@
 #include "blocks/weighted.hpp"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"
-#include "call/verify.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
+#include "prove/arguments.hpp"
 #include "prove/planar_proof.hpp"
 
 namespace flaunay {
@@ -78,7 +78,7 @@ void settle(const double* points, const double* weights, const std::vector<std::
 }
 
 void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
-  call::check_arrays(points, offsets, mesh);
+  prove::check_arrays(points, offsets, mesh);
   call::expect(
       are_indices(mesh.hidden, offsets.back()) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
       "the hidden points are not those of these points");

@@ -1,6 +1,6 @@
 // The choice between double precision and fixed point: the rate of a device as its times say, what is
 // remembered of it, and what follows from it.
-#include "call/arithmetic.hpp"
+#include "tuning/arithmetic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@
 #include "tests/support/shared_triangulator.hpp"
 #include "tuning/tuning.hpp"
 
-namespace flaunay::call {
+namespace flaunay::tuning {
 namespace {
 
 namespace fs = std::filesystem;
@@ -256,4 +256,4 @@ TEST(SmallArithmetic, KernelsComputeTheirChains) {
 }
 
 }  // namespace
-}  // namespace flaunay::call
+}  // namespace flaunay::tuning

@@ -1,5 +1,5 @@
 // The self test of a device's arithmetic: passes here, and fails where bits are others.
-#include "call/self_test.hpp"
+#include "tuning/self_test.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@
 #include "tests/support/test_kernels.hpp"
 #include "tuning/tuning.hpp"
 
-namespace flaunay::call {
+namespace flaunay::tuning {
 namespace {
 
 TEST(SmallSelfTest, PassesHereAndFailsOnOtherBits) {
@@ -299,4 +299,4 @@ TEST(SelfTest, InFixedPointFindsDevicesThatComputeOtherwise) {
 }
 
 }  // namespace
-}  // namespace flaunay::call
+}  // namespace flaunay::tuning

@@ -10,7 +10,7 @@
 #include "host/opencl/program_cache.hpp"
 #include "host/runtime.hpp"
 
-namespace flaunay::call {
+namespace flaunay::tuning {
 
 /// Makes the runtime's kernels use fixed point if its device is one of those whose tuning asks for the rate
 /// of fp64 (Tuning::fixed_point_from) and fp64 is that slow. The rate is measured once per device and driver,
@@ -36,4 +36,4 @@ double remembered_slowness(const host::ProgramCache& cache, const std::string& k
 /// choose_arithmetic with a slowness that is asked for only if the tuning values need it.
 void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& slowness);
 
-}  // namespace flaunay::call
+}  // namespace flaunay::tuning

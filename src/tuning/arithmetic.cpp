@@ -1,4 +1,4 @@
-#include "call/arithmetic.hpp"
+#include "tuning/arithmetic.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "host/opencl/programs.hpp"
 #endif
 
-namespace flaunay::call {
+namespace flaunay::tuning {
 namespace {
 
 // Beside this, what a launch itself takes is little, and what clocks cannot tell.
@@ -137,4 +137,4 @@ void choose_arithmetic([[maybe_unused]] host::Runtime& runtime) {
 #endif
 }
 
-}  // namespace flaunay::call
+}  // namespace flaunay::tuning

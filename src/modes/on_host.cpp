@@ -1,4 +1,4 @@
-#include "call/host_modes.hpp"
+#include "modes/on_host.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "geometry/sort.hpp"
 #include "statistics/counter.hpp"
 
-namespace flaunay::call {
+namespace flaunay::modes {
 namespace {
 
 void count_sorting(const std::vector<std::size_t>& offsets, research::Work& work) {
@@ -22,17 +22,17 @@ void count_sorting(const std::vector<std::size_t>& offsets, research::Work& work
 
 }  // namespace
 
-research::Triangulation run_on_host(const double* coordinates, const Request& request, HostMode mode) {
-  const research::Options& options = request.options;
+research::Triangulation run_on_host(const double* coordinates, const std::vector<std::size_t>& offsets,
+                                    const research::Options& options, HostMode mode) {
   statistics::Phases phases(options);
   phases.progress("sort", 0);
-  const geometry::PointSets sets = geometry::ingest(coordinates, request.offsets);
+  const geometry::PointSets sets = geometry::ingest(coordinates, offsets);
   phases.end("sort");
 
   phases.progress("triangulate", statistics::kSorted);
   research::Triangulation counted;
   geometry::Mesh mesh = mode(sets, options, phases, counted);
-  if (options.count) count_sorting(request.offsets, counted.work);
+  if (options.count) count_sorting(offsets, counted.work);
   phases.end("triangulate");
 
   phases.progress("canonical form", statistics::kTriangulated);
@@ -44,4 +44,4 @@ research::Triangulation run_on_host(const double* coordinates, const Request& re
   return counted;
 }
 
-}  // namespace flaunay::call
+}  // namespace flaunay::modes

@@ -5,7 +5,7 @@
 
 #include "host/runtime.hpp"
 
-namespace flaunay::call {
+namespace flaunay::tuning {
 
 /// Runs the self test. Returns "" if exact predicates can rely on the device's arithmetic, otherwise what
 /// failed. If nothing but fma is wrong, the runtime's kernels do without it from then on
@@ -16,4 +16,4 @@ std::string self_test_failure(host::Runtime& runtime);
 /// (Capabilities::fixed_point), for which it is run again. Returns "" or what failed.
 std::string make_exact(host::Runtime& runtime);
 
-}  // namespace flaunay::call
+}  // namespace flaunay::tuning
