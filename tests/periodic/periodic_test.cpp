@@ -423,31 +423,6 @@ TEST(Periodic, QueriesOfManyPoints) {
   }
 }
 
-TEST(Periodic, ManySetsAreEachAsAlone) {
-  const Period period{2, 2};
-  Numbers points;
-  std::vector<std::size_t> offsets = {0, 0};
-  std::vector<PeriodicTriangulation> alone;
-  for (const std::size_t n : {150, 300, 200}) {
-    const Numbers set = uniform(n, period, n + 1);
-    alone.push_back(triangulated(set, period));
-    points.insert(points.end(), set.begin(), set.end());
-    offsets.push_back(points.size() / 2);
-  }
-  const PeriodicTriangulation all =
-      triangulate_periodic(testing::triangulator(), points.data(), offsets, period);
-  EXPECT_EQ(0u, all.triangle_offsets[1]);
-  for (std::size_t s = 0; s < alone.size(); ++s) {
-    const std::size_t first = 3 * all.triangle_offsets[s + 1];
-    ASSERT_EQ(alone[s].triangles.size(), 3 * all.triangle_offsets[s + 2] - first);
-    for (std::size_t c = 0; c < alone[s].triangles.size(); ++c) {
-      ASSERT_EQ(alone[s].triangles[c] + static_cast<std::int32_t>(offsets[s + 1]), all.triangles[first + c]);
-      ASSERT_EQ(alone[s].neighbors[c] + static_cast<std::int32_t>(first / 3), all.neighbors[first + c]);
-      ASSERT_EQ(alone[s].offsets[2 * c], all.offsets[2 * (first + c)]);
-    }
-  }
-}
-
 TEST(Periodic, VerifyFindsWhatIsWrong) {
   for (const Period& period : {Period{}, Period{1, HUGE_VAL}}) {
     Numbers points = uniform(80, {}, 2);
