@@ -42,6 +42,14 @@ MODES = DEVICE_MODES + ["recursive", "partition", "dwyer"]
 OPTIONS_OF_MODE = {"partition": ["--partition-levels", "3", "--threads", "2"]}
 TUNINGS = ["gpu", "gpu:32", "small", "small-blocks"]
 ARRAYS = ["triangles", "neighbors", "hull", "duplicates"]
+# Per space the options of the command, and what there is in place of a hull.
+SPACES = {
+    "torus": (["--period", "1.5,2"], ["offsets"]),
+    "cylinder": (["--period", "inf,2"], ["offsets"]),
+    "weighted": (["--weighted"], ["hull", "hidden"]),
+    "sphere": (["--sphere"], []),
+}
+PLACES = {"host": [], "device": ["--device=#0"], "chunks": ["--chunk-points=100", "--memory=512M"]}
 MESHES = [".off", ".ply", ".obj", ".msh", ".vtu", ".ele", ".svg", ".npy"]
 BINARY = [".npy", ".bin", ".ply", ".vtu"]
 POINT_FORMATS = [".npy", ".node", ".xy", ".txt", ".csv", ".bin"]
@@ -150,13 +158,13 @@ class Fingerprint:
     def outputs_in(self, folder):
         return [f"--{name}={folder / name}.npy" for name in ARRAYS] + [f"--stats={folder}/stats.json"]
 
-    def triangulate(self, key, points, *options, mesh=None, **how):
+    def triangulate(self, key, points, *options, mesh=None, arrays=ARRAYS, **how):
         folder = self.new_folder(key)
-        outputs = self.outputs_in(folder)
+        outputs = [f"--{name}={folder / name}.npy" for name in arrays] + [f"--stats={folder}/stats.json"]
         if mesh is not None:
             outputs.append(f"--output={folder}/mesh{mesh}")
         self.run(key, "triangulate", points, *options, *outputs, **how)
-        for name in ARRAYS:
+        for name in arrays:
             self.add_file(f"{key}/{name}", folder / f"{name}.npy")
         self.add_statistics(key, folder / "stats.json")
         for path in sorted(folder.glob("mesh.*")):
@@ -261,6 +269,7 @@ class Fingerprint:
                 yield self.triangulate, (key, path, f"--min-angle={angle}"), {"mesh": ".ele"}
         for name in small:
             yield self.triangulate, (f"cli/refined/{name}", sets[name], "--min-angle=30"), {"mesh": ".ele"}
+        yield from self.spaces()
         yield from self.formats()
         yield self.verifications, ()
         yield from self.wrong_requests()
@@ -268,6 +277,47 @@ class Fingerprint:
             yield self.run, (f"cli/help/{command or 'flaunay'}", *([command] if command else []), "--help")
         yield self.run, ("cli/version", "--version")
         yield self.run, ("cli/no-command",)
+
+    def spaces(self):
+        chosen = ["ukraine", "uniform-60", "grid-60", "small-integers-60", "zeros"]
+        if not self.quick:
+            chosen += ["uniform-700", "circle-700", "half-duplicates-700", "all-equal", "vertical"]
+        places = {name: options for name, options in PLACES.items() if name != "device" or self.has_devices}
+        for name in chosen:
+            points = self.sets[name].read_text().split("\n")
+            # A third number in each row, and numbers that are degrees.
+            rows = [row.split() for row in points if row.strip()]
+            weighted, globe = self.folder / f"weighted-{name}.txt", self.folder / f"globe-{name}.xy"
+            weighted.write_text("".join(f"{x} {y} {k * 7 % 5}\n" for k, (x, y) in enumerate(rows)))
+            globe.write_text("".join(f"{float(x) % 360!r} {float(y) % 180 - 90!r}\n" for x, y in rows))
+            given = {"weighted": weighted, "sphere": globe}
+            for place, placing in places.items():
+                yield self.triangulate, (f"cli/plane/{place}/{name}", self.sets[name], *placing)
+                for space, (options, arrays) in SPACES.items():
+                    key = f"cli/{space}/{place}/{name}"
+                    wanted = ["triangles", "neighbors", "duplicates", *arrays]
+                    path = given.get(space, self.sets[name])
+                    yield self.triangulate, (key, path, *options, *placing), {"arrays": wanted}
+                    yield self.verification_in, (key, path, *options, "offsets" in arrays)
+            for space, mesh in ("torus", ".vtu"), ("torus", ".obj"), ("sphere", ".geojson"), ("sphere", ".ply"):
+                options, arrays = SPACES[space]
+                key, path = f"cli/{space}/meshes/{name}/{mesh[1:]}", given.get(space, self.sets[name])
+                yield self.triangulate, (key, path, *options), {"mesh": mesh, "arrays": arrays}
+
+    def verification_in(self, key, points, *options):
+        """Of a mesh that is right, and of the mesh with its first index changed."""
+        *options, has_offsets = options
+        folder = self.new_folder(f"{key}/verify")
+        mesh = folder / "t.npy"
+        offsets = ["--offsets", folder / "o.npy"] if has_offsets else []
+        if self.run(f"{key}/verify/made", "triangulate", points, *options, "--triangles", mesh, *offsets) != 0:
+            return
+        self.run(f"{key}/verify/right", "verify", points, mesh, *options, *offsets)
+        numbers = bytearray(mesh.read_bytes())
+        if len(numbers) > 128:
+            numbers[128] ^= 1
+        mesh.write_bytes(numbers)
+        self.run(f"{key}/verify/wrong", "verify", points, mesh, *options, *offsets)
 
     def formats(self):
         for suffix in POINT_FORMATS:

@@ -70,7 +70,8 @@ struct PointTree::Implementation {
     return result;
   }
   std::int32_t original(std::int32_t image) const {
-    const auto i = static_cast<std::size_t>(std::max(image, 0));
+    if (image < 0) return image;
+    const auto i = static_cast<std::size_t>(image);
     return i < points ? image : originals[i - points];
   }
   bool has_repeated(const Neighbors& found, std::size_t count) const {

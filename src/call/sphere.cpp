@@ -293,9 +293,11 @@ Neighbors SphereLocator::nearest(const double* queries, std::size_t m, SphereCoo
   const auto find = [&](Point query, std::int32_t start, Near* row) {
     const sphere::Walker& walker = *implementation_->walker;
     const sphere::Direction from = sphere::direction_of(query);
+    double angle = 0;
     for (const std::int32_t v :
          walker.nearest_points(query, implementation_->nearest(query, start), options.count)) {
-      const double angle = sphere::angle_between(from, sphere::direction_of(walker.place(v)));
+      // The order is exact, but angles are rounded: none is less than the one before.
+      angle = std::max(angle, sphere::angle_between(from, sphere::direction_of(walker.place(v))));
       if (angle <= options.max_distance) *row++ = {v, angle};
     }
   };

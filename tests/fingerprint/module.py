@@ -119,7 +119,37 @@ def show_on_device(name, points):
         )
 
 
+SURFACE = "places simplices neighbors representatives npoints nsimplex"
+
+
+def show_spaces(name, points):
+    points = np.asarray(points, float)
+    queries = np.concatenate([random.random_sample((100, 2)) * 20 - 2, points[:50]])
+    values = np.arange(2.0 * len(points)).reshape(-1, 2) % 97
+    weights = np.arange(len(points)) % 5
+    bounds = [(-1, -1), (30, -1), (30, 30), (-1, 30)]
+    regular = show_attributes(
+        f"weighted/{name}", lambda: flaunay.weighted(points, weights), "simplices neighbors hull hidden hidden_by"
+    )
+    show_attributes(f"weighted/{name}/cells", lambda: regular.cells(bounds), "vertices offsets areas centroids")
+    degrees = [points[:, 0] * 20 % 360, points[:, 1] * 10 % 180 - 90]
+    for space, make, asked in (
+        ("torus", lambda: flaunay.periodic(points, (7, 11)), queries),
+        ("cylinder", lambda: flaunay.periodic(points, (7, None)), queries),
+        ("sphere", lambda: flaunay.spherical(np.stack(degrees, axis=-1)), queries),
+    ):
+        result = show_attributes(f"{space}/{name}", make, SURFACE)
+        show(f"{space}/{name}/find_simplex", lambda: result.find_simplex(asked))
+        show(f"{space}/{name}/nearest", lambda: result.nearest(asked))
+        show(f"{space}/{name}/nearest-4", lambda: result.nearest(asked, k=4))
+        show(f"{space}/{name}/interpolate", lambda: result.interpolate(values, asked))
+        show(f"{space}/{name}/verify", lambda: result.verify())
+        cells = (lambda: result.voronoi()) if space == "sphere" else (lambda: result.cells())
+        show_attributes(f"{space}/{name}/cells", cells, "vertices offsets areas centroids cells cell_offsets")
+
+
 for set_name, set_points in SETS.items():
+    show_spaces(set_name, set_points)
     show_classes(set_name, set_points)
     show_triangulations(set_name, set_points)
     show_on_device(set_name, set_points)

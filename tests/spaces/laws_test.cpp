@@ -135,6 +135,36 @@ TYPED_TEST(Laws, SetsAreEachAsAlone) {
   }
 }
 
+TYPED_TEST(Laws, PointsAreNearestToThemselves) {
+  if constexpr (!std::is_same_v<TypeParam, Weighted>) {
+    for (const Case& given : this->cases_) {
+      SCOPED_TRACE(given.name);
+      const auto mesh = triangulated<TypeParam>(given.numbers);
+      const std::size_t n = mesh.representatives.size();
+      NeighborOptions options;
+      options.count = 4;
+      // Of no points, too.
+      const Numbers queries = n > 0 ? given.numbers : Numbers(3 * TypeParam::kWidth, 0.5);
+      const Answers found = TypeParam::answers(triangulator(), given.numbers, mesh, queries, options);
+      for (std::size_t q = 0; q < queries.size() / TypeParam::kWidth; ++q) {
+        const std::int32_t self = n > 0 ? mesh.representatives[q] : -1;
+        ASSERT_EQ(self, found.nearest[q]);
+        ASSERT_EQ(self, found.several.points[options.count * q]);
+        const auto row = found.several.points.begin() + static_cast<std::ptrdiff_t>(options.count * q);
+        std::set<std::int32_t> near(row, row + static_cast<std::ptrdiff_t>(options.count));
+        near.erase(-1);
+        ASSERT_EQ(std::min(options.count, n), near.size());
+        ASSERT_TRUE(std::is_sorted(&found.several.distances[options.count * q],
+                                   &found.several.distances[options.count * q] + options.count));
+        const std::int32_t t = found.triangles[q];
+        if (t < 0) continue;
+        const std::int32_t* const corners = &mesh.triangles[3 * static_cast<std::size_t>(t)];
+        ASSERT_TRUE(std::count(corners, corners + 3, self) > 0);
+      }
+    }
+  }
+}
+
 TYPED_TEST(Laws, EveryWrongIndexIsFound) {
   for (const Case& given : {this->cases_[6], this->cases_[8]}) {
     const Offsets offsets = {0, given.numbers.size() / TypeParam::kWidth};

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/neighbors.hpp"
 #include "flaunay/periodic.hpp"
 #include "flaunay/sphere.hpp"
 #include "flaunay/verify.hpp"
@@ -20,6 +21,12 @@ namespace flaunay::testing::spaces {
 using Numbers = std::vector<double>;
 using Offsets = std::vector<std::size_t>;
 
+/// The answers to queries of one set: triangles, nearest points, and several of these.
+struct Answers {
+  std::vector<std::int32_t> triangles, nearest;
+  Neighbors several;
+};
+
 struct Plane {
   static constexpr std::size_t kWidth = 2;
   static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
@@ -29,6 +36,14 @@ struct Plane {
   }
   static std::string verify(const Numbers& points, const Offsets& offsets, const Triangulation& mesh) {
     return flaunay::verify(points.data(), offsets, mesh);
+  }
+  static Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
+                         const Numbers& queries, const NeighborOptions& options) {
+    Locator locator(triangulator, points.data(), points.size() / kWidth, mesh);
+    PointTree tree(triangulator, points.data(), points.size() / kWidth);
+    const std::size_t m = queries.size() / kWidth;
+    return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
+            tree.nearest(queries.data(), m, options)};
   }
 };
 
@@ -63,6 +78,14 @@ struct Periodic {
   static std::string verify(const Numbers&, const Offsets&, const PeriodicTriangulation& mesh) {
     return flaunay::verify(mesh);
   }
+  static Answers answers(Triangulator& triangulator, const Numbers&, const PeriodicTriangulation& mesh,
+                         const Numbers& queries, const NeighborOptions& options) {
+    PeriodicLocator locator(triangulator, mesh);
+    PointTree tree(triangulator, mesh);
+    const std::size_t m = queries.size() / kWidth;
+    return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
+            tree.nearest(queries.data(), m, options)};
+  }
 };
 using Torus = Periodic<1, 1>;
 using Cylinder = Periodic<1, 0>;
@@ -76,6 +99,14 @@ struct Sphere {
   static std::string verify(const Numbers& points, const Offsets& offsets,
                             const SphericalTriangulation& mesh) {
     return flaunay::verify(points.data(), offsets, SphereCoordinates::directions, mesh);
+  }
+  static Answers answers(Triangulator& triangulator, const Numbers&, const SphericalTriangulation& mesh,
+                         const Numbers& queries, const NeighborOptions& options) {
+    constexpr SphereCoordinates kDirections = SphereCoordinates::directions;
+    SphereLocator locator(triangulator, mesh);
+    const std::size_t m = queries.size() / kWidth;
+    return {locator.locate(queries.data(), m, kDirections), locator.nearest(queries.data(), m, kDirections),
+            locator.nearest(queries.data(), m, kDirections, options)};
   }
 };
 
