@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Callable, ClassVar, Generic, Literal, Optional, TypeVar, Union, overload
 
 import numpy as np
@@ -153,6 +154,6 @@ class WithLocator(OfPoints, Generic[Locator]):
             raise UsageError(
                 f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
             )
-        rows = numbers.reshape(self.npoints, -1) if self.npoints else numbers.reshape(0, 1)
+        rows = numbers.reshape(self.npoints, math.prod(numbers.shape[1:]))
         found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]))
         return found.reshape(queries.shape[:-1] + numbers.shape[1:])

@@ -138,3 +138,15 @@ def test_several_nearest_points(period, n):
     assert near == (bound, tri.representatives[near[1]])
     assert tri.nearest(queries, k=1)[:, 0].tolist() == tri.nearest(queries).tolist()
     assert (tri.nearest(queries, k=n, distance_upper_bound=0.25) >= 0).sum() == (expected <= 0.25).sum()
+
+
+@pytest.mark.parametrize(
+    "make", [lambda: flaunay.periodic(np.empty((0, 2)), (1, None)), lambda: flaunay.spherical(np.empty((0, 2)))]
+)
+def test_queries_of_no_points(make):
+    tri, queries = make(), np.full((3, 2), 0.25)
+    assert tri.find_simplex(queries).tolist() == tri.nearest(queries).tolist() == [-1] * 3
+    assert tri.nearest(queries, k=2).tolist() == [[-1, -1]] * 3
+    for shape in (0,), (0, 2), (0, 2, 4):
+        values = tri.interpolate(np.empty(shape), queries)
+        assert values.shape == (3, *shape[1:]) and np.isnan(values).all()

@@ -144,8 +144,10 @@ def show_spaces(name, points):
         show(f"{space}/{name}/nearest-4", lambda: result.nearest(asked, k=4))
         show(f"{space}/{name}/interpolate", lambda: result.interpolate(values, asked))
         show(f"{space}/{name}/verify", lambda: result.verify())
-        cells = (lambda: result.voronoi()) if space == "sphere" else (lambda: result.cells())
-        show_attributes(f"{space}/{name}/cells", cells, "vertices offsets areas centroids cells cell_offsets")
+        if space == "sphere":
+            show_attributes(f"{space}/{name}/voronoi", lambda: result.voronoi, "vertices cells cell_offsets areas")
+        else:
+            show_attributes(f"{space}/{name}/cells", lambda: result.cells, "vertices offsets areas centroids")
 
 
 for set_name, set_points in SETS.items():
