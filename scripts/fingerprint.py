@@ -284,9 +284,9 @@ class Fingerprint:
             chosen += ["uniform-700", "circle-700", "half-duplicates-700", "all-equal", "vertical"]
         places = {name: options for name, options in PLACES.items() if name != "device" or self.has_devices}
         for name in chosen:
-            points = self.sets[name].read_text().split("\n")
             # A third number in each row, and numbers that are degrees.
-            rows = [row.split() for row in points if row.strip()]
+            rows = [row.split() for row in self.sets[name].read_text().splitlines()]
+            rows = [row for row in rows if len(row) == 2]
             weighted, globe = self.folder / f"weighted-{name}.txt", self.folder / f"globe-{name}.xy"
             weighted.write_text("".join(f"{x} {y} {k * 7 % 5}\n" for k, (x, y) in enumerate(rows)))
             globe.write_text("".join(f"{float(x) % 360!r} {float(y) % 180 - 90!r}\n" for x, y in rows))

@@ -7,10 +7,7 @@
 #include <utility>
 
 #include "blocks/small.hpp"
-#include "call/domains.hpp"
 #include "call/groups.hpp"
-#include "call/insert_segments.hpp"
-#include "call/refine.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/carry.hpp"
 #include "constrained/crossings/lines.hpp"

@@ -1,8 +1,7 @@
-#include "call/domains.hpp"
-
 #include <optional>
 #include <utility>
 
+#include "call/constrained.hpp"
 #include "call/frame.hpp"
 #include "tuning/tuning.hpp"
 

@@ -1,7 +1,6 @@
-#include "call/insert_segments.hpp"
-
 #include <numeric>
 
+#include "call/constrained.hpp"
 #include "call/frame.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/crossings/first_crossing.hpp"

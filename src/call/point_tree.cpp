@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "call/frame.hpp"
-#include "call/neighbors.hpp"
 #include "call/periodic.hpp"
 #include "derived/periodic/torus.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay {
 
@@ -27,7 +27,7 @@ struct PointTree::Implementation {
 
   // queries: in the period, if there is one.
   Neighbors find(const double* queries, std::size_t m, const NeighborOptions& options) const {
-    call::check(options, m);
+    check_neighbors(options, m);
     Neighbors result;
     result.points.resize(m * options.count, -1);
     result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());

@@ -1,10 +1,9 @@
-#include "call/refine.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <functional>
 
+#include "call/constrained.hpp"
 #include "call/frame.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "constrained/refinement/sets.hpp"

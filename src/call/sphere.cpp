@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "call/frame.hpp"
-#include "call/neighbors.hpp"
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
@@ -285,7 +284,7 @@ std::vector<std::int32_t> SphereLocator::nearest(const double* queries, std::siz
 
 Neighbors SphereLocator::nearest(const double* queries, std::size_t m, SphereCoordinates coordinates,
                                  const NeighborOptions& options) {
-  with_errors([&] { call::check(options, m); });
+  with_errors([&] { check_neighbors(options, m); });
   struct Near {
     std::int32_t point = -1;
     double angle = std::numeric_limits<double>::infinity();

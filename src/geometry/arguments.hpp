@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
+#include "flaunay/neighbors.hpp"
 #include "mesh/limits.h"
 
 namespace flaunay {
@@ -72,6 +73,14 @@ inline bool are_indices(const std::vector<std::int32_t>& ids, std::size_t end, s
 inline bool are_offsets(const std::vector<std::size_t>& offsets, std::size_t parts, std::size_t size) {
   return offsets.size() == parts + 1 && offsets.front() == 0 && offsets.back() == size &&
          std::is_sorted(offsets.begin(), offsets.end());
+}
+
+/// Throws Error(usage) for options that make no sense, and Error(input) for too many results of m queries.
+inline void check_neighbors(const NeighborOptions& options, std::size_t m) {
+  expect(options.count > 0, "the number of nearest points must be 1 or more");
+  expect(options.max_distance >= 0, "the largest distance must be 0 or more");
+  check_count(options.count, "neighbours of each query",
+              std::min(kMostIndexed, kMostCountable / std::max<std::size_t>(m, 1)));
 }
 
 }  // namespace flaunay

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "call/insert_segments.hpp"
+#include "call/constrained.hpp"
 #include "host/opencl/device.hpp"
 #include "tests/support/runtimes.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "call/domains.hpp"
+#include "call/constrained.hpp"
 
 namespace flaunay::sequential {
 
