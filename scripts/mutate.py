@@ -188,7 +188,7 @@ FAULTS = [Fault(*each) for each in [
      "for (auto before = before_.rbegin(); before != before_.rend(); ++before) {",
      "for (auto before = before_.begin(); before != before_.end(); ++before) {",
      "the wrong order", "test_updates SmallUpdates.ErrorsInTheMiddle"),
-    ("renumbered-hulls", "src/call/refine.cpp",
+    ("renumbered-hulls", "src/constrained/refinement/result.cpp",
      "{&result.triangles, &result.hull, &result.constraint_edges", "{&result.triangles, &result.constraint_edges",
      "a forgotten array", "test_domains SmallRefined.*"),
     ("straight-hulls", "src/derived/sphere/close.cpp",

@@ -107,7 +107,7 @@ struct Tuning : host::Sizes {
   std::size_t depth_rounds = 1;
 
   /// If single precision is at least so many times as fast as double precision on a GPU, it computes in fixed
-  /// point (call/arithmetic.hpp); 0: the rates are not asked for.
+  /// point (tuning/arithmetic.hpp); 0: the rates are not asked for.
   std::size_t fixed_point_from = 0;
 
   // The order of triangles depends on the following sizes. So they are the same for every device, and only
