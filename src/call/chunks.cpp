@@ -21,17 +21,17 @@
 namespace flaunay {
 namespace {
 
-// What a call uses however small its chunks are.
+// Memory that a call uses with chunks of any size.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{64} << 20;
 // Bytes on the host per point of a chunk: the points that are read ahead, the triangulation with its working
 // memory, the results, and the results of the chunk before, which are being written.
 constexpr std::uint64_t kBytesPerPoint = 480;
-// If areas are wanted, those of a chunk and of the one before.
+// The areas of a chunk and of the chunk before, if areas are wanted.
 constexpr std::uint64_t kAreasBytesPerPoint = 2 * 2 * sizeof(double);
-// If points have values: those of a chunk while it is triangulated, while its triangles are scanned, and
-// while the next one is read, and of what is scanned the indices.
+// The values of a chunk's points while it is triangulated, while its triangles are scanned, and while the
+// next chunk is read; and the indices of the triangles that are scanned.
 constexpr std::uint64_t kValuesBytesPerPoint = 3 * sizeof(double) + 24;
-// Chunks differ: those of more than one and a half times the points that they should have are cut again.
+// Chunks differ in size: a chunk with more than one and a half times the planned points is cut again.
 constexpr double kMostUnequal = 1.6;
 constexpr std::uint64_t kBufferShare = 16;  // of the memory, to the scratch file
 

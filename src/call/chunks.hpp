@@ -9,7 +9,7 @@
 
 namespace flaunay::call {
 
-/// What a call needs at least.
+/// The least memory that a call needs.
 constexpr std::uint64_t kLeastChunkBytes = std::uint64_t{128} << 20;
 /// The bytes that a call may use. Throws Error(usage) if they are less.
 std::uint64_t chunk_memory(const ChunkOptions& options);
@@ -18,7 +18,7 @@ std::uint64_t chunk_memory(const ChunkOptions& options);
 /// with indices up to most_index can refer to.
 void check_chunk_arrays(const double* coordinates, std::uint64_t n, std::uint64_t most_index);
 
-/// See flaunay::triangulate_chunks. values: those of the points, or null. folding: if some points are images;
+/// See flaunay::triangulate_chunks. values: of the points, or null. folding: if some points are images;
 /// otherwise null.
 ChunkStatistics triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
                                    const ChunkOptions& options, chunks::Folding* folding = nullptr);

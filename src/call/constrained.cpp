@@ -59,7 +59,7 @@ void end_phase(const char* name, double begin, Statistics& statistics) {
   statistics.phases.push_back({name, seconds});
 }
 
-// What is asked for of the triangulation into which segments are inserted.
+// The options of the triangulation into which segments are inserted.
 Options plain_options(const ConstrainedOptions& options) {
   Options plain = options;
   plain.neighbors = true;
@@ -139,7 +139,8 @@ ConstrainedTriangulation constrain(call::Implementation& self, const double* coo
 ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
                                          const std::vector<std::size_t>& offsets,
                                          const Constraints& constraints, const ConstrainedOptions& options) {
-  // What splitting and triangulating take for each piece; there are two for a segment and a place on it.
+  // Memory for each piece while segments are split and pieces triangulated; a segment with one place on it
+  // has two pieces.
   constexpr std::size_t kBytesPerPiece = 320;
   // To ask how much memory there is takes longer than a small call, for which there is always enough.
   constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
@@ -200,7 +201,7 @@ std::vector<std::size_t> group_segments(const std::vector<call::Group>& groups,
   return first;
 }
 
-// What comes after all stages.
+// The end of a call on small sets, after all stages.
 void end_small(call::Implementation& self, const double* coordinates, const Constraints& constraints,
                std::size_t n, const ConstrainedOptions& options, ConstrainedTriangulation& result) {
   constrained::carry_markers(constraints, n, result);
@@ -272,7 +273,7 @@ std::optional<ConstrainedTriangulation> constrain_by_groups(
   });
 }
 
-// mesh: what the constraints and options are those of, or null.
+// mesh: the given mesh that has made these constraints and options, or null.
 ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const double* coordinates,
                                               const std::vector<std::size_t>& offsets,
                                               const Constraints& constraints,
@@ -280,7 +281,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
                                               const call::DomainRequest& request,
                                               const constrained::GivenMesh* mesh) {
   const bool is_refined = options.refinement.is_wanted();
-  // What is made of the triangles that are left comes after their refinement.
+  // Half-edges and areas are made after refinement.
   ConstrainedOptions first = options;
   if (is_refined) {
     first.neighbors = true;

@@ -1,5 +1,5 @@
-// Constrained triangulations of points in host memory, and their stages: segments are inserted, domains
-// labelled and left out, what is left is refined. Each runs on the calling thread or on an engine.
+// Constrained triangulations of points in host memory, and their stages: inserting segments, labelling
+// domains and leaving some out, refining the rest. Each stage runs on the calling thread or on an engine.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ geometry::Fitted<geometry::Done> insert_segments_on(Engine& engine, const double
 
 // ---- Domains
 
-/// What a call does with the domains of a triangulation.
+/// The rules by which a call labels domains, and leaves some out.
 struct DomainRequest {
   constrained::DepthRules rules{};
   bool labels = false;  ///< whether to compute ConstrainedTriangulation::depths and regions
@@ -43,7 +43,7 @@ struct DomainRequest {
   bool needs_depths() const { return labels || polygons || rules.outside != Outside::keep; }
 };
 
-/// What the options ask for. are_closed: whether segments are known to be closed curves.
+/// The rules of the options. are_closed: whether segments are known to be closed curves.
 DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
 
 /// Labels a triangulation, which must have neighbours, leaves out what the request and the holes say, and
@@ -64,7 +64,7 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
 
 // ---- Refinement
 
-/// Throws Error(usage), which names the member, if a refinement cannot be what is meant.
+/// Throws Error(usage), which names the member, for a refinement that makes no sense.
 void check_refinement(const Refinement& wanted, std::size_t seeds);
 
 /// Reports the angles of a result that was not refined. coordinates: of the n points of the caller.

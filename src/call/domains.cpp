@@ -16,7 +16,7 @@ struct Left {
   std::vector<std::int32_t> seeds;  // per triangle, or -1
 };
 
-// What places are found by.
+// The part of the mesh that finds the triangles of places.
 constrained::DomainMesh triangles_of(Frame& call, const double* coordinates,
                                      const std::vector<std::size_t>& offsets,
                                      const ConstrainedTriangulation& result) {
@@ -84,7 +84,7 @@ void label_seeds(host::Runtime& runtime, const std::vector<std::int32_t>& triang
   regions.seeds = runtime.upload(runtime.arena(), std::move(seeds));
 }
 
-// Writes what is left, unless all of it is. regions: where to write the numbers of regions.
+// Writes the triangles that are left, if some are left out. numbers: gets the regions of these triangles.
 void leave(Frame& call, const constrained::DomainMesh& mesh, const constrained::LeftPlaces& places,
            const Buffer<cl_int>& numbers, constrained::Regions& regions, Left& left) {
   const std::size_t corners = 3 * places.triangle_offsets.back();

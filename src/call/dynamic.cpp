@@ -1,4 +1,4 @@
-// The public class DynamicTriangulation: what is asked for is checked here, and points are accounted for.
+// The public class DynamicTriangulation: checks arguments and keeps account of points.
 #include "flaunay/dynamic.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// What a triangulation with constraints may not have, if points are to be inserted.
+// Throws for options that a triangulation that changes does not support.
 void check_supported(const Constraints& constraints, const ConstrainedOptions& options) {
   call::expect(options.outside == Outside::keep && constraints.hole_count == 0,
                "nothing can be left out of a triangulation that changes");
@@ -147,7 +147,7 @@ struct DynamicTriangulation::Implementation {
     if (is_lost) triangulate_anew();
   }
 
-  // What a batch is to do with the mesh. Points leave their old places before others come.
+  // The changes that a batch makes to the mesh. Points leave their old places before others come.
   struct Batch {
     Ids removed, moved, inserted;
     bool moves_many = false;
@@ -224,7 +224,7 @@ struct DynamicTriangulation::Implementation {
   }
 
   // A batch. If it throws, points and constraints are what they were before. located: the points whose
-  // representatives are told.
+  // representatives are returned.
   template <typename Prepare>
   Changes run(bool is_large, Ids located, const Prepare& prepare) {
     const double begin = host::now();
@@ -245,7 +245,8 @@ struct DynamicTriangulation::Implementation {
     return changes;
   }
 
-  // Of points in one place, those with larger numbers leave first: then nobody takes it over who leaves, too.
+  // Points in one place leave in descending order of their numbers. Otherwise a point that leaves, too, would
+  // represent the others for a while.
   std::vector<std::size_t> order_of_leaving(const std::int32_t* numbers, std::size_t m) const {
     std::vector<std::size_t> order(m);
     std::iota(order.begin(), order.end(), std::size_t{0});

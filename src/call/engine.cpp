@@ -36,7 +36,8 @@ std::size_t bytes_per_point(const host::Runtime& runtime) {
 // their time that can be measured.
 constexpr std::size_t kNeverLacking = std::size_t{64} << 20;
 
-// Where loops end early, so many points at once: a tenth of what loops have been seen to need, on any input.
+// The most points of a call on a device whose loops end early. On any input, loops over so few points were
+// seen to need at most a tenth of the steps after which these devices end them.
 constexpr std::size_t kMostPointsInShortLoops = 4096;
 
 // The largest number of points that arrays, indices and loops allow, whatever memory is free.

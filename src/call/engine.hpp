@@ -1,4 +1,4 @@
-// What runs calls: a device or the host itself, memory, and the statistics of a call.
+// An engine runs calls: a device or the host itself, with memory and the accounts of a call.
 #pragma once
 
 #include <CL/cl.h>
@@ -67,7 +67,7 @@ struct Engine {
   std::size_t allocations() const;
 
   std::size_t allocations_before_ = 0;
-  // What provide_memory has counted last, and for what.
+  // The last result of provide_memory's count, and the numbers of points and sets that it was for.
   std::size_t counted_points_ = 0, counted_sets_ = 0;
   blocks::WorkspaceBytes needed_{};
 };

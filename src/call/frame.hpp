@@ -134,7 +134,7 @@ class Frame {
   Output<T> output(std::vector<T>& to, std::size_t most = 0, const char* what = "");
   template <typename T>
   Output<T> output(DeviceBuffer& to, std::size_t most, const char* what);
-  /// An array of so many results.
+  /// An array of `count` results.
   template <typename T, typename To>
   Buffer<T> out(To& to, std::size_t count, const char* what = "") {
     return output<T>(to, count, what).buffer(count);
@@ -178,7 +178,7 @@ class Frame {
     std::shared_ptr<_cl_mem> values;
   };
 
-  // What end() does with an array that kernels have written. A small struct, since some calls take a
+  // How end() transfers an array that kernels have written. A small struct, since some calls take a
   // microsecond.
   struct Transfer {
     std::shared_ptr<_cl_mem> from, to;  // to: the caller's device memory if the host computes
@@ -221,14 +221,14 @@ class Output {
   /// One that is not wanted.
   Output() = default;
   bool is_wanted() const { return frame_ != nullptr; }
-  /// Touches memory of the host for so many values while the device computes; otherwise page faults would
-  /// take longer than writing the results.
+  /// Touches host memory for `count` values while the device computes; otherwise page faults would take
+  /// longer than writing the results.
   void reserve(std::size_t count) const {
     if (values_ != nullptr) frame_->runtime.resize(*values_, count);
   }
-  /// The buffer to which kernels write so many values; none if they are not wanted. If more than half of the
-  /// memory is unused, it is released; otherwise there is room for as many as there may be, which is only
-  /// addresses, so that a caller who appends some need not move all.
+  /// The buffer to which kernels write `count` values; none if the array is not wanted. If more than half of
+  /// the vector's memory is unused, it is released. Otherwise the vector keeps its reserved capacity: unused
+  /// pages cost no memory, and a caller can append without a copy.
   Buffer<T> buffer(std::size_t count) const {
     if (values_ == nullptr) return there_;
     frame_->runtime.resize(*values_, count, most_ / 2 > count ? count : most_);
@@ -246,7 +246,7 @@ class Output {
 
   Frame* frame_ = nullptr;
   std::size_t most_ = 0;
-  std::shared_ptr<std::vector<T>> values_;  // in host memory: the caller's, or those of a native engine
+  std::shared_ptr<std::vector<T>> values_;  // in host memory: the caller's vector, or a native engine's
   Buffer<T> there_{};                       // in device memory
 };
 

@@ -6,7 +6,7 @@ namespace flaunay::call {
 
 std::vector<Group> groups_of(const Engine& engine, const std::vector<std::size_t>& offsets) {
   const Tuning& tuning = tuning_of(engine.runtime);
-  // What threads launch on their own is not recorded.
+  // Launches of single threads are not recorded.
   if (!engine.runtime.is_native() || engine.runtime.accounts().log != nullptr) return {};
   if (offsets.back() <= tuning.group_points || tuning.group_points == 0) return {};
   std::vector<Group> groups;

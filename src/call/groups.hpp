@@ -1,5 +1,5 @@
-// Calls on many small sets: groups of them, each of which one thread computes from the first stage to the
-// last, while all that it needs is in that core's cache.
+// Calls on many small sets: one thread computes a group of sets from the first stage to the last, while all
+// its arrays are in that core's cache.
 #pragma once
 
 #include <algorithm>

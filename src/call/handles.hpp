@@ -72,7 +72,7 @@ host::Buffer<T> result_buffer(host::Runtime& runtime, DeviceBuffer& buffer, std:
   return {DeviceBufferAccess::memory(buffer), count};
 }
 
-/// Enqueues the copy of an array to a buffer, of which the host need not be allowed to write.
+/// Enqueues the copy of an array to a buffer, which the host may not be allowed to write.
 template <typename T>
 void write_result(host::Runtime& runtime, const host::Buffer<T>& to, std::vector<T> values) {
   const std::size_t count = values.size();

@@ -27,12 +27,13 @@ struct Triangulator::Implementation {
   call::Engine& on_device();
   /// The engine of calls on host memory. Throws as on_device if it is a device that cannot be used.
   call::Engine& for_host_memory();
-  /// Whether work on so many points in host memory is done on the calling thread: no device was named, and it
-  /// takes less time than other threads or a device need to begin. What is profiled is never done there.
+  /// Whether the calling thread works on this number of points in host memory itself: no device was named,
+  /// nothing is profiled, and other threads or a device would take longer to begin than the work takes.
   bool stays_here(std::size_t points, bool profile = false);
-  /// The engine for work on so many points in host memory: the calling thread's own, or for_host_memory().
+  /// The engine for work on this number of points in host memory: the calling thread's own, or
+  /// for_host_memory().
   call::Engine& for_points(std::size_t points, bool profile = false);
-  /// What runs natively, made when it is first needed.
+  /// The engine that runs kernels natively, made when it is first needed.
   call::Engine& native();
   /// The engine that has doubles in place of this one, which is on_device() or for_host_memory(): itself, or
   /// another one on the same device and in its context, or native() if that device has no doubles.

@@ -45,7 +45,7 @@ struct Answerer {
   Place place;
   Arena own;
   locate::Locator locator;
-  /// Of a mesh with constraints: see WholeMesh.
+  /// WholeMesh::constrained of a mesh with constraints; null without these.
   std::shared_ptr<const std::vector<std::uint8_t>> constrained;
 };
 
@@ -60,7 +60,7 @@ struct Locator::Implementation {
     return call::take_turn(*owner, work...);
   }
 
-  // What follows is done in a turn of the owner's.
+  // The following members are called in a turn of the owner's.
 
   /// Makes the locator, in fixed point if that is what the engine computes in and the points fit.
   /// make(answerer).
@@ -93,8 +93,8 @@ struct Locator::Implementation {
     point_count = points.count;
   }
 
-  /// What answers queries for nearest points. For a mesh with constraints, which do not change what is
-  /// nearest, it is the locator of a triangulation without them, made when it is first needed.
+  /// The locator for nearest points. Constraints do not change which point is nearest, so for a mesh with
+  /// constraints it is the locator of a triangulation without them, made when it is first needed.
   Implementation& for_nearest() {
     if (all_points.empty()) return *this;
     if (!without_constraints_) {
@@ -128,8 +128,8 @@ struct Locator::Implementation {
     return *doubles_;
   }
 
-  /// Answers by the locator in fixed point, if there is one, or else, and if what is asked does not fit that,
-  /// by the one with doubles.
+  /// Answers by the locator in fixed point if there is one and the queries fit it, or else by the one with
+  /// doubles.
   template <typename Answer>
   auto answer_with(const Answer& answer) {
     return call::in_fixed_point_or([&] { return answer(fixed ? *fixed : doubles()); },
@@ -219,8 +219,8 @@ struct Locator::Implementation {
     return {are_given, std::move(given), options.tolerance, options.iterations};
   }
 
-  /// What answers queries by interpolation. Values and gradients are in host or device memory; gradients are
-  /// estimated if they are null.
+  /// Returns the work that interpolates at queries. Values and gradients are in host or device memory; null
+  /// gradients are estimated.
   template <typename Values>
   auto interpolation(const InterpolationOptions& options, Values values, Values gradients) {
     return [this, &options, values, gradients](call::Frame& call, auto& locator, const auto&... queries) {
@@ -268,7 +268,7 @@ struct Locator::Implementation {
   std::shared_ptr<Triangulator::Implementation> owner;
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
-  // Of a mesh with constraints, otherwise empty: all of its points, and WholeMesh::constrained.
+  // All points of a mesh with constraints, and WholeMesh::constrained; empty without constraints.
   std::vector<double> all_points{};
   std::shared_ptr<const std::vector<std::uint8_t>> constrained{};
 

@@ -12,7 +12,7 @@
 namespace flaunay::research {
 namespace {
 
-// Those of modes are checked by the table of modes.
+// The table of modes checks the options of modes.
 void check_enumerators(const Options& options) {
   check_enumerator(options.cut, Cut::alternate, "Cut");
   check_enumerator(options.hull, Hull::monotone_chain, "Hull");

@@ -16,7 +16,7 @@ namespace flaunay {
 
 namespace {
 
-// Queries are shared among threads in runs of so many.
+// A thread answers this number of queries at a time.
 constexpr std::size_t kRun = 512;
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace flaunay {
 namespace {
 
-// Takes no arrays: what is wanted are pixels.
+// Takes no arrays: only pixels and lines are wanted.
 class NoArrays : public MeshSink {
  public:
   bool wants(MeshArray) const override { return false; }

@@ -16,7 +16,7 @@ namespace {
 using constrained::MeshToRefine;
 using constrained::RefinedMesh;
 
-// The threads for loops over so many triangles.
+// The threads for loops over this number of triangles.
 host::Runtime& threads_for(Implementation& self, std::size_t triangles) {
   return (triangles > host::Runtime::kPart ? self.native() : Engine::of_thread()).runtime;
 }

@@ -66,7 +66,7 @@ class Arrays {
   Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
 };
 
-// Triangulates points of a call, at least one. Writes the offsets of the result and what is known about it.
+// Triangulates points of a call, at least one. Writes the result's offsets and statistics.
 template <typename Points, typename Result>
 geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
                                          const std::vector<std::size_t>& offsets, const Arrays& arrays,

@@ -11,7 +11,7 @@
 namespace flaunay {
 namespace {
 
-// The device of which this one is a part, or null.
+// The parent of a sub-device, or null.
 cl_device_id parent_of(cl_device_id device) {
   cl_device_id parent = nullptr;
   const cl_int code = clGetDeviceInfo(device, CL_DEVICE_PARENT_DEVICE, sizeof(parent), &parent, nullptr);
