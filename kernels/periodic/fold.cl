@@ -19,12 +19,6 @@ static inline uint image_at(int v, int own, global const uint* images) {
   return v < own ? image_of(v, 0, 0) : images[v];
 }
 
-// The corner of the smallest image.
-static inline int first_corner(const uint* image) {
-  const int first = image[1] < image[0] ? 1 : 0;
-  return image[2] < image[first] ? 2 : first;
-}
-
 // n points, with arguments as of unroll.cl. planar: representatives in the plane. missing: per set, of two triangles a
 // point.
 kernel void fold_representatives(int n, int sets, global const int* restrict offsets,
@@ -34,20 +28,22 @@ kernel void fold_representatives(int n, int sets, global const int* restrict off
   const int i = get_global_id(0);
   if (i < n) {
     const int k = segment_of(i, sets, offsets);
-    const unrolled_set set = all[k];
     const int at = i + (int)counts[offsets[k]];
-    const int back = at - planar[at], point = set.first + i - offsets[k];
+    const int back = at - planar[at], point = all[k].first + i - offsets[k];
     representatives[point] = point - back;
+    if (back == 0 && all[k].has_ends == 0) return;
     uint fewer = 2;
     if (back == 0) {
+      const periodic_box box = all[k].box;
       const double2 p = vload2(at, coordinates);
-      fewer = (uint)(ends_at(p.x, &set.box, 0) + ends_at(p.y, &set.box, 1));
+      fewer = (uint)(ends_at(p.x, &box, 0) + ends_at(p.y, &box, 1));
     }
     if (fewer > 0) atomic_add(&missing[k], fewer);
   }
 }
 
-// n triangles.
+// n triangles. Their rows begin with the smallest number, and points come before images: a smallest corner that is in
+// its place is the first one.
 kernel void keep_triangles(int n, int own, global const int* restrict triangles, global const uint* restrict images,
                            global uint* restrict kept) {
   const int t = get_global_id(0);
@@ -56,8 +52,8 @@ kernel void keep_triangles(int n, int own, global const int* restrict triangles,
     if (max(max(a, b), c) < own) {
       kept[t] = 1;
     } else {
-      const uint image[3] = {image_at(a, own, images), image_at(b, own, images), image_at(c, own, images)};
-      kept[t] = (uint)is_in_place(image[first_corner(image)]);
+      const uint first = image_at(a, own, images);
+      kept[t] = (uint)(is_in_place(first) && first < image_at(b, own, images) && first < image_at(c, own, images));
     }
   }
 }
@@ -87,8 +83,8 @@ kernel void list_seams(int n, int own, global const int* restrict list, global c
       const int at = 3 * list[i] + k, beyond = neighbors[at];
       const int from = triangles[next_halfedge(at)], to = triangles[next_halfedge(next_halfedge(at))];
       const double2 a = vload2(from, coordinates), b = vload2(to, coordinates);
-      seam.at = is_seam(beyond, ranks) ? at : NO_SEAM;
-      seam.unused = 0;
+      seam.at = at;
+      seam.is_seam = is_seam(beyond, ranks);
       seam.own = image_at(triangles[at], own, images);
       seam.from = image_at(from, own, images);
       seam.to = image_at(to, own, images);
@@ -105,38 +101,38 @@ kernel void list_seams(int n, int own, global const int* restrict list, global c
   }
 }
 
-// n pairs: a corner, and the triangle opposite to it.
+// n pairs: a corner, and the triangle opposite to it; or NO_SEAM.
 kernel void link_seams(int n, global const int2* restrict links, global int* restrict neighbors) {
   const int i = get_global_id(0);
-  if (i < n) neighbors[links[i].x] = links[i].y;
+  if (i < n && links[i].x != NO_SEAM) neighbors[links[i].x] = links[i].y;
 }
 
-// n triangles in the plane, of sets from offsets on. shifts: from ranks to rows, or NOT_WRITTEN. periods: 6 per row, x
-// and y per corner, relative to the first one.
-kernel void write_folded(int n, int sets, global const int* restrict offsets, global const int* restrict shifts,
-                         int own, global const int* restrict triangles, global const int* restrict neighbors,
-                         global const uint* restrict ranks, global const uint* restrict images,
-                         global int* restrict folded, global uchar* restrict periods,
-                         global int* restrict folded_neighbors) {
-  const int t = get_global_id(0);
-  if (t < n && is_kept(t, ranks)) {
+// n triangles in the plane from `first` on, of sets from offsets on. shifts: from ranks to rows, or NOT_WRITTEN. folded
+// begins at a row; periods: 3 per row, x and y per corner, relative to the first one. One work-item after the other may
+// write to the arrays that it reads, if no row is behind its triangle.
+kernel void write_folded(int n, int first, int begin, int sets, global const int* restrict offsets,
+                         global const int* restrict shifts, int own, global const int* triangles,
+                         global const int* neighbors, global const uint* restrict ranks,
+                         global const uint* restrict images, global int* folded, global uchar2* restrict periods,
+                         global int* folded_neighbors) {
+  const int t = first + get_global_id(0);
+  if (t < first + n && is_kept(t, ranks)) {
     const int shift = shifts[segment_of(t, sets, offsets)];
     if (shift == NOT_WRITTEN) return;
-    const int row = (int)ranks[t] + shift;
+    const int row = (int)ranks[t] + shift, to = row - begin;
     const int corner[3] = {triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]};
-    // Of points alone, the first one is the smallest.
+    const int beyond[3] = {neighbors[3 * t], neighbors[3 * t + 1], neighbors[3 * t + 2]};
     const int is_inside = max(max(corner[0], corner[1]), corner[2]) < own;
-    uint image[3] = {0, 0, 0};
-    for (int k = 0; k < 3 && !is_inside; ++k) image[k] = image_at(corner[k], own, images);
-    int from = is_inside ? 0 : first_corner(image);
     for (int k = 0; k < 3; ++k) {
-      const int beyond = neighbors[3 * t + from];
-      folded[3 * row + k] = is_inside ? corner[k] : point_of(image[from]);
-      folded_neighbors[3 * row + k] = beyond < 0 ? -1 : (int)ranks[beyond] + shift;
-      // The first one is in its place.
-      periods[6 * (int64)row + 2 * k] = is_inside ? 0 : (uchar)periods_across(image[from]);
-      periods[6 * (int64)row + 2 * k + 1] = is_inside ? 0 : (uchar)periods_up(image[from]);
-      from = next_corner(from);
+      folded_neighbors[3 * to + k] = beyond[k] < 0 ? -1 : (int)ranks[beyond[k]] + shift;
+      if (is_inside) {
+        folded[3 * to + k] = corner[k];
+        periods[3 * row + k] = VECTOR(uchar2, 0, 0);
+      } else {
+        const uint image = image_at(corner[k], own, images);
+        folded[3 * to + k] = point_of(image);
+        periods[3 * row + k] = VECTOR(uchar2, (uchar)periods_across(image), (uchar)periods_up(image));
+      }
     }
   }
 }

@@ -24,19 +24,20 @@ typedef struct {
 } periodic_box;
 ASSERT_SIZE(periodic_box, 56);
 
-// A set that is triangulated in the plane. first: its first point among those of all sets.
+// A set that is triangulated in the plane. first: its first point among those of all sets. has_ends: whether there is a
+// direction without a period.
 typedef struct {
   periodic_box box;
-  int first, unused;
+  int first, has_ends;
 } unrolled_set;
 ASSERT_SIZE(unrolled_set, 64);
 
-// An edge of a triangle that is kept, with none beyond it that is. All four are images, see torus.h.
+// An edge of a triangle that is kept: a seam if none beyond it is. All four are images, see torus.h.
 typedef struct {
   double ends[4];    // x and y in the plane: of `from`, of `to`
   uint from, to;     // counter-clockwise
   uint own, beyond;  // opposite to the edge, in both triangles; NO_IMAGE if there is no other one
-  int at, unused;    // 3 t + the corner opposite; NO_SEAM: the edge is none
+  int at, is_seam;   // at: 3 t + the corner opposite. Edges within what is kept are none.
 } seam_record;
 ASSERT_SIZE(seam_record, 56);
 INTEGER_CONSTANT(NO_SEAM, -1);

@@ -19,17 +19,20 @@ static inline double remaining(double x, double period) {
   return convert_double(as_long(rest)) * (as_double(bits & ~(leading - 1)) * 0x1p-52);
 }
 
+// x or 0, without a branch, which could often not be predicted.
+static inline double if_so(int is_so, double x) { return as_double(as_ulong(x) & (0 - (uint64)is_so)); }
+
 // Of x in [-period / 2, period / 2].
 static inline double place_near(double x, periodic_axis axis) {
   const double place = copysign((fabs(x) + axis.whole) - axis.whole, x);
-  return place + axis.period * (double)(place < 0.0);  // without a branch
+  return place + if_so(place < 0.0, axis.period);
 }
 
 // The place of x in [0, period), rounded to a unit; not finite if x is not.
 static inline double place_of(double x, periodic_axis axis) {
   if (!(axis.period < INFINITY)) return x + 0.0;
   const double middle = axis.period / 2.0;
-  if (x >= 0.0 && x < axis.period) return place_near(x - axis.period * (double)(x >= middle), axis);
+  if (x >= 0.0 && x < axis.period) return place_near(x - if_so(x >= middle, axis.period), axis);
   double rest = fabs(x);
   if (!(rest < INFINITY)) return rest;
   // All that follows is without a rounding, until a place is found.

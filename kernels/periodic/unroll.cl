@@ -38,15 +38,23 @@ kernel void find_box_ends(int n, global const int2* restrict pieces, global cons
   }
 }
 
+// Whether a point has no images within the margin, which is so of most points of a large set.
+static inline int is_far_inside(double2 p, global const periodic_box* box) {
+  return p.x > box->low[0] + box->margin && p.x < box->high[0] - box->margin && p.y > box->low[1] + box->margin &&
+         p.y < box->high[1] - box->margin;
+}
+
 // n points of sets, which have the points from offsets on.
 kernel void count_images(int n, int sets, global const int* restrict offsets, global const unrolled_set* restrict all,
                          global const double* restrict places, global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) {
     const int k = segment_of(i, sets, offsets);
-    const unrolled_set set = all[k];
-    const double2 p = vload2(set.first + i - offsets[k], places);
-    const image_range to = images_around(p.x, p.y, &set.box);
+    const double2 p = vload2(all[k].first + i - offsets[k], places);
+    counts[i] = 0;
+    if (is_far_inside(p, &all[k].box)) return;
+    const periodic_box box = all[k].box;
+    const image_range to = images_around(p.x, p.y, &box);
     counts[i] = (uint)((to.high[0] - to.low[0] + 1) * (to.high[1] - to.low[1] + 1) - 1);
   }
 }
@@ -58,24 +66,26 @@ kernel void read_totals(int n, global const int* restrict offsets, global const 
   if (k < n) totals[k] = sums[offsets[k]];
 }
 
-// counts: scanned. images: what is at each place of the plane.
-kernel void write_images(int n, int sets, global const int* restrict offsets, global const unrolled_set* restrict all,
-                         global const double* restrict places, global const uint* restrict counts,
-                         global double* restrict coordinates, global uint* restrict images) {
+// counts: scanned. images: what is at each place of the plane. own: how many of the first points need none.
+kernel void write_images(int n, int sets, int own, global const int* restrict offsets,
+                         global const unrolled_set* restrict all, global const double* restrict places,
+                         global const uint* restrict counts, global double* restrict coordinates,
+                         global uint* restrict images) {
   const int i = get_global_id(0);
   if (i < n) {
     const int k = segment_of(i, sets, offsets);
-    const unrolled_set set = all[k];
-    const int point = set.first + i - offsets[k], at = i + (int)counts[offsets[k]];
+    const int point = all[k].first + i - offsets[k], at = i + (int)counts[offsets[k]];
     const double2 p = vload2(point, places);
     vstore2(p, at, coordinates);
-    images[at] = image_of(point, 0, 0);
-    const image_range to = images_around(p.x, p.y, &set.box);
+    if (i >= own) images[at] = image_of(point, 0, 0);
+    if (counts[i + 1] == counts[i]) return;
+    const periodic_box box = all[k].box;
+    const image_range to = images_around(p.x, p.y, &box);
     int next = offsets[k + 1] + (int)counts[i];
     for (int across = to.low[0]; across <= to.high[0]; ++across) {
       for (int up = to.low[1]; up <= to.high[1]; ++up) {
         if (across == 0 && up == 0) continue;
-        const double2 image = VECTOR(double2, moved(p.x, across, set.box.period[0]), moved(p.y, up, set.box.period[1]));
+        const double2 image = VECTOR(double2, moved(p.x, across, box.period[0]), moved(p.y, up, box.period[1]));
         vstore2(image, next, coordinates);
         images[next++] = image_of(point, across, up);
       }

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <type_traits>
 #include <utility>
 
-#include "call/frame.hpp"
+#include "blocks/memory.hpp"
+#include "blocks/run.hpp"
+#include "call/triangulate.hpp"
 #include "derived/periodic/cells.hpp"
-#include "derived/periodic/torus.hpp"
+#include "derived/periodic/fold.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "prove/periodic_proof.hpp"
@@ -60,59 +64,156 @@ void call::check_with_places(const PeriodicTriangulation& mesh) {
 
 namespace {
 
-using Ids = std::vector<std::int32_t>;
-using periodic::Pair;
-using periodic::Unrolled;
+using host::Arena;
+using host::Buffer;
 
-// Sets that are triangulated together.
-struct Round {
-  std::vector<std::size_t> sets;
-  std::vector<Unrolled> planes;
-  std::vector<double> coordinates;  // of all, if there are several
-  std::vector<std::size_t> offsets{0};
+// Triangulates sets again, with wider margins, until all are done.
+template <typename Result>
+class Rounds {
+ public:
+  Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places, Result& result)
+      : self_(self),
+        call_(call),
+        engine_(call.engine),
+        places_(places),
+        result_(result),
+        offsets_(result.point_offsets),
+        boxes_(periodic::find_boxes(call.runtime, places, offsets_, {result.period.x, result.period.y})) {}
 
-  void count_points() {
-    for (const Unrolled& plane : planes) offsets.push_back(offsets.back() + plane.points() + plane.images());
+  // The other arrays of the result.
+  void run(const call::Output<cl_int>& triangles, const call::Output<cl_char>& periods,
+           const call::Output<cl_int>& neighbors, const Buffer<cl_int>& representatives) {
+    std::vector<std::size_t> waiting;
+    for (std::size_t s = 0; s < boxes_.size(); ++s) {
+      if (offsets_[s] == offsets_[s + 1]) continue;
+      boxes_[s].margin = periodic::first_margin(boxes_[s], offsets_[s + 1] - offsets_[s]);
+      waiting.push_back(s);
+    }
+    for (bool is_first = true; !waiting.empty(); is_first = false) {
+      Arena::Scope scope(engine_.even), scratch_scope(call_.runtime.arena());
+      const periodic::UnrolledSets plane = unroll(waiting);
+      const points::DeviceMesh mesh = triangulate(plane, result_);
+      const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives);
+      if (is_first) {
+        count_triangles(waiting, folded);
+        const std::size_t count = result_.triangle_offsets.back();
+        periods_ = periods.buffer(6 * count);
+        if (!is_in_place()) {
+          triangles_ = triangles.buffer(3 * count);
+          neighbors_ = neighbors.buffer(3 * count);
+        }
+      }
+      std::vector<std::size_t> first_rows;
+      for (const std::size_t s : waiting) first_rows.push_back(result_.triangle_offsets[s]);
+      if (is_in_place()) {
+        if (folded.is_done(0)) {
+          folded.write(first_rows, mesh.triangles, periods_, mesh.neighbors);
+          take_rows(result_);
+        }
+      } else {
+        folded.write(first_rows, triangles_, periods_, neighbors_);
+      }
+      waiting = widened(waiting, plane, folded);
+    }
   }
-  const double* all_coordinates() {
-    if (planes.size() == 1) return planes[0].coordinates().data();
-    coordinates.reserve(2 * offsets.back());
-    for (const Unrolled& plane : planes)
-      coordinates.insert(coordinates.end(), plane.coordinates().begin(), plane.coordinates().end());
-    return coordinates.data();
+
+ private:
+  // Whether the rows of a set in host memory stay in the arrays that they have in the plane.
+  bool is_in_place() const { return std::is_same_v<Result, PeriodicTriangulation> && boxes_.size() == 1; }
+
+  periodic::UnrolledSets unroll(const std::vector<std::size_t>& sets) const {
+    std::vector<std::size_t> first, last;
+    std::vector<periodic::Box> boxes;
+    for (const std::size_t s : sets) {
+      first.push_back(offsets_[s]);
+      last.push_back(offsets_[s + 1]);
+      boxes.push_back(boxes_[s]);
+    }
+    return {call_.runtime, engine_.even, places_, first, last, std::move(boxes)};
   }
+
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DevicePeriodicTriangulation&) const {
+    const std::size_t count = plane.offsets().back();
+    engine_.check_size(count);
+    engine_.persistent.reserve(blocks::workspace_bytes(call_.runtime, count, plane.sets()).persistent);
+    Arena::Scope scope(engine_.persistent), scratch_scope(call_.runtime.arena());
+    return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even);
+  }
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, PeriodicTriangulation& result) {
+    const auto* const coordinates =
+        reinterpret_cast<const double*>(host::address_of(plane.coordinates().memory()));
+    planar_ = call::triangulate(self_, {coordinates, nullptr, plane.offsets().back()}, plane.offsets(), {});
+    result.statistics = std::move(planar_.statistics);
+    points::DeviceMesh mesh;
+    mesh.triangle_offsets = planar_.triangle_offsets;
+    mesh.triangles = call_.in(planar_.triangles);
+    mesh.neighbors = call_.in(planar_.neighbors);
+    mesh.representatives = call_.in(planar_.representatives);
+    return mesh;
+  }
+  void take_rows(DevicePeriodicTriangulation&) {}
+  void take_rows(PeriodicTriangulation& result) {
+    result.triangles = std::move(planar_.triangles);
+    result.neighbors = std::move(planar_.neighbors);
+    for (auto* const rows : {&result.triangles, &result.neighbors})
+      rows->resize(3 * result.triangle_offsets.back());
+  }
+
+  void count_triangles(const std::vector<std::size_t>& sets, const periodic::FoldedSets& folded) {
+    std::vector<std::size_t>& all = result_.triangle_offsets;
+    for (std::size_t k = 0; k < sets.size(); ++k) all[sets[k] + 1] = folded.expected(k);
+    std::partial_sum(all.begin(), all.end(), all.begin());
+  }
+
+  // The sets that are not done.
+  std::vector<std::size_t> widened(const std::vector<std::size_t>& sets, const periodic::UnrolledSets& plane,
+                                   const periodic::FoldedSets& folded) {
+    std::vector<std::size_t> waiting;
+    for (std::size_t k = 0; k < sets.size(); ++k) {
+      result_.images += plane.images(k);
+      if (folded.is_done(k)) continue;
+      periodic::widen(boxes_[sets[k]], sets[k]);
+      waiting.push_back(sets[k]);
+    }
+    return waiting;
+  }
+
+  call::Implementation& self_;
+  call::Frame& call_;
+  call::Engine& engine_;
+  Buffer<cl_double> places_;
+  Result& result_;
+  const std::vector<std::size_t>& offsets_;
+  std::vector<periodic::Box> boxes_;
+  Triangulation planar_;  // in host memory
+  Buffer<cl_int> triangles_{}, neighbors_{};
+  Buffer<cl_char> periods_{};
 };
 
-// The triangles of the k-th set of a round, and the representatives of its points, numbered from 0.
-periodic::Triangles triangles_of(Triangulation& planar, const Round& round, std::size_t k) {
-  if (round.sets.size() == 1) return {std::move(planar.triangles), std::move(planar.neighbors), {}};
-  const auto part = [&](const Ids& all, std::size_t first) {
-    Ids some(all.begin() + static_cast<std::ptrdiff_t>(3 * planar.triangle_offsets[k]),
-             all.begin() + static_cast<std::ptrdiff_t>(3 * planar.triangle_offsets[k + 1]));
-    for (std::int32_t& i : some) {
-      if (i >= 0) i -= static_cast<std::int32_t>(first);
+template <typename Points, typename Result>
+void compute(call::Implementation& self, call::Frame& call, const Points& points,
+             const std::vector<std::size_t>& offsets, const Period& period, Result& result) {
+  const std::size_t n = points.count, most = blocks::kMostTrianglesPerPoint * n;
+  const periodic::Pair<double> lengths = periodic::rounded(period);
+  result.period = {lengths[0], lengths[1]};
+  result.point_offsets = offsets;
+  result.triangle_offsets.assign(offsets.size(), 0);
+  result.images = 0;
+  result.statistics = {};
+  const auto places = call.template out<cl_double>(result.places, 2 * n, "places");
+  const auto triangles = call.template output<cl_int>(result.triangles, 3 * most, "triangles");
+  const auto periods = call.template output<cl_char>(result.offsets, 6 * most, "offsets");
+  const auto neighbors = call.template output<cl_int>(result.neighbors, 3 * most, "neighbors");
+  const auto representatives = call.template out<cl_int>(result.representatives, n, "representatives");
+  call.check_distinct();
+  if (n > 0) {
+    {
+      Arena::Scope scope(call.runtime.arena());
+      periodic::find_places(call.runtime, call.points(points), n, lengths, places);
     }
-    return some;
-  };
-  return {part(planar.triangles, round.offsets[k]), part(planar.neighbors, planar.triangle_offsets[k]), {}};
-}
-Ids representatives_of(const Triangulation& planar, const Round& round, std::size_t k) {
-  const auto first = planar.representatives.begin() + static_cast<std::ptrdiff_t>(round.offsets[k]);
-  Ids some(first, first + static_cast<std::ptrdiff_t>(round.planes[k].points()));
-  for (std::int32_t& i : some) i -= static_cast<std::int32_t>(round.offsets[k]);
-  return some;
-}
-
-void append(Ids& to, Ids&& more, std::size_t first) {
-  if (to.empty() && first == 0) {
-    to = std::move(more);
-    return;
+    Rounds<Result>(self, call, places, result).run(triangles, periods, neighbors, representatives);
   }
-  const auto shift = static_cast<std::int32_t>(first);
-  for (std::int32_t& i : more) {
-    if (i >= 0) i += shift;
-  }
-  to.insert(to.end(), more.begin(), more.end());
+  call.end();
 }
 
 }  // namespace
@@ -124,86 +225,40 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 
 PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                            const std::vector<std::size_t>& offsets, const Period& period) {
-  check_offsets(offsets);
-  call::check(period);
-  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-  check_points(points, n);
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  // Calls work(k, runtime): several sets side by side, or one on all threads.
-  const auto for_each_set = [&](std::size_t count, const auto& work) {
-    call::take_turn(self, [&] {
-      host::Runtime& runtime = self.native().runtime;
-      if (count == 1) {
-        work(0, &runtime);
-      } else {
-        runtime.share(count, [&](std::size_t k) { work(k, nullptr); });
-      }
-    });
-  };
-  const Pair<double> lengths = periodic::rounded(period);
-  PeriodicTriangulation mesh;
-  mesh.period = {lengths[0], lengths[1]};
-  mesh.places = call::take_turn(
-      self, [&] { return periodic::to_places(self.native().runtime, points, n, lengths, "point"); });
-  mesh.point_offsets = offsets;
-  std::vector<periodic::Box> boxes(sets);
-  std::vector<periodic::Triangles> done(sets);
-  std::vector<Ids> representatives(sets);
-  std::vector<std::size_t> waiting;
-  for (std::size_t s = 0; s < sets; ++s) {
-    if (offsets[s] == offsets[s + 1]) continue;
-    boxes[s] = periodic::box_of(mesh.places, offsets[s], offsets[s + 1], lengths);
-    boxes[s].margin = periodic::first_margin(boxes[s], offsets[s + 1] - offsets[s]);
-    waiting.push_back(s);
-  }
-  // Those of a set alone are not copied.
-  const auto places_of = [&](std::size_t s) {
-    if (sets == 1) return std::move(mesh.places);
-    return std::vector<double>(mesh.places.begin() + static_cast<std::ptrdiff_t>(2 * offsets[s]),
-                               mesh.places.begin() + static_cast<std::ptrdiff_t>(2 * offsets[s + 1]));
-  };
-  while (!waiting.empty()) {
-    Round round;
-    round.sets = std::move(waiting);
-    waiting.clear();
-    round.planes.resize(round.sets.size());
-    for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
-      const std::size_t s = round.sets[k];
-      round.planes[k] = Unrolled(runtime, places_of(s), boxes[s]);
-    });
-    round.count_points();
-    periodic::check_size(round.offsets.back());
-    Triangulation planar = triangulator.triangulate(round.all_coordinates(), round.offsets);
-    std::vector<char> is_done(round.sets.size());
-    for_each_set(round.sets.size(), [&](std::size_t k, host::Runtime* runtime) {
-      const std::size_t s = round.sets[k];
-      representatives[s] = representatives_of(planar, round, k);
-      done[s] = triangles_of(planar, round, k);
-      is_done[k] = periodic::fold(runtime, round.planes[k], representatives[s], done[s]);
-    });
-    if (sets == 1) mesh.places = round.planes[0].take_places();
-    for (std::size_t k = 0; k < round.sets.size(); ++k) {
-      const std::size_t s = round.sets[k];
-      mesh.images += round.planes[k].images();
-      if (is_done[k] != 0) continue;
-      periodic::widen(boxes[s], s);
-      waiting.push_back(s);
-    }
-    mesh.statistics = std::move(planar.statistics);
-  }
-  mesh.triangle_offsets = {0};
-  for (std::size_t s = 0; s < sets; ++s) {
-    append(mesh.representatives, std::move(representatives[s]), offsets[s]);
-    append(mesh.triangles, std::move(done[s].corners), offsets[s]);
-    append(mesh.neighbors, std::move(done[s].neighbors), mesh.triangle_offsets.back());
-    if (mesh.offsets.empty()) {
-      mesh.offsets = std::move(done[s].offsets);
-    } else {
-      mesh.offsets.insert(mesh.offsets.end(), done[s].offsets.begin(), done[s].offsets.end());
-    }
-    mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
-  }
-  return mesh;
+  return call::take_turn(self, [&] {
+    check_offsets(offsets);
+    call::check(period);
+    check_points(points, offsets.back());
+    PeriodicTriangulation result;
+    const bool is_small = offsets.back() <= self.host_tuning().host_points;
+    call::Frame call(is_small ? call::Engine::of_thread() : self.native());
+    compute(self, call, call::HostPoints{points, nullptr, offsets.back()}, offsets, period, result);
+    return result;
+  });
+}
+
+void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, const Period& period,
+                          DevicePeriodicTriangulation& result, const Enqueue& enqueue) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  call::take_turn(self, enqueue, [&] {
+    call::check(period);
+    const call::Place place = call::with_doubles(self, self.on_device());
+    call::Frame call(self, place, enqueue);
+    call.check(points, "points");
+    place.device->check_size(points.count);
+    call.check_size(points.count);
+    call.begin();
+    const double begin = place.device->runtime.working_clock();
+    compute(self, call, points, call.offsets(points), period, result);
+    Statistics& statistics = result.statistics;
+    statistics.device = call.runtime.name();
+    statistics.points = points.count;
+    statistics.triangles = result.triangle_offsets.back();
+    statistics.seconds = place.device->runtime.working_clock() - begin;
+    place.device->write_accounts(statistics);
+    call::add_note(*place.device, call.engine, "a torus", "triangulated", statistics);
+  });
 }
 
 ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangulation& mesh) {

@@ -63,7 +63,7 @@ class Places {
 };
 
 Box box_of(const Places& places, const Pair<double>& period) {
-  Box box = periodic::box_of({}, 0, 0, period);
+  Box box = periodic::box_of(nullptr, 0, 0, period);
   if (periodic::repeats(box, 0) && periodic::repeats(box, 1)) return box;
   const std::size_t axis = periodic::repeats(box, 0) ? 1 : 0;
   box.low[axis] = HUGE_VAL;

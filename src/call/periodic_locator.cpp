@@ -8,7 +8,7 @@
 
 #include "call/frame.hpp"
 #include "call/periodic.hpp"
-#include "derived/periodic/torus.hpp"
+#include "derived/periodic/fold.hpp"
 
 namespace flaunay {
 
@@ -19,14 +19,14 @@ struct PeriodicLocator::Implementation {
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
     if (n == 0) return;
-    periodic::Box box = periodic::box_of(mesh.places, 0, n, period);
+    periodic::Box box = periodic::box_of(mesh.places.data(), 0, n, period);
     constexpr double kWhole = std::numeric_limits<double>::infinity();
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
     const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
     box.margin = is_torus ? periodic::first_margin(box, n) : kWhole;
     for (; !make(used, mesh, box); box.margin *= periodic::kWider) {
-      if (periodic::is_whole(plane->box()))
+      if (periodic::is_whole(plane->box))
         throw Error(ErrorKind::usage,
                     "the triangles are not those of a triangulation on a torus or a cylinder");
     }
@@ -35,10 +35,10 @@ struct PeriodicLocator::Implementation {
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest point of what is in the box is near enough.
   bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box) {
-    call::take_turn(*owner, [&] { plane.emplace(&owner->native().runtime, mesh.places, box); });
-    const std::vector<double>& places = plane->coordinates();
+    call::take_turn(*owner, [&] { plane = periodic::plane_of(owner->native().runtime, mesh.places, box); });
+    const std::vector<double>& places = plane->coordinates;
     const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
-    if (!periodic::is_whole(plane->box()) && !periodic::is_box_inside(*plane, planar.hull)) return false;
+    if (!periodic::is_whole(plane->box) && !periodic::is_box_inside(*plane, planar.hull)) return false;
     call::take_turn(*owner, [&] {
       numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
     });
@@ -55,7 +55,7 @@ struct PeriodicLocator::Implementation {
 
   std::shared_ptr<call::Implementation> owner;
   periodic::Pair<double> period;
-  std::optional<periodic::Unrolled> plane;
+  std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh
   std::optional<Locator> locator;     // in the plane; none without points
 };
@@ -91,12 +91,11 @@ std::vector<double> PeriodicLocator::interpolate(const double* values, std::size
   if (!implementation_->locator)
     return std::vector<double>(results, std::numeric_limits<double>::quiet_NaN());
   check_array(values, check_columns(columns, implementation_->plane->points()), "values", kMostCountable);
-  const periodic::Unrolled& plane = *implementation_->plane;
+  const periodic::Plane& plane = *implementation_->plane;
   std::vector<double> of_images(values, values + columns * plane.points());
-  of_images.reserve(columns * (plane.points() + plane.images()));
-  for (std::size_t v = plane.points(); v < plane.points() + plane.images(); ++v) {
-    const double* const row =
-        values + columns * static_cast<std::size_t>(plane.image(static_cast<std::int32_t>(v)).point);
+  of_images.reserve(columns * (plane.points() + plane.images.size()));
+  for (const periodic::Image& image : plane.images) {
+    const double* const row = values + columns * static_cast<std::size_t>(image.point);
     of_images.insert(of_images.end(), row, row + columns);
   }
   InterpolationOptions options;

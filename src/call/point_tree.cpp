@@ -9,7 +9,7 @@
 
 #include "call/frame.hpp"
 #include "call/periodic.hpp"
-#include "derived/periodic/torus.hpp"
+#include "derived/periodic/fold.hpp"
 #include "geometry/arguments.hpp"
 
 namespace flaunay {
@@ -70,9 +70,8 @@ struct PointTree::Implementation {
     return result;
   }
   std::int32_t original(std::int32_t image) const {
-    if (image < 0) return image;
-    const auto i = static_cast<std::size_t>(image);
-    return i < points ? image : originals[i - points];
+    const bool is_point = image < static_cast<std::int32_t>(points);
+    return is_point ? image : originals[static_cast<std::size_t>(image) - points];
   }
   bool has_repeated(const Neighbors& found, std::size_t count) const {
     std::vector<std::int32_t> row;
@@ -104,21 +103,18 @@ PointTree::PointTree(Triangulator& triangulator, const PeriodicTriangulation& me
         call::check_with_places(mesh);
         call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
         const periodic::Pair<double> period{mesh.period.x, mesh.period.y};
-        periodic::Box box = periodic::box_of(mesh.places, 0, mesh.places.size() / 2, period);
+        periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, period);
         box.margin = 0;
         for (const double length : period) {
           if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
         }
-        const periodic::Unrolled plane(nullptr, mesh.places, box);
-        auto self =
-            std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
-                                             plane.coordinates().data(), plane.points() + plane.images());
+        const periodic::Plane plane = periodic::plane_of(call::Engine::of_thread().runtime, mesh.places, box);
+        auto self = std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
+                                                     plane.coordinates.data(), plane.coordinates.size() / 2);
         self->period = period;
         self->points = plane.points();
-        for (std::size_t i = 0; i < plane.images(); ++i) {
-          const auto v = static_cast<std::int32_t>(plane.points() + i);
-          self->originals.push_back(static_cast<std::int32_t>(plane.image(v).point));
-        }
+        for (const periodic::Image& image : plane.images)
+          self->originals.push_back(static_cast<std::int32_t>(image.point));
         return self;
       })) {}
 

@@ -88,7 +88,7 @@ class PeriodicProof : RowsProof {
   void check_set(std::size_t s) {
     enter(s);
     check_representatives([&](std::size_t i) { return std::pair(places_[2 * i], places_[2 * i + 1]); });
-    const Box box = periodic::box_of(places_, first_, last_, scaled_period_);
+    const Box box = periodic::box_of(places_.data(), first_, last_, scaled_period_);
     std::size_t expected = 0;
     for (std::size_t i = first_; i < last_; ++i) {
       if (!represents_itself(i)) continue;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/neighbors.hpp"
 #include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
@@ -395,6 +396,8 @@ TEST(Periodic, QueriesAreWrapped) {
   const Numbers query = {0.5, 0.5};
   EXPECT_EQ(-1, none.locate(query.data(), 1)[0]);
   EXPECT_EQ(-1, none.nearest(query.data(), 1)[0]);
+  PointTree tree(testing::triangulator(), triangulated({}, {}));
+  EXPECT_EQ((std::vector<std::int32_t>{-1, -1}), tree.nearest(query.data(), 1, {2}).points);
 }
 
 TEST(Periodic, QueriesOfManyPoints) {

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bitset>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "geometry/for_each.hpp"
-#include "mesh/corners.hpp"
 
 namespace flaunay::periodic {
 namespace {
@@ -18,7 +16,6 @@ namespace {
 using geometry::for_each;
 using geometry::for_each_run;
 using geometry::Point;
-using geometry::runs_of;
 
 using Ids = std::vector<std::int32_t>;
 
@@ -29,11 +26,6 @@ std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 double whole_of(double period) {
   const double power = std::ldexp(1.0, std::ilogb(period));
   return power < period ? 2 * power : power;
-}
-
-template <typename T>
-void append(std::vector<T>& to, const std::vector<T>& more) {
-  to.insert(to.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -70,16 +62,14 @@ void take_into(const Pair<double>& period, const double* points, std::size_t n, 
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what) {
   std::vector<double> places;
-  const std::size_t room_for_images = n / 4;
-  runtime.resize(places, 2 * n, 2 * (n + room_for_images));
+  runtime.resize(places, 2 * n);
   for_each_run(&runtime, n, [&](std::size_t, std::size_t begin, std::size_t end) {
     take_into(period, points + 2 * begin, end - begin, begin, what, places.data() + 2 * begin);
   });
   return places;
 }
 
-Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
-           const Pair<double>& period) {
+Box box_of(const double* places, std::size_t first, std::size_t last, const Pair<double>& period) {
   Box box{{period[0], period[1]}, {}, {period[0], period[1]}, 0};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (std::isfinite(period[axis]) || first == last) continue;
@@ -125,109 +115,10 @@ void widen(Box& box, std::size_t s) {
   box.margin *= kWider;
 }
 
-Unrolled::Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box)
-    : box_(box), points_(places.size() / 2), coordinates_(std::move(places)) {
-  struct Found {
-    std::vector<double> coordinates;
-    std::vector<Image> images;
-  };
-  std::vector<Found> found(runs_of(points_));
-  for_each_run(runtime, points_, [&](std::size_t run, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for_each_image(box_, place(static_cast<std::int32_t>(i)), [&](const Pair<int>& at, Point p) {
-        found[run].coordinates.insert(found[run].coordinates.end(), {p.x, p.y});
-        found[run].images.push_back({static_cast<std::int64_t>(i), at});
-      });
-    }
-  });
-  for (const Found& some : found) {
-    append(coordinates_, some.coordinates);
-    append(images_, some.images);
-  }
-}
-
-std::vector<double> Unrolled::take_places() {
-  coordinates_.resize(2 * points_);
-  return std::move(coordinates_);
-}
-
 namespace {
 
 // The image when `to` is in its place.
 Image beside(const Image& a, const Image& to) { return {a.point, {a.at[0] - to.at[0], a.at[1] - to.at[1]}}; }
-
-// Numbers of triangles when some, in ascending order, are taken out.
-class Ranks {
- public:
-  Ranks(const Ids& dropped, std::size_t count) : words_(count / 64 + 1) {
-    for (const std::int32_t t : dropped) words_[index(t) / 64].mask |= std::uint64_t{1} << (index(t) % 64);
-    std::int32_t before = 0;
-    for (Word& word : words_) {
-      word.before = before;
-      before += static_cast<std::int32_t>(std::bitset<64>(word.mask).count());
-    }
-  }
-
-  bool is_dropped(std::int32_t t) const { return (words_[index(t) / 64].mask >> (index(t) % 64) & 1) != 0; }
-  std::int32_t rank(std::int32_t t) const {
-    const Word& word = words_[index(t) / 64];
-    if (word.mask == 0) return t - word.before;
-    const std::uint64_t below = word.mask & ((std::uint64_t{1} << (index(t) % 64)) - 1);
-    return t - word.before - static_cast<std::int32_t>(std::bitset<64>(below).count());
-  }
-
- private:
-  struct Word {
-    std::uint64_t mask = 0;
-    std::int32_t before = 0;
-  };
-  std::vector<Word> words_;
-};
-
-// Triangles that need care, in ascending order.
-struct Border {
-  Ids dropped;  // of which another image is kept
-  Ids mixed;    // kept, with images among its corners
-  Ids open;     // corners of kept ones with no triangle opposite to them
-};
-
-Border find_border(host::Runtime* runtime, const Unrolled& plane, const Triangles& all) {
-  const std::size_t count = all.corners.size() / 3;
-  std::vector<Border> borders(runs_of(count));
-  const auto points = static_cast<std::int32_t>(plane.points());
-  for_each_run(runtime, count, [&](std::size_t run, std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const std::int32_t* const v = &all.corners[3 * t];
-      const std::int32_t* const beyond = &all.neighbors[3 * t];
-      const bool is_inside = v[0] < points && v[1] < points && v[2] < points;
-      if (is_inside && (beyond[0] | beyond[1] | beyond[2]) >= 0) continue;
-      if (!is_inside) {
-        const bool keep = is_kept({plane.image(v[0]), plane.image(v[1]), plane.image(v[2])});
-        (keep ? borders[run].mixed : borders[run].dropped).push_back(static_cast<std::int32_t>(t));
-        if (!keep) continue;
-      }
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (beyond[k] < 0) borders[run].open.push_back(static_cast<std::int32_t>(3 * t + k));
-      }
-    }
-  });
-  Border border;
-  for (const Border& one : borders) {
-    append(border.dropped, one.dropped);
-    append(border.mixed, one.mixed);
-    append(border.open, one.open);
-  }
-  return border;
-}
-
-// Adds the edge of a kept triangle. beyond: the corner in the plane, or -1.
-void add_edge(const Unrolled& plane, const Triangles& all, std::int32_t at, std::int32_t beyond,
-              Seams& seams) {
-  const auto [from, to] = mesh::edge_opposite(all.corners, at);
-  seams.add({plane.image(from), plane.image(to), plane.image(all.corners[index(at)]),
-             beyond < 0 ? Image{-1, {}} : plane.image(beyond), static_cast<std::uint64_t>(at)},
-            plane.place(from), plane.place(to));
-}
 
 // The place in units of the box.
 Point in_box(const Box& box, Point p) {
@@ -242,17 +133,6 @@ Point in_box(const Box& box, Point p) {
 bool is_at_end(const Box& box, Point a, Point b) {
   return (a.x == b.x && kernel::ends_at(a.x, &box, 0) > 0) ||
          (a.y == b.y && kernel::ends_at(a.y, &box, 1) > 0);
-}
-
-// Rewrites a triangle of images: offsets are relative to its first corner.
-void rewrite(const Unrolled& plane, std::int32_t t, std::int32_t rank, Triangles& all) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::int32_t& corner = all.corners[3 * index(t) + k];
-    const Image image = plane.image(corner);
-    corner = static_cast<std::int32_t>(image.point);
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      all.offsets[6 * index(rank) + 2 * k + axis] = static_cast<std::int8_t>(image.at[axis]);
-  }
 }
 
 }  // namespace
@@ -297,57 +177,11 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
-bool fold(host::Runtime* runtime, const Unrolled& plane, const Ids& representatives, Triangles& all) {
-  const std::size_t count = all.corners.size() / 3;
-  const Border border = find_border(runtime, plane, all);
-  const std::size_t kept = count - border.dropped.size();
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < representatives.size(); ++i) different += index(representatives[i]) == i;
-  const Ranks ranks(border.dropped, count);
-  Seams seams(plane.box());
-  for (const std::int32_t t : border.dropped) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t other = all.neighbors[3 * index(t) + k];
-      if (other < 0 || ranks.is_dropped(other)) continue;
-      std::int32_t at = 3 * other;
-      while (all.neighbors[index(at)] != t) ++at;
-      add_edge(plane, all, at, all.corners[3 * index(t) + k], seams);
-    }
-  }
-  for (const std::int32_t at : border.open) add_edge(plane, all, at, -1, seams);
-  if (kept != seams.expected(different) || !seams.match(kept)) return false;
-  seams.for_each_link(
-      [&](std::uint64_t at, std::uint64_t t) { all.neighbors[at] = static_cast<std::int32_t>(t); });
-
-  if (runtime != nullptr) {
-    runtime->resize(all.offsets, 6 * kept);
-  } else {
-    all.offsets.resize(6 * kept);
-  }
-  for (const std::int32_t t : border.mixed) rewrite(plane, t, ranks.rank(t), all);
-  for_each(runtime, all.neighbors.size(), [&](std::size_t c) {
-    if (all.neighbors[c] >= 0) all.neighbors[c] = ranks.rank(all.neighbors[c]);
-  });
-  for (Ids* const ids : {&all.corners, &all.neighbors}) {
-    auto to = ids->begin();
-    std::ptrdiff_t from = 0;
-    const auto keep_until = [&](std::ptrdiff_t end) {
-      const auto begin = ids->begin() + 3 * from;
-      to = to == begin ? ids->begin() + 3 * end : std::copy(begin, ids->begin() + 3 * end, to);
-      from = end + 1;
-    };
-    for (const std::int32_t t : border.dropped) keep_until(t);
-    keep_until(static_cast<std::ptrdiff_t>(count));
-    ids->resize(3 * kept);
-  }
-  return true;
-}
-
-bool is_box_inside(const Unrolled& plane, const Ids& hull) {
+bool is_box_inside(const Plane& plane, const Ids& hull) {
   constexpr double kDistance = 0x1p-30;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = in_box(plane.box(), plane.place(hull[i])),
-                b = in_box(plane.box(), plane.place(hull[(i + 1) % hull.size()]));
+    const Point a = in_box(plane.box, plane.place(hull[i])),
+                b = in_box(plane.box, plane.place(hull[(i + 1) % hull.size()]));
     for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
       if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
     }
@@ -355,7 +189,7 @@ bool is_box_inside(const Unrolled& plane, const Ids& hull) {
   return !hull.empty();
 }
 
-Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
+Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners,
               const PeriodicTriangulation& mesh) {
   // Triangles by their first corner.
   std::vector<std::size_t> begins(mesh.representatives.size() + 1, 0);
@@ -380,7 +214,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     const auto found = std::find_if(first, last, is_same);
     return found == last ? -1 : *found;
   };
-  const Box& box = plane.box();
+  const Box& box = plane.box;
   const auto touches_box = [&](const std::array<Point, 3>& p) {
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [below, above] = std::minmax({p[0].y, p[1].y, p[2].y});
@@ -389,7 +223,7 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
   const auto is_small = [&](const std::array<Point, 3>& p) {
     constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
     const auto is_short = [&](Point a, Point b) {
-      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.box().margin;
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.box.margin;
     };
     return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
   };
@@ -405,9 +239,9 @@ Ids originals(host::Runtime& runtime, const Unrolled& plane, const Ids& corners,
     if (!touches_box(places)) return;
     std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
     result[t] = find(images);
-    if (!is_whole(plane.box()) && (result[t] < 0 || !is_small(places))) is_right = false;
+    if (!is_whole(plane.box) && (result[t] < 0 || !is_small(places))) is_right = false;
   });
-  if (is_whole(plane.box())) {
+  if (is_whole(plane.box)) {
     std::vector<bool> is_found(by_first.size(), false);
     for (const std::int32_t t : result) {
       if (t >= 0) is_found[index(t)] = true;

@@ -30,7 +30,7 @@ kernel::periodic_axes axes_of(const Pair<double>& period);
 /// of the first one. places: may be the points. O(n).
 void take_into(const Pair<double>& period, const double* points, std::size_t n, std::uint64_t first,
                const char* what, double* places);
-/// As a vector that has room for images, too.
+/// As a vector.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               const Pair<double>& period, const char* what);
 
@@ -42,8 +42,7 @@ inline bool repeats(const Box& box, std::size_t axis) { return std::isfinite(box
 /// Whether a point and all its neighbours are within the margin, whatever the points are.
 bool is_whole(const Box& box);
 /// Without a margin.
-Box box_of(const std::vector<double>& places, std::size_t first, std::size_t last,
-           const Pair<double>& period);
+Box box_of(const double* places, std::size_t first, std::size_t last, const Pair<double>& period);
 
 /// How wide the gaps of so many uniform points may be, with some to spare.
 double first_margin(const Box& box, std::size_t n);
@@ -117,57 +116,30 @@ class Seams {
 };
 
 /// The points of a set as they are triangulated in the plane: first those in the box, then images.
-class Unrolled {
- public:
-  /// No points.
-  Unrolled() = default;
-  /// runtime: its threads are used; null for this one alone. places: of the set's points. O(n).
-  Unrolled(host::Runtime* runtime, std::vector<double> places, const Box& box);
-  /// The places again. Images are no longer there.
-  std::vector<double> take_places();
+struct Plane {
+  Box box{};
+  std::vector<double> coordinates{};  ///< x and y of all
+  std::vector<Image> images{};
 
-  const Box& box() const { return box_; }
-  /// x and y of all: the points in their order, and then images.
-  const std::vector<double>& coordinates() const { return coordinates_; }
-  std::size_t points() const { return points_; }
-  std::size_t images() const { return images_.size(); }
+  std::size_t points() const { return coordinates.size() / 2 - images.size(); }
   geometry::Point place(std::int32_t v) const {
     const std::size_t at = 2 * static_cast<std::size_t>(v);
-    return {coordinates_[at], coordinates_[at + 1]};
+    return {coordinates[at], coordinates[at + 1]};
   }
   /// What is at a place; points are numbered from 0.
   Image image(std::int32_t v) const {
     const auto i = static_cast<std::size_t>(v);
-    return i < points_ ? Image{v, {}} : images_[i - points_];
+    return i < points() ? Image{v, {}} : images[i - points()];
   }
-
- private:
-  Box box_{};
-  std::size_t points_ = 0;
-  std::vector<double> coordinates_;
-  std::vector<Image> images_;
 };
-
-/// Triangles of a set, numbered from 0, as points are.
-struct Triangles {
-  std::vector<std::int32_t> corners, neighbors;
-  std::vector<std::int8_t> offsets;
-};
-
-/// Turns the triangles of a plane, which have no offsets yet, into those of the torus or the cylinder: of all
-/// images of a triangle one is kept. representatives: of the set's points, numbered from 0. Returns whether
-/// they are the canonical Delaunay triangulation; otherwise the margin was too small, and they are
-/// unspecified. runtime: as of Unrolled. O(t).
-bool fold(host::Runtime* runtime, const Unrolled& plane, const std::vector<std::int32_t>& representatives,
-          Triangles& triangles);
 
 /// Whether all that lies in the box lies in the hull, by some distance. O(h).
-bool is_box_inside(const Unrolled& plane, const std::vector<std::int32_t>& hull);
+bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);
 
 /// For each triangle in the plane that touches the box, the one that it is an image of; -1 for others. Empty
 /// if one of them is the image of none, or longer than the margin. Of a whole plane it is -1 for those that
 /// are images of none, which lie outside, and the result is empty if some triangle has no image. O(t).
-std::vector<std::int32_t> originals(host::Runtime& runtime, const Unrolled& plane,
+std::vector<std::int32_t> originals(host::Runtime& runtime, const Plane& plane,
                                     const std::vector<std::int32_t>& corners,
                                     const PeriodicTriangulation& mesh);
 

@@ -1,4 +1,4 @@
-#include "derived/periodic/on_device.hpp"
+#include "derived/periodic/fold.hpp"
 
 #include <fmt/format.h>
 
@@ -53,7 +53,13 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
                             const std::vector<std::size_t>& offsets, const Pair<double>& period) {
   std::vector<Box> boxes;
   if (std::isfinite(period[0]) && std::isfinite(period[1])) {
-    boxes.resize(offsets.size() - 1, box_of({}, 0, 0, period));
+    boxes.resize(offsets.size() - 1, box_of(nullptr, 0, 0, period));
+    return boxes;
+  }
+  if (runtime.threads() == 1) {
+    const auto* const all = reinterpret_cast<const double*>(host::address_of(places.memory()));
+    for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
+      boxes.push_back(box_of(all, offsets[s], offsets[s + 1], period));
     return boxes;
   }
   Arena::Scope scope(runtime.arena());
@@ -74,7 +80,7 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
   runtime.read(found, 0, ends.size(), ends.data());
   // Of a piece the lowest and the highest place.
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
-    boxes.push_back(box_of(ends, 2 * set_pieces[s], 2 * set_pieces[s + 1], period));
+    boxes.push_back(box_of(ends.data(), 2 * set_pieces[s], 2 * set_pieces[s + 1], period));
   return boxes;
 }
 
@@ -87,7 +93,8 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
   for (std::size_t k = 0; k < sets(); ++k) {
     counts_.push_back(last[k] - first[k]);
     point_offsets.push_back(point_offsets.back() + counts_[k]);
-    records.push_back({boxes_[k], static_cast<cl_int>(first[k]), 0});
+    const bool has_ends = !repeats(boxes_[k], 0) || !repeats(boxes_[k], 1);
+    records.push_back({boxes_[k], static_cast<cl_int>(first[k]), has_ends});
   }
   points_ = point_offsets.back();
   point_offsets_ = runtime.upload(arena, integers(point_offsets));
@@ -114,12 +121,25 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
   coordinates_ = arena.allocate<cl_double>(2 * offsets_.back());
   at_ = arena.allocate<cl_uint>(offsets_.back());
   runtime.map(points_, kernels::write_images{.sets = sets(),
+                                             .own = own(),
                                              .offsets = point_offsets_,
                                              .all = records_,
                                              .places = places,
                                              .counts = image_counts_,
                                              .coordinates = coordinates_,
                                              .images = at_});
+}
+
+Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box) {
+  Arena::Scope scope(runtime.arena());
+  Arena arena(runtime.memory());
+  const std::size_t n = places.size() / 2;
+  const UnrolledSets set(runtime, arena, runtime.view(places.data(), 2 * n), {0}, {n}, {box});
+  Plane plane{box, std::vector<double>(2 * set.offsets().back()), {}};
+  runtime.read(set.coordinates(), 0, plane.coordinates.size(), plane.coordinates.data());
+  for (const cl_uint image : points::download(runtime, set.at_, n, set.images(0)))
+    plane.images.push_back(image_of(image));
+  return plane;
 }
 
 FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets& plane,
@@ -163,43 +183,49 @@ FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets&
 
 // list: the triangles that have seams, in ascending order.
 void FoldedSets::join(Arena& arena, const Buffer<cl_int>& list, std::size_t count) {
-  std::vector<kernel::seam_record> seams(3 * count);
-  if (count > 0) {
-    const auto records = runtime_.arena().allocate<kernel::seam_record>(seams.size());
-    runtime_.map(count, kernels::list_seams{.own = plane_.own(),
-                                            .list = list,
-                                            .triangles = mesh_.triangles,
-                                            .neighbors = mesh_.neighbors,
-                                            .ranks = ranks_,
-                                            .images = plane_.at_,
-                                            .coordinates = plane_.coordinates_,
-                                            .seams = records});
-    runtime_.read(records, 0, seams.size(), seams.data());
-  }
-  seams.erase(
-      std::remove_if(seams.begin(), seams.end(), [](const auto& seam) { return seam.at == kernel::NO_SEAM; }),
-      seams.end());
-  std::vector<cl_int2> links;
-  auto next = seams.begin();
-  for (std::size_t k = 0; k < plane_.sets(); ++k) {
-    const auto end = static_cast<cl_int>(3 * mesh_.triangle_offsets[k + 1]);
+  const auto records = runtime_.arena().allocate<kernel::seam_record>(3 * count);
+  runtime_.map(count, kernels::list_seams{.own = plane_.own(),
+                                          .list = list,
+                                          .triangles = mesh_.triangles,
+                                          .neighbors = mesh_.neighbors,
+                                          .ranks = ranks_,
+                                          .images = plane_.at_,
+                                          .coordinates = plane_.coordinates_,
+                                          .seams = records});
+  std::vector<kernel::seam_record> read(runtime_.is_native() ? 0 : 3 * count);
+  runtime_.read(records, 0, read.size(), read.data());
+  const auto* const seams = runtime_.is_native()
+                                ? reinterpret_cast<kernel::seam_record*>(host::address_of(records.memory()))
+                                : read.data();
+  std::vector<cl_int2> links(3 * count, {{kernel::NO_SEAM, kernel::NO_SEAM}});
+  const auto first_of = [&](std::size_t k) {
+    const auto is_before = [](const kernel::seam_record& seam, std::size_t at) {
+      return static_cast<std::size_t>(seam.at) < at;
+    };
+    const auto* const end = seams + 3 * count;
+    return static_cast<std::size_t>(std::lower_bound(seams, end, 3 * mesh_.triangle_offsets[k], is_before) -
+                                    seams);
+  };
+  runtime_.share(plane_.sets(), [&](std::size_t k) {
+    if (kept_before_[k + 1] - kept_before_[k] != expected_[k]) return;
+    const std::size_t first = first_of(k), end = first_of(k + 1);
     Seams joined(plane_.boxes_[k]);
-    for (; next != seams.end() && next->at < end; ++next) {
-      const double* const x = next->ends;
-      joined.add({image_of(next->from), image_of(next->to), image_of(next->own), image_of(next->beyond),
-                  static_cast<std::uint64_t>(next->at)},
-                 {x[0], x[1]}, {x[2], x[3]});
+    for (std::size_t i = first; i < end; ++i) {
+      const kernel::seam_record& seam = seams[i];
+      if (seam.is_seam == 0) continue;
+      joined.add({image_of(seam.from), image_of(seam.to), image_of(seam.own), image_of(seam.beyond),
+                  static_cast<std::uint64_t>(seam.at)},
+                 {seam.ends[0], seam.ends[1]}, {seam.ends[2], seam.ends[3]});
     }
-    if (kept_before_[k + 1] - kept_before_[k] != expected_[k]) continue;
-    if (!joined.match(expected_[k])) continue;
+    if (!joined.match(expected_[k])) return;
     is_done_[k] = 1;
+    auto link = links.begin() + static_cast<std::ptrdiff_t>(first);
     joined.for_each_link([&](std::uint64_t at, std::uint64_t t) {
-      links.push_back({{static_cast<cl_int>(at), static_cast<cl_int>(t)}});
+      *link++ = {{static_cast<cl_int>(at), static_cast<cl_int>(t)}};
     });
-  }
-  const std::size_t link_count = links.size();
-  runtime_.map(link_count, kernels::link_seams{.links = runtime_.upload(arena, std::move(links)),
-                                               .neighbors = mesh_.neighbors});
+  });
+  runtime_.map(3 * count, kernels::link_seams{.links = runtime_.upload(arena, std::move(links)),
+                                              .neighbors = mesh_.neighbors});
 }
 
 void FoldedSets::write(const std::vector<std::size_t>& first_rows, const Buffer<cl_int>& triangles,
@@ -209,18 +235,39 @@ void FoldedSets::write(const std::vector<std::size_t>& first_rows, const Buffer<
   for (std::size_t k = 0; k < plane_.sets(); ++k)
     shifts.push_back(is_done(k) ? static_cast<cl_int>(first_rows[k]) - static_cast<cl_int>(kept_before_[k])
                                 : kernel::NOT_WRITTEN);
-  runtime_.map(mesh_.triangle_count(),
-               kernels::write_folded{.sets = plane_.sets(),
-                                     .offsets = triangle_offsets_,
-                                     .shifts = runtime_.upload(runtime_.arena(), shifts),
-                                     .own = plane_.own(),
-                                     .triangles = mesh_.triangles,
-                                     .neighbors = mesh_.neighbors,
-                                     .ranks = ranks_,
-                                     .images = plane_.at_,
-                                     .folded = triangles,
-                                     .periods = offsets.as<cl_uchar>(),
-                                     .folded_neighbors = neighbors});
+  const auto shift_buffer = runtime_.upload(runtime_.arena(), std::move(shifts));
+  // Writes the rows of n triangles to arrays that begin at row `begin`.
+  const auto write_rows = [&](std::size_t first, std::size_t n, std::size_t begin,
+                              const Buffer<cl_int>& folded, const Buffer<cl_int>& folded_neighbors) {
+    runtime_.map(n, kernels::write_folded{.first = static_cast<cl_int>(first),
+                                          .begin = static_cast<cl_int>(begin),
+                                          .sets = plane_.sets(),
+                                          .offsets = triangle_offsets_,
+                                          .shifts = shift_buffer,
+                                          .own = plane_.own(),
+                                          .triangles = mesh_.triangles,
+                                          .neighbors = mesh_.neighbors,
+                                          .ranks = ranks_,
+                                          .images = plane_.at_,
+                                          .folded = folded,
+                                          .periods = offsets.as<kernel::uchar2>(),
+                                          .folded_neighbors = folded_neighbors});
+  };
+  const std::size_t count = mesh_.triangle_count();
+  if (triangles.memory() != mesh_.triangles.memory() || runtime_.threads() == 1)
+    return write_rows(0, count, 0, triangles, neighbors);
+  // Several threads write one slice after the other, and not to where others still read.
+  constexpr std::size_t kSlice = std::size_t{1} << 17;
+  const std::size_t most = 3 * std::min(kSlice, count);
+  const auto slice = runtime_.arena().allocate<cl_int>(most),
+             beyond = runtime_.arena().allocate<cl_int>(most);
+  for (std::size_t first = 0; first < count; first += kSlice) {
+    const std::size_t n = std::min(kSlice, count - first);
+    const std::size_t begin = runtime_.read_one(ranks_, first), end = runtime_.read_one(ranks_, first + n);
+    write_rows(first, n, begin, slice, beyond);
+    runtime_.copy(slice, 0, triangles, 3 * begin, 3 * (end - begin));
+    runtime_.copy(beyond, 0, neighbors, 3 * begin, 3 * (end - begin));
+  }
 }
 
 }  // namespace flaunay::periodic

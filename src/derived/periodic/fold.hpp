@@ -1,4 +1,5 @@
-// Points on a torus or a cylinder, and triangles of these, where kernels run. Only seams cross to the host.
+// From points on a torus or a cylinder to points in the plane, and from triangles of these back, where
+// kernels run: on a device or natively. Only seams cross to the host.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace flaunay::periodic {
 using host::Arena;
 using host::Buffer;
 
-/// Does what to_places does. Waits once. O(n).
+/// Takes points into the periods; see take_into. Waits once. O(n).
 void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::size_t n,
                  const Pair<double>& period, const Buffer<cl_double>& places);
 
@@ -21,7 +22,8 @@ void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::s
 std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& places,
                             const std::vector<std::size_t>& offsets, const Pair<double>& period);
 
-/// Some sets of points as Unrolled has each of them, one after the other.
+/// Some sets of points as they are triangulated in the plane, one after the other: of each first the points,
+/// then their images in ascending order.
 class UnrolledSets {
  public:
   /// first, last: per set its points, at least one. arena: where results come from; that of the runtime must
@@ -39,6 +41,7 @@ class UnrolledSets {
 
  private:
   friend class FoldedSets;
+  friend Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
   /// Points in the plane below this number are those of this number.
   std::size_t own() const { return sets() == 1 && first_ == 0 ? points_ : 0; }
 
@@ -52,7 +55,11 @@ class UnrolledSets {
   Buffer<cl_uint> at_;  // per place in the plane what is there
 };
 
-/// Does what fold does, with all sets at once.
+/// One set of places in host memory, unrolled natively.
+Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
+
+/// The triangles of planes, turned into those of the torus or the cylinder: of all images of a triangle one
+/// is kept. If those of a set are not the canonical Delaunay triangulation, its margin was too small.
 class FoldedSets {
  public:
   /// mesh: of the plane, with neighbours and representatives; its neighbours are changed. representatives: of
@@ -63,7 +70,8 @@ class FoldedSets {
   /// How many triangles a set must have.
   std::size_t expected(std::size_t k) const { return expected_[k]; }
   bool is_done(std::size_t k) const { return is_done_[k] != 0; }
-  /// Writes the triangles of the sets that are done, of each from a row on. Does not wait.
+  /// Writes the triangles of the sets that are done, of each from a row on. Natively, those of a single set
+  /// that is done may be written to the arrays of the plane. Does not wait.
   void write(const std::vector<std::size_t>& first_rows, const Buffer<cl_int>& triangles,
              const Buffer<cl_char>& offsets, const Buffer<cl_int>& neighbors) const;
 
