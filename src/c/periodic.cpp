@@ -173,6 +173,9 @@ flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_locator* locato
 flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator, const double* values,
                                                     size_t columns, const double* queries, size_t m,
                                                     double* results) {
-  return answer(locator, queries, m, results,
-                [&](PeriodicLocator& cpp) { return cpp.interpolate(values, columns, queries, m); });
+  return answer(locator, queries, m, results, [&](PeriodicLocator& cpp) {
+    InterpolationOptions options;
+    options.columns = columns;
+    return cpp.interpolate(values, queries, m, options);
+  });
 }

@@ -24,6 +24,7 @@ struct PeriodicLocator::Implementation {
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
     const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
+    gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
     box.margin = is_torus ? periodic::first_margin(box, n) : kWhole;
     for (; !make(used, mesh, box); box.margin *= periodic::kWider) {
       if (periodic::is_whole(plane->box))
@@ -33,12 +34,15 @@ struct PeriodicLocator::Implementation {
   }
 
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
-  /// the mesh, and the nearest point of what is in the box is near enough.
+  /// the mesh, the nearest points of places in the box are near enough, and on a torus their natural
+  /// neighbors, too.
   bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box) {
     call::take_turn(*owner, [&] { plane = periodic::plane_of(owner->native().runtime, mesh.places, box); });
     const std::vector<double>& places = plane->coordinates;
     const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
-    if (!periodic::is_whole(plane->box) && !periodic::is_box_inside(*plane, planar.hull)) return false;
+    if (!periodic::is_whole(plane->box) &&
+        (plane->box.margin < gap || !periodic::is_box_inside(*plane, planar.hull)))
+      return false;
     call::take_turn(*owner, [&] {
       numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
     });
@@ -53,8 +57,38 @@ struct PeriodicLocator::Implementation {
         *owner, [&] { return periodic::to_places(owner->native().runtime, queries, m, period, "query"); });
   }
 
+  /// Rows of numbers per point, and then those of images.
+  std::vector<double> with_images(const double* values, std::size_t columns) const {
+    std::vector<double> all(values, values + columns * plane->points());
+    all.reserve(columns * (plane->points() + plane->images.size()));
+    for (const periodic::Image& image : plane->images) {
+      const double* const row = values + columns * static_cast<std::size_t>(image.point);
+      all.insert(all.end(), row, row + columns);
+    }
+    return all;
+  }
+
+  /// Throws unless a method of interpolation is possible. The natural neighbors of a place in the box are
+  /// corners of triangles whose circles contain it, and no circle without points is wider than the gap. So if
+  /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus.
+  void check(const InterpolationOptions& options) const {
+    check_enumerator(options.method, Interpolation::laplace, "Interpolation");
+    call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr &&
+                     options.device_gradients == nullptr,
+                 "values on a torus or a cylinder are interpolated without gradients");
+    if (options.method != Interpolation::sibson && options.method != Interpolation::laplace) return;
+    call::expect(!std::isinf(period[0]) && !std::isinf(period[1]),
+                 "values on a cylinder are not interpolated by natural neighbors; those on a torus are");
+    if (locator && gap > std::min(period[0], period[1]))
+      throw Error(
+          ErrorKind::input,
+          "these points have no natural neighbors on their torus: a circle without points is wider than "
+          "the shorter period");
+  }
+
   std::shared_ptr<call::Implementation> owner;
   periodic::Pair<double> period;
+  double gap = 0;  // of a torus: the width of the widest circle without points, or more
   std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh
   std::optional<Locator> locator;     // in the plane; none without points
@@ -84,23 +118,16 @@ std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::s
   return found;
 }
 
-std::vector<double> PeriodicLocator::interpolate(const double* values, std::size_t columns,
-                                                 const double* queries, std::size_t m) {
+std::vector<double> PeriodicLocator::interpolate(const double* values, const double* queries, std::size_t m,
+                                                 const InterpolationOptions& options) {
+  const Implementation& self = *implementation_;
+  const std::size_t results = check_columns(options.columns, m);
   const std::vector<double> places = implementation_->to_places(queries, m);
-  const std::size_t results = check_columns(columns, m);
-  if (!implementation_->locator)
-    return std::vector<double>(results, std::numeric_limits<double>::quiet_NaN());
-  check_array(values, check_columns(columns, implementation_->plane->points()), "values", kMostCountable);
-  const periodic::Plane& plane = *implementation_->plane;
-  std::vector<double> of_images(values, values + columns * plane.points());
-  of_images.reserve(columns * (plane.points() + plane.images.size()));
-  for (const periodic::Image& image : plane.images) {
-    const double* const row = values + columns * static_cast<std::size_t>(image.point);
-    of_images.insert(of_images.end(), row, row + columns);
-  }
-  InterpolationOptions options;
-  options.columns = columns;
-  return implementation_->locator->interpolate(of_images.data(), places.data(), m, options);
+  with_errors([&] { self.check(options); });
+  if (!self.locator) return std::vector<double>(results, options.fill);
+  check_array(values, check_columns(options.columns, self.plane->points()), "values", kMostCountable);
+  return implementation_->locator->interpolate(self.with_images(values, options.columns).data(),
+                                               places.data(), m, options);
 }
 
 }  // namespace flaunay

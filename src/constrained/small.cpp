@@ -19,7 +19,7 @@ namespace {
 using Ids = std::vector<std::int32_t>;
 using kernel::NO_EDGE;
 
-constexpr std::int32_t kNone = -1;
+constexpr std::int32_t kNoIndex = -1;
 
 // Directed edges are those of mesh/rings.h. Rings are walked clockwise, since `previous` is never
 // complemented.
@@ -51,10 +51,10 @@ class Small {
   // directions count, of those in the direction of the first half less the others. number: its own, and then,
   // if a region is entered over it, that of the region.
   struct Pair {
-    std::int32_t segment = kNone;  // the first one that has it
+    std::int32_t segment = kNoIndex;  // the first one that has it
     std::int32_t weight = 0;
     std::int32_t next = NO_EDGE;  // the edge that follows on a segment
-    std::int32_t number = kNone;
+    std::int32_t number = kNoIndex;
     bool follows = false;  // whether there is an edge before it on a segment
   };
   struct Region {
@@ -204,8 +204,8 @@ class Small {
     lefts_.assign({NO_EDGE, left ^ 1});
     rights_.assign(1, right);
     crossed_.clear();
-    int goal = kNone;
-    for (int e = after(right).first; goal == kNone;) {
+    int goal = kNoIndex;
+    for (int e = after(right).first; goal == kNoIndex;) {
       if (is_constraint(e) || --steps_left_ < 0) return NO_EDGE;
       crossed_.push_back(e);
       const int to_right = edges_[e].previous, to_left = edges_[e ^ 1].next ^ 1;
@@ -325,7 +325,7 @@ class Small {
       for (const bool constraints : {false, true}) {
         int e = first;
         do {
-          if (is_constraint(e) == constraints) entries_.push_back({e, kNone});
+          if (is_constraint(e) == constraints) entries_.push_back({e, kNoIndex});
           e = ~edges_[e ^ 1].next;
         } while (e != first);
       }
@@ -338,7 +338,7 @@ class Small {
   void enter(Face entry) {
     if (is_visited(entry.edge)) return;
     Region region{entry.region, 0, 0, entry.edge};
-    if (entry.region != kNone) {
+    if (entry.region != kNoIndex) {
       region.level = regions_[entry.region].level;
       region.potential = regions_[entry.region].potential;
     }
@@ -463,7 +463,7 @@ class Small {
       }
     }
     for (const std::int32_t hole : holes_) is_left[hole] = 0;
-    Ids numbers(regions_.size(), kNone);
+    Ids numbers(regions_.size(), kNoIndex);
     std::int32_t count = 0, region_count = 0;
     rows_.resize(faces_.size());
     std::vector<std::size_t>& offsets = result_->triangle_offsets;
@@ -471,16 +471,16 @@ class Small {
       const auto first = static_cast<std::size_t>(count);
       for (const std::size_t end = offsets[set + 1]; row < end; ++row) {
         const std::int32_t is_there = is_left[faces_[row].region];
-        rows_[row] = is_there != 0 ? count : kNone;
+        rows_[row] = is_there != 0 ? count : kNoIndex;
         count += is_there;
       }
       offsets[set] = first;
     }
     offsets.back() = static_cast<std::size_t>(count);
     for (std::size_t row = 0; request_->labels && row < rows_.size(); ++row) {
-      if (rows_[row] == kNone) continue;
+      if (rows_[row] == kNoIndex) continue;
       std::int32_t& number = numbers[faces_[row].region];
-      if (number == kNone) number = region_count++;
+      if (number == kNoIndex) number = region_count++;
       result_->regions.push_back(number);
       result_->depths.push_back(depths[faces_[row].region]);
     }
@@ -499,7 +499,7 @@ class Small {
     auto* const constrained = result_->constrained.data();
     auto* const neighbors = request_->neighbors ? result_->neighbors.data() : nullptr;
     for (std::size_t row = 0; row < faces_.size(); ++row) {
-      if (numbers[row] == kNone) continue;
+      if (numbers[row] == kNoIndex) continue;
       const int e = faces_[row].edge;
       const int third = edges[e].next ^ 1, second = edges[third].next ^ 1;
       const std::int32_t v = source[edges[third].to], a = source[edges[e].to], b = source[edges[second].to];

@@ -342,7 +342,7 @@ void expect_answers(const PeriodicTriangulation& mesh, const Numbers& queries) {
     if (std::isfinite(mesh.period.y)) elsewhere[2 * i + 1] += 2 * mesh.period.y;
   }
   const auto triangles = locator.locate(queries.data(), m), points = locator.nearest(queries.data(), m);
-  const Numbers found = locator.interpolate(values.data(), 1, queries.data(), m);
+  const Numbers found = locator.interpolate(values.data(), queries.data(), m);
   EXPECT_EQ(triangles, locator.locate(elsewhere.data(), m));
   EXPECT_EQ(points, locator.nearest(elsewhere.data(), m));
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -367,7 +367,7 @@ void expect_answers(const PeriodicTriangulation& mesh, const Numbers& queries) {
   }
   // At points.
   if (!mesh.triangles.empty()) {
-    EXPECT_EQ(values, locator.interpolate(values.data(), 1, mesh.places.data(), n));
+    EXPECT_EQ(values, locator.interpolate(values.data(), mesh.places.data(), n));
   }
   EXPECT_EQ(mesh.representatives, locator.nearest(mesh.places.data(), n));
 }
@@ -417,13 +417,87 @@ TEST(Periodic, QueriesOfManyPoints) {
     expected.push_back(static_cast<std::int32_t>(t));
   }
   EXPECT_EQ(expected, locator.locate(centres.data(), expected.size()));
-  const Numbers found = locator.interpolate(values.data(), 2, centres.data(), expected.size());
+  InterpolationOptions options;
+  options.columns = 2;
+  const Numbers found = locator.interpolate(values.data(), centres.data(), expected.size(), options);
   for (std::size_t t = 0; t < expected.size(); ++t) {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += 0.1 * mesh.triangles[3 * t + k] / 3;
     ASSERT_NEAR(sum, found[2 * t], 1e-6);
     ASSERT_EQ(found[2 * t], found[2 * t + 1]);
   }
+}
+
+TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
+  for (const Period& period : {Period{1, 1}, {0.3, 0.7}, {1, 4}}) {
+    for (const std::size_t n : {40, 300}) {
+      SCOPED_TRACE(n);
+      Numbers points = uniform(n, period, n + 7);
+      // Ties, points given twice, and a gap.
+      for (std::size_t i = 0; i < n; i += 2)
+        points[i] = std::floor(16 * points[i] / period.x) / 16 * period.x;
+      points.insert(points.end(), points.begin(), points.begin() + 20);
+      const PeriodicTriangulation mesh = triangulated(points, period);
+      PeriodicLocator locator(testing::triangulator(), mesh);
+      Numbers copies, values, of_copies, queries = uniform(100, period, 3);
+      for (std::size_t i = 0; i < points.size() / 2; ++i) {
+        values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
+        values.push_back(static_cast<double>(mesh.representatives[i]));
+      }
+      for (int across = -2; across <= 2; ++across) {
+        for (int up = -2; up <= 2; ++up) {
+          for (std::size_t i = 0; i < mesh.places.size(); i += 2) {
+            copies.insert(copies.end(),
+                          {mesh.places[i] + across * period.x, mesh.places[i + 1] + up * period.y});
+            of_copies.insert(of_copies.end(), {values[i], values[i + 1]});
+          }
+        }
+      }
+      const std::size_t count = copies.size() / 2;
+      Options options;
+      options.neighbors = true;
+      Locator plane(testing::triangulator(), copies.data(), count,
+                    testing::triangulator().triangulate(copies.data(), count, options));
+      Numbers elsewhere;
+      for (std::size_t q = 0; q < queries.size(); q += 2)
+        elsewhere.insert(elsewhere.end(), {queries[q] - 3 * period.x, queries[q + 1] + 2 * period.y});
+      InterpolationOptions wanted;
+      wanted.columns = 2;
+      for (const Interpolation method : {Interpolation::sibson, Interpolation::laplace}) {
+        wanted.method = method;
+        const Numbers found = locator.interpolate(values.data(), elsewhere.data(), 100, wanted);
+        const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 100, wanted);
+        for (std::size_t i = 0; i < expected.size(); ++i)
+          ASSERT_NEAR(expected[i], found[i], 1e-9 * static_cast<double>(n)) << i;
+      }
+      for (const Interpolation method :
+           {Interpolation::linear, Interpolation::nearest, Interpolation::sibson, Interpolation::laplace}) {
+        wanted.method = method;
+        EXPECT_EQ(values,
+                  locator.interpolate(values.data(), mesh.places.data(), mesh.places.size() / 2, wanted));
+      }
+    }
+  }
+}
+
+TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
+  const Numbers query = {0.5, 0.5}, values(30, 1.0);
+  const auto interpolate = [&](const Numbers& points, const Period& period, Interpolation method) {
+    InterpolationOptions options;
+    options.method = method;
+    PeriodicLocator(testing::triangulator(), triangulated(points, period))
+        .interpolate(values.data(), query.data(), 1, options);
+  };
+  const Numbers some = uniform(30, {}, 3), line = {0.1, 0.5, 0.6, 0.5, 0.3, 0.52};
+  testing::expect_error(ErrorKind::usage, "gradients",
+                        [&] { interpolate(some, {}, Interpolation::clough_tocher); });
+  testing::expect_error(ErrorKind::usage, "cylinder", [&] {
+    interpolate(some, {1, HUGE_VAL}, Interpolation::sibson);
+  });
+  testing::expect_error(ErrorKind::input, "wider than", [&] {
+    interpolate(line, {1, 16}, Interpolation::laplace);
+  });
+  interpolate(line, {1, 16}, Interpolation::nearest);
 }
 
 TEST(Periodic, VerifyFindsWhatIsWrong) {

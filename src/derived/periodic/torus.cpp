@@ -177,6 +177,37 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
+double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+  // Bounds of all roundings: images and differences of coordinates have one each.
+  constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
+  const std::size_t count = mesh.triangles.size() / 3;
+  std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
+  runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
+    double& widest = parts[begin / host::Runtime::kPart];
+    for (std::size_t t = begin; t < end; ++t) {
+      std::array<Point, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
+        p[k] = {mesh.places[v] + mesh.offsets[2 * c] * mesh.period.x,
+                mesh.places[v + 1] + mesh.offsets[2 * c + 1] * mesh.period.y};
+      }
+      std::array<double, 3> opposite;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Point &from = p[(k + 1) % 3], &to = p[(k + 2) % 3];
+        opposite[k] = std::hypot(to.x - from.x, to.y - from.y);
+      }
+      // The cross product of the two shorter sides has the smallest error.
+      const auto k =
+          static_cast<std::size_t>(std::max_element(opposite.begin(), opposite.end()) - opposite.begin());
+      const Point &a = p[k], &b = p[(k + 1) % 3], &c = p[(k + 2) % 3];
+      const double sides = opposite[(k + 1) % 3] * opposite[(k + 2) % 3],
+                   area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) - kError * sides;
+      widest = std::max(widest, area > 0 ? kSpare * opposite[k] * (sides / area) : HUGE_VAL);
+    }
+  });
+  return *std::max_element(parts.begin(), parts.end());
+}
+
 bool is_box_inside(const Plane& plane, const Ids& hull) {
   constexpr double kDistance = 0x1p-30;
   for (std::size_t i = 0; i < hull.size(); ++i) {

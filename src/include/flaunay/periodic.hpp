@@ -157,11 +157,13 @@ class FLAUNAY_API PeriodicLocator {
   /// Finds for each of m queries the nearest point, exactly; of several the first one in the order of x, then
   /// y, as they lie around the query's place. It is -1 if there are no points.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
-  /// Computes for each of m queries the linear interpolation of the values at the corners of its triangle,
-  /// rounded: `columns` numbers per point and per query. At a point it is exactly that point's value; where
-  /// there is no triangle, NaN. For duplicates, the value of their representative is used.
-  std::vector<double> interpolate(const double* values, std::size_t columns, const double* queries,
-                                  std::size_t m);
+  /// Computes values at m queries as Locator::interpolate does, rounded: options.columns numbers per point
+  /// and per query. At a point the result is exactly that point's value; beyond the ends of a cylinder, and
+  /// without triangles, options.fill. For duplicates, the value of their representative is used. Throws
+  /// Error(usage) for gradients and Clough-Tocher, and on a cylinder for natural neighbors; Error(input) for
+  /// the natural neighbors of so few points that a circle without points is wider than the shorter period.
+  std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
+                                  const InterpolationOptions& options = {});
 
  private:
   struct FLAUNAY_LOCAL Implementation;
