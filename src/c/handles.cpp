@@ -138,15 +138,11 @@ research::Options to_options(const flaunay_options* options) {
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_options");
   check_parts(options->parts);
+  request(options->parts, result);
   result.mode = to_enum<Mode>(options->mode, FLAUNAY_MODE_DWYER, "flaunay_mode");
   result.cut = to_enum<Cut>(options->cut, FLAUNAY_CUT_ALTERNATE, "flaunay_cut");
   result.hull = to_enum<Hull>(options->hull, FLAUNAY_HULL_MONOTONE_CHAIN, "flaunay_hull");
   result.finish = to_enum<Finish>(options->finish, FLAUNAY_FINISH_LEVELS, "flaunay_finish");
-  if (options->parts != 0) {
-    for_each_array([&](const auto& array, std::size_t k) {
-      if (array.option != nullptr) result.*array.option = (options->parts & bit_of(k)) != 0;
-    });
-  }
   result.profile = options->profile != 0;
   result.partition_levels = options->partition_levels;
   result.threads = options->threads;
@@ -157,6 +153,13 @@ research::Options to_options(const flaunay_options* options) {
     };
   }
   return result;
+}
+
+void request(unsigned parts, Options& options) {
+  if (parts == 0) return;
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (array.option != nullptr) options.*array.option = (parts & bit_of(k)) != 0;
+  });
 }
 
 Parts to_parts(unsigned parts) {

@@ -87,6 +87,8 @@ ConstrainedOptions to_constrained_options(const flaunay_constraints& given, cons
 /// Null: the defaults. Throws Error(usage) for an unknown method and for reserved members that are not 0.
 InterpolationOptions to_interpolation(const flaunay_interpolation_options* options);
 
+/// Asks for the arrays of these bits of flaunay_part, which are known. 0: the defaults.
+void request(unsigned parts, Options& options);
 /// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);
