@@ -47,11 +47,6 @@ flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   return view;
 }
 
-static_assert(FLAUNAY_CROSSINGS_SPLIT == static_cast<int>(Crossings::split));
-static_assert(FLAUNAY_OUTSIDE_HULL == static_cast<int>(Outside::hull) &&
-              FLAUNAY_OUTSIDE_HOLES == static_cast<int>(Outside::holes));
-static_assert(FLAUNAY_FILL_RULE_EVEN_ODD == static_cast<int>(FillRule::even_odd) &&
-              FLAUNAY_FILL_RULE_WINDING == static_cast<int>(FillRule::winding));
 flaunay_refinement_report view_of(const RefinementReport& report) {
   flaunay_refinement_report view{};
   view.rounds = report.rounds;
@@ -68,11 +63,7 @@ flaunay_refinement_report view_of(const RefinementReport& report) {
   return view;
 }
 
-static_assert(FLAUNAY_KEPT_EDGES_BORDER == static_cast<int>(KeptEdges::border) &&
-              FLAUNAY_KEPT_EDGES_ALL == static_cast<int>(KeptEdges::all));
-static_assert(FLAUNAY_EXCUSE_INPUT_ANGLE == static_cast<int>(Excuse::input_angle) &&
-              FLAUNAY_EXCUSE_MOST_ROUNDS == static_cast<int>(Excuse::most_rounds));
-static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
+static_assert(c::agree<flaunay_excuse, Excuse, 1>());
 
 // A value that counts if the caller says so. Others must be 0, so that none is forgotten.
 template <typename T>
@@ -103,7 +94,7 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
     c::check_reserved(*given.mesh, "flaunay_given_triangles");
     result.mesh = {given.mesh->triangles, given.mesh->count, given.mesh->areas, given.mesh->attributes};
   }
-  result.kept = c::to_enum<KeptEdges>(given.kept, FLAUNAY_KEPT_EDGES_ALL, "flaunay_kept_edges");
+  result.kept = c::to_enum<flaunay_kept_edges, KeptEdges>(given.kept);
   result.kept_segments = given.kept_segments;
   if (given.min_edge < 0) {
     throw Error(ErrorKind::usage,
@@ -127,25 +118,18 @@ Result to_common_options(const Given& given, const flaunay_options* options) {
   }
   Result result;
   static_cast<Options&>(result) = plain;
-  result.crossings = c::to_enum<Crossings>(given.crossings, FLAUNAY_CROSSINGS_SPLIT, "flaunay_crossings");
+  result.crossings = c::to_enum<flaunay_crossings, Crossings>(given.crossings);
   result.labels = given.labels != 0;
   result.refinement = to_refinement(given.refinement);
   return result;
 }
 
-Outside to_outside(int outside) {
-  return c::to_enum<Outside>(outside, FLAUNAY_OUTSIDE_HOLES, "flaunay_outside");
-}
-FillRule to_fill_rule(int rule) {
-  return c::to_enum<FillRule>(rule, FLAUNAY_FILL_RULE_WINDING, "flaunay_fill_rule");
-}
-
 PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_options* options) {
   auto result = to_common_options<PolygonOptions>(given, options);
-  if (given.has_outside != 0) result.outside = to_outside(given.outside);
-  if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
+  if (given.has_outside != 0) result.outside = c::to_enum<flaunay_outside, Outside>(given.outside);
+  if (given.has_fill_rule != 0) result.fill_rule = c::to_enum<flaunay_fill_rule, FillRule>(given.fill_rule);
   result.map = given.map != 0;
-  result.overlaps = c::to_enum<Overlaps>(given.overlaps, FLAUNAY_OVERLAPS_ERROR, "flaunay_overlaps");
+  result.overlaps = c::to_enum<flaunay_overlaps, Overlaps>(given.overlaps);
   return result;
 }
 
@@ -217,8 +201,8 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
 
 ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
   auto result = to_common_options<ConstrainedOptions>(given, options);
-  result.outside = to_outside(given.outside);
-  result.fill_rule = to_fill_rule(given.fill_rule);
+  result.outside = c::to_enum<flaunay_outside, Outside>(given.outside);
+  result.fill_rule = c::to_enum<flaunay_fill_rule, FillRule>(given.fill_rule);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "c/enumerators.hpp"
 #include "c/errors.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
@@ -31,14 +32,6 @@ void check_reserved(const Struct& given, const char* name) {
                             "a later version",
                             name, version()));
   }
-}
-
-/// The enumerator of a number: C and C++ have the same numbers, from 0 to `last`. Throws Error(usage), which
-/// names the type of C.
-template <typename Enum>
-Enum to_enum(int value, int last, const char* name) {
-  check_enumerator(value, last, name);
-  return static_cast<Enum>(value);
 }
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.

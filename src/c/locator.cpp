@@ -186,7 +186,7 @@ flaunay_status flaunay_natural_weights_compute(flaunay_locator* locator, const d
                                                int method, flaunay_natural_weights** weights) {
   return create(weights, [&] {
     Locator& cpp = required(locator, "the locator").cpp;
-    const auto by = c::to_enum<Interpolation>(method, FLAUNAY_INTERPOLATION_LAPLACE, "flaunay_interpolation");
+    const auto by = c::to_enum<flaunay_interpolation, Interpolation>(method);
     return std::make_unique<flaunay_natural_weights>(
         flaunay_natural_weights{cpp.natural_weights(queries, m, by)});
   });

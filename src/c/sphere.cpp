@@ -37,11 +37,8 @@ struct flaunay_spherical_locator {
 
 namespace {
 
-static_assert(FLAUNAY_SPHERE_DIRECTIONS == static_cast<int>(SphereCoordinates::directions) &&
-              FLAUNAY_SPHERE_DEGREES == static_cast<int>(SphereCoordinates::degrees));
-
 SphereCoordinates to_coordinates(int given) {
-  return c::to_enum<SphereCoordinates>(given, FLAUNAY_SPHERE_DEGREES, "flaunay_sphere_coordinates");
+  return c::to_enum<flaunay_sphere_coordinates, SphereCoordinates>(given);
 }
 
 template <c::Is<DeviceSphericalTriangulation> Result>
