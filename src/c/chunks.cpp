@@ -303,8 +303,5 @@ flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
   });
 }
 
-void flaunay_chunk_report_destroy(flaunay_chunk_report* report) { delete report; }
-
-const flaunay_chunk_statistics* flaunay_chunk_report_statistics(const flaunay_chunk_report* report) {
-  return read(report, [](const auto& handle) { return &handle.view; });
-}
+FLAUNAY_DESTROY(chunk_report)
+FLAUNAY_ACCESSOR(const flaunay_chunk_statistics*, chunk_report, statistics, &handle.view)

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <memory>
 #include <numeric>
 
 #include "c/errors.hpp"
@@ -15,25 +13,12 @@
 
 using namespace flaunay;
 
-using c::create;
 using c::elements;
-using c::guarded;
-using c::read;
 using c::required;
 
-struct flaunay_device_constraints {
-  DeviceConstraintEdges cpp;
-};
+FLAUNAY_HANDLE(device_constraints, DeviceConstraintEdges)
 
 namespace {
-
-template <c::Is<DeviceConstraintEdges> Result>
-auto& buffer_of(Result& edges, unsigned part) {
-  static constexpr std::array kBuffers = {&DeviceConstraintEdges::constrained,
-                                          &DeviceConstraintEdges::piece_edges,
-                                          &DeviceConstraintEdges::constraint_edges};
-  return c::buffer_of(edges, kBuffers, part, "constraint edges");
-}
 
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   flaunay_constrained_arrays view{};
@@ -230,42 +215,30 @@ flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulato
                                                size_t n, const size_t* offsets, size_t sets,
                                                const flaunay_constraints* constraints,
                                                const flaunay_options* options, flaunay_constrained** result) {
-  return create(result, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_constraints given = constraints != nullptr ? *constraints : flaunay_constraints{};
     c::check_reserved(given, "flaunay_constraints");
     const std::vector<std::size_t> sets_of_points = c::to_offsets(offsets, sets, n);
-    return std::make_unique<flaunay_constrained>(
-        cpp.constrained(coordinates, sets_of_points, c::to_constraints(given, c::set_count(sets_of_points)),
-                        c::to_constrained_options(given, options)));
+    return cpp.constrained(coordinates, sets_of_points,
+                           c::to_constraints(given, c::set_count(sets_of_points)),
+                           c::to_constrained_options(given, options));
   });
 }
 
 flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
                                             const flaunay_polygons* polygons, const flaunay_options* options,
                                             flaunay_constrained** result) {
-  return create(result, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_polygons& given = required(polygons, "the polygons");
     c::check_reserved(given, "flaunay_polygons");
-    return std::make_unique<flaunay_constrained>(
-        cpp.polygons(to_polygons(given), to_polygon_options(given, options)));
+    return cpp.polygons(to_polygons(given), to_polygon_options(given, options));
   });
 }
 
-void flaunay_constrained_destroy(flaunay_constrained* result) { delete result; }
-
-const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.mesh; });
-}
-
-const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.arrays; });
-}
-
-const flaunay_refinement_report* flaunay_constrained_refinement(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.refinement; });
-}
+FLAUNAY_DESTROY(constrained)
+FLAUNAY_ACCESSOR(const flaunay_mesh*, constrained, mesh, &handle.mesh)
+FLAUNAY_ACCESSOR(const flaunay_constrained_arrays*, constrained, get_arrays, &handle.arrays)
+FLAUNAY_ACCESSOR(const flaunay_refinement_report*, constrained, refinement, &handle.refinement)
 
 flaunay_status flaunay_mesh_verify_constrained(const flaunay_mesh* mesh,
                                                const flaunay_constrained_arrays* arrays,
@@ -294,20 +267,16 @@ flaunay_status flaunay_mesh_verify_polygons(const flaunay_mesh* mesh,
   });
 }
 
-FLAUNAY_DEVICE_RESULT(constraints, "the constraint edges")
-
-size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges) {
-  return read(edges, [](const auto& handle) { return handle.cpp.edge_count; });
-}
+FLAUNAY_DEVICE_RESULT(constraints, flaunay_constraint_part, FLAUNAY_CONSTRAINT_ARRAYS, "the constraint edges",
+                      "constraint edges")
+FLAUNAY_ACCESSOR(size_t, device_constraints, edge_count, handle.cpp.edge_count)
 
 flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, cl_mem segments,
                                                       size_t segment_count, const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* mesh,
                                                       flaunay_device_constraints* edges) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(mesh, "the mesh");
     DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
     // The view refers to statistics that the call replaces.
