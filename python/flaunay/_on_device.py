@@ -176,9 +176,10 @@ class DeviceTriangulation:
         """
         corners = corners_of(bounds)
         work, what = _calls.DeviceClippedVoronoi, "a Voronoi diagram"
-        made, own, event = self._run(work, what, queue, wait_for, corners)
+        given = (np.ascontiguousarray(corners), len(corners))
+        made, own, event = self._run(work, what, queue, wait_for, *given)
         n = int(self.points.shape[0])
-        places = made.arrays(vertex=made.vertex_count, point=n, point_offset=n + 1)
+        places = made.arrays(point=n, point_offset=n + 1)
         views = {name: view(*place, own, event) for name, place in places.items()}
         return DeviceClippedVoronoi(**views, bounds=corners, event=event)
 
@@ -301,12 +302,9 @@ def triangulate_device(
     )
     triangulator = _triangulators.of_queue(call.queue)
     result, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, wanted)
-    views = {
-        name: None if place is None else view(*place, call.queue, event)
-        for name, place in result.arrays().items()
-    }
+    views = {name: view(*place, call.queue, event) for name, place in result.computed().items()}
     return DeviceTriangulation(
-        **views,
+        **dict.fromkeys(_calls.TRIANGULATION) | views,
         points=points,
         triangle_offsets=result.triangle_offsets,
         hull_offsets=result.hull_offsets,

@@ -389,11 +389,11 @@ def periodic_device(
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points, lengths = call.points(points, offsets, "points"), as_lengths(period)
     triangulator = _triangulators.of_queue(call.queue)
-    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, lengths)
+    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, *lengths)
     triangles = int(made.triangle_offsets[-1])
     places = made.arrays(point=int(points.shape[0]), triangle=triangles)
     views = {name: view(*place, call.queue, event) for name, place in places.items()}
-    across, up = made.period.tolist()
+    across, up = made.copied("period", 2).tolist()
     return DevicePeriodic(
         simplices=views.pop("triangles"),
         corner_offsets=views.pop("offsets").reshape(triangles, 3, 2),
