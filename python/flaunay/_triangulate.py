@@ -403,28 +403,12 @@ def refine(
     >>> len(finer.triangles) > 2 * len(mesh.triangles)
     True
     """
+    arguments = locals()
     own: dict[str, Any] = {"points": points}
     if isinstance(points, (ConstrainedTriangulation, Delaunay)):
         own = _given_mesh(points)
-    given: dict[str, Any] = {
-        "segments": segments,
-        "triangles": triangles,
-        "triangle_attributes": triangle_attributes,
-        **others,
-    }
+    given = {name: arguments[name] for name in ("segments", *Refining.__annotations__)} | others
     result: ConstrainedTriangulation = triangulate(
-        **own | {name: value for name, value in given.items() if value is not None},
-        triangle_areas=triangle_areas,
-        conforming=conforming,
-        min_angle=min_angle,
-        max_area=max_area,
-        seed_areas=seed_areas,
-        areas_at=areas_at,
-        keep_edges=keep_edges,
-        kept_segments=kept_segments,
-        min_edge=min_edge,
-        most_points=most_points,
-        most_rounds=most_rounds,
-        smoothing_steps=smoothing_steps,
+        **own | {name: value for name, value in given.items() if value is not None}
     )
     return result
