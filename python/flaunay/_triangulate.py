@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union, overload
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
+from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out
 from flaunay._calls import TRIANGULATION
 from flaunay._constrained import (
     ConstrainedTriangulation,
@@ -265,7 +265,8 @@ def triangulate(
     >>> flaunay.triangulate(frame, segments=rings, outside="holes")
     <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
     """
-    wanted = names_of(neighbors=neighbors, halfedges=halfedges, areas=areas)
+    arguments = locals()
+    wanted = {name for name in TRIANGULATION if arguments.get(name)}
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)
