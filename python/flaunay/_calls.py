@@ -924,6 +924,7 @@ class DevicePoints:
             device_offsets=device_offsets or None,
             sets=sets or host_sets,
         )
+        self.sets: int = self.struct.sets if offsets is not None or device_offsets else 1
         self._as_parameter_ = ctypes.pointer(self.struct)
 
 
@@ -958,7 +959,7 @@ class _DeviceArrays(DeviceHandle):
         super().__init__()
         self._name, self._owner = name, owner
         self._destroy = getattr(library, f"device_{name}_destroy")
-        self._sets = isinstance(given[0], DevicePoints) and given[0].struct.sets or 1
+        self._sets = given[0].sets if isinstance(given[0], DevicePoints) else 1
         check(getattr(library, f"device_{name}_create")(self.place))
         owner.call(compute, owner, *given, self)
 
@@ -1539,7 +1540,7 @@ class _Surface(_Result):
         n, create = len(given[0]), getattr(library, f"{name}_create")
         starts, sets = _as_offsets(offsets, n)
         triangulator.make(self, create, *map(_as_doubles, given), n, starts, sets, *others)
-        self._counts = {"point": n, "set": sets or 1}
+        self._counts = {"point": n, "set": 1 if starts is None else sets}
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         return self.views(*self._offsets, **self._counts)
