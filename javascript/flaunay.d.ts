@@ -1,4 +1,5 @@
 /** flaunay: exact two-dimensional Delaunay triangulation. */
+import type {Crossings, FillRule, Interpolation, Outside} from './declarations.js';
 
 /** x0, y0, x1, y1, ... */
 export type Coordinates = ArrayLike<number>;
@@ -74,7 +75,7 @@ export interface QueryOptions {
 
 export interface InterpolationOptions extends QueryOptions {
   /** 'sibson' by default. */
-  method?: 'linear' | 'nearest' | 'clough-tocher' | 'sibson' | 'laplace';
+  method?: Interpolation;
   /** Numbers per point; 1 by default. */
   columns?: number;
   /** The value outside of the hull; NaN by default. */
@@ -129,10 +130,10 @@ export interface ClippedVoronoi {
 
 export interface PolygonOptions extends MeshOptions {
   /** What becomes of segments that cross where no point is; 'error' by default. */
-  crossings?: 'error' | 'split';
+  crossings?: Crossings;
   /** Which triangles are left out: none, those outside, or those outside and in holes. */
-  outside?: 'keep' | 'hull' | 'holes';
-  fillRule?: 'nesting' | 'even-odd' | 'winding';
+  outside?: Outside;
+  fillRule?: FillRule;
   /** Whether depths and regions are computed; false by default. */
   labels?: boolean;
 }
@@ -157,10 +158,16 @@ export class ConstrainedTriangulation extends Mesh {
     ConstrainedTriangulation;
   /** x and y of points that crossings have added, whose numbers follow those of the given points. */
   readonly addedPoints: Float64Array;
+  /** Set s has added points [addedOffsets[s], addedOffsets[s + 1]). */
+  readonly addedOffsets: Uint32Array;
   /** 2 points per edge that segments are made of. */
   readonly constraintEdges: Int32Array;
   /** One per such edge: its segment. */
   readonly edgeSegments: Int32Array;
+  /** Segment i has pieces [pieceOffsets[i], pieceOffsets[i + 1]), from its lexicographically smaller end. */
+  readonly pieceOffsets: Int32Array;
+  /** 2 per piece: it has the edges [first, second) of constraintEdges. */
+  readonly pieceEdges: Int32Array;
   /** 3 per triangle: 1 if the edge opposite to the corner is a constraint. */
   readonly constrained: Uint8Array;
   readonly depths: Int32Array;
@@ -185,7 +192,7 @@ export interface Changes {
 
 /** A triangulation whose points are inserted, removed and moved. Points keep their numbers, triangles their rows. */
 export class DynamicTriangulation {
-  constructor(coords: Coordinates, options?: {segments?: ArrayLike<number>; crossings?: 'error' | 'split'});
+  constructor(coords: Coordinates, options?: {segments?: ArrayLike<number>; crossings?: Crossings});
   /** Inserts points and returns the number of the first; the others follow it. */
   insert(coords: Coordinates): number;
   remove(points: ArrayLike<number>): void;

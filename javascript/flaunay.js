@@ -1,5 +1,6 @@
 // The library over its WebAssembly module: flaunay.wasm, or points.wasm, which is smaller. What package.json exports makes
-// the module ready and passes on what it has.
+// the module ready and passes on what it has. scripts/declare.py writes what it knows of flaunay.h.
+import * as c from './declarations.js';
 
 /** An error with one of flaunay's own texts. */
 export class FlaunayError extends Error {
@@ -13,9 +14,6 @@ export class FlaunayError extends Error {
     this.kind = kind;
   }
 }
-
-// By the values of flaunay_status.
-const KINDS = ['', 'internal', 'usage', 'input', 'device', 'memory', 'stopped'];
 
 // ---- The module
 
@@ -115,7 +113,7 @@ function stringAt(pointer) {
 }
 
 function check(status) {
-  if (status !== 0) throw new FlaunayError(stringAt(wasm.flaunay_last_error()), KINDS[status]);
+  if (status !== 0) throw new FlaunayError(stringAt(wasm.flaunay_last_error()), c.STATUS[status].replace('error-', ''));
 }
 
 function allocate(bytes) {
@@ -164,13 +162,11 @@ class Arguments {
     return pointer;
   }
 
-  // A struct of C all of whose members have 32 bits. names: those of its members, in their order.
-  struct(names, reserved, values) {
-    const pointer = this.room(4 * (names.length + reserved));
-    const words = arrayAt('uint32', pointer, names.length + reserved).fill(0);
-    names.forEach((name, k) => {
-      words[k] = values[name] ?? 0;
-    });
+  // A struct of C with these members, all of which have 32 bits.
+  struct({words, at}, values) {
+    const pointer = this.room(4 * words);
+    const all = arrayAt('uint32', pointer, words).fill(0);
+    for (const name in values) all[at[name]] = values[name];
     return pointer;
   }
 
@@ -188,14 +184,15 @@ function call(work) {
   }
 }
 
-// The words of a struct that C returned, by the names of its members, in their order.
-function membersAt(pointer, names) {
-  return Object.fromEntries(names.map((name, k) => [name, views().uint32[(pointer >>> 2) + k]]));
+// The members of a struct that C returned.
+function membersAt(pointer, {words, at}) {
+  const all = arrayAt('uint32', pointer, words);
+  return Object.fromEntries(Object.entries(at).map(([name, k]) => [name, all[k]]));
 }
 
-function enumerator(names, value, what) {
-  const found = names.indexOf(value);
-  if (found < 0) throw new FlaunayError(`${value} is no ${what}: ${names.join(', ')}`, 'usage');
+function enumerator(words, value, what) {
+  const found = words.indexOf(value);
+  if (found < 0) throw new FlaunayError(`${value} is no ${what}: ${words.join(', ')}`, 'usage');
   return found;
 }
 
@@ -249,14 +246,6 @@ function pointCount(coords) {
 
 // ---- Triangulations
 
-const OPTIONS = ['mode', 'cut', 'hull', 'parts', 'profile', 'levels', 'threads', 'finish', 'progress', 'data'];
-const OPTIONS_RESERVED = 8;
-const MESH = [
-  'pointCount', 'setCount', 'triangleCount', 'hullCount', 'triangles', 'neighbors', 'halfedges', 'hull',
-  'representatives', 'triangleOffsets', 'hullOffsets', 'statistics', 'areas',
-];
-const NEIGHBORS = 2, HALFEDGES = 4, AREAS = 32;
-
 // The points of a call and where its sets begin.
 function pointsOf(given, coords, offsets) {
   const n = pointCount(coords);
@@ -264,11 +253,13 @@ function pointsOf(given, coords, offsets) {
 }
 
 function optionsOf(given, parts) {
-  return given.struct(OPTIONS, OPTIONS_RESERVED, {parts});
+  return given.struct(c.Options, {parts});
 }
 
-function partsOf({halfedges = true, areas = false}) {
-  return NEIGHBORS | (halfedges ? HALFEDGES : 0) | (areas ? AREAS : 0);
+// The bits of the arrays that are asked for: neighbours always, half-edges unless they are refused.
+function partsOf({halfedges = true, ...others}) {
+  const wanted = {...others, halfedges, neighbors: true};
+  return Object.entries(c.PART).reduce((bits, [name, bit]) => (wanted[name] ? bits | bit : bits), 0);
 }
 
 /** Delaunator's class: arrays of its types, in its orientation and order, which are the caller's own. */
@@ -285,7 +276,7 @@ export default class Delaunator {
   update() {
     call((given) => {
       const {coords} = this, n = pointCount(coords);
-      const handle = create(wasm.triangulate, triangulator, given.array('float64', coords), n, 0, 0, HALFEDGES);
+      const handle = create(wasm.triangulate, triangulator, given.array('float64', coords), n, 0, 0, c.PART.halfedges);
       // Read by number, since this takes a good part of the time for a hundred points.
       const mesh = wasm.flaunay_triangulation_mesh(handle) >>> 2;
       const [triangleCount, hullCount, triangles, , halfedges, hull] = views().uint32.subarray(mesh + 2, mesh + 8);
@@ -299,19 +290,42 @@ export default class Delaunator {
   }
 }
 
+// Defines a property for each array of a table. read(object, name): its address, and how many rows of what there are.
+function defineArrays(owner, table, read) {
+  for (const [name, [type, row, columns]] of Object.entries(table)) {
+    const get = function () {
+      const [address, count] = read(this, name, row);
+      return viewOf(this, type, address, address === 0 ? 0 : columns * count);
+    };
+    Object.defineProperty(owner.prototype, name, {get, configurable: true});
+  }
+}
+
+const OFFSETS = {triangleOffsets: ['uint32', 'set_offset', 1], hullOffsets: ['uint32', 'set_offset', 1]};
+
 // The arrays that all triangulations have. They are views of the module's memory.
 class Mesh {
   #handle;
   #mesh;
 
-  constructor(handle, mesh) {
-    this.#handle = handle;
-    this.#mesh = membersAt(mesh, MESH);
+  static {
+    defineArrays(this, {...c.TRIANGULATION_ARRAYS, ...OFFSETS}, (mesh, name, row) => {
+      void mesh.handle;
+      return [mesh.#mesh[name], mesh.rowsOf(row)];
+    });
   }
 
-  #array(type, name, length) {
-    void this.#handle.pointer;
-    return viewOf(this, type, this.#mesh[name], this.#mesh[name] === 0 ? 0 : length);
+  constructor(handle, mesh) {
+    this.#handle = handle;
+    this.#mesh = membersAt(mesh, c.Mesh);
+  }
+
+  rowsOf(row) {
+    const {pointCount, setCount, triangleCount, hullCount} = this.#mesh;
+    return {
+      triangle: triangleCount, halfedge: 3 * triangleCount, hull_vertex: hullCount, point: pointCount,
+      set_offset: setCount + 1,
+    }[row];
   }
 
   get handle() {
@@ -322,44 +336,10 @@ class Mesh {
     return this.#mesh.pointCount;
   }
 
-  get triangles() {
-    return this.#array('int32', 'triangles', 3 * this.#mesh.triangleCount);
-  }
-
-  get neighbors() {
-    return this.#array('int32', 'neighbors', 3 * this.#mesh.triangleCount);
-  }
-
-  get halfedges() {
-    return this.#array('int32', 'halfedges', 3 * this.#mesh.triangleCount);
-  }
-
-  get hull() {
-    return this.#array('int32', 'hull', this.#mesh.hullCount);
-  }
-
-  get representatives() {
-    return this.#array('int32', 'representatives', this.#mesh.pointCount);
-  }
-
-  get areas() {
-    return this.#array('float64', 'areas', this.#mesh.triangleCount);
-  }
-
-  get triangleOffsets() {
-    return this.#array('uint32', 'triangleOffsets', this.#mesh.setCount + 1);
-  }
-
-  get hullOffsets() {
-    return this.#array('uint32', 'hullOffsets', this.#mesh.setCount + 1);
-  }
-
   free() {
     this.#handle.free();
   }
 }
-
-const METHODS = ['linear', 'nearest', 'clough-tocher', 'sibson', 'laplace'];
 
 // A copy of the caller's points that lives as long as what is computed from them.
 function keep(coords) {
@@ -449,7 +429,7 @@ export class Triangulation extends Mesh {
 
   /** Values between points, one row of `columns` numbers per query. */
   interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
-    const number = enumerator(METHODS, method, 'method of interpolation');
+    const number = enumerator(c.INTERPOLATION, method, 'method of interpolation');
     if (values.length !== columns * this.pointCount) {
       throw new FlaunayError(`${values.length} values are not ${columns} for each of ${this.pointCount} points`,
         'usage');
@@ -470,17 +450,20 @@ class Result {
   #handle;
   #prefix;
 
+  static define(owner, table) {
+    defineArrays(owner, table, (result, name, row) => [
+      result.#read(name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`)),
+      row === 'point_offset' ? result.#read('point_count') + 1 : result.#read(`${row}_count`),
+    ]);
+  }
+
   constructor(pointer, prefix) {
     this.#handle = new Handle(pointer, `${prefix}_destroy`);
     this.#prefix = prefix;
   }
 
-  count(name) {
-    return wasm[`${this.#prefix}_${name}_count`](this.#handle.pointer);
-  }
-
-  array(type, name, length) {
-    return viewOf(this, type, wasm[`${this.#prefix}_${name}`](this.#handle.pointer), length);
+  #read(name) {
+    return wasm[`${this.#prefix}_${name}`](this.#handle.pointer);
   }
 
   free() {
@@ -489,46 +472,26 @@ class Result {
 }
 
 class Voronoi extends Result {
+  static {
+    Result.define(this, c.VORONOI_ARRAYS);
+  }
+
   constructor(pointer) {
     super(pointer, 'flaunay_voronoi');
   }
 
-  get circumcentres() {
-    return this.array('float64', 'circumcentres', 2 * this.count('triangle'));
-  }
-
   get offsets() {
-    return this.array('int32', 'cell_offsets', this.count('point') + 1);
-  }
-
-  get cells() {
-    return this.array('int32', 'cells', this.count('corner'));
-  }
-
-  get unbounded() {
-    return this.array('uint8', 'unbounded', this.count('point'));
+    return this.cellOffsets;
   }
 }
 
 class ClippedVoronoi extends Result {
+  static {
+    Result.define(this, c.CLIPPED_VORONOI_ARRAYS);
+  }
+
   constructor(pointer) {
     super(pointer, 'flaunay_clipped_voronoi');
-  }
-
-  get vertices() {
-    return this.array('float64', 'vertices', 2 * this.count('vertex'));
-  }
-
-  get offsets() {
-    return this.array('int32', 'offsets', this.count('point') + 1);
-  }
-
-  get areas() {
-    return this.array('float64', 'areas', this.count('point'));
-  }
-
-  get centroids() {
-    return this.array('float64', 'centroids', 2 * this.count('point'));
   }
 
   /** The vertices of the cell of point i, counter-clockwise. */
@@ -540,36 +503,17 @@ class ClippedVoronoi extends Result {
 
 // ---- Constraints
 
-const CONSTRAINTS = [
-  'segments', 'segmentCount', 'holes', 'holeCount', 'holeOffsets', 'crossings', 'outside', 'fillRule', 'labels',
-  'segmentMarkers', 'pointMarkers', 'seeds', 'seedAttributes', 'seedCount', 'seedOffsets', 'refinement',
-];
-const CONSTRAINTS_RESERVED = 1;
-const POLYGONS = [
-  'coordinates', 'ringOffsets', 'ringCount', 'polygonOffsets', 'polygonCount', 'crossings', 'hasOutside', 'outside',
-  'hasFillRule', 'fillRule', 'labels', 'map', 'overlaps', 'partOffsets', 'partCount', 'refinement',
-];
-const POLYGONS_RESERVED = 5;
-const CONSTRAINED = [
-  'addedCount', 'constraintCount', 'segmentCount', 'pieceCount', 'addedPoints', 'addedOffsets', 'constraintEdges',
-  'edgeSegments', 'pieceOffsets', 'pieceEdges', 'constrained', 'depths', 'regions', 'polygons', 'edgeMarkers',
-  'vertexMarkers', 'triangleAttributes',
-];
-const CROSSINGS = ['error', 'split'];
-const OUTSIDE = ['keep', 'hull', 'holes'];
-const FILL_RULES = ['nesting', 'even-odd', 'winding'];
-
 function constraintsOf(given, {segments = [], holes, holeOffsets, crossings = 'error', outside = 'keep',
   fillRule = 'nesting', labels = false}) {
-  return given.struct(CONSTRAINTS, CONSTRAINTS_RESERVED, {
+  return given.struct(c.Constraints, {
     segments: given.array('int32', segments),
     segmentCount: segments.length >> 1,
     holes: given.array('float64', holes),
     holeCount: (holes?.length ?? 0) >> 1,
     holeOffsets: given.array('uint32', holeOffsets),
-    crossings: enumerator(CROSSINGS, crossings, 'rule for crossings'),
-    outside: enumerator(OUTSIDE, outside, 'choice of what is left out'),
-    fillRule: enumerator(FILL_RULES, fillRule, 'fill rule'),
+    crossings: enumerator(c.CROSSINGS, crossings, 'rule for crossings'),
+    outside: enumerator(c.OUTSIDE, outside, 'choice of what is left out'),
+    fillRule: enumerator(c.FILL_RULE, fillRule, 'fill rule'),
     labels: Number(labels),
   });
 }
@@ -577,6 +521,17 @@ function constraintsOf(given, {segments = [], holes, holeOffsets, crossings = 'e
 /** A triangulation with segments as edges. */
 export class ConstrainedTriangulation extends Mesh {
   #arrays;
+
+  static {
+    defineArrays(this, c.CONSTRAINED_ARRAYS, (mesh, name, row) => {
+      const {addedCount, constraintCount, segmentCount, pieceCount} = mesh.#arrays;
+      const counts = {
+        added_point: addedCount, constraint: constraintCount, segment_offset: segmentCount + 1, piece: pieceCount,
+      };
+      void mesh.handle;
+      return [mesh.#arrays[name], counts[row] ?? mesh.rowsOf(row)];
+    });
+  }
 
   /** The insides of polygons: each a list of rings of [x, y], as in a MultiPolygon of GeoJSON. */
   static polygons(polygons, given = {}) {
@@ -590,17 +545,17 @@ export class ConstrainedTriangulation extends Mesh {
     }
     const {crossings = 'error', outside = 'holes', fillRule = 'even-odd', labels = false, map = false} = given;
     const handle = call((passed) => create(wasm.flaunay_triangulate_polygons, triangulator,
-      passed.struct(POLYGONS, POLYGONS_RESERVED, {
+      passed.struct(c.Polygons, {
         coordinates: passed.array('float64', coordinates),
         ringOffsets: passed.array('uint32', ringOffsets),
         ringCount: ringOffsets.length - 1,
         polygonOffsets: passed.array('uint32', polygonOffsets),
         polygonCount: polygons.length,
-        crossings: enumerator(CROSSINGS, crossings, 'rule for crossings'),
+        crossings: enumerator(c.CROSSINGS, crossings, 'rule for crossings'),
         hasOutside: 1,
-        outside: enumerator(OUTSIDE, outside, 'choice of what is left out'),
+        outside: enumerator(c.OUTSIDE, outside, 'choice of what is left out'),
         hasFillRule: 1,
-        fillRule: enumerator(FILL_RULES, fillRule, 'fill rule'),
+        fillRule: enumerator(c.FILL_RULE, fillRule, 'fill rule'),
         labels: Number(labels),
         map: Number(map),
       }), optionsOf(passed, partsOf(given))));
@@ -612,50 +567,11 @@ export class ConstrainedTriangulation extends Mesh {
       wasm.flaunay_triangulate_constrained, triangulator, ...pointsOf(passed, coords, given.offsets),
       constraintsOf(passed, given), optionsOf(passed, partsOf(given))));
     super(new Handle(handle, 'flaunay_constrained_destroy'), wasm.flaunay_constrained_mesh(handle));
-    this.#arrays = membersAt(wasm.flaunay_constrained_get_arrays(handle), CONSTRAINED);
-  }
-
-  #array(type, name, length) {
-    void this.handle;
-    return viewOf(this, type, this.#arrays[name], this.#arrays[name] === 0 ? 0 : length);
-  }
-
-  get addedPoints() {
-    return this.#array('float64', 'addedPoints', 2 * this.#arrays.addedCount);
-  }
-
-  get constraintEdges() {
-    return this.#array('int32', 'constraintEdges', 2 * this.#arrays.constraintCount);
-  }
-
-  get edgeSegments() {
-    return this.#array('int32', 'edgeSegments', this.#arrays.constraintCount);
-  }
-
-  get constrained() {
-    return this.#array('uint8', 'constrained', this.triangles.length);
-  }
-
-  get depths() {
-    return this.#array('int32', 'depths', this.triangles.length / 3);
-  }
-
-  get regions() {
-    return this.#array('int32', 'regions', this.triangles.length / 3);
-  }
-
-  get polygons() {
-    return this.#array('int32', 'polygons', this.triangles.length / 3);
+    this.#arrays = membersAt(wasm.flaunay_constrained_get_arrays(handle), c.ConstrainedArrays);
   }
 }
 
 // ---- Triangulations that change
-
-const CHANGES = [
-  'firstPoint', 'representativeCount', 'removedCount', 'madeCount', 'representatives', 'removed', 'made',
-  'madeCorners', 'isAnew',
-];
-const LIVING = ['edgeCount', 'edges', 'segments'];
 
 /** A triangulation whose points are inserted, removed and moved. */
 export class DynamicTriangulation {
@@ -706,7 +622,7 @@ export class DynamicTriangulation {
 
   /** What the last insertion, removal or move has changed. */
   get changes() {
-    const found = membersAt(wasm.flaunay_dynamic_changes(this.#handle.pointer), CHANGES);
+    const found = membersAt(wasm.flaunay_dynamic_changes(this.#handle.pointer), c.Changes);
     return {
       firstPoint: found.firstPoint,
       representatives: viewOf(this, 'int32', found.representatives, found.representativeCount),
@@ -760,7 +676,7 @@ export class DynamicTriangulation {
   constraints() {
     const pointer = wasm.flaunay_dynamic_constraints(this.#handle.pointer);
     if (pointer === 0) check(wasm.flaunay_last_error_status());
-    const found = membersAt(pointer, LIVING);
+    const found = membersAt(pointer, c.LivingConstraints);
     return {
       edges: viewOf(this, 'int32', found.edges, 2 * found.edgeCount),
       segments: viewOf(this, 'int32', found.segments, found.edgeCount),

@@ -5,21 +5,10 @@
 #include <memory>
 
 #include "c/handles.hpp"
+#include "declarations.h"
 #include "flaunay/flaunay.h"
 
 namespace {
-
-// flaunay.js reads and writes these structs as words of 32 bits, by their order.
-#define HAS_WORDS(type, last, words) \
-  static_assert(offsetof(type, last) == 4 * ((words)-1), #type " has other members in flaunay.js")
-HAS_WORDS(flaunay_options, progress_data, 10);
-HAS_WORDS(flaunay_mesh, areas, 13);
-HAS_WORDS(flaunay_constraints, refinement, 16);
-HAS_WORDS(flaunay_polygons, refinement, 16);
-HAS_WORDS(flaunay_constrained_arrays, triangle_attributes, 17);
-HAS_WORDS(flaunay_changes, is_anew, 9);
-HAS_WORDS(flaunay_living_constraints, segments, 3);
-#undef HAS_WORDS
 
 // Halfedge k of a triangle joins the same vertices as halfedge 2 - k of the triangle that is turned.
 std::int32_t turned(std::int32_t halfedge) {
@@ -36,9 +25,7 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const double* coo
                            flaunay_triangulation** result) {
   return flaunay::c::create(result, [&] {
     flaunay::Options options;
-    options.neighbors = (parts & FLAUNAY_PART_NEIGHBORS) != 0;
-    options.halfedges = (parts & FLAUNAY_PART_HALFEDGES) != 0;
-    options.areas = (parts & FLAUNAY_PART_AREAS) != 0;
+    flaunay::c::request(parts, options);
     return std::make_unique<flaunay_triangulation>(
         triangulator->cpp.triangulate(coordinates, flaunay::c::to_offsets(offsets, sets, n), options));
   });

@@ -25,7 +25,8 @@ output=build/javascript
 package=$output/package
 rm -rf "$package" "$output/installed" "$output"/*.tgz
 mkdir -p "$package/threads" "$output/installed"
-cp javascript/*.{js,md,ts} LICENSE "$output"/javascript/*.wasm "$package"
+cp javascript/*.{js,md,ts} LICENSE "$package"
+cp "$output"/javascript/{*.wasm,declarations.{js,d.ts}} "$package"
 # Both ways to load it have one module.
 threads=$output-threads/javascript
 cmp "$threads"/{browser,node}.wasm
@@ -37,7 +38,7 @@ sed "s/\"version\": \"0.0.0\"/\"version\": \"$version\"/" javascript/package.jso
 (cd "$package" && npm pack --silent --pack-destination .. >/dev/null)
 
 # Tests import the package by its name, from the folder that they are in.
-cp -r "$package"/{*.wasm,threads} javascript
+cp -r "$package"/{*.wasm,declarations.*,threads} javascript
 if [[ -z ${FLAUNAY_COMMAND-} ]]; then
   cmake --preset release >/dev/null
   cmake --build --preset release --target flaunay_cli

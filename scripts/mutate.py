@@ -308,7 +308,7 @@ def passes_pytest(tests):
     shutil.rmtree(package, ignore_errors=True)
     shutil.copytree(COPY / "python/flaunay", package)
     shutil.copy(BUILD / "src/libflaunay.so", package)
-    return call([sys.executable, COPY / "python/declare.py", headers / "flaunay.h", headers / "result_arrays.hpp",
+    return call([sys.executable, COPY / "scripts/declare.py", headers / "flaunay.h", headers / "result_arrays.hpp",
                  package / "_declarations.py"]) and call(
         [PYTHON, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
          *(COPY / "python/tests" / test for test in tests)],

@@ -1422,9 +1422,13 @@ static void test_periodic(void) {
   CHECK(found[0] >= 0);
   OK(flaunay_periodic_locator_nearest(locator, query, 1, found));
   CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 && found[1] == -2);
-  OK(flaunay_periodic_locator_interpolate(locator, areas, 1, query, 1, &value));
+  OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, NULL, &value));
   CHECK(fabs(value - 2) < 1e-12);
-  REFUSED(flaunay_periodic_locator_interpolate(locator, areas, 0, query, 1, &value), "columns");
+  flaunay_interpolation_options how = {FLAUNAY_INTERPOLATION_SIBSON, 1};
+  OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, &how, &value));
+  CHECK(fabs(value - 2) < 1e-12);
+  how.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER;
+  REFUSED(flaunay_periodic_locator_interpolate(locator, areas, query, 1, &how, &value), "gradients");
   flaunay_clipped_voronoi_destroy(cells);
   flaunay_periodic_locator_destroy(locator);
   flaunay_periodic_destroy(periodic);

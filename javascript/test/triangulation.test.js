@@ -206,6 +206,9 @@ test('segments', () => {
   fails(() => new ConstrainedTriangulation(SQUARE.slice(0, 8), crossing), 'input', /cross/);
   const split = new ConstrainedTriangulation(SQUARE.slice(0, 8), {...crossing, crossings: 'split', labels: true});
   assert.deepEqual([...split.addedPoints], [2, 2]);
+  assert.deepEqual([...split.addedOffsets], [0, 1]);
+  assert.deepEqual([...split.pieceOffsets], [0, 2, 4]);
+  assert.deepEqual([...split.pieceEdges], [0, 1, 3, 4, 1, 2, 2, 3]);
   assert.equal(split.pointCount, 5);
   assert.equal(split.regions.length, 4);
   assert.equal(split.depths.length, 4);

@@ -16,7 +16,7 @@ import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any, ClassVar, Optional, Union, cast
+from typing import Any, ClassVar, Optional, TypeVar, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +31,9 @@ from flaunay._refinement import RefinementReport
 _Doubles = npt.NDArray[np.float64]
 _Indices = npt.NDArray[np.int32]
 _Offsets = npt.NDArray[np.int64]
+_Array = TypeVar("_Array", bound=npt.NDArray[Any])
+# For each array in device memory the handle of its buffer, 0 if it is empty, its shape and its type.
+_Places = dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]
 
 __version__: str = text_of(library.version())
 
@@ -48,8 +51,13 @@ def _arrays(table: dict[str, tuple[str, str, int, str]]) -> _Arrays:
     return {name: (np.dtype(kind), *others) for name, (kind, *others) in table.items()}  # type: ignore[misc]
 
 
-TRIANGULATION = _arrays(_declarations.TRIANGULATION_ARRAYS)
-_CONSTRAINED = _arrays(_declarations.CONSTRAINED_ARRAYS)
+# By the names of results.
+_TABLES = {
+    name[: -len("_ARRAYS")].lower(): _arrays(table)
+    for name, table in vars(_declarations).items()
+    if name.endswith("_ARRAYS") and isinstance(table, dict)
+}
+TRIANGULATION, _CONSTRAINED = _TABLES["triangulation"], _TABLES["constrained"]
 _OFFSETS = (_INT64, "set_offset", 1, "always")
 # Those of triangulations are asked for by their own names.
 _MADE: _Arrays = {
@@ -69,11 +77,6 @@ _ROWS: dict[str, Callable[[Any, Any], int]] = {
     "segment_offset": lambda _, arrays: arrays.segment_count + 1,
     "piece": lambda _, arrays: arrays.piece_count,
 }
-_VORONOI = _arrays(_declarations.VORONOI_ARRAYS)
-_CLIPPED_VORONOI = _arrays(_declarations.CLIPPED_VORONOI_ARRAYS)
-_SPHERICAL = _arrays(_declarations.SPHERICAL_ARRAYS)
-_PERIODIC = _arrays(_declarations.PERIODIC_ARRAYS)
-
 
 # ---- Arrays
 
@@ -100,17 +103,39 @@ def _shape(rows: int, columns: int) -> tuple[int, ...]:
     return (rows,) if columns == 1 else (rows, columns)
 
 
-def _views(
-    owner: Handle,
-    table: _Arrays,
-    counts: dict[str, int],
-    address_of: Callable[[str], Optional[int]],
-) -> dict[str, Any]:
-    """The arrays of a table. counts: for what has one row per thing, how many there are."""
-    return {
-        name: _view(owner, address_of(name), _shape(counts[row], columns), dtype)
-        for name, (dtype, row, columns, _) in table.items()
-    }
+class _Result(Handle):
+    """What the library has made. The names of the functions that are about it begin with its own."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__()
+        self._name, self._destroy = name, getattr(library, f"{name}_destroy")
+
+    def read(self, member: str) -> Any:
+        return getattr(library, f"{self._name}_{member}")(self.pointer)
+
+    def views(self, *offsets: str, **counts: int) -> dict[str, Any]:
+        """The arrays of its table, and offsets of sets.
+
+        counts: how many there are of what has rows, unless a function says so.
+        """
+        arrays = {}
+        for name, function, of, more, columns, dtype in _readers(self._name, offsets):
+            if of not in counts:
+                counts[of] = self.read(f"{of}_count")
+            shape = _shape(counts[of] + more, columns)
+            arrays[name] = _view(self, function(self.pointer), shape, dtype)
+        return arrays
+
+
+@functools.cache
+def _readers(result: str, offsets: tuple[str, ...]) -> list[tuple[Any, ...]]:
+    """For each array what reads it, of what it has rows, how many more, elements per row, and its type."""
+    readers, table = [], _TABLES[result] | dict.fromkeys(offsets, _OFFSETS)
+    for name, (dtype, row, columns, _) in table.items():
+        of, offset, _ = row.partition("_offset")
+        function = getattr(library, f"{result}_{name}")
+        readers.append((name, function, of, int(bool(offset)), columns, dtype))
+    return readers
 
 
 def _address_of(array: Any) -> Optional[int]:
@@ -197,14 +222,30 @@ def _call_with_mesh(function: Any, *arguments: Any) -> None:
 # ---- Structs
 
 
+def _struct(kind: Callable[..., Any], **members: Any) -> Any:
+    """A struct of C with the addresses of arrays and of other structs, which it keeps."""
+
+    def word_of(value: Any) -> Any:
+        if isinstance(value, _ARRAY):
+            return _address_or_none(value)
+        return ctypes.pointer(value) if isinstance(value, ctypes.Structure) else value
+
+    made = kind(**{name: word_of(value) for name, value in members.items()})
+    made._refers_to = members
+    return made
+
+
 def _members(struct: type[ctypes.Structure], *without: str) -> Callable[[Any], dict[str, Any]]:
-    """What reads all members of a struct but these."""
+    """What reads all members of a struct but these: numbers and texts."""
     names = [field[0] for field in struct._fields_ if field[0] not in without]
     read = operator.attrgetter(*names)
-    return lambda given: dict(zip(names, read(given)))
+    return lambda given: {
+        name: text_of(value) if isinstance(value, bytes) else value
+        for name, value in zip(names, read(given))
+    }
 
 
-_STATISTICS = _members(_declarations.Statistics, "phase_count", "kernels", "kernel_count")
+_STATISTICS = _members(_declarations.Statistics, "phases", "phase_count", "kernels", "kernel_count")
 _ROUND = _members(_declarations.ChunkRound)
 _REFINEMENT = _members(_declarations.RefinementReport, "bad_count", "bad_triangles", "excuses")
 _CHUNK_STATISTICS = _members(
@@ -212,13 +253,8 @@ _CHUNK_STATISTICS = _members(
     *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
     "note",
 )
-_TEXTS_OF_DEVICE = ["name", "platform", "vendor", "driver", "version", "type"]
-_FLAGS_OF_DEVICE = ["fp64", "fixed_point"]
-_NUMBERS_OF_DEVICE = _members(
-    _declarations.DeviceInfo,
-    *_TEXTS_OF_DEVICE,
-    *_FLAGS_OF_DEVICE,
-    *("self_test_passed", "self_test_failure"),
+_DEVICE = _members(
+    _declarations.DeviceInfo, "fp64", "fixed_point", "self_test_passed", "self_test_failure"
 )
 
 
@@ -230,10 +266,7 @@ def _phases_of(statistics: Any) -> dict[str, float]:
 
 
 def _statistics_of(statistics: Any) -> dict[str, Any]:
-    result = _STATISTICS(statistics)
-    result["device"], result["note"] = text_of(result["device"]), text_of(result["note"])
-    result["phases"] = _phases_of(statistics)
-    return result
+    return {**_STATISTICS(statistics), "phases": _phases_of(statistics)}
 
 
 def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
@@ -249,26 +282,17 @@ def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
 
 
 def _info_of(info: Any) -> dict[str, Any]:
-    return {
-        **{name: text_of(getattr(info, name)) for name in _TEXTS_OF_DEVICE},
-        **_NUMBERS_OF_DEVICE(info),
-        **{name: bool(getattr(info, name)) for name in _FLAGS_OF_DEVICE},
-    }
+    return {**_DEVICE(info), "fp64": bool(info.fp64), "fixed_point": bool(info.fixed_point)}
 
 
 # ---- Devices and modes
 
 
-class _DeviceList(Handle):
-    _destroy = library.device_list_destroy
-
-
 def devices() -> list[dict[str, Any]]:
     """Every OpenCL device, in the order in which ``"#k"`` names them."""
-    found = _DeviceList()
+    found = _Result("device_list")
     check(library.device_list_create(0, found.place))
-    count = library.device_list_count(found.pointer)
-    return [_info_of(library.device_list_at(found.pointer, k)[0]) for k in range(count)]
+    return [_info_of(library.device_list_at(found, k)[0]) for k in range(found.read("count"))]
 
 
 _MODES = [library.mode_at(k)[0] for k in range(library.mode_count())]
@@ -408,31 +432,18 @@ class _Aside:
 class _Refinement:
     """A refinement for one call. given: members of flaunay_refinement; there may be none."""
 
-    pointer, _function = None, None
-
     def __init__(self, given: dict[str, Any]) -> None:
+        self.struct, self._function = None, given.get("areas_at")
         if not given:
             return
-        self._given = given  # the arrays, which the struct refers to
-        self._function = given.get("areas_at")
-        members = self._members(given)
-        mesh = members.pop("mesh", None)
-        if mesh:
-            self._mesh = _declarations.GivenTriangles(**self._members(mesh))
-            members["mesh"] = ctypes.pointer(self._mesh)
+        members = dict(given)
+        if "mesh" in given:
+            mesh = given["mesh"]
+            members["mesh"] = _struct(_declarations.GivenTriangles, **mesh) if mesh else None
         if self._function is not None:
             self._aside = _Aside()
             members["areas_at"] = _declarations.RefinementAreasAt(self._ask_for_areas)
-        self._struct = _declarations.Refinement(**members)
-        self.pointer = ctypes.pointer(self._struct)
-
-    @staticmethod
-    def _members(given: dict[str, Any]) -> dict[str, Any]:
-        """Members of a struct, with addresses in the place of arrays."""
-        return {
-            name: _address_of(value) if isinstance(value, _ARRAY) else value
-            for name, value in given.items()
-        }
+        self.struct = _struct(_declarations.Refinement, **members)
 
     def _ask_for_areas(self, places: int, count: int, areas: int, _: Any) -> None:
         """Areas that are no numbers end the call."""
@@ -519,6 +530,10 @@ class Triangulator(DeviceHandle):
         with self.turn:
             check(function(*_as_arguments(arguments)))
 
+    def make(self, handle: Handle, function: Any, *arguments: Any) -> None:
+        """Calls a function that takes the triangulator first, and at last where it writes a handle."""
+        self.call(function, self.pointer, *arguments, handle.place)
+
 
 class _InTurns(DeviceHandle):
     """A handle that takes the turns of its triangulator."""
@@ -527,12 +542,12 @@ class _InTurns(DeviceHandle):
         super().__init__()
         self._triangulator = triangulator
 
-    @property
-    def turn(self) -> AbstractContextManager[Any]:
-        return self._triangulator.turn
+    def _call(self, function: Any, *arguments: Any) -> None:
+        """Calls a function that takes the handle first."""
+        self._triangulator.call(function, self.pointer, *arguments)
 
     def _release(self) -> None:
-        with self.turn:
+        with self._triangulator.turn:
             super()._release()
 
 
@@ -587,32 +602,37 @@ def triangulate_constrained(
     are arrays, and numbers. refinement: members of flaunay_refinement; the result has a report if there are some.
     """
     n = _count_points(points)
-    parts = _parts_of(wanted) | PART["triangles"]
     offsets, sets = _as_offsets(given_offsets, n)
-    points = _as_doubles(points)
-    arrays: dict[str, Optional[npt.NDArray[Any]]] = {"segments": segments, **carried}
-    counts = {"segment_count": len(segments)}
+    members = {"segments": segments, "segment_count": len(segments), **carried, **rules}
     for name, (rows, given) in places.items():
         of_sets, count = _as_offsets(given, len(rows), f"{name}_offsets", f"{name}s")
         if of_sets is not None and count != max(sets, 1):
             raise UsageError(f"{name}_offsets are of {count} sets, but there are {max(sets, 1)}")
-        arrays |= {f"{name}s": _as_doubles(rows), f"{name}_offsets": of_sets}
-        counts[f"{name}_count"] = len(rows)
-    addresses = {name: _address_or_none(array) for name, array in arrays.items()}
-    result, options = _Constrained(), _options_for("blocks", parts)
-    refining = _Refinement(refinement)
-    constraints = _declarations.Constraints(
-        **addresses, **counts, **rules, refinement=refining.pointer
-    )
-    refining.call(
-        *(triangulator, library.triangulate_constrained),
-        *(triangulator.pointer, points, n, offsets, sets, constraints, options, result.place),
-    )
+        members |= {f"{name}s": _as_doubles(rows), f"{name}_count": len(rows), f"{name}_offsets": of_sets}
     has_attributes = "seed_attributes" in carried or "attributes" in refinement.get("mesh", {})
-    asked_by = names_of(
-        labels=bool(rules["labels"]), seeds=has_attributes, refinement=bool(refinement)
-    )
-    return result.made({*wanted, *asked_by, *carried})
+    asked = {*names_of(seeds=has_attributes), *carried}
+    constraints, function = (_declarations.Constraints, members), library.triangulate_constrained
+    before = (_as_doubles(points), n, offsets, sets)
+    return _make_constrained(triangulator, function, before, constraints, refinement, wanted, asked)
+
+
+def _make_constrained(
+    triangulator: Triangulator,
+    function: Any,
+    given: tuple[Any, ...],
+    asked_for: tuple[Any, dict[str, Any]],
+    refinement: dict[str, Any],
+    wanted: set[str],
+    asked: set[str],
+) -> Made:
+    """given: what a function takes before a struct, asked_for: that, with its members but `refinement`."""
+    (kind, members), result = asked_for, _Constrained()
+    options = _options_for("blocks", _parts_of(wanted) | PART["triangles"])
+    refining = _Refinement(refinement)
+    struct = _struct(kind, **members, refinement=refining.struct)
+    refining.call(triangulator, function, triangulator, *given, struct, options, result.place)
+    reports = names_of(labels=bool(members["labels"]), refinement=bool(refinement))
+    return result.made(wanted | asked | reports)
 
 
 def triangulate_polygons(
@@ -629,46 +649,30 @@ def triangulate_polygons(
 
     refinement: as of `triangulate_constrained`.
     """
-    parts = _parts_of(wanted) | PART["triangles"]
     rings, ring_count = _as_offsets(ring_offsets, _count_points(points), "ring_offsets")
     outer, count = _as_offsets(polygon_offsets, ring_count, "polygon_offsets", "rings")
     inner, part_count = _as_offsets(part_offsets, ring_count, "part_offsets", "rings")
-    points = _as_doubles(points)
-    result, options = _Constrained(), _options_for("blocks", parts)
-    refining = _Refinement(refinement)
-    polygons = _declarations.Polygons(
-        coordinates=_address_of(points),
-        ring_offsets=_address_or_none(rings),
-        ring_count=ring_count,
-        polygon_offsets=_address_or_none(outer),
-        polygon_count=count,
-        part_offsets=_address_or_none(inner),
-        part_count=part_count,
-        has_outside=1,
-        has_fill_rule=1,
-        refinement=refining.pointer,
-        **rules,
-    )
-    refining.call(
-        *(triangulator, library.triangulate_polygons),
-        *(triangulator.pointer, polygons, options, result.place),
-    )
-    asked_by = names_of(
-        labels=bool(rules["labels"]), map=bool(rules["map"]), refinement=bool(refinement)
-    )
-    return result.made(wanted | asked_by)
+    members = {
+        **{"coordinates": _as_doubles(points), "ring_offsets": rings, "ring_count": ring_count},
+        **{"polygon_offsets": outer, "polygon_count": count},
+        **{"part_offsets": inner, "part_count": part_count},
+        **{"has_outside": 1, "has_fill_rule": 1, **rules},
+    }
+    polygons, asked = (_declarations.Polygons, members), names_of(map=bool(rules["map"]))
+    function = library.triangulate_polygons
+    return _make_constrained(triangulator, function, (), polygons, refinement, wanted, asked)
 
 
 def _mesh_of(arrays: dict[str, Any], n: int) -> Any:
     """A flaunay_mesh of n points. arrays: by their names, contiguous, which must outlive it; there are all but links."""
-    counts = {
-        "set_count": len(arrays["triangle_offsets"]) - 1,
-        "triangle_count": len(arrays["triangles"]),
-        "hull_count": len(arrays["hull"]),
-    }
-    names = (*TRIANGULATION, "triangle_offsets", "hull_offsets")
-    members = {name: _address_or_none(arrays.get(name)) for name in names}
-    return _declarations.Mesh(point_count=n, **counts, **members)
+    return _struct(
+        _declarations.Mesh,
+        **{name: arrays.get(name) for name in (*TRIANGULATION, "triangle_offsets", "hull_offsets")},
+        point_count=n,
+        set_count=len(arrays["triangle_offsets"]) - 1,
+        triangle_count=len(arrays["triangles"]),
+        hull_count=len(arrays["hull"]),
+    )
 
 
 def verify(points: _Doubles, offsets: Optional[_Offsets], arrays: dict[str, Any]) -> None:
@@ -696,38 +700,28 @@ def verify_constrained(
     that were given, and their `offsets`.
     """
     given, n = _as_doubles(points), asked["points"]
-    added = len(points) - n
-    members = {name: _address_or_none(arrays.get(name)) for name in _CONSTRAINED}
-    more = _declarations.ConstrainedArrays(
-        **members | {"added_points": _address_or_none(given[n:])},
-        added_count=added,
+    more = _struct(
+        _declarations.ConstrainedArrays,
+        **{name: arrays.get(name) for name in _CONSTRAINED} | {"added_points": given[n:]},
+        added_count=len(points) - n,
         constraint_count=len(arrays["constraint_edges"]),
         segment_count=len(arrays["piece_offsets"]) - 1,
         piece_count=len(arrays["piece_edges"]),
     )
     report = None
     if refined is not None:
-        count, bad_triangles = refined
-        report = _declarations.RefinementReport(
-            added_points=count,
-            bad_count=len(bad_triangles),
-            bad_triangles=_address_or_none(bad_triangles),
-        )
-    refining = _Refinement(asked["refinement"])
-    rest = {name: value for name, value in asked.items() if name not in ("refinement", "offsets", "points")}
-    wanted = _Refinement._members(rest) | {"refinement": refining.pointer}
-    mesh = _mesh_of(arrays, len(points))
-    if "ring_offsets" in rest:
-        polygons = _declarations.Polygons(**wanted, coordinates=_address_of(given))
-        check(library.mesh_verify_polygons(mesh, more, report, polygons))
+        kind, (count, bad) = _declarations.RefinementReport, refined
+        report = _struct(kind, added_points=count, bad_count=len(bad), bad_triangles=bad)
+    wanted = {name: value for name, value in asked.items() if name not in ("offsets", "points")}
+    wanted["refinement"] = _Refinement(asked["refinement"]).struct
+    result = (_mesh_of(arrays, len(points)), more, report)
+    if "ring_offsets" in wanted:
+        polygons = _struct(_declarations.Polygons, **wanted, coordinates=given)
+        check(library.mesh_verify_polygons(*result, polygons))
     else:
-        sizes, _ = _as_offsets(asked["offsets"], n)
-        constraints = _declarations.Constraints(**wanted)
-        check(
-            library.mesh_verify_constrained(
-                *(mesh, more, report, _address_of(given), _address_or_none(sizes), constraints)
-            )
-        )
+        given_points = _as_arguments((given, _as_offsets(asked["offsets"], n)[0]))
+        constraints = _struct(_declarations.Constraints, **wanted)
+        check(library.mesh_verify_constrained(*result, *given_points, constraints))
 
 
 class Dynamic(_InTurns):
@@ -746,27 +740,28 @@ class Dynamic(_InTurns):
         super().__init__(triangulator)
         options = _options_for("blocks", self._PARTS)
         if isinstance(points, DevicePoints):
-            triangulator.call(
-                library.dynamic_create_device,
-                *(triangulator.pointer, points.struct, options, self.place),
-            )
+            triangulator.make(self, library.dynamic_create_device, points, options)
             return
-        points, constraints = _as_doubles(points), None
+        constraints = None
         if segments is not None:
-            constraints = _declarations.Constraints(
-                segments=_address_of(segments), segment_count=len(segments), crossings=crossings
-            )
-        triangulator.call(
-            library.dynamic_create,
-            *(triangulator.pointer, points, len(points), constraints, options, self.place),
-        )
+            asked = {"segments": segments, "segment_count": len(segments), "crossings": crossings}
+            constraints = _struct(_declarations.Constraints, **asked)
+        given = (_as_doubles(points), len(points), constraints, options)
+        triangulator.make(self, library.dynamic_create, *given)
 
-    def _call(self, function: Any, *arguments: Any) -> None:
+    @property
+    def turn(self) -> AbstractContextManager[Any]:
+        return self._triangulator.turn
+
+    def call(self, function: Any, *arguments: Any) -> None:
         if self._process != self._process_id():
             raise UsageError(
                 "the triangulation is that of the process that was forked: make one of its points here"
             )
-        self._triangulator.call(function, self.pointer, *arguments)
+        self._triangulator.call(function, *arguments)
+
+    def _call(self, function: Any, *arguments: Any) -> None:
+        self.call(function, self.pointer, *arguments)
 
     def _change(self, function: Any, *arguments: Any) -> dict[str, Any]:
         """What a batch has changed: the members of `Changes`."""
@@ -793,7 +788,7 @@ class Dynamic(_InTurns):
         return self._change(library.dynamic_insert, _as_doubles(points), len(points))
 
     def insert_device(self, points: DevicePoints) -> dict[str, Any]:
-        return self._change(library.dynamic_insert_device, points.struct)
+        return self._change(library.dynamic_insert_device, points)
 
     def remove(self, numbers: _Indices) -> dict[str, Any]:
         return self._change(library.dynamic_remove, numbers, len(numbers))
@@ -818,9 +813,6 @@ class Dynamic(_InTurns):
             triangles, neighbors = (np.empty((self.count("row_count"), 3), _INT32) for _ in "12")
             self._call(library.dynamic_rows, triangles, neighbors)
         return triangles, neighbors
-
-    def write_rows(self, place: DeviceRows, enqueue: Enqueue) -> None:
-        self._call(library.dynamic_rows_device, enqueue.struct, place.pointer)
 
     def arrays(self) -> Made:
         """The result of a call on all points."""
@@ -867,48 +859,42 @@ def vertex_neighbors(triangles: _Indices, hull: _Indices, n: int) -> tuple[_Indi
 
 
 def _of_triangles(
-    function: Any, points: FloatArray, triangles: _Indices, results: npt.NDArray[Any], *others: Any
-) -> None:
-    """Has a function of the library write what it finds out about triangles of points."""
+    function: Any, points: FloatArray, triangles: _Indices, results: _Array, *others: Any
+) -> _Array:
+    """What a function of the library finds out about triangles of points, in the array of results."""
     corners = _as_corners(triangles)
     given = (np.ascontiguousarray(points, _FLOAT64), _count_points(points), corners, len(corners))
     _call_with_mesh(function, *given, *others, results)
+    return results
 
 
 def turns(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     """Whether the corners of each triangle turn left, 1, or right, -1, or are on one line, 0: exactly."""
     results = np.empty(len(triangles), np.int8)
-    _of_triangles(library.triangle_turns, points, triangles, results)
-    return results
+    return _of_triangles(library.triangle_turns, points, triangles, results)
 
 
 def areas(points: FloatArray, triangles: _Indices) -> _Doubles:
     """The areas of triangles, rounded; negative if their corners turn right."""
-    results = np.empty(len(triangles))
-    _of_triangles(library.triangle_areas, points, triangles, results)
-    return results
+    return _of_triangles(library.triangle_areas, points, triangles, np.empty(len(triangles)))
 
 
 def angles(points: FloatArray, triangles: _Indices) -> npt.NDArray[np.int8]:
     """Whether the angle at each corner is acute, 1, right, 0, or obtuse, -1: exactly."""
     results = np.empty((len(triangles), 3), np.int8)
-    _of_triangles(library.triangle_angles, points, triangles, results)
-    return results
+    return _of_triangles(library.triangle_angles, points, triangles, results)
 
 
 def circumradii(points: FloatArray, triangles: _Indices) -> _Doubles:
     """The circumradii of triangles, with a relative error below 2**-45; infinite if there is none."""
-    results = np.empty(len(triangles))
-    _of_triangles(library.circumradii, points, triangles, results)
-    return results
+    return _of_triangles(library.circumradii, points, triangles, np.empty(len(triangles)))
 
 
 def same_circles(points: FloatArray, triangles: _Indices, neighbors: _Indices) -> _Indices:
     """For each triangle of a triangulation the first one that has the same circumcircle, exactly."""
     beyond = _as_indices(neighbors, "neighbors", (len(triangles), 3))
     results = np.empty(len(triangles), np.int32)
-    _of_triangles(library.same_circles, points, triangles, results, beyond)
-    return results
+    return _of_triangles(library.same_circles, points, triangles, results, beyond)
 
 
 # ---- Points and results in device memory; handles of OpenCL are integers, as pyopencl has them
@@ -927,17 +913,19 @@ class DevicePoints:
         device_offsets: int = 0,
         sets: int = 0,
     ) -> None:
-        self.struct: _declarations.DevicePoints = _declarations.DevicePoints(
+        offsets, host_sets = _as_offsets(given_offsets, count)
+        self.struct: _declarations.DevicePoints = _struct(
+            _declarations.DevicePoints,
             memory=memory or None,
             count=count,
             precision=PRECISION["float32" if single else "float64"],
             first=first,
+            offsets=offsets,
             device_offsets=device_offsets or None,
-            sets=sets,
+            sets=sets or host_sets,
         )
-        self._offsets, host_sets = _as_offsets(given_offsets, count)
-        if self._offsets is not None:
-            self.struct.offsets, self.struct.sets = _address_of(self._offsets), host_sets
+        self.sets: int = self.struct.sets if offsets is not None or device_offsets else 1
+        self._as_parameter_ = ctypes.pointer(self.struct)
 
 
 class Enqueue:
@@ -946,11 +934,13 @@ class Enqueue:
     def __init__(self, queue: int, wait_for: list[int]) -> None:
         self._wait_for = (ctypes.c_void_p * len(wait_for))(*wait_for)
         self._event = ctypes.c_void_p()
-        self.struct: _declarations.Enqueue = _declarations.Enqueue(
-            queue=queue or None,
-            wait_for=ctypes.addressof(self._wait_for) if wait_for else None,
-            wait_for_count=len(wait_for),
-            event=ctypes.addressof(self._event),
+        self._as_parameter_ = ctypes.pointer(
+            _declarations.Enqueue(
+                queue=queue or None,
+                wait_for=ctypes.addressof(self._wait_for) if wait_for else None,
+                wait_for_count=len(wait_for),
+                event=ctypes.addressof(self._event),
+            )
         )
 
     @property
@@ -959,200 +949,74 @@ class Enqueue:
         return self._event.value or 0
 
 
-class DeviceTriangulation(DeviceHandle):
-    """A triangulation in device memory, with the triangulator that made it."""
+class _DeviceArrays(DeviceHandle):
+    """What a call computes in buffers of its own; these are alive as long as it, or retained."""
 
-    _destroy = library.device_triangulation_destroy
+    def __init__(
+        self, name: str, compute: Any, owner: Union[Triangulator, Dynamic], *given: Any
+    ) -> None:
+        """Computes by what takes turns, from what is given: at first points, and at last an `Enqueue`."""
+        super().__init__()
+        self._name, self._owner = name, owner
+        self._destroy = getattr(library, f"device_{name}_destroy")
+        self._sets = given[0].sets if isinstance(given[0], DevicePoints) else 1
+        check(getattr(library, f"device_{name}_create")(self.place))
+        owner.call(compute, owner, *given, self)
+
+    def read(self, member: str, *given: Any) -> Any:
+        return getattr(library, f"device_{self._name}_{member}")(self.pointer, *given)
+
+    def copied(self, member: str, count: int, dtype: np.dtype[Any] = _FLOAT64) -> npt.NDArray[Any]:
+        """A copy of what is in host memory, for longer than the buffers."""
+        return _view(self, self.read(member), (count,), dtype).copy()
+
+    @property
+    def triangle_offsets(self) -> _Offsets:
+        return self.copied("triangle_offsets", self._sets + 1, _INT64)
+
+    def arrays(self, **counts: int) -> _Places:
+        """counts: how many there are of what has rows, unless a function says so. Flags are numbers."""
+        parts = getattr(_declarations, f"{self._name.upper()}_PART", PART)
+        return {
+            name: (
+                self.read("buffer", parts[name]) or 0,
+                _shape(counts[row] if row in counts else self.read(f"{row}_count"), columns),
+                _UINT8 if dtype == _BOOL else dtype,
+            )
+            for name, (dtype, row, columns, _) in _TABLES[self._name].items()
+        }
+
+
+class DeviceTriangulation(_DeviceArrays):
+    """A triangulation in device memory, with the triangulator that made it."""
 
     def __init__(
         self, triangulator: Triangulator, points: DevicePoints, wanted: set[str], enqueue: Enqueue
     ) -> None:
-        super().__init__()
-        self._triangulator = triangulator
-        check(library.device_triangulation_create(self.place))
-        triangulator.call(
-            library.triangulate_device,
-            *(triangulator.pointer, points.struct, _parts_of(wanted), enqueue.struct, self.pointer),
-        )
-
-    def arrays(self) -> dict[str, Optional[tuple[int, tuple[int, ...], np.dtype[Any]]]]:
-        """For each array the handle of its buffer, its shape and its type; None if it was not computed."""
-        triangles: int = library.device_triangulation_triangle_count(self.pointer)
-        counts = {
-            "triangle": triangles,
-            "halfedge": 3 * triangles,
-            "hull_vertex": library.device_triangulation_hull_count(self.pointer),
-            "point": library.device_triangulation_point_count(self.pointer),
-        }
-        computed = library.device_triangulation_parts(self.pointer)
-        return {
-            name: (
-                (
-                    library.device_triangulation_buffer(self.pointer, PART[name]) or 0,
-                    _shape(counts[row], columns),
-                    dtype,
-                )
-                if computed & PART[name]
-                else None
-            )
-            for name, (dtype, row, columns, _) in TRIANGULATION.items()
-        }
-
-    def _offsets(self, address: Optional[int]) -> _Offsets:
-        # A copy: the caller keeps the offsets for longer than the buffers.
-        sets = library.device_triangulation_set_count(self.pointer)
-        return _view(self, address, (sets + 1,), _INT64).copy()
-
-    @property
-    def triangle_offsets(self) -> _Offsets:
-        return self._offsets(library.device_triangulation_triangle_offsets(self.pointer))
+        given = (triangulator, points, _parts_of(wanted), enqueue)
+        super().__init__("triangulation", library.triangulate_device, *given)
 
     @property
     def hull_offsets(self) -> _Offsets:
-        return self._offsets(library.device_triangulation_hull_offsets(self.pointer))
+        return self.copied("hull_offsets", self._sets + 1, _INT64)
+
+    def computed(self) -> _Places:
+        """The arrays that were computed."""
+        halfedges, hull = 3 * self.read("triangle_count"), self.read("hull_count")
+        places, parts = self.arrays(halfedge=halfedges, hull_vertex=hull), self.read("parts")
+        return {name: place for name, place in places.items() if parts & PART[name]}
 
     @property
     def statistics(self) -> dict[str, Any]:
-        return _statistics_of(library.device_triangulation_statistics(self.pointer)[0])
+        return _statistics_of(self.read("statistics")[0])
 
 
-class DeviceRows(DeviceHandle):
-    """The rows and points of a triangulation that changes, in device memory."""
-
-    _destroy = library.device_rows_destroy
-
-    def __init__(self, dynamic: Dynamic, enqueue: Enqueue) -> None:
-        super().__init__()
-        check(library.device_rows_create(self.place))
-        dynamic.write_rows(self, enqueue)
-
-    def arrays(self) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
-        """For each array the handle of its buffer, 0 if it is empty, its shape and its type."""
-        rows: int = library.device_rows_row_count(self.pointer)
-        kinds: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {
-            "triangles": ((rows, 3), _INT32),
-            "neighbors": ((rows, 3), _INT32),
-            "coordinates": ((library.device_rows_numbers(self.pointer), 2), _FLOAT64),
-        }
-        parts = _declarations.ROWS_PART
-        return {
-            name: (library.device_rows_buffer(self.pointer, parts[name]) or 0, *kind)
-            for name, kind in kinds.items()
-        }
-
-
-class _DeviceArrays(DeviceHandle):
-    """What a call computes in buffers of its own; these are alive as long as it, or retained."""
-
-    _create: Any
-    _compute: Any
-    _buffer: Any
-    _parts: dict[str, int]
-    _table: _Arrays
-
-    def __init__(self, triangulator: Triangulator, points: DevicePoints, *given: Any) -> None:
-        """Computes from points, what else is given, and at last an `Enqueue`."""
-        super().__init__()
-        check(self._create(self.place))
-        *others, enqueue = given
-        triangulator.call(
-            self._compute,
-            *(triangulator.pointer, points.struct, *others, enqueue.struct, self.pointer),
-        )
-
-    def _kept(self, address: Optional[int], count: int, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-        """A copy of what is in host memory, for longer than the buffers."""
-        return _view(self, address, (count,), dtype).copy()
-
-    def arrays(self, **counts: int) -> dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]]:
-        """For each array the handle of its buffer, 0 if it is empty, its shape and its type.
-
-        counts: for what has one row per thing, how many there are. Flags are numbers in device memory.
-        """
-        return {
-            name: (
-                self._buffer(self.pointer, self._parts[name]) or 0,
-                _shape(counts[row], columns),
-                _UINT8 if dtype == _BOOL else dtype,
-            )
-            for name, (dtype, row, columns, _) in self._table.items()
-        }
-
-
-class DeviceVoronoi(_DeviceArrays):
-    """The dual of a triangulation in device memory."""
-
-    _create, _destroy = library.device_voronoi_create, library.device_voronoi_destroy
-    _compute, _buffer = library.voronoi_compute_device, library.device_voronoi_buffer
-    _parts, _table = _declarations.VORONOI_PART, _VORONOI
-
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: DevicePoints,
-        mesh: DeviceTriangulation,
-        enqueue: Enqueue,
-    ) -> None:
-        super().__init__(triangulator, points, mesh.pointer, enqueue)
-
-
-class DeviceClippedVoronoi(_DeviceArrays):
-    """Cells in device memory, clipped to a polygon with corners."""
-
-    _create = library.device_clipped_voronoi_create
-    _destroy = library.device_clipped_voronoi_destroy
-    _compute, _buffer = library.voronoi_clip_device, library.device_clipped_voronoi_buffer
-    _parts, _table = _declarations.CLIPPED_VORONOI_PART, _CLIPPED_VORONOI
-
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: DevicePoints,
-        mesh: DeviceTriangulation,
-        corners: _Doubles,
-        enqueue: Enqueue,
-    ) -> None:
-        corners = _as_doubles(corners)
-        super().__init__(triangulator, points, mesh.pointer, corners, len(corners), enqueue)
-
-    @property
-    def vertex_count(self) -> int:
-        return cast(int, library.device_clipped_voronoi_vertex_count(self.pointer))
-
-
-class DeviceSpherical(_DeviceArrays):
-    """Triangulations of points on a sphere, of 2 or 3 coordinates, in device memory."""
-
-    _create, _destroy = library.device_spherical_create, library.device_spherical_destroy
-    _compute, _buffer = library.spherical_compute_device, library.device_spherical_buffer
-    _parts, _table = _declarations.SPHERICAL_PART, _SPHERICAL
-
-    def __init__(
-        self, triangulator: Triangulator, points: DevicePoints, width: int, enqueue: Enqueue
-    ) -> None:
-        super().__init__(triangulator, points, _sphere_coordinates(width), enqueue)
-        offsets = library.device_spherical_triangle_offsets(self.pointer)
-        self.triangle_offsets = self._kept(offsets, (points.struct.sets or 1) + 1, _INT64)
-
-
-class DevicePeriodic(_DeviceArrays):
-    """Triangulations of points on a torus or a cylinder in device memory."""
-
-    _create, _destroy = library.device_periodic_create, library.device_periodic_destroy
-    _compute, _buffer = library.periodic_compute_device, library.device_periodic_buffer
-    _parts, _table = _declarations.PERIODIC_PART, _PERIODIC
-
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: DevicePoints,
-        period: tuple[float, float],
-        enqueue: Enqueue,
-    ) -> None:
-        super().__init__(triangulator, points, *period, enqueue)
-        offsets = library.device_periodic_triangle_offsets(self.pointer)
-        self.triangle_offsets = self._kept(offsets, (points.struct.sets or 1) + 1, _INT64)
-        self.period = self._kept(library.device_periodic_period(self.pointer), 2, _FLOAT64)
+# What these calls make: the first takes a `Dynamic`, the others a `Triangulator` and points.
+DeviceRows = functools.partial(_DeviceArrays, "rows", library.dynamic_rows_device)
+DeviceVoronoi = functools.partial(_DeviceArrays, "voronoi", library.voronoi_compute_device)
+DeviceClippedVoronoi = functools.partial(_DeviceArrays, "clipped_voronoi", library.voronoi_clip_device)
+DeviceSpherical = functools.partial(_DeviceArrays, "spherical", library.spherical_compute_device)
+DevicePeriodic = functools.partial(_DeviceArrays, "periodic", library.periodic_compute_device)
 
 
 def relax_device(
@@ -1163,36 +1027,26 @@ def relax_device(
     enqueue: Enqueue,
 ) -> int:
     """The buffer of relaxed points, which is the caller's to release; 0 if there are no points."""
-    corners = _as_doubles(corners)
-    given = (points.struct, corners, len(corners), iterations)
-    return _buffer_of(triangulator, library.relax_device, triangulator.pointer, *given, enqueue)
+    given = (points, _as_doubles(corners), len(corners), iterations)
+    return _buffer_of(triangulator, library.relax_device, triangulator, *given, enqueue)
 
 
 def _buffer_of(triangulator: Triangulator, function: Any, *given: Any) -> int:
-    """The buffer that a function makes, 0 if it is empty. The last that is given is an `Enqueue`."""
-    *others, enqueue = given
+    """The buffer that a function makes, 0 if it is empty."""
     buffer = ctypes.c_void_p()
-    triangulator.call(function, *others, enqueue.struct, ctypes.byref(buffer))
+    triangulator.call(function, *given, ctypes.byref(buffer))
     return buffer.value or 0
 
 
 # ---- Chunks
 
 
-class _ChunkReport(Handle):
-    _destroy = library.chunk_report_destroy
-
-
-class _Contours(Handle):
-    _destroy = library.contours_destroy
-
-
-def _lines_of(made: _Contours) -> tuple[_Doubles, _Offsets, _Indices]:
+def _lines_of(made: _Result) -> tuple[_Doubles, _Offsets, _Indices]:
     """Points, where lines begin among them, and the number of each line's height."""
-    lines = library.contours_line_count(made.pointer)
-    offsets = _view(made, library.contours_offsets(made.pointer), (lines + 1,), _INT64)
-    points = _view(made, library.contours_coordinates(made.pointer), (int(offsets[-1]), 2), _FLOAT64)
-    return points, offsets, _view(made, library.contours_heights(made.pointer), (lines,), _INT32)
+    lines = made.read("line_count")
+    offsets = _view(made, made.read("offsets"), (lines + 1,), _INT64)
+    points = _view(made, made.read("coordinates"), (int(offsets[-1]), 2), _FLOAT64)
+    return points, offsets, _view(made, made.read("heights"), (lines,), _INT32)
 
 
 Progress = Optional[Callable[[str, int, float], object]]
@@ -1210,7 +1064,7 @@ class Chunks:
 
     def run(self, function: Callable[[_declarations.ChunkOptions, Any], int]) -> dict[str, Any]:
         """Makes a call of the library. Returns its statistics."""
-        aside, report, progress = _Aside(), _ChunkReport(), self.progress
+        aside, report, progress = _Aside(), _Result("chunk_report"), self.progress
         names = [_encoded(name) for name in self.devices]
         devices = (ctypes.c_char_p * len(names))(*names)
 
@@ -1230,7 +1084,7 @@ class Chunks:
             progress=_declarations.ChunkOptionsProgress(go_on),
         )
         aside.run(lambda: function(options, report.place), follow)
-        return _chunk_statistics_of(library.chunk_report_statistics(report.pointer)[0])
+        return _chunk_statistics_of(report.read("statistics")[0])
 
 
 def _precision_of(numbers: FloatArray, name: str) -> int:
@@ -1331,12 +1185,12 @@ def rasterize_chunks(
     )
     raster = _raster_of(grid, max_edge, fill, pixels)
     # Of pixels the address: what a call refers to is freed late, and a mapped file would be open until then.
-    place, made = _address_of(pixels), _Contours()
-    edges = _declarations.Breaklines()
+    place, made = _address_of(pixels), _Result("contours")
+    edges = None
     if breaklines is not None:
-        places, tops, segments = breaklines
-        edges.coordinates, edges.values, edges.count = _address_of(places), _address_of(tops), len(tops)
-        edges.segments, edges.segment_count = _address_of(segments), len(segments)
+        names = ("coordinates", "values", "segments")
+        counts = {"count": len(breaklines[1]), "segment_count": len(breaklines[2])}
+        edges = _struct(_declarations.Breaklines, **dict(zip(names, breaklines)), **counts)
     levels = (heights.ctypes.data, len(heights), made.place, edges)
 
     def call(options: _declarations.ChunkOptions, report: Any) -> int:
@@ -1366,60 +1220,33 @@ def _triangulation_of(mesh: Searched) -> tuple[_Doubles, int, _Triangulation]:
     return points, n, result
 
 
-def _cells_of(result: Handle, table: _Arrays, prefix: str, n: int) -> dict[str, Any]:
-    """The arrays of a diagram of n points. prefix: of the functions that have them and the numbers of their rows."""
-
-    def read(name: str) -> Any:
-        return getattr(library, f"{prefix}_{name}")(result.pointer)
-
-    counts = {"point": n, "point_offset": n + 1}
-    for _, row, _, _ in table.values():
-        if row not in counts:
-            counts[row] = read(f"{row}_count")
-    return _views(result, table, counts, read)
-
-
-class _Voronoi(Handle):
-    _destroy = library.voronoi_destroy
-
-
 def voronoi(triangulator: Triangulator, mesh: Mesh) -> dict[str, Any]:
     """The circumcentres of triangles, the cell_offsets, the corners of cells, and which are unbounded."""
     points, n, primal = _triangulation_of(mesh)
-    result = _Voronoi()
-    triangulator.call(
-        library.voronoi_compute, triangulator.pointer, points, n, primal.pointer, result.place
-    )
-    return _cells_of(result, _VORONOI, "voronoi", n)
+    result = _Result("voronoi")
+    triangulator.make(result, library.voronoi_compute, points, n, primal)
+    return result.views()
 
 
-class _ClippedVoronoi(Handle):
-    _destroy = library.clipped_voronoi_destroy
+def _clipped_cells(triangulator: Triangulator, function: Any, *given: Any) -> dict[str, Any]:
+    """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
+    result = _Result("clipped_voronoi")
+    triangulator.make(result, function, *given)
+    return result.views()
 
 
 def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -> dict[str, Any]:
-    """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
-    points, n, primal = _triangulation_of(mesh)
-    corners = _as_doubles(corners)
-    result = _ClippedVoronoi()
-    triangulator.call(
-        library.voronoi_clip,
-        *(triangulator.pointer, points, n, primal.pointer, corners, len(corners), result.place),
-    )
-    return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", n)
+    given = (*_triangulation_of(mesh), _as_doubles(corners), len(corners))
+    return _clipped_cells(triangulator, library.voronoi_clip, *given)
 
 
 def relax(
     triangulator: Triangulator, points: _Doubles, corners: _Doubles, iterations: int
 ) -> _Doubles:
     """Points after so many iterations of Lloyd's method."""
-    n = _count_points(points)
-    points, corners = _as_doubles(points), _as_doubles(corners)
-    relaxed = np.empty((n, 2), np.float64)
-    triangulator.call(
-        library.relax,
-        *(triangulator.pointer, points, n, corners, len(corners), iterations, relaxed),
-    )
+    relaxed = np.empty((_count_points(points), 2))
+    given = (_as_doubles(points), len(points), _as_doubles(corners), len(corners), iterations)
+    triangulator.call(library.relax, triangulator, *given, relaxed)
     return relaxed
 
 
@@ -1455,7 +1282,7 @@ def rasterize(
 ) -> None:
     """Writes values at pixels. grid: the first pixel's x and y, and the steps to the next ones."""
     raster = _raster_of(grid, max_edge, fill, pixels)
-    given = (triangulator.pointer, *_mesh_arguments(*surface), ctypes.byref(raster), pixels)
+    given = (triangulator, *_mesh_arguments(*surface), ctypes.byref(raster), pixels)
     with triangulator.turn:
         _call_with_mesh(library.rasterize, *given)
 
@@ -1464,8 +1291,8 @@ def contours(
     triangulator: Triangulator, *surface: Any, heights: _Doubles, max_edge: float
 ) -> tuple[_Doubles, _Offsets, _Indices]:
     """Points, where lines begin among them, and the number of each line's height."""
-    made = _Contours()
-    given = (triangulator.pointer, *_mesh_arguments(*surface), heights, len(heights), max_edge)
+    made = _Result("contours")
+    given = (triangulator, *_mesh_arguments(*surface), heights, len(heights), max_edge)
     with triangulator.turn:
         _call_with_mesh(library.contours_compute, *given, made.place)
     return _lines_of(made)
@@ -1481,21 +1308,23 @@ class Interpolation:
         self, values: _Doubles, method: str, fill: float, gradients: Optional[_Doubles] = None
     ) -> None:
         self._made_of = values, method, fill, gradients
-        self.values, self.gradients = _as_doubles(values), gradients
+        self.values = _as_doubles(values)
         self.address, self.columns = _address_of(self.values), values.shape[1]
-        self.options = _declarations.InterpolationOptions(
-            method=_declarations.INTERPOLATION[method],
-            columns=self.columns,
-            has_fill=1,
-            fill=fill,
-        )
         if gradients is not None:
             if gradients.shape != (*values.shape, 2):
                 raise UsageError(
                     f"gradients must have the shape {(*values.shape, 2)}, not {gradients.shape}"
                 )
-            self.gradients = _as_doubles(gradients)
-            self.options.gradients = _address_of(self.gradients)
+            gradients = _as_doubles(gradients)
+        self.gradients = gradients
+        self.options = _struct(
+            _declarations.InterpolationOptions,
+            method=_declarations.INTERPOLATION[method],
+            columns=self.columns,
+            has_fill=1,
+            fill=fill,
+            gradients=gradients,
+        )
 
     def with_fill(self, fill: float) -> Interpolation:
         values, method, _, gradients = self._made_of
@@ -1525,17 +1354,12 @@ class Locator(_Locator):
         """constrained: of a mesh with constraints, for each corner whether the edge opposite to it is one."""
         super().__init__(triangulator)
         points, self._point_count, primal = _triangulation_of(mesh)
-        if constrained is not None:
-            triangulator.call(
-                library.locator_create_constrained,
-                *(triangulator.pointer, points, self._point_count, primal.pointer),
-                *(np.ascontiguousarray(constrained, np.bool_), self.place),
-            )
+        given = (points, self._point_count)
+        if constrained is None:
+            triangulator.make(self, library.locator_create, *given, None, 0, primal)
             return
-        triangulator.call(
-            library.locator_create,
-            *(triangulator.pointer, points, self._point_count, None, 0, primal.pointer, self.place),
-        )
+        marks = np.ascontiguousarray(constrained, np.bool_)
+        triangulator.make(self, library.locator_create_constrained, *given, primal, marks)
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:
         """What a function answers to each query."""
@@ -1561,17 +1385,12 @@ class Locator(_Locator):
         self, queries: _Doubles, method: str
     ) -> tuple[_Offsets, _Indices, _Doubles]:
         """Where the rows of queries begin, points, and their weights."""
-        made = _NaturalWeights()
-        by = _declarations.INTERPOLATION[method]
-        given = self.pointer, queries, len(queries), by, made.place
-        self._triangulator.call(library.natural_weights_compute, *given)
-        offsets = _view(
-            made, library.natural_weights_offsets(made.pointer), (len(queries) + 1,), _INT64
-        )
+        made, by = _Result("natural_weights"), _declarations.INTERPOLATION[method]
+        self._call(library.natural_weights_compute, queries, len(queries), by, made.place)
+        offsets = _view(made, made.read("offsets"), (len(queries) + 1,), _INT64)
         shape = (int(offsets[-1]),)
-        points = _view(made, library.natural_weights_points(made.pointer), shape, _INT32)
-        weights = _view(made, library.natural_weights_weights(made.pointer), shape, _FLOAT64)
-        return offsets, points, weights
+        points = _view(made, made.read("points"), shape, _INT32)
+        return offsets, points, _view(made, made.read("weights"), shape, _FLOAT64)
 
     def _check_rows(self, values: _Doubles) -> None:
         if len(values) != self._point_count:
@@ -1601,12 +1420,8 @@ class Locator(_Locator):
             columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
         )
         results = np.empty((*values.shape, 2))
-        self._triangulator.call(library.locator_gradients, self.pointer, values, options, results)
+        self._call(library.locator_gradients, values, options, results)
         return results
-
-
-class _NaturalWeights(Handle):
-    _destroy = library.natural_weights_destroy
 
 
 class PointTree(_InTurns):
@@ -1617,16 +1432,14 @@ class PointTree(_InTurns):
     def __init__(self, triangulator: Triangulator, points: _Doubles) -> None:
         super().__init__(triangulator)
         self.count = _count_points(points)
-        given = triangulator.pointer, _as_doubles(points), self.count, self.place
-        triangulator.call(library.point_tree_create, *given)
+        triangulator.make(self, library.point_tree_create, _as_doubles(points), self.count)
 
     @classmethod
     def of_periodic(cls, triangulator: Triangulator, periodic: Periodic) -> PointTree:
         """A tree of the places of one set, where each point counts once, as it lies nearest."""
         tree = cls.__new__(cls)
         _InTurns.__init__(tree, triangulator)
-        given = triangulator.pointer, periodic.pointer, tree.place
-        triangulator.call(library.point_tree_create_periodic, *given)
+        triangulator.make(tree, library.point_tree_create_periodic, periodic)
         return tree
 
     def nearest(
@@ -1658,20 +1471,18 @@ class DeviceLocator(_Locator):
         enqueue: Enqueue,
     ) -> None:
         super().__init__(triangulator)
-        triangulator.call(
-            library.locator_create_device,
-            *(triangulator.pointer, points.struct, mesh.pointer, enqueue.struct, self.place),
-        )
+        triangulator.make(self, library.locator_create_device, points, mesh, enqueue)
+
+    def _answer(self, function: Any, *given: Any) -> int:
+        return _buffer_of(self._triangulator, function, self, *given)
 
     def locate(self, queries: DevicePoints, enqueue: Enqueue) -> int:
         """The triangle of each query."""
-        function = library.locator_locate_device
-        return _buffer_of(self._triangulator, function, self.pointer, queries.struct, enqueue)
+        return self._answer(library.locator_locate_device, queries, enqueue)
 
     def nearest(self, queries: DevicePoints, enqueue: Enqueue) -> int:
         """The point that is nearest to each query."""
-        function = library.locator_nearest_device
-        return _buffer_of(self._triangulator, function, self.pointer, queries.struct, enqueue)
+        return self._answer(library.locator_nearest_device, queries, enqueue)
 
     def interpolate(
         self,
@@ -1691,9 +1502,8 @@ class DeviceLocator(_Locator):
             fill=fill,
             device_gradients=gradients or None,
         )
-        function = library.locator_interpolate_with_device
-        given = (self.pointer, values or None, queries.struct, options, enqueue)
-        return _buffer_of(self._triangulator, function, *given)
+        given = (values or None, queries, options, enqueue)
+        return self._answer(library.locator_interpolate_with_device, *given)
 
     def gradients(
         self, values: int, columns: int, tolerance: float, iterations: int, enqueue: Enqueue
@@ -1702,86 +1512,119 @@ class DeviceLocator(_Locator):
         options = _declarations.InterpolationOptions(
             columns=columns, gradient_tolerance=tolerance, gradient_iterations=iterations
         )
-        function = library.locator_gradients_device
-        return _buffer_of(
-            self._triangulator, function, self.pointer, values or None, options, enqueue
-        )
+        return self._answer(library.locator_gradients_device, values or None, options, enqueue)
 
 
-# ---- Points on a sphere
+# ---- Points on a sphere, on a torus or with weights
 
 
-def _sphere_coordinates(width: int) -> int:
+def sphere_coordinates(width: int) -> int:
     return int(_declarations.SPHERE_COORDINATES["degrees" if width == 2 else "directions"])
 
 
-def _named_arrays(
-    handle: Handle, prefix: str, *arrays: tuple[str, tuple[int, ...], np.dtype[Any]]
-) -> dict[str, npt.NDArray[Any]]:
-    """Arrays by their names. prefix: of the functions that have them."""
-    return {
-        name: _view(handle, getattr(library, f"{prefix}_{name}")(handle.pointer), shape, dtype)
-        for name, shape, dtype in arrays
-    }
+class _Surface(_Result):
+    """Triangulations of sets of points."""
 
-
-class _SphericalVoronoi(Handle):
-    _destroy = library.spherical_voronoi_destroy
-
-
-class Spherical(Handle):
-    """Triangulations of points on a sphere, as longitudes and latitudes or x, y and z."""
-
-    _destroy = library.spherical_destroy
+    _offsets: tuple[str, ...] = ("triangle_offsets",)
 
     def __init__(
-        self, triangulator: Triangulator, points: _Doubles, given_offsets: Optional[_Offsets]
+        self,
+        name: str,
+        triangulator: Triangulator,
+        given: list[_Doubles],
+        offsets: Optional[_Offsets],
+        *others: Any,
     ) -> None:
-        super().__init__()
-        n, points = len(points), _as_doubles(points)
-        offsets, sets = _as_offsets(given_offsets, n)
-        triangulator.call(
-            library.spherical_create,
-            *(triangulator.pointer, points, n, offsets, sets, _sphere_coordinates(points.shape[1]), self.place),
-        )
-        self.point_count, self._sets = n, sets or 1
+        """given: points, and other arrays with a row for each."""
+        super().__init__(name)
+        n, create = len(given[0]), getattr(library, f"{name}_create")
+        starts, sets = _as_offsets(offsets, n)
+        triangulator.make(self, create, *map(_as_doubles, given), n, starts, sets, *others)
+        self._counts = {"point": n, "set": 1 if starts is None else sets}
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        n, triangles = self.point_count, library.spherical_triangle_count(self.pointer)
-        directions = np.empty((n, 3))
-        check(library.spherical_directions(self.pointer, _address_of(directions)))
-        return {
-            "directions": directions,
-            **_named_arrays(
-                *(self, "spherical"),
-                ("places", (n, 2), _FLOAT64),
-                ("triangles", (triangles, 3), _INT32),
-                ("neighbors", (triangles, 3), _INT32),
-                ("representatives", (n,), _INT32),
-                ("triangle_offsets", (self._sets + 1,), _INT64),
-            ),
-        }
+        return self.views(*self._offsets, **self._counts)
+
+    def _check(self, function: Any, *given: Any) -> None:
+        check(function(self, *_as_arguments(given)))
+
+
+class Spherical(_Surface):
+    """Triangulations of points on a sphere, as longitudes and latitudes or x, y and z."""
+
+    def __init__(
+        self, triangulator: Triangulator, points: _Doubles, offsets: Optional[_Offsets]
+    ) -> None:
+        super().__init__(
+            "spherical", triangulator, [points], offsets, sphere_coordinates(points.shape[1])
+        )
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        directions = np.empty((self._counts["point"], 3))
+        self._check(library.spherical_directions, directions)
+        return {"directions": directions, **super().arrays()}
 
     def verify(self, points: _Doubles) -> None:
-        points = _as_doubles(points)
-        width = _sphere_coordinates(points.shape[1])
-        check(library.spherical_verify(self.pointer, _address_of(points), width))
+        width = sphere_coordinates(points.shape[1])
+        self._check(library.spherical_verify, _as_doubles(points), width)
 
     def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
-        made = _SphericalVoronoi()
-        triangulator.call(
-            library.spherical_voronoi_create, triangulator.pointer, self.pointer, made.place
-        )
-        n, triangles = self.point_count, library.spherical_triangle_count(self.pointer)
-        return {
-            name: _view(made, getattr(library, f"spherical_voronoi_{of}")(made.pointer), shape, dtype)
-            for name, of, shape, dtype in (
-                ("vertices", "centres", (triangles, 3), _FLOAT64),
-                ("cell_offsets", "cell_offsets", (n + 1,), _INT32),
-                ("cells", "cells", (3 * triangles,), _INT32),
-                ("areas", "areas", (n,), _FLOAT64),
-            )
-        }
+        made, triangles = _Result("spherical_voronoi"), self.read("triangle_count")
+        triangulator.make(made, library.spherical_voronoi_create, self)
+        counts = {"triangle": triangles, "corner": 3 * triangles}
+        arrays = made.views(**self._counts, **counts)
+        return {"vertices": arrays.pop("centres"), **arrays}
+
+
+class Periodic(_Surface):
+    """Triangulations of points on a torus or a cylinder."""
+
+    def __init__(
+        self,
+        triangulator: Triangulator,
+        points: _Doubles,
+        period: tuple[float, float],
+        offsets: Optional[_Offsets],
+    ) -> None:
+        super().__init__("periodic", triangulator, [points], offsets, *period)
+
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        arrays = super().arrays()
+        arrays["period"] = _view(self, self.read("period"), (2,), _FLOAT64)
+        arrays["offsets"] = arrays["offsets"].reshape(-1, 3, 2)
+        return arrays
+
+    def verify(self) -> None:
+        self._check(library.periodic_verify)
+
+    def cells(self, triangulator: Triangulator) -> dict[str, Any]:
+        return _clipped_cells(triangulator, library.periodic_cells, self)
+
+
+class Weighted(_Surface):
+    """Regular triangulations of weighted points."""
+
+    _offsets = ("triangle_offsets", "hull_offsets")
+
+    def __init__(
+        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, offsets: Optional[_Offsets]
+    ) -> None:
+        super().__init__("weighted", triangulator, [points, weights], offsets)
+
+    def hiding_triangles(self, triangulator: Triangulator, points: _Doubles) -> _Indices:
+        triangles = np.empty(self.read("hidden_count"), np.int32)
+        given = (self, _as_doubles(points), triangles)
+        triangulator.call(library.weighted_hiding_triangles, triangulator, *given)
+        return triangles
+
+    def verify(self, points: _Doubles, weights: _Doubles) -> None:
+        self._check(library.weighted_verify, _as_doubles(points), _as_doubles(weights))
+
+    def cells(
+        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles
+    ) -> dict[str, Any]:
+        given = (self, _as_doubles(points), _as_doubles(weights), _as_doubles(corners), len(corners))
+        return _clipped_cells(triangulator, library.weighted_cells, *given)
 
 
 class SurfaceLocator(_InTurns):
@@ -1791,7 +1634,7 @@ class SurfaceLocator(_InTurns):
 
     def __init__(self, triangulator: Triangulator, mesh: Handle) -> None:
         super().__init__(triangulator)
-        triangulator.call(self._function("create"), triangulator.pointer, mesh.pointer, self.place)
+        triangulator.make(self, self._function("create"), mesh)
 
     def _function(self, name: str) -> Any:
         return getattr(library, f"{self._name}_locator_{name}")
@@ -1801,11 +1644,9 @@ class SurfaceLocator(_InTurns):
         return ()
 
     def _find(self, function: str, queries: _Doubles) -> _Indices:
-        found = np.empty(len(queries), np.int32)
-        queries = _as_doubles(queries)
-        self._triangulator.call(
-            self._function(function),
-            *(self.pointer, queries, len(queries), *self._kind_of(queries), found),
+        found, queries = np.empty(len(queries), np.int32), _as_doubles(queries)
+        self._call(
+            self._function(function), queries, len(queries), *self._kind_of(queries), found
         )
         return found
 
@@ -1818,12 +1659,9 @@ class SurfaceLocator(_InTurns):
     def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
         """A row of values at each query. values: one for each point."""
         results = np.empty((len(queries), values.shape[1]))
-        values, queries = _as_doubles(values), _as_doubles(queries)
-        self._triangulator.call(
-            self._function("interpolate"),
-            *(self.pointer, values, values.shape[1], queries, len(queries)),
-            *(*self._kind_of(queries), results),
-        )
+        queries = _as_doubles(queries)
+        given = (_as_doubles(values), values.shape[1], queries, len(queries), *self._kind_of(queries))
+        self._call(self._function("interpolate"), *given, results)
         return results
 
 
@@ -1833,7 +1671,7 @@ class SphericalLocator(SurfaceLocator):
     _name, _destroy = "spherical", library.spherical_locator_destroy
 
     def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
-        return (_sphere_coordinates(queries.shape[1]),)
+        return (sphere_coordinates(queries.shape[1]),)
 
     def nearest_points(
         self, queries: _Doubles, count: int, max_distance: float
@@ -1842,58 +1680,8 @@ class SphericalLocator(SurfaceLocator):
         m = len(queries)
         points, distances = np.empty((m, count), _INT32), np.empty((m, count))
         given = _as_doubles(queries), m, *self._kind_of(queries), count, max_distance
-        self._triangulator.call(
-            self._function("nearest_points"), *(self.pointer, *given, points, distances)
-        )
+        self._call(self._function("nearest_points"), *given, points, distances)
         return points, distances
-
-
-# ---- Points on a torus or a cylinder
-
-
-class Periodic(Handle):
-    """Triangulations of points on a torus or a cylinder."""
-
-    _destroy = library.periodic_destroy
-
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: _Doubles,
-        period: tuple[float, float],
-        given_offsets: Optional[_Offsets],
-    ) -> None:
-        super().__init__()
-        n, points = len(points), _as_doubles(points)
-        offsets, sets = _as_offsets(given_offsets, n)
-        triangulator.call(
-            library.periodic_create,
-            *(triangulator.pointer, points, n, offsets, sets, *period, self.place),
-        )
-        self._point_count, self._sets = n, sets or 1
-
-    def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        n, triangles = self._point_count, library.periodic_triangle_count(self.pointer)
-        return _named_arrays(
-            *(self, "periodic"),
-            ("period", (2,), _FLOAT64),
-            ("places", (n, 2), _FLOAT64),
-            ("triangles", (triangles, 3), _INT32),
-            ("offsets", (triangles, 3, 2), np.dtype(np.int8)),
-            ("neighbors", (triangles, 3), _INT32),
-            ("representatives", (n,), _INT32),
-            ("triangle_offsets", (self._sets + 1,), _INT64),
-        )
-
-    def verify(self) -> None:
-        check(library.periodic_verify(self.pointer))
-
-    def cells(self, triangulator: Triangulator) -> dict[str, Any]:
-        result = _ClippedVoronoi()
-        triangulator.call(
-            library.periodic_cells, triangulator.pointer, self.pointer, result.place
-        )
-        return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", self._point_count)
 
 
 class PeriodicLocator(SurfaceLocator):
@@ -1901,67 +1689,12 @@ class PeriodicLocator(SurfaceLocator):
 
     _name, _destroy = "periodic", library.periodic_locator_destroy
 
-
-# ---- Weighted points
-
-
-class Weighted(Handle):
-    """Regular triangulations of weighted points."""
-
-    _destroy = library.weighted_destroy
-
-    def __init__(
-        self,
-        triangulator: Triangulator,
-        points: _Doubles,
-        weights: _Doubles,
-        given_offsets: Optional[_Offsets],
-    ) -> None:
-        super().__init__()
-        n, points, weights = len(points), _as_doubles(points), _as_doubles(weights)
-        offsets, sets = _as_offsets(given_offsets, n)
-        triangulator.call(
-            library.weighted_create,
-            *(triangulator.pointer, points, weights, n, offsets, sets, self.place),
+    def interpolate(self, values: _Doubles, queries: _Doubles, method: str = "linear") -> _Doubles:
+        """A row of values at each query. values: one for each point."""
+        table = Interpolation(values, method, np.nan)
+        results, queries = np.empty((len(queries), table.columns)), _as_doubles(queries)
+        self._call(
+            library.periodic_locator_interpolate,
+            *(table.address, queries, len(queries), table.options, results),
         )
-        self._sets = sets or 1
-
-    def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        n, triangles, corners, hidden = (
-            getattr(library, f"weighted_{what}_count")(self.pointer)
-            for what in ("point", "triangle", "hull_vertex", "hidden")
-        )
-        return _named_arrays(
-            *(self, "weighted"),
-            ("triangles", (triangles, 3), _INT32),
-            ("neighbors", (triangles, 3), _INT32),
-            ("hull", (corners,), _INT32),
-            ("hidden", (hidden,), _INT32),
-            ("representatives", (n,), _INT32),
-            ("triangle_offsets", (self._sets + 1,), _INT64),
-            ("hull_offsets", (self._sets + 1,), _INT64),
-        )
-
-    def hiding_triangles(self, triangulator: Triangulator, points: _Doubles) -> _Indices:
-        triangles = np.empty(library.weighted_hidden_count(self.pointer), np.int32)
-        triangulator.call(
-            library.weighted_hiding_triangles,
-            *(triangulator.pointer, self.pointer, _as_doubles(points), _address_of(triangles)),
-        )
-        return triangles
-
-    def verify(self, points: _Doubles, weights: _Doubles) -> None:
-        points, weights = _as_doubles(points), _as_doubles(weights)
-        check(library.weighted_verify(self.pointer, _address_of(points), _address_of(weights)))
-
-    def cells(
-        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles
-    ) -> dict[str, Any]:
-        result = _ClippedVoronoi()
-        corners = _as_doubles(corners)
-        triangulator.call(
-            library.weighted_cells,
-            *(triangulator.pointer, self.pointer, _as_doubles(points), _as_doubles(weights)),
-            *(corners, len(corners), result.place),
-        )
-        return _cells_of(result, _CLIPPED_VORONOI, "clipped_voronoi", len(points))
+        return results

@@ -383,7 +383,7 @@ class DynamicTriangulation:
             raise UsageError("the triangulation was made of points in host memory")
         call = DeviceCall(self._queue if queue is None else queue, wait_for)
         made, event = call.run(_calls.DeviceRows, self._handle)
-        places = made.arrays()
+        places = made.arrays(number=made.read("numbers"))
         views = {name: view(*place, call.queue, event) for name, place in places.items()}
         return DeviceRows(points=views.pop("coordinates"), **views, event=event)
 

@@ -69,6 +69,11 @@ class Handle:
         self.pointer = ctypes.c_void_p()
 
     @property
+    def _as_parameter_(self) -> ctypes.c_void_p:
+        """What functions of the library take for it."""
+        return self.pointer
+
+    @property
     def place(self) -> Any:
         """Where a function writes the new handle."""
         return ctypes.byref(self.pointer)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import names_of, summary
+from flaunay._arrays import summary
 from flaunay._cells import corners_of
 from flaunay._device_arrays import DeviceCall, Offsets, import_pyopencl, queue_for, view
 from flaunay._device_queries import DeviceLocator
@@ -176,9 +176,10 @@ class DeviceTriangulation:
         """
         corners = corners_of(bounds)
         work, what = _calls.DeviceClippedVoronoi, "a Voronoi diagram"
-        made, own, event = self._run(work, what, queue, wait_for, corners)
+        given = (np.ascontiguousarray(corners), len(corners))
+        made, own, event = self._run(work, what, queue, wait_for, *given)
         n = int(self.points.shape[0])
-        places = made.arrays(vertex=made.vertex_count, point=n, point_offset=n + 1)
+        places = made.arrays(point=n, point_offset=n + 1)
         views = {name: view(*place, own, event) for name, place in places.items()}
         return DeviceClippedVoronoi(**views, bounds=corners, event=event)
 
@@ -289,24 +290,15 @@ def triangulate_device(
     >>> locator.interpolate(values, queries, fill_value=-1)
     cl.Array([ 4.,  7., -1.])
     """
+    arguments = locals()
+    wanted = {"triangles", *(name for name in _calls.TRIANGULATION if arguments.get(name))}
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points = call.points(points, offsets, "points")
-    wanted = names_of(
-        triangles=True,
-        neighbors=neighbors,
-        halfedges=halfedges,
-        hull=hull,
-        representatives=representatives,
-        areas=areas,
-    )
     triangulator = _triangulators.of_queue(call.queue)
     result, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, wanted)
-    views = {
-        name: None if place is None else view(*place, call.queue, event)
-        for name, place in result.arrays().items()
-    }
+    views = {name: view(*place, call.queue, event) for name, place in result.computed().items()}
     return DeviceTriangulation(
-        **views,
+        **dict.fromkeys(_calls.TRIANGULATION) | views,
         points=points,
         triangle_offsets=result.triangle_offsets,
         hull_offsets=result.hull_offsets,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Optional
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Literal, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -18,9 +18,11 @@ from flaunay._arrays import (
     as_points,
     frozen,
     hint_for,
+    number_of,
     summary,
 )
 from flaunay._cells import ClippedVoronoi
+from flaunay._declarations import INTERPOLATION
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
@@ -176,8 +178,13 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         )
         return tree.nearest(queries, count, most)
 
-    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
-        """Values between points, by linear interpolation in triangles.
+    def interpolate(
+        self,
+        values: ArrayLike,
+        xi: ArrayLike,
+        method: Literal["linear", "nearest", "sibson", "laplace"] = "linear",
+    ) -> Doubles:
+        """Values between points.
 
         Parameters
         ----------
@@ -185,16 +192,22 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2)
             Any places of the plane.
+        method : {"linear", "nearest", "sibson", "laplace"}
+            Linear in triangles, the value of the nearest point, or between natural neighbors, as
+            `NaturalNeighborInterpolator`; these on a torus only.
 
         Returns
         -------
         ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
-            Continuous across the border, and at a point that point's value. NaN where `find_simplex` says -1.
+            Continuous across the border, unless of the nearest points, and at a point that point's value. NaN where
+            `find_simplex` says -1.
 
         Raises
         ------
         UsageError, InputError
-            As of `find_simplex`; UsageError for another number of values than of points, too.
+            As of `find_simplex`; UsageError for another number of values than of points, an unknown method, and
+            natural neighbors on a cylinder; InputError for natural neighbors of so few points that a circle without
+            points is wider than the shorter period.
 
         Examples
         --------
@@ -203,7 +216,9 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
         array([1. , 1.5])
         """
-        return self._interpolate(values, _as_queries(xi))
+        number_of(INTERPOLATION, method, "method")
+        ask = partial(self._locator.interpolate, method=method)
+        return self._interpolate(values, _as_queries(xi), ask)
 
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, float]:
@@ -389,11 +404,11 @@ def periodic_device(
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points, lengths = call.points(points, offsets, "points"), as_lengths(period)
     triangulator = _triangulators.of_queue(call.queue)
-    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, lengths)
+    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, *lengths)
     triangles = int(made.triangle_offsets[-1])
     places = made.arrays(point=int(points.shape[0]), triangle=triangles)
     views = {name: view(*place, call.queue, event) for name, place in places.items()}
-    across, up = made.period.tolist()
+    across, up = made.copied("period", 2).tolist()
     return DevicePeriodic(
         simplices=views.pop("triangles"),
         corner_offsets=views.pop("offsets").reshape(triangles, 3, 2),

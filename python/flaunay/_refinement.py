@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Optional, TypedDict
@@ -10,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay._arrays import as_count, as_floats, as_int32, as_integers, frozen
-from flaunay._declarations import EXCUSE, KEPT_EDGES
+from flaunay._declarations import EXCUSE, KEPT_EDGES, Refinement
 from flaunay._errors import UsageError
 
 Doubles = npt.NDArray[np.float64]
@@ -148,14 +149,13 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     wanted["kept"] = KEPT_EDGES[kept]
     wanted["conforming"] = int(bool(wanted.get("conforming", False)))
     wanted["mesh"] = _mesh(wanted)
-    for name in ("min_angle", "max_area", "min_edge"):
-        if name in wanted:
+    for name, kind, *_ in Refinement._fields_:
+        if name.startswith("has_"):
+            wanted[name] = int(name[len("has_") :] in wanted)
+        elif name in wanted and kind is ctypes.c_double:
             wanted[name] = _number(wanted[name], name)
-    for name in ("most_points", "most_rounds", "smoothing_steps"):
-        if name in wanted:
+        elif name in wanted and kind is ctypes.c_size_t:
             wanted[name] = as_count(wanted[name], name)
-    for name in ("min_edge", "most_points", "most_rounds"):
-        wanted[f"has_{name}"] = int(name in wanted)
     if "seed_areas" in wanted:
         wanted["seed_areas"] = _row(wanted["seed_areas"], "seed_areas", seeds, np.float64)
     if "kept_segments" in wanted:

@@ -256,7 +256,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
         array([1.5, 3. ])
         """
-        return self._interpolate(values, _as_points(xi, "xi"))
+        return self._interpolate(values, _as_points(xi, "xi"), self._locator.interpolate)
 
 
 def spherical(

@@ -148,12 +148,14 @@ class WithLocator(OfPoints, Generic[Locator]):
         found = found.reshape(shape)
         return (distances.reshape(shape), found) if return_distances else found
 
-    def _interpolate(self, values: ArrayLike, queries: Doubles) -> Doubles:
+    def _interpolate(
+        self, values: ArrayLike, queries: Doubles, ask: Callable[[Doubles, Doubles], Doubles]
+    ) -> Doubles:
         numbers = np.asarray(as_floats(values, "values"), np.float64)
         if numbers.ndim == 0 or len(numbers) != self.npoints:
             raise UsageError(
                 f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
             )
         rows = numbers.reshape(self.npoints, math.prod(numbers.shape[1:]))
-        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]))
+        found = ask(rows, queries.reshape(-1, queries.shape[-1]))
         return found.reshape(queries.shape[:-1] + numbers.shape[1:])

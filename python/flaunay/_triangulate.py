@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union, overload
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
+from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out
 from flaunay._calls import TRIANGULATION
 from flaunay._constrained import (
     ConstrainedTriangulation,
@@ -265,7 +265,8 @@ def triangulate(
     >>> flaunay.triangulate(frame, segments=rings, outside="holes")
     <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
     """
-    wanted = names_of(neighbors=neighbors, halfedges=halfedges, areas=areas)
+    arguments = locals()
+    wanted = {name for name in TRIANGULATION if arguments.get(name)}
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)
@@ -403,28 +404,12 @@ def refine(
     >>> len(finer.triangles) > 2 * len(mesh.triangles)
     True
     """
+    arguments = locals()
     own: dict[str, Any] = {"points": points}
     if isinstance(points, (ConstrainedTriangulation, Delaunay)):
         own = _given_mesh(points)
-    given: dict[str, Any] = {
-        "segments": segments,
-        "triangles": triangles,
-        "triangle_attributes": triangle_attributes,
-        **others,
-    }
+    given = {name: arguments[name] for name in ("segments", *Refining.__annotations__)} | others
     result: ConstrainedTriangulation = triangulate(
-        **own | {name: value for name, value in given.items() if value is not None},
-        triangle_areas=triangle_areas,
-        conforming=conforming,
-        min_angle=min_angle,
-        max_area=max_area,
-        seed_areas=seed_areas,
-        areas_at=areas_at,
-        keep_edges=keep_edges,
-        kept_segments=kept_segments,
-        min_edge=min_edge,
-        most_points=most_points,
-        most_rounds=most_rounds,
-        smoothing_steps=smoothing_steps,
+        **own | {name: value for name, value in given.items() if value is not None}
     )
     return result

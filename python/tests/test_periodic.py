@@ -150,3 +150,23 @@ def test_queries_of_no_points(make):
     for shape in (0,), (0, 2), (0, 2, 4):
         values = tri.interpolate(np.empty(shape), queries)
         assert values.shape == (3, *shape[1:]) and np.isnan(values).all()
+
+
+def test_natural_neighbors(random):
+    points, queries = random.uniform(0, PERIOD, (200, 2)), random.uniform(-9, 9, (50, 2))
+    tri = flaunay.periodic(points, PERIOD)
+    copies = (points + ((np.indices((5, 5)).reshape(2, 25).T - 2) * PERIOD)[:, None]).reshape(-1, 2)
+    values = random.uniform(size=(200, 3))
+    for method in "sibson", "laplace":
+        plane = flaunay.NaturalNeighborInterpolator(copies, np.tile(values, (25, 1)), method=method)
+        expected = plane(queries % PERIOD)
+        np.testing.assert_allclose(tri.interpolate(values, queries, method), expected, atol=1e-9)
+        np.testing.assert_array_equal(tri.interpolate(values, points, method), values)
+    np.testing.assert_array_equal(tri.interpolate(values, queries, "nearest"), values[tri.nearest(queries)])
+    with pytest.raises(flaunay.UsageError, match="cylinder"):
+        flaunay.periodic(points, (2, None)).interpolate(values, queries, "sibson")
+    with pytest.raises(flaunay.InputError, match="wider than the shorter period"):
+        flaunay.periodic(ONE, PERIOD).interpolate([1], queries, "laplace")
+    for method in "clough_tocher", "cubic", 1:
+        with pytest.raises(flaunay.UsageError, match="method|gradients"):
+            tri.interpolate(values, queries, method)

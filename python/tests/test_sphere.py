@@ -103,6 +103,16 @@ def test_copies_and_every_device_agree(random):
         tri.simplices[0] = 0
 
 
+def test_no_sets():
+    none = np.zeros((0, 2))
+    results = (
+        flaunay.spherical(none, offsets=[0]),
+        flaunay.periodic(none, (1, 1), offsets=[0]),
+        flaunay.weighted(none, none[:, 0], offsets=[0]),
+    )
+    assert [mesh.simplex_offsets.tolist() for mesh in results] == [[0]] * 3
+
+
 def test_errors_say_what_is_wrong():
     cases = [
         ([[0, 91]], flaunay.InputError, "point 0: the latitude 91"),

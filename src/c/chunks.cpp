@@ -173,9 +173,9 @@ std::unique_ptr<flaunay_chunk_report> rasterize(ValuedPoints& points, int duplic
              breaklines->segment_count};
   }
   auto lines = std::make_unique<flaunay_contours>();
-  auto report = std::make_unique<flaunay_chunk_report>(rasterize_chunks(
-      points, c::to_enum<Duplicates>(duplicates, FLAUNAY_DUPLICATES_MEAN, "flaunay_duplicates"),
-      c::to_grid(raster), c::to_options(raster), pixels, heights, lines->cpp, edges, to_options(options)));
+  auto report = std::make_unique<flaunay_chunk_report>(
+      rasterize_chunks(points, c::to_enum<flaunay_duplicates, Duplicates>(duplicates), c::to_grid(raster),
+                       c::to_options(raster), pixels, heights, lines->cpp, edges, to_options(options)));
   if (contours != nullptr) *contours = lines.release();
   return report;
 }
@@ -303,8 +303,5 @@ flaunay_status flaunay_rasterize_streams(const flaunay_point_source* points,
   });
 }
 
-void flaunay_chunk_report_destroy(flaunay_chunk_report* report) { delete report; }
-
-const flaunay_chunk_statistics* flaunay_chunk_report_statistics(const flaunay_chunk_report* report) {
-  return read(report, [](const auto& handle) { return &handle.view; });
-}
+FLAUNAY_DESTROY(chunk_report)
+FLAUNAY_ACCESSOR(const flaunay_chunk_statistics*, chunk_report, statistics, &handle.view)

@@ -1,7 +1,4 @@
 // The C interface to clipped Voronoi cells and to relaxation.
-#include <algorithm>
-#include <array>
-#include <memory>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
@@ -9,60 +6,30 @@
 
 using namespace flaunay;
 
-using c::create;
-using c::guarded;
-using c::read;
 using c::required;
 
-struct flaunay_device_clipped_voronoi {
-  DeviceClippedVoronoi cpp;
-};
-
-namespace {
-
-template <c::Is<DeviceClippedVoronoi> Result>
-auto& buffer_of(Result& cells, unsigned part) {
-#define BUFFER(type, name, ...) &DeviceClippedVoronoi::name,
-  static constexpr std::array kBuffers = {FLAUNAY_CLIPPED_VORONOI_ARRAYS(BUFFER)};
-#undef BUFFER
-  return c::buffer_of(cells, kBuffers, part, "clipped Voronoi cells");
-}
-
-}  // namespace
+FLAUNAY_DESTROY(clipped_voronoi)
+FLAUNAY_HANDLE(device_clipped_voronoi, DeviceClippedVoronoi)
 
 flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                     const flaunay_triangulation* triangulation, const double* corners,
                                     size_t corner_count, flaunay_clipped_voronoi** cells) {
-  return create(cells, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, cells, [&](Triangulator& cpp) {
     const Triangulation& primal = required(triangulation, "the triangulation").cpp;
-    return std::make_unique<flaunay_clipped_voronoi>(
-        flaunay_clipped_voronoi{cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count)});
+    return cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count);
   });
 }
 
-void flaunay_clipped_voronoi_destroy(flaunay_clipped_voronoi* cells) { delete cells; }
+FLAUNAY_ACCESSOR(size_t, clipped_voronoi, point_count, handle.cpp.areas.size())
+FLAUNAY_ACCESSOR(size_t, clipped_voronoi, vertex_count, handle.cpp.vertices.size() / 2)
+#define ARRAY(type, name, ...) \
+  FLAUNAY_ACCESSOR(const type*, clipped_voronoi, name, c::elements(handle.cpp.name))
+FLAUNAY_CLIPPED_VORONOI_ARRAYS(ARRAY)
+#undef ARRAY
 
-size_t flaunay_clipped_voronoi_point_count(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return handle.cpp.areas.size(); });
-}
-
-size_t flaunay_clipped_voronoi_vertex_count(const flaunay_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return handle.cpp.vertices.size() / 2; });
-}
-
-#define ACCESSOR(type, name, ...)                                                        \
-  const type* flaunay_clipped_voronoi_##name(const flaunay_clipped_voronoi* cells) {     \
-    return read(cells, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
-  }
-FLAUNAY_CLIPPED_VORONOI_ARRAYS(ACCESSOR)
-#undef ACCESSOR
-
-FLAUNAY_DEVICE_RESULT(clipped_voronoi, "the clipped cells")
-
-size_t flaunay_device_clipped_voronoi_vertex_count(const flaunay_device_clipped_voronoi* cells) {
-  return read(cells, [](const auto& handle) { return handle.cpp.vertex_count; });
-}
+FLAUNAY_DEVICE_RESULT(clipped_voronoi, flaunay_clipped_voronoi_part, FLAUNAY_CLIPPED_VORONOI_ARRAYS,
+                      "the clipped cells", "clipped Voronoi cells")
+FLAUNAY_ACCESSOR(size_t, device_clipped_voronoi, vertex_count, handle.cpp.vertex_count)
 
 flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
                                            const flaunay_device_points* points,
@@ -70,9 +37,7 @@ flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
                                            const double* corners, size_t corner_count,
                                            const flaunay_enqueue* enqueue,
                                            flaunay_device_clipped_voronoi* result) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     const DeviceTriangulation& primal = required(triangulation, "the triangulation").cpp;
     cpp.clipped_voronoi(c::to_points(points), primal, corners, corner_count,
                         required(result, "the result").cpp, queued);
@@ -81,8 +46,7 @@ flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* triangulator,
 
 flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                              const double* corners, size_t corner_count, size_t iterations, double* relaxed) {
-  return guarded([&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, [&](Triangulator& cpp) {
     check_points(coordinates, n);
     check_array(relaxed, n, "relaxed points");
     c::copy_to(relaxed, cpp.relax(coordinates, n, corners, corner_count, iterations), "relaxed points");
@@ -92,9 +56,7 @@ flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* c
 flaunay_status flaunay_relax_device(flaunay_triangulator* triangulator, const flaunay_device_points* points,
                                     const double* corners, size_t corner_count, size_t iterations,
                                     const flaunay_enqueue* enqueue, cl_mem* relaxed) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     DeviceBuffer buffer = c::to_buffer(required(relaxed, "the pointer to the buffer of relaxed points"));
     cpp.relax(c::to_points(points), corners, corner_count, iterations, buffer, queued);
     c::give(buffer, *relaxed);

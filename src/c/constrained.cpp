@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <memory>
 #include <numeric>
 
 #include "c/errors.hpp"
@@ -15,25 +13,12 @@
 
 using namespace flaunay;
 
-using c::create;
 using c::elements;
-using c::guarded;
-using c::read;
 using c::required;
 
-struct flaunay_device_constraints {
-  DeviceConstraintEdges cpp;
-};
+FLAUNAY_HANDLE(device_constraints, DeviceConstraintEdges)
 
 namespace {
-
-template <c::Is<DeviceConstraintEdges> Result>
-auto& buffer_of(Result& edges, unsigned part) {
-  static constexpr std::array kBuffers = {&DeviceConstraintEdges::constrained,
-                                          &DeviceConstraintEdges::piece_edges,
-                                          &DeviceConstraintEdges::constraint_edges};
-  return c::buffer_of(edges, kBuffers, part, "constraint edges");
-}
 
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   flaunay_constrained_arrays view{};
@@ -47,11 +32,6 @@ flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
   return view;
 }
 
-static_assert(FLAUNAY_CROSSINGS_SPLIT == static_cast<int>(Crossings::split));
-static_assert(FLAUNAY_OUTSIDE_HULL == static_cast<int>(Outside::hull) &&
-              FLAUNAY_OUTSIDE_HOLES == static_cast<int>(Outside::holes));
-static_assert(FLAUNAY_FILL_RULE_EVEN_ODD == static_cast<int>(FillRule::even_odd) &&
-              FLAUNAY_FILL_RULE_WINDING == static_cast<int>(FillRule::winding));
 flaunay_refinement_report view_of(const RefinementReport& report) {
   flaunay_refinement_report view{};
   view.rounds = report.rounds;
@@ -68,11 +48,7 @@ flaunay_refinement_report view_of(const RefinementReport& report) {
   return view;
 }
 
-static_assert(FLAUNAY_KEPT_EDGES_BORDER == static_cast<int>(KeptEdges::border) &&
-              FLAUNAY_KEPT_EDGES_ALL == static_cast<int>(KeptEdges::all));
-static_assert(FLAUNAY_EXCUSE_INPUT_ANGLE == static_cast<int>(Excuse::input_angle) &&
-              FLAUNAY_EXCUSE_MOST_ROUNDS == static_cast<int>(Excuse::most_rounds));
-static_assert(FLAUNAY_OVERLAPS_ERROR == static_cast<int>(Overlaps::error));
+static_assert(c::agree<flaunay_excuse, Excuse, 1>());
 
 // A value that counts if the caller says so. Others must be 0, so that none is forgotten.
 template <typename T>
@@ -103,7 +79,7 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
     c::check_reserved(*given.mesh, "flaunay_given_triangles");
     result.mesh = {given.mesh->triangles, given.mesh->count, given.mesh->areas, given.mesh->attributes};
   }
-  result.kept = c::to_enum<KeptEdges>(given.kept, FLAUNAY_KEPT_EDGES_ALL, "flaunay_kept_edges");
+  result.kept = c::to_enum<flaunay_kept_edges, KeptEdges>(given.kept);
   result.kept_segments = given.kept_segments;
   if (given.min_edge < 0) {
     throw Error(ErrorKind::usage,
@@ -127,25 +103,18 @@ Result to_common_options(const Given& given, const flaunay_options* options) {
   }
   Result result;
   static_cast<Options&>(result) = plain;
-  result.crossings = c::to_enum<Crossings>(given.crossings, FLAUNAY_CROSSINGS_SPLIT, "flaunay_crossings");
+  result.crossings = c::to_enum<flaunay_crossings, Crossings>(given.crossings);
   result.labels = given.labels != 0;
   result.refinement = to_refinement(given.refinement);
   return result;
 }
 
-Outside to_outside(int outside) {
-  return c::to_enum<Outside>(outside, FLAUNAY_OUTSIDE_HOLES, "flaunay_outside");
-}
-FillRule to_fill_rule(int rule) {
-  return c::to_enum<FillRule>(rule, FLAUNAY_FILL_RULE_WINDING, "flaunay_fill_rule");
-}
-
 PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_options* options) {
   auto result = to_common_options<PolygonOptions>(given, options);
-  if (given.has_outside != 0) result.outside = to_outside(given.outside);
-  if (given.has_fill_rule != 0) result.fill_rule = to_fill_rule(given.fill_rule);
+  if (given.has_outside != 0) result.outside = c::to_enum<flaunay_outside, Outside>(given.outside);
+  if (given.has_fill_rule != 0) result.fill_rule = c::to_enum<flaunay_fill_rule, FillRule>(given.fill_rule);
   result.map = given.map != 0;
-  result.overlaps = c::to_enum<Overlaps>(given.overlaps, FLAUNAY_OVERLAPS_ERROR, "flaunay_overlaps");
+  result.overlaps = c::to_enum<flaunay_overlaps, Overlaps>(given.overlaps);
   return result;
 }
 
@@ -217,8 +186,8 @@ Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
 
 ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options) {
   auto result = to_common_options<ConstrainedOptions>(given, options);
-  result.outside = to_outside(given.outside);
-  result.fill_rule = to_fill_rule(given.fill_rule);
+  result.outside = c::to_enum<flaunay_outside, Outside>(given.outside);
+  result.fill_rule = c::to_enum<flaunay_fill_rule, FillRule>(given.fill_rule);
   return result;
 }
 
@@ -246,42 +215,30 @@ flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulato
                                                size_t n, const size_t* offsets, size_t sets,
                                                const flaunay_constraints* constraints,
                                                const flaunay_options* options, flaunay_constrained** result) {
-  return create(result, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_constraints given = constraints != nullptr ? *constraints : flaunay_constraints{};
     c::check_reserved(given, "flaunay_constraints");
     const std::vector<std::size_t> sets_of_points = c::to_offsets(offsets, sets, n);
-    return std::make_unique<flaunay_constrained>(
-        cpp.constrained(coordinates, sets_of_points, c::to_constraints(given, c::set_count(sets_of_points)),
-                        c::to_constrained_options(given, options)));
+    return cpp.constrained(coordinates, sets_of_points,
+                           c::to_constraints(given, c::set_count(sets_of_points)),
+                           c::to_constrained_options(given, options));
   });
 }
 
 flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
                                             const flaunay_polygons* polygons, const flaunay_options* options,
                                             flaunay_constrained** result) {
-  return create(result, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_polygons& given = required(polygons, "the polygons");
     c::check_reserved(given, "flaunay_polygons");
-    return std::make_unique<flaunay_constrained>(
-        cpp.polygons(to_polygons(given), to_polygon_options(given, options)));
+    return cpp.polygons(to_polygons(given), to_polygon_options(given, options));
   });
 }
 
-void flaunay_constrained_destroy(flaunay_constrained* result) { delete result; }
-
-const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.mesh; });
-}
-
-const flaunay_constrained_arrays* flaunay_constrained_get_arrays(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.arrays; });
-}
-
-const flaunay_refinement_report* flaunay_constrained_refinement(const flaunay_constrained* result) {
-  return read(result, [](const auto& handle) { return &handle.refinement; });
-}
+FLAUNAY_DESTROY(constrained)
+FLAUNAY_ACCESSOR(const flaunay_mesh*, constrained, mesh, &handle.mesh)
+FLAUNAY_ACCESSOR(const flaunay_constrained_arrays*, constrained, get_arrays, &handle.arrays)
+FLAUNAY_ACCESSOR(const flaunay_refinement_report*, constrained, refinement, &handle.refinement)
 
 flaunay_status flaunay_mesh_verify_constrained(const flaunay_mesh* mesh,
                                                const flaunay_constrained_arrays* arrays,
@@ -310,20 +267,16 @@ flaunay_status flaunay_mesh_verify_polygons(const flaunay_mesh* mesh,
   });
 }
 
-FLAUNAY_DEVICE_RESULT(constraints, "the constraint edges")
-
-size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges) {
-  return read(edges, [](const auto& handle) { return handle.cpp.edge_count; });
-}
+FLAUNAY_DEVICE_RESULT(constraints, flaunay_constraint_part, FLAUNAY_CONSTRAINT_ARRAYS, "the constraint edges",
+                      "constraint edges")
+FLAUNAY_ACCESSOR(size_t, device_constraints, edge_count, handle.cpp.edge_count)
 
 flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, cl_mem segments,
                                                       size_t segment_count, const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* mesh,
                                                       flaunay_device_constraints* edges) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(mesh, "the mesh");
     DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
     // The view refers to statistics that the call replaces.

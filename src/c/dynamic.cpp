@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
@@ -44,18 +43,10 @@ struct flaunay_dynamic {
   flaunay_living_constraints constraints_view{};
 };
 
-struct flaunay_device_rows {
-  DeviceRows cpp;
-};
+FLAUNAY_DESTROY(dynamic)
+FLAUNAY_HANDLE(device_rows, DeviceRows)
 
 namespace {
-
-template <c::Is<DeviceRows> Result>
-auto& buffer_of(Result& rows, unsigned part) {
-  static constexpr std::array kBuffers = {&DeviceRows::triangles, &DeviceRows::neighbors,
-                                          &DeviceRows::coordinates};
-  return c::buffer_of(rows, kBuffers, part, "rows");
-}
 
 constexpr const char* kName = "the triangulation";
 
@@ -82,30 +73,23 @@ flaunay_status change(flaunay_dynamic* dynamic, const Work& work) {
 flaunay_status flaunay_dynamic_create(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                       const flaunay_constraints* constraints, const flaunay_options* options,
                                       flaunay_dynamic** dynamic) {
-  return create(dynamic, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, dynamic, [&](Triangulator& cpp) {
     if (constraints == nullptr) {
-      return std::make_unique<flaunay_dynamic>(
-          DynamicTriangulation(cpp, coordinates, n, to_plain_options(options)));
+      return DynamicTriangulation(cpp, coordinates, n, to_plain_options(options));
     }
     c::check_reserved(*constraints, "flaunay_constraints");
-    return std::make_unique<flaunay_dynamic>(
-        DynamicTriangulation(cpp, coordinates, n, c::to_constraints(*constraints, 1),
-                             c::to_constrained_options(*constraints, options)));
+    return DynamicTriangulation(cpp, coordinates, n, c::to_constraints(*constraints, 1),
+                                c::to_constrained_options(*constraints, options));
   });
 }
 
 flaunay_status flaunay_dynamic_create_device(flaunay_triangulator* triangulator,
                                              const flaunay_device_points* points,
                                              const flaunay_options* options, flaunay_dynamic** dynamic) {
-  return create(dynamic, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    return std::make_unique<flaunay_dynamic>(
-        DynamicTriangulation(cpp, c::to_points(points), to_plain_options(options)));
+  return c::make(triangulator, dynamic, [&](Triangulator& cpp) {
+    return DynamicTriangulation(cpp, c::to_points(points), to_plain_options(options));
   });
 }
-
-void flaunay_dynamic_destroy(flaunay_dynamic* dynamic) { delete dynamic; }
 
 flaunay_status flaunay_dynamic_insert(flaunay_dynamic* dynamic, const double* coordinates, size_t m) {
   return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.insert(coordinates, m); });
@@ -124,25 +108,11 @@ flaunay_status flaunay_dynamic_move(flaunay_dynamic* dynamic, const int32_t* poi
   return change(dynamic, [&](DynamicTriangulation& cpp) { return cpp.move(points, coordinates, m); });
 }
 
-const flaunay_changes* flaunay_dynamic_changes(const flaunay_dynamic* dynamic) {
-  return read(dynamic, [](const auto& handle) { return &handle.view; });
-}
-
-size_t flaunay_dynamic_numbers(const flaunay_dynamic* dynamic) {
-  return read(dynamic, [](const auto& handle) { return handle.cpp.numbers(); });
-}
-
-size_t flaunay_dynamic_point_count(const flaunay_dynamic* dynamic) {
-  return read(dynamic, [](const auto& handle) { return handle.cpp.point_count(); });
-}
-
-size_t flaunay_dynamic_triangle_count(const flaunay_dynamic* dynamic) {
-  return read(dynamic, [](const auto& handle) { return handle.cpp.triangle_count(); });
-}
-
-size_t flaunay_dynamic_row_count(const flaunay_dynamic* dynamic) {
-  return read(dynamic, [](const auto& handle) { return handle.cpp.row_count(); });
-}
+FLAUNAY_ACCESSOR(const flaunay_changes*, dynamic, changes, &handle.view)
+FLAUNAY_ACCESSOR(size_t, dynamic, numbers, handle.cpp.numbers())
+FLAUNAY_ACCESSOR(size_t, dynamic, point_count, handle.cpp.point_count())
+FLAUNAY_ACCESSOR(size_t, dynamic, triangle_count, handle.cpp.triangle_count())
+FLAUNAY_ACCESSOR(size_t, dynamic, row_count, handle.cpp.row_count())
 
 int flaunay_dynamic_has_point(const flaunay_dynamic* dynamic, size_t number) {
   return read(dynamic, [&](const auto& handle) { return static_cast<int>(handle.cpp.has_point(number)); });
@@ -178,15 +148,9 @@ const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* d
   return found;
 }
 
-FLAUNAY_DEVICE_RESULT(rows, "the rows")
-
-size_t flaunay_device_rows_row_count(const flaunay_device_rows* rows) {
-  return read(rows, [](const auto& handle) { return handle.cpp.row_count; });
-}
-
-size_t flaunay_device_rows_numbers(const flaunay_device_rows* rows) {
-  return read(rows, [](const auto& handle) { return handle.cpp.numbers; });
-}
+FLAUNAY_DEVICE_RESULT(rows, flaunay_rows_part, FLAUNAY_ROWS_ARRAYS, "the rows", "rows")
+FLAUNAY_ACCESSOR(size_t, device_rows, row_count, handle.cpp.row_count)
+FLAUNAY_ACCESSOR(size_t, device_rows, numbers, handle.cpp.numbers)
 
 flaunay_status flaunay_dynamic_rows_device(flaunay_dynamic* dynamic, const flaunay_enqueue* enqueue,
                                            flaunay_device_rows* rows) {

@@ -17,23 +17,8 @@ using research::Mode;
 
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ErrorKind::usage, message); }
 
-static_assert(FLAUNAY_MODE_BLOCKS == static_cast<int>(Mode::blocks) &&
-              FLAUNAY_MODE_DWYER == static_cast<int>(Mode::dwyer));
-static_assert(FLAUNAY_CUT_ALTERNATE == static_cast<int>(Cut::alternate));
-static_assert(FLAUNAY_HULL_QUICKHULL == static_cast<int>(Hull::quickhull) &&
-              FLAUNAY_HULL_BALANCED == static_cast<int>(Hull::balanced) &&
-              FLAUNAY_HULL_MONOTONE_CHAIN == static_cast<int>(Hull::monotone_chain));
-static_assert(FLAUNAY_FINISH_LEVELS == static_cast<int>(Finish::levels));
-static_assert(FLAUNAY_FLOAT32 == static_cast<int>(Precision::float32));
-static_assert(FLAUNAY_INTERPOLATION_NEAREST == static_cast<int>(Interpolation::nearest) &&
-              FLAUNAY_INTERPOLATION_CLOUGH_TOCHER == static_cast<int>(Interpolation::clough_tocher) &&
-              FLAUNAY_INTERPOLATION_SIBSON == static_cast<int>(Interpolation::sibson) &&
-              FLAUNAY_INTERPOLATION_LAPLACE == static_cast<int>(Interpolation::laplace));
-
 // Bit k of flaunay_part stands for the k-th array.
 constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
-static_assert(FLAUNAY_PART_TRIANGLES == bit_of(0) &&
-              FLAUNAY_PART_AREAS == bit_of(kTriangulationArrayCount - 1));
 
 void check_parts(unsigned parts) {
   constexpr unsigned kAll = bit_of(kTriangulationArrayCount) - 1;
@@ -107,8 +92,7 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
   InterpolationOptions result;
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_interpolation_options");
-  result.method =
-      to_enum<Interpolation>(options->method, FLAUNAY_INTERPOLATION_LAPLACE, "flaunay_interpolation");
+  result.method = to_enum<flaunay_interpolation, Interpolation>(options->method);
   if (options->columns != 0) result.columns = options->columns;
   if (options->has_fill != 0) result.fill = options->fill;
   result.gradients = options->gradients;
@@ -138,15 +122,11 @@ research::Options to_options(const flaunay_options* options) {
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_options");
   check_parts(options->parts);
-  result.mode = to_enum<Mode>(options->mode, FLAUNAY_MODE_DWYER, "flaunay_mode");
-  result.cut = to_enum<Cut>(options->cut, FLAUNAY_CUT_ALTERNATE, "flaunay_cut");
-  result.hull = to_enum<Hull>(options->hull, FLAUNAY_HULL_MONOTONE_CHAIN, "flaunay_hull");
-  result.finish = to_enum<Finish>(options->finish, FLAUNAY_FINISH_LEVELS, "flaunay_finish");
-  if (options->parts != 0) {
-    for_each_array([&](const auto& array, std::size_t k) {
-      if (array.option != nullptr) result.*array.option = (options->parts & bit_of(k)) != 0;
-    });
-  }
+  request(options->parts, result);
+  result.mode = to_enum<flaunay_mode, Mode>(options->mode);
+  result.cut = to_enum<flaunay_cut, Cut>(options->cut);
+  result.hull = to_enum<flaunay_hull, Hull>(options->hull);
+  result.finish = to_enum<flaunay_finish, Finish>(options->finish);
   result.profile = options->profile != 0;
   result.partition_levels = options->partition_levels;
   result.threads = options->threads;
@@ -157,6 +137,13 @@ research::Options to_options(const flaunay_options* options) {
     };
   }
   return result;
+}
+
+void request(unsigned parts, Options& options) {
+  if (parts == 0) return;
+  for_each_array([&](const auto& array, std::size_t k) {
+    if (array.option != nullptr) options.*array.option = (parts & bit_of(k)) != 0;
+  });
 }
 
 Parts to_parts(unsigned parts) {
@@ -183,9 +170,7 @@ std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets
   return result;
 }
 
-Precision to_precision(int precision) {
-  return to_enum<Precision>(precision, FLAUNAY_FLOAT32, "flaunay_precision");
-}
+Precision to_precision(int precision) { return to_enum<flaunay_precision, Precision>(precision); }
 
 void give(const DeviceBuffer& made, cl_mem& place) {
   if (place != nullptr || made.memory() == nullptr) return;

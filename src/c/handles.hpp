@@ -2,15 +2,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <type_traits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "c/enumerators.hpp"
 #include "c/errors.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
@@ -31,14 +33,6 @@ void check_reserved(const Struct& given, const char* name) {
                             "a later version",
                             name, version()));
   }
-}
-
-/// The enumerator of a number: C and C++ have the same numbers, from 0 to `last`. Throws Error(usage), which
-/// names the type of C.
-template <typename Enum>
-Enum to_enum(int value, int last, const char* name) {
-  check_enumerator(value, last, name);
-  return static_cast<Enum>(value);
 }
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
@@ -87,13 +81,11 @@ ConstrainedOptions to_constrained_options(const flaunay_constraints& given, cons
 /// Null: the defaults. Throws Error(usage) for an unknown method and for reserved members that are not 0.
 InterpolationOptions to_interpolation(const flaunay_interpolation_options* options);
 
+/// Asks for the arrays of these bits of flaunay_part, which are known. 0: the defaults.
+void request(unsigned parts, Options& options);
 /// Bits of flaunay_part. Throws Error(usage) for an unknown bit. 0: the defaults.
 Parts to_parts(unsigned parts);
 unsigned to_bits(const Parts& parts);
-
-/// A result of this type, or one that is not to be changed.
-template <typename T, typename Of>
-concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
 
 /// The buffer of one part, where bit k stands for the k-th of these members. Throws Error(usage), which names
 /// the result, for anything else.
@@ -105,21 +97,47 @@ auto& buffer_of(Result& result, const Buffers& buffers, unsigned part, const cha
   throw Error(ErrorKind::usage, fmt::format("{} is not one part of {}", part, name));
 }
 
-/// Defines flaunay_device_NAME_create, _destroy, _set_buffer and _buffer, in a file that has
-/// buffer_of(result, part). what: the result's name in messages.
-#define FLAUNAY_DEVICE_RESULT(name, what)                                                                  \
-  flaunay_status flaunay_device_##name##_create(flaunay_device_##name** result) {                          \
-    return flaunay::c::create(result, [] { return std::make_unique<flaunay_device_##name>(); });           \
-  }                                                                                                        \
-  void flaunay_device_##name##_destroy(flaunay_device_##name* result) { delete result; }                   \
-  flaunay_status flaunay_device_##name##_set_buffer(flaunay_device_##name* result, unsigned part,          \
-                                                    cl_mem memory) {                                       \
-    return flaunay::c::guarded(                                                                            \
-        [&] { buffer_of(flaunay::c::required(result, what).cpp, part) = flaunay::c::to_buffer(memory); }); \
-  }                                                                                                        \
-  cl_mem flaunay_device_##name##_buffer(const flaunay_device_##name* result, unsigned part) {              \
-    return flaunay::c::read(result,                                                                        \
-                            [&](const auto& handle) { return buffer_of(handle.cpp, part).memory(); });     \
+/// Defines flaunay_NAME_destroy.
+#define FLAUNAY_DESTROY(name) \
+  void flaunay_##name##_destroy(flaunay_##name* handle) { delete handle; }
+
+/// Defines a handle that holds a value of C++, and its flaunay_NAME_destroy.
+#define FLAUNAY_HANDLE(name, Value) \
+  struct flaunay_##name {           \
+    Value cpp;                      \
+  };                                \
+  FLAUNAY_DESTROY(name)
+
+/// Defines flaunay_NAME_MEMBER, which returns a value of what `handle` is.
+#define FLAUNAY_ACCESSOR(type, name, member, value)                                    \
+  type flaunay_##name##_##member(const flaunay_##name* result) {                       \
+    return flaunay::c::read(result, [](const auto& handle) -> type { return value; }); \
+  }
+
+#define FLAUNAY_BUFFER(type, name, ...) &Result::name,
+#define FLAUNAY_ARRAY_NAME(type, name, ...) #name,
+/// Defines flaunay_device_NAME_create, _set_buffer and _buffer, with the arrays of a table, for which the
+/// bits of Part stand. what, whole: the result's name in messages.
+#define FLAUNAY_DEVICE_RESULT(name, Part, ARRAYS, what, whole)                                        \
+  static auto& buffer_of_##name(auto& result, unsigned part) {                                        \
+    using Result = decltype(flaunay_device_##name::cpp);                                              \
+    static constexpr std::array kBuffers = {ARRAYS(FLAUNAY_BUFFER)};                                  \
+    static_assert(                                                                                    \
+        flaunay::c::are_parts<Part>(std::to_array<std::string_view>({ARRAYS(FLAUNAY_ARRAY_NAME)})));  \
+    return flaunay::c::buffer_of(result, kBuffers, part, whole);                                      \
+  }                                                                                                   \
+  flaunay_status flaunay_device_##name##_create(flaunay_device_##name** result) {                     \
+    return flaunay::c::create(result, [] { return std::make_unique<flaunay_device_##name>(); });      \
+  }                                                                                                   \
+  flaunay_status flaunay_device_##name##_set_buffer(flaunay_device_##name* result, unsigned part,     \
+                                                    cl_mem memory) {                                  \
+    return flaunay::c::guarded([&] {                                                                  \
+      buffer_of_##name(flaunay::c::required(result, what).cpp, part) = flaunay::c::to_buffer(memory); \
+    });                                                                                               \
+  }                                                                                                   \
+  cl_mem flaunay_device_##name##_buffer(const flaunay_device_##name* result, unsigned part) {         \
+    return flaunay::c::read(                                                                          \
+        result, [&](const auto& handle) { return buffer_of_##name(handle.cpp, part).memory(); });     \
   }
 
 /// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
@@ -203,3 +221,42 @@ struct flaunay_point_tree {
 struct flaunay_clipped_voronoi {
   flaunay::ClippedVoronoi cpp;
 };
+
+namespace flaunay::c {
+
+/// Calls work(triangulator).
+template <typename Work>
+flaunay_status with(flaunay_triangulator* triangulator, const Work& work) {
+  return guarded([&] { work(required(triangulator, "the triangulator").cpp); });
+}
+
+/// Calls work(triangulator, enqueue).
+template <typename Work>
+flaunay_status with(flaunay_triangulator* triangulator, const flaunay_enqueue* enqueue, const Work& work) {
+  return guarded([&] {
+    const Enqueue queued = to_enqueue(enqueue);
+    work(required(triangulator, "the triangulator").cpp, queued);
+  });
+}
+
+/// Makes a handle of what compute(triangulator) returns.
+template <typename Handle, typename Compute>
+flaunay_status make(flaunay_triangulator* triangulator, Handle** place, const Compute& compute) {
+  return create(place, [&] {
+    return std::unique_ptr<Handle>(new Handle{compute(required(triangulator, "the triangulator").cpp)});
+  });
+}
+
+/// Copies what answer(locator) returns for m queries to the caller's array.
+template <typename Handle, typename Value, typename Answer>
+flaunay_status answer(Handle* locator, const double* queries, std::size_t m, Value* place,
+                      const Answer& answer) {
+  return guarded([&] {
+    auto& cpp = required(locator, "the locator").cpp;
+    check_queries(queries, m);
+    check_array(place, m, "results");
+    copy_to(place, answer(cpp), "results");
+  });
+}
+
+}  // namespace flaunay::c

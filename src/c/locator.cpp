@@ -1,5 +1,4 @@
 // The C interface to locators and their queries.
-#include <algorithm>
 #include <memory>
 
 #include "c/errors.hpp"
@@ -12,16 +11,10 @@ using namespace flaunay;
 
 using c::create;
 using c::guarded;
-using c::read;
 using c::required;
 
-struct flaunay_locator {
-  Locator cpp;
-};
-
-struct flaunay_natural_weights {
-  NaturalWeights cpp;
-};
+FLAUNAY_HANDLE(locator, Locator)
+FLAUNAY_HANDLE(natural_weights, NaturalWeights)
 
 namespace {
 
@@ -67,11 +60,9 @@ flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_p
 flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
                                       const size_t* offsets, size_t sets,
                                       const flaunay_triangulation* triangulation, flaunay_locator** locator) {
-  return create(locator, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, locator, [&](Triangulator& cpp) {
     const Triangulation& searched = required(triangulation, "the triangulation").cpp;
-    return std::make_unique<flaunay_locator>(
-        flaunay_locator{Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched)});
+    return Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched);
   });
 }
 
@@ -79,14 +70,13 @@ flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangul
                                                   const double* coordinates, size_t n,
                                                   const flaunay_triangulation* triangulation,
                                                   const uint8_t* constrained, flaunay_locator** locator) {
-  return create(locator, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, locator, [&](Triangulator& cpp) {
     ConstrainedTriangulation searched;
     static_cast<Triangulation&>(searched) = required(triangulation, "the triangulation").cpp;
     const std::size_t corners = searched.triangles.size();
     check_array(constrained, corners, "marks of constrained edges");
     searched.constrained.assign(constrained, constrained + corners);
-    return std::make_unique<flaunay_locator>(flaunay_locator{Locator(cpp, coordinates, n, searched)});
+    return Locator(cpp, coordinates, n, searched);
   });
 }
 
@@ -102,8 +92,6 @@ flaunay_status flaunay_locator_create_device(flaunay_triangulator* triangulator,
         flaunay_locator{Locator(cpp, c::to_points(points), searched, queued)});
   });
 }
-
-void flaunay_locator_destroy(flaunay_locator* locator) { delete locator; }
 
 flaunay_status flaunay_locator_locate(flaunay_locator* locator, const double* queries, size_t m,
                                       const size_t* offsets, size_t sets, int32_t* triangles) {
@@ -186,32 +174,22 @@ flaunay_status flaunay_natural_weights_compute(flaunay_locator* locator, const d
                                                int method, flaunay_natural_weights** weights) {
   return create(weights, [&] {
     Locator& cpp = required(locator, "the locator").cpp;
-    const auto by = c::to_enum<Interpolation>(method, FLAUNAY_INTERPOLATION_LAPLACE, "flaunay_interpolation");
+    const auto by = c::to_enum<flaunay_interpolation, Interpolation>(method);
     return std::make_unique<flaunay_natural_weights>(
         flaunay_natural_weights{cpp.natural_weights(queries, m, by)});
   });
 }
 
-void flaunay_natural_weights_destroy(flaunay_natural_weights* weights) { delete weights; }
-
-#define ACCESSOR(type, name)                                                               \
-  const type* flaunay_natural_weights_##name(const flaunay_natural_weights* weights) {     \
-    return read(weights, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
-  }
-ACCESSOR(size_t, offsets)
-ACCESSOR(int32_t, points)
-ACCESSOR(double, weights)
-#undef ACCESSOR
+FLAUNAY_ACCESSOR(const size_t*, natural_weights, offsets, c::elements(handle.cpp.offsets))
+FLAUNAY_ACCESSOR(const int32_t*, natural_weights, points, c::elements(handle.cpp.points))
+FLAUNAY_ACCESSOR(const double*, natural_weights, weights, c::elements(handle.cpp.weights))
 
 flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator, const double* coordinates,
                                          size_t n, flaunay_point_tree** tree) {
-  return create(tree, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
-    return std::make_unique<flaunay_point_tree>(flaunay_point_tree{PointTree(cpp, coordinates, n)});
-  });
+  return c::make(triangulator, tree, [&](Triangulator& cpp) { return PointTree(cpp, coordinates, n); });
 }
 
-void flaunay_point_tree_destroy(flaunay_point_tree* tree) { delete tree; }
+FLAUNAY_DESTROY(point_tree)
 
 flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries, size_t m,
                                           size_t count, double max_distance, int32_t* points,

@@ -74,14 +74,14 @@ std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t 
 }
 
 void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh) {
-  const std::size_t corners = 3 * mesh.triangle_count;
   check_count(mesh.triangle_count, "triangles", kMostIndexed / 3);
-  triangulation.triangles = copied(mesh.triangles, corners, "triangles");
-  triangulation.neighbors = copied(mesh.neighbors, corners, "neighbors", true);
-  triangulation.halfedges = copied(mesh.halfedges, corners, "halfedges", true);
-  triangulation.hull = copied(mesh.hull, mesh.hull_count, "hull vertices");
-  triangulation.representatives = copied(mesh.representatives, mesh.point_count, "representatives");
-  triangulation.areas = copied(mesh.areas, mesh.triangle_count, "areas", true);
+  constexpr bool always = true, on_request = false;
+  const std::size_t triangle = mesh.triangle_count, halfedge = 3 * triangle, hull_vertex = mesh.hull_count,
+                    point = mesh.point_count;
+#define COPY(type, name, row, columns, asked, ...) \
+  triangulation.name = copied(mesh.name, columns * row, "values of " #name, !asked);
+  FLAUNAY_TRIANGULATION_ARRAYS(COPY)
+#undef COPY
   triangulation.triangle_offsets = copied_offsets(mesh.triangle_offsets, mesh.set_count, mesh.triangle_count);
   triangulation.hull_offsets = copied_offsets(mesh.hull_offsets, mesh.set_count, mesh.hull_count);
 }

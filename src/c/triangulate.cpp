@@ -1,5 +1,4 @@
 // The C interface to devices, triangulators and triangulations.
-#include <array>
 #include <memory>
 
 #include "c/errors.hpp"
@@ -21,16 +20,14 @@ template <typename Coordinate>
 flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate* coordinates, size_t n,
                            const size_t* offsets, size_t sets, const flaunay_options* options,
                            flaunay_triangulation** result) {
-  return create(result, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, result, [&](Triangulator& cpp) {
     const std::vector<std::size_t> all = c::to_offsets(offsets, sets, n);
     const research::Options wanted = c::to_options(options);
     // What is about the paper's modes has a call of its own, which refuses what does not go together.
     const bool is_plain =
         wanted.mode == research::Mode::blocks && wanted.hull != research::Hull::monotone_chain;
-    return std::make_unique<flaunay_triangulation>(
-        is_plain ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))
-                 : research::triangulate(cpp, coordinates, all, wanted));
+    return is_plain ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))
+                    : research::triangulate(cpp, coordinates, all, wanted);
   });
 }
 
@@ -44,14 +41,6 @@ const std::vector<flaunay_mode_info>& modes() {
     return all;
   }());
   return infos;
-}
-
-template <c::Is<DeviceTriangulation> Result>
-auto& buffer_of(Result& triangulation, unsigned part) {
-#define BUFFER(type, name, ...) &DeviceTriangulation::name,
-  static constexpr std::array kBuffers = {FLAUNAY_TRIANGULATION_ARRAYS(BUFFER)};
-#undef BUFFER
-  return c::buffer_of(triangulation, kBuffers, part, "a triangulation");
 }
 
 }  // namespace
@@ -76,11 +65,8 @@ flaunay_status flaunay_add_driver(const char* platform, const char* path) {
   });
 }
 
-void flaunay_device_list_destroy(flaunay_device_list* list) { delete list; }
-
-size_t flaunay_device_list_count(const flaunay_device_list* list) {
-  return read(list, [](const auto& handle) { return handle.views.size(); });
-}
+FLAUNAY_DESTROY(device_list)
+FLAUNAY_ACCESSOR(size_t, device_list, count, handle.views.size())
 
 const flaunay_device_info* flaunay_device_list_at(const flaunay_device_list* list, size_t k) {
   return read(list, [&](const auto& handle) { return k < handle.views.size() ? &handle.views[k] : nullptr; });
@@ -98,27 +84,12 @@ flaunay_status flaunay_triangulator_create_in_context(cl_context context, cl_dev
                 [&] { return std::make_unique<flaunay_triangulator>(Triangulator(context, device)); });
 }
 
-void flaunay_triangulator_destroy(flaunay_triangulator* triangulator) { delete triangulator; }
-
-const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return handle.device(); });
-}
-
-cl_context flaunay_triangulator_context(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return handle.cpp.context(); });
-}
-
-cl_device_id flaunay_triangulator_device_id(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return handle.cpp.device_id(); });
-}
-
-cl_command_queue flaunay_triangulator_queue(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return handle.cpp.queue(); });
-}
-
-size_t flaunay_triangulator_capacity(const flaunay_triangulator* triangulator) {
-  return read(triangulator, [](const auto& handle) { return handle.cpp.capacity(); });
-}
+FLAUNAY_DESTROY(triangulator)
+FLAUNAY_ACCESSOR(const flaunay_device_info*, triangulator, device, handle.device())
+FLAUNAY_ACCESSOR(cl_context, triangulator, context, handle.cpp.context())
+FLAUNAY_ACCESSOR(cl_device_id, triangulator, device_id, handle.cpp.device_id())
+FLAUNAY_ACCESSOR(cl_command_queue, triangulator, queue, handle.cpp.queue())
+FLAUNAY_ACCESSOR(size_t, triangulator, capacity, handle.cpp.capacity())
 
 flaunay_status flaunay_triangulator_workspace_bytes(const flaunay_triangulator* triangulator, size_t n,
                                                     size_t sets, size_t* bytes) {
@@ -161,52 +132,41 @@ flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, 
   });
 }
 
-void flaunay_triangulation_destroy(flaunay_triangulation* triangulation) { delete triangulation; }
-
-#define ACCESSOR(type, name)                                                         \
-  type flaunay_triangulation_##name(const flaunay_triangulation* triangulation) {    \
-    return read(triangulation, [](const auto& handle) { return handle.view.name; }); \
-  }
-#define ARRAY(type, name, ...) ACCESSOR(const type*, name)
-ACCESSOR(size_t, point_count)
-ACCESSOR(size_t, set_count)
-ACCESSOR(size_t, triangle_count)
-ACCESSOR(size_t, hull_count)
+FLAUNAY_DESTROY(triangulation)
+#define MEMBER(type, name) FLAUNAY_ACCESSOR(type, triangulation, name, handle.view.name)
+#define ARRAY(type, name, ...) MEMBER(const type*, name)
+MEMBER(size_t, point_count)
+MEMBER(size_t, set_count)
+MEMBER(size_t, triangle_count)
+MEMBER(size_t, hull_count)
 FLAUNAY_TRIANGULATION_ARRAYS(ARRAY)
-ACCESSOR(const size_t*, triangle_offsets)
-ACCESSOR(const size_t*, hull_offsets)
-ACCESSOR(const flaunay_statistics*, statistics)
+ARRAY(size_t, triangle_offsets)
+ARRAY(size_t, hull_offsets)
+ARRAY(flaunay_statistics, statistics)
 #undef ARRAY
-#undef ACCESSOR
+#undef MEMBER
+FLAUNAY_ACCESSOR(const flaunay_mesh*, triangulation, mesh, &handle.view)
 
-const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* triangulation) {
-  return read(triangulation, [](const auto& handle) { return &handle.view; });
-}
-
-FLAUNAY_DEVICE_RESULT(triangulation, "the triangulation")
-
-#define ACCESSOR(type, name, value)                                                             \
-  type flaunay_device_triangulation_##name(const flaunay_device_triangulation* triangulation) { \
-    return read(triangulation, [](const auto& handle) { return value; });                       \
-  }
-ACCESSOR(unsigned, parts, c::to_bits(handle.cpp.parts))
-ACCESSOR(size_t, point_count, handle.cpp.points)
-ACCESSOR(size_t, set_count, c::set_count(handle.cpp.point_offsets))
-ACCESSOR(size_t, triangle_count, c::total(handle.cpp.triangle_offsets))
-ACCESSOR(size_t, hull_count, c::total(handle.cpp.hull_offsets))
-ACCESSOR(const size_t*, point_offsets, c::elements(handle.cpp.point_offsets))
-ACCESSOR(const size_t*, triangle_offsets, c::elements(handle.cpp.triangle_offsets))
-ACCESSOR(const size_t*, hull_offsets, c::elements(handle.cpp.hull_offsets))
-ACCESSOR(const flaunay_statistics*, statistics, handle.statistics.get())
-#undef ACCESSOR
+FLAUNAY_DESTROY(device_triangulation)
+FLAUNAY_DEVICE_RESULT(triangulation, flaunay_part, FLAUNAY_TRIANGULATION_ARRAYS, "the triangulation",
+                      "a triangulation")
+#define MEMBER(type, name, value) FLAUNAY_ACCESSOR(type, device_triangulation, name, value)
+MEMBER(unsigned, parts, c::to_bits(handle.cpp.parts))
+MEMBER(size_t, point_count, handle.cpp.points)
+MEMBER(size_t, set_count, c::set_count(handle.cpp.point_offsets))
+MEMBER(size_t, triangle_count, c::total(handle.cpp.triangle_offsets))
+MEMBER(size_t, hull_count, c::total(handle.cpp.hull_offsets))
+MEMBER(const size_t*, point_offsets, c::elements(handle.cpp.point_offsets))
+MEMBER(const size_t*, triangle_offsets, c::elements(handle.cpp.triangle_offsets))
+MEMBER(const size_t*, hull_offsets, c::elements(handle.cpp.hull_offsets))
+MEMBER(const flaunay_statistics*, statistics, handle.statistics.get())
+#undef MEMBER
 
 flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                           const flaunay_device_points* points, unsigned parts,
                                           const flaunay_enqueue* enqueue,
                                           flaunay_device_triangulation* result) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(result, "the result");
     // The view refers to statistics that the call replaces.
     handle.statistics.clear();

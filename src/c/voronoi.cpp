@@ -1,6 +1,4 @@
 // The C interface to Voronoi diagrams.
-#include <array>
-#include <memory>
 
 #include "c/errors.hpp"
 #include "c/handles.hpp"
@@ -8,72 +6,36 @@
 
 using namespace flaunay;
 
-using c::create;
-using c::guarded;
-using c::read;
 using c::required;
 
-struct flaunay_voronoi {
-  Voronoi cpp;
-};
-
-struct flaunay_device_voronoi {
-  DeviceVoronoi cpp;
-};
-
-namespace {
-
-template <c::Is<DeviceVoronoi> Result>
-auto& buffer_of(Result& voronoi, unsigned part) {
-#define BUFFER(type, name, ...) &DeviceVoronoi::name,
-  static constexpr std::array kBuffers = {FLAUNAY_VORONOI_ARRAYS(BUFFER)};
-#undef BUFFER
-  return c::buffer_of(voronoi, kBuffers, part, "a Voronoi diagram");
-}
-
-}  // namespace
+FLAUNAY_HANDLE(voronoi, Voronoi)
+FLAUNAY_HANDLE(device_voronoi, DeviceVoronoi)
 
 flaunay_status flaunay_voronoi_compute(flaunay_triangulator* triangulator, const double* coordinates,
                                        size_t n, const flaunay_triangulation* triangulation,
                                        flaunay_voronoi** voronoi) {
-  return create(voronoi, [&] {
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::make(triangulator, voronoi, [&](Triangulator& cpp) {
     const Triangulation& primal = required(triangulation, "the triangulation").cpp;
-    return std::make_unique<flaunay_voronoi>(flaunay_voronoi{cpp.voronoi(coordinates, n, primal)});
+    return cpp.voronoi(coordinates, n, primal);
   });
 }
 
-void flaunay_voronoi_destroy(flaunay_voronoi* voronoi) { delete voronoi; }
+FLAUNAY_ACCESSOR(size_t, voronoi, point_count, handle.cpp.unbounded.size())
+FLAUNAY_ACCESSOR(size_t, voronoi, triangle_count, handle.cpp.circumcentres.size() / 2)
+FLAUNAY_ACCESSOR(size_t, voronoi, corner_count, handle.cpp.cells.size())
+#define ARRAY(type, name, ...) FLAUNAY_ACCESSOR(const type*, voronoi, name, c::elements(handle.cpp.name))
+FLAUNAY_VORONOI_ARRAYS(ARRAY)
+#undef ARRAY
 
-size_t flaunay_voronoi_point_count(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return handle.cpp.unbounded.size(); });
-}
-
-size_t flaunay_voronoi_triangle_count(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return handle.cpp.circumcentres.size() / 2; });
-}
-
-size_t flaunay_voronoi_corner_count(const flaunay_voronoi* voronoi) {
-  return read(voronoi, [](const auto& handle) { return handle.cpp.cells.size(); });
-}
-
-#define ACCESSOR(type, name, ...)                                                          \
-  const type* flaunay_voronoi_##name(const flaunay_voronoi* voronoi) {                     \
-    return read(voronoi, [](const auto& handle) { return c::elements(handle.cpp.name); }); \
-  }
-FLAUNAY_VORONOI_ARRAYS(ACCESSOR)
-#undef ACCESSOR
-
-FLAUNAY_DEVICE_RESULT(voronoi, "the Voronoi diagram")
+FLAUNAY_DEVICE_RESULT(voronoi, flaunay_voronoi_part, FLAUNAY_VORONOI_ARRAYS, "the Voronoi diagram",
+                      "a Voronoi diagram")
 
 flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* triangulator,
                                               const flaunay_device_points* points,
                                               const flaunay_device_triangulation* triangulation,
                                               const flaunay_enqueue* enqueue,
                                               flaunay_device_voronoi* result) {
-  return guarded([&] {
-    const Enqueue queued = c::to_enqueue(enqueue);
-    Triangulator& cpp = required(triangulator, "the triangulator").cpp;
+  return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     const DeviceTriangulation& primal = required(triangulation, "the triangulation").cpp;
     cpp.voronoi(c::to_points(points), primal, required(result, "the result").cpp, queued);
   });

@@ -22,17 +22,6 @@
 namespace flaunay::cli {
 namespace {
 
-const NamedChoices<Crossings> kCrossings = {{"error", Crossings::error}, {"split", Crossings::split}};
-const NamedChoices<Outside> kOutside = {
-    {"keep", Outside::keep}, {"hull", Outside::hull}, {"holes", Outside::holes}};
-const NamedChoices<FillRule> kFillRules = {
-    {"nesting", FillRule::nesting}, {"even-odd", FillRule::even_odd}, {"winding", FillRule::winding}};
-
-const NamedChoices<Overlaps> kOverlaps = {{"first", Overlaps::first}, {"error", Overlaps::error}};
-
-const NamedChoices<KeptEdges> kKeptEdges = {
-    {"none", KeptEdges::none}, {"border", KeptEdges::border}, {"all", KeptEdges::all}};
-
 // Those that ask for refinement, and those that say how.
 const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas", "--mesh-areas",
                                             "--conforming"};
@@ -249,9 +238,9 @@ ConstraintFacts facts_of(const io::Map& map, const ConstraintRequest& request,
   facts.edges = mesh.constraint_edges.size() / 2;
   facts.added_points = mesh.added_points.size() / 2;
   facts.holes = map.holes.size() / 2;
-  facts.crossings = name_of(kCrossings, request.crossings);
-  facts.outside = name_of(kOutside, request.outside);
-  facts.fill = name_of(kFillRules, request.fill);
+  facts.crossings = word_of(request.crossings);
+  facts.outside = word_of(request.outside);
+  facts.fill = word_of(request.fill);
   return facts;
 }
 
@@ -315,11 +304,11 @@ void add_domain_options(CLI::App* command, ConstraintRequest& request) {
   add_named_choice(command, "--outside", request.outside,
                    "Triangles: keep all, up to the hull; hull: without those outside; holes: nor those in "
                    "holes. Default: keep, for .poly hull, for polygons in GeoJSON holes",
-                   kOutside);
+                   all_of<Outside>());
   add_named_choice(command, "--fill", request.fill,
                    "How it is decided what is outside and what is a hole. Default: nesting, for polygons in "
                    "GeoJSON winding",
-                   kFillRules);
+                   all_of<FillRule>());
   command
       ->add_option("--hole", request.holes,
                    "A place in a hole, which is left out up to the constraints around it; can be repeated")
@@ -330,11 +319,13 @@ void add_domain_options(CLI::App* command, ConstraintRequest& request) {
 void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
   add_domain_options(command, request);
   add_named_choice(command, "--crossings", request.crossings,
-                   "Segments that cross: an error, or split where they do, which adds points", kCrossings)
+                   "Segments that cross: an error, or split where they do, which adds points",
+                   all_of<Crossings>())
       ->default_str("error");
   command->add_flag("--separate", request.separate, "GeoJSON: triangulate each polygon on its own");
   add_named_choice(command, "--overlaps", request.overlaps,
-                   "GeoJSON: what is in several polygons belongs to the first one, or is an error", kOverlaps)
+                   "GeoJSON: what is in several polygons belongs to the first one, or is an error",
+                   all_of<Overlaps>())
       ->default_str("first");
   Refinement& refinement = request.refinement;
   command
@@ -358,7 +349,7 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
            "With --mesh: the largest area within each of its triangles, in an .area file of Triangle");
   add_named_choice(command, "--keep-edges", refinement.kept,
                    "Which edges points must not be put on: none, those at the border, or all constraints",
-                   kKeptEdges)
+                   all_of<KeptEdges>())
       ->default_str("none");
   command
       ->add_option(

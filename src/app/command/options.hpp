@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "app/files/points.hpp"
 #include "flaunay/research.hpp"
+#include "geometry/enumerators.hpp"
 
 namespace flaunay::cli {
 
@@ -52,11 +52,14 @@ void refuse_all_but(const CLI::App& command, const std::vector<std::string>& own
 template <typename Choice>
 using NamedChoices = std::vector<std::pair<std::string, Choice>>;
 
-/// The name of a value that is among the choices.
-template <typename Choice>
-std::string name_of(const NamedChoices<Choice>& choices, Choice value) {
-  const auto is_it = [value](const auto& choice) { return choice.second == value; };
-  return std::find_if(choices.begin(), choices.end(), is_it)->first;
+/// All enumerators.
+template <typename Enum>
+NamedChoices<Enum> all_of() {
+  NamedChoices<Enum> choices;
+  for (int k = 0; k < end_of_enumerators<Enum>(); ++k) {
+    choices.emplace_back(word_of(static_cast<Enum>(k)), static_cast<Enum>(k));
+  }
+  return choices;
 }
 
 /// An option whose values are names.

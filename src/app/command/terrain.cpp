@@ -335,10 +335,8 @@ void add_terrain(CLI::App& app, Action& action) {
       ->check(CLI::Range(0, kMostClass));
   add_named_choice(command, "--returns", request->returns, "Of a scan, only these returns of each pulse",
                    NamedChoices<Returns>{{"first", Returns::first}, {"last", Returns::last}});
-  add_named_choice(
-      command, "--duplicates", request->duplicates, "The height of a place that was measured several times",
-      NamedChoices<Duplicates>{
-          {"highest", Duplicates::highest}, {"lowest", Duplicates::lowest}, {"mean", Duplicates::mean}})
+  add_named_choice(command, "--duplicates", request->duplicates,
+                   "The height of a place that was measured several times", all_of<Duplicates>())
       ->default_str("highest");
   add_path(command, "--breaklines", request->breaklines,
            "A map of lines that become edges of the triangulation, with heights or else those of the points "
@@ -356,7 +354,7 @@ void add_terrain(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   add_named_choice(command, "--crossings", request->crossings,
                    "Breaklines that cross: an error, or cut where they do, at the height of the first one",
-                   NamedChoices<Crossings>{{"error", Crossings::error}, {"split", Crossings::split}})
+                   all_of<Crossings>())
       ->default_str("error");
   add_columns(command, request->columns, "x, y and height");
   command->add_option("--crs", request->crs,

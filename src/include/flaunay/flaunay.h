@@ -1735,12 +1735,14 @@ FLAUNAY_API flaunay_status flaunay_periodic_locator_locate(flaunay_periodic_loca
 /// y, as they lie around the query's place. It is -1 if there are no points. points: room for m values.
 FLAUNAY_API flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_locator* locator,
                                                             const double* queries, size_t m, int32_t* points);
-/// Computes for each of m queries the linear interpolation of the values at the corners of its triangle.
-/// values: `columns` numbers per point; results: so many per query. At a point it is that point's value;
-/// where there is no triangle, NaN.
+/// Interpolates as flaunay_locator_interpolate_with does: values: options->columns numbers per point;
+/// results: as many per query. options: NULL for the defaults. Without triangles, results are options->fill.
+/// It is FLAUNAY_ERROR_USAGE for Clough-Tocher, and on a cylinder for natural neighbours; FLAUNAY_ERROR_INPUT
+/// for natural neighbours of so few points that a circle without points is wider than the shorter period.
 FLAUNAY_API flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator,
-                                                                const double* values, size_t columns,
-                                                                const double* queries, size_t m,
+                                                                const double* values, const double* queries,
+                                                                size_t m,
+                                                                const flaunay_interpolation_options* options,
                                                                 double* results);
 
 // ---- Weighted points

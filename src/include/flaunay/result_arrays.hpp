@@ -66,22 +66,49 @@
   X(double, areas, point, 1)                \
   X(double, centroids, point, 2)
 
-/// The arrays of flaunay::DeviceSphericalTriangulation, in the order of the bits of flaunay_spherical_part:
-/// as above.
+/// The arrays of triangulations on the sphere, in the order of the bits of flaunay_spherical_part: as above.
 #define FLAUNAY_SPHERICAL_ARRAYS(X)       \
   X(double, places, point, 2)             \
   X(std::int32_t, triangles, triangle, 3) \
   X(std::int32_t, neighbors, triangle, 3) \
   X(std::int32_t, representatives, point, 1)
 
-/// The arrays of flaunay::DevicePeriodicTriangulation, in the order of the bits of flaunay_periodic_part: as
-/// above.
+/// The arrays of flaunay::SphericalVoronoi: as above.
+#define FLAUNAY_SPHERICAL_VORONOI_ARRAYS(X)      \
+  X(double, centres, triangle, 3)                \
+  X(std::int32_t, cell_offsets, point_offset, 1) \
+  X(std::int32_t, cells, corner, 1)              \
+  X(double, areas, point, 1)
+
+/// The arrays of triangulations on a torus or a cylinder, in the order of the bits of flaunay_periodic_part:
+/// as above.
 #define FLAUNAY_PERIODIC_ARRAYS(X)        \
   X(double, places, point, 2)             \
   X(std::int32_t, triangles, triangle, 3) \
   X(std::int8_t, offsets, triangle, 6)    \
   X(std::int32_t, neighbors, triangle, 3) \
   X(std::int32_t, representatives, point, 1)
+
+/// The arrays of flaunay::WeightedTriangulation, besides offsets: as above.
+#define FLAUNAY_WEIGHTED_ARRAYS(X)           \
+  X(std::int32_t, triangles, triangle, 3)    \
+  X(std::int32_t, neighbors, triangle, 3)    \
+  X(std::int32_t, hull, hull_vertex, 1)      \
+  X(std::int32_t, representatives, point, 1) \
+  X(std::int32_t, hidden, hidden, 1)
+
+/// The arrays of flaunay::DeviceRows, in the order of the bits of flaunay_rows_part: as above.
+#define FLAUNAY_ROWS_ARRAYS(X)       \
+  X(std::int32_t, triangles, row, 3) \
+  X(std::int32_t, neighbors, row, 3) \
+  X(double, coordinates, number, 2)
+
+/// The arrays of flaunay::DeviceConstraintEdges, in the order of the bits of flaunay_constraint_part: as
+/// above.
+#define FLAUNAY_CONSTRAINT_ARRAYS(X)        \
+  X(std::uint8_t, constrained, triangle, 3) \
+  X(std::int32_t, piece_edges, segment, 2)  \
+  X(std::int32_t, constraint_edges, constraint, 2)
 
 namespace flaunay {
 
