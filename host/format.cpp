@@ -14,7 +14,7 @@ using Format = std::string (*)(fmt::string_view text, fmt::format_args values);
 extern const Format format;
 const Format format = &fmt::vformat;
 
-// What formatting into a buffer calls, as files that are written do.
+// Functions that formatting into a buffer calls, which is how files are written.
 using IsPrintable = bool (*)(std::uint32_t character);
 extern const IsPrintable is_printable;
 const IsPrintable is_printable = &fmt::detail::is_printable;

@@ -52,7 +52,7 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
       arena_(memory()) {
 }
 
-// Kernels may still use what is kept, and the memory of the arena.
+// Kernels may still use kept buffers and the memory of the arena.
 Runtime::~Runtime() { settle(); }
 
 MemorySource Runtime::memory() const {

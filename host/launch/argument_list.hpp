@@ -42,7 +42,7 @@ class ArgumentList {
   /// As native kernels take them.
   void* const* values() const { return values_; }
   std::size_t bytes(std::size_t k) const { return bytes_[k]; }
-  /// The array that argument k is; null if it is none.
+  /// The array passed as argument k; null if the argument is a value.
   cl_mem array(std::size_t k) const { return arrays_[k]; }
 
  private:

@@ -24,7 +24,7 @@ struct Launch {
   double seconds = 0;                 ///< 0 without profiling
 };
 
-/// Words of an array of counters, of which each launch of a kernel that counts has its own.
+/// The words of an array of counters that belong to one launch of a counting kernel.
 struct CountedWords {
   std::size_t length = 0;  ///< of the array; 0: kernels do not count
   std::size_t first = 0, count = 0;

@@ -35,7 +35,7 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-/// What arrays are made of.
+/// How arrays get their memory.
 enum class ArrayMemory {
   parts,     ///< parts of larger blocks
   separate,  ///< a buffer each of exactly its size, so that a simulator detects every access out of bounds;
@@ -68,8 +68,8 @@ inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory);
 /// arrays are buffers of their own, scopes only count them.
 class Arena {
  public:
-  /// pool: of another arena, which counts what is in it, for arrays that are buffers of their own; null: a
-  /// pool of its own.
+  /// pool: for arrays that are separate buffers, the pool of another arena, which counts its bytes; null: the
+  /// arena makes a pool.
   explicit Arena(MemorySource source, std::shared_ptr<BufferPool> pool = nullptr);
   ~Arena();
   Arena(const Arena&) = delete;

@@ -146,8 +146,8 @@ void LaunchCheck::launch(const KernelName& name, const ArgumentList& arguments, 
         std::mismatch(found.begin(), found.end(), expected.begin()).first - found.begin());
     if (at == found.size()) continue;
     const std::string argument = declaration(name, k, arguments.size());
-    // What scratch memory holds in the end means nothing. What several work-items change may depend on their
-    // order; of it later kernels make what does not.
+    // The final contents of scratch memory mean nothing. Memory that several work-items change may depend on
+    // their order; later kernels compute results from it that do not.
     if (argument.find(" scratch") != argument.npos || argument.find(" volatile ") != argument.npos) continue;
     kernel.difference =
         fmt::format("launch {}, {} work-items: {}, byte {} of {}: {} on the device, {} on the host",
