@@ -1,5 +1,5 @@
-// Rounds of blocks instead of merges up the trees: what is final is emitted, and the points around which
-// something is missing are brought to other blocks (kernels/blocks/rounds.cl).
+// Rounds of blocks instead of merges up the trees: final triangles are emitted, and points around which
+// triangles are missing are distributed to new blocks (kernels/blocks/rounds.cl).
 #pragma once
 
 #include <cstddef>

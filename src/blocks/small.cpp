@@ -35,7 +35,7 @@ struct Scratch {
   std::vector<cl_int> vertex_edge;
   std::vector<kernel::solved_block> solved;
   std::vector<cl_int> distinct;
-  // Of the largest block.
+  // The following have room for the largest block.
   std::vector<cl_double2> points;
   std::vector<cl_int> point_source;
   std::vector<cl_ulong> ranks;

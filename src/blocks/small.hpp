@@ -12,7 +12,7 @@
 namespace flaunay::blocks {
 
 /// Triangulates sets, each of which is one block; the results and the errors are those of run(). Writes all
-/// of `result` but times and the name of the device. coordinates: x0 y0 x1 y1 ...; offsets: those of
+/// of `result` but times and the name of the device. coordinates: x0 y0 x1 y1 ...; offsets: as in
 /// Triangulator::triangulate. Scratch memory of some 140 bytes per point is kept for the thread's next call.
 /// O(n log n).
 void run_small(const double* coordinates, const std::vector<std::size_t>& offsets, const Options& options,

@@ -45,11 +45,11 @@ void check_array(const void* array, std::uint64_t count, const char* name, std::
 void check_points(const void* coordinates, std::uint64_t count);
 /// check_array for queries. Kernels use 32-bit indices for their coordinates.
 void check_queries(const void* coordinates, std::uint64_t count);
-/// Checks a number of columns of arrays with so many rows. Returns how many numbers these have.
+/// Checks the numbers of columns and rows of an array. Returns how many entries the array has.
 std::size_t check_columns(std::size_t columns, std::size_t rows);
 
-/// Throws Error(usage) for a number that is no enumerator. They are numbered from 0 to `last`. type: the name
-/// of the enumeration.
+/// Throws Error(usage) for a number that is no enumerator. Enumerators are numbered from 0 to `last`. type:
+/// the name of the enumeration.
 void check_enumerator(int value, int last, const char* type);
 template <typename Enum>
 void check_enumerator(Enum value, Enum last, const char* type) {
@@ -68,7 +68,7 @@ inline bool are_indices(const std::vector<std::int32_t>& ids, std::size_t end, s
   });
 }
 
-/// Whether they cut an array of `size` elements into so many parts. O(parts).
+/// Whether the offsets cut an array of `size` elements into `parts` parts. O(parts).
 inline bool are_offsets(const std::vector<std::size_t>& offsets, std::size_t parts, std::size_t size) {
   return offsets.size() == parts + 1 && offsets.front() == 0 && offsets.back() == size &&
          std::is_sorted(offsets.begin(), offsets.end());
