@@ -11,7 +11,7 @@
 
 namespace flaunay {
 
-/// What a constrained triangulation is checked against.
+/// The input of a constrained triangulation, against which it is checked.
 struct VerifyConstraints {
   /// 2 indices of points per segment. Required.
   const std::vector<std::int32_t>* segments = nullptr;
@@ -38,16 +38,17 @@ struct VerifyConstraints {
 /// segment is an edge, or a chain of edges if points are on it; that every other edge is locally Delaunay;
 /// that triangles with a common circle that no constraint divides are a fan from their lexicographically
 /// smallest vertex; and that the triangles tile the convex hull without the faces between constraints that
-/// are to be left out, so every edge with one triangle is on the hull or a constraint. neighbors: null, or 3
+/// must be left out, so every edge with one triangle is on the hull or a constraint. neighbors: null, or 3
 /// per triangle. Segments that cross where no point is are an error, as are open curves if the fill rule
 /// needs closed ones, and holes that are on a constraint or outside of the hull. With a smallest angle or a
-/// largest area, no triangle may be worse than that, but those whose angle the input makes unavoidable: their
-/// smallest angle lies between two constraints, or their shortest edge, which is none, joins points on two,
-/// equally far from where these meet at less than 60 degrees with triangles all the way between; and no
-/// corner may see an edge of its triangle that is a constraint or on the border at 180 degrees less twice the
-/// smallest angle (or less 40) or more; in conforming meshes, at more than 90 degrees. Slivers between such
-/// edges and the hull need no triangle, because points on edges are rounded. O((n + s) log (n + s)) for n
-/// points and s segments, whatever overlaps and whatever meets at a point.
+/// largest area, no triangle may be worse than that, except triangles whose angle the input makes
+/// unavoidable: either their smallest angle lies between two constraints, or their shortest edge is no
+/// constraint and joins points on two constraints, equally far from where these meet at less than 60 degrees,
+/// with triangles all the way between. No corner may see an edge of its triangle that is a constraint or on
+/// the border at 180 degrees less twice the smallest angle (or less 40) or more; in conforming meshes, at
+/// more than 90 degrees. Slivers between such edges and the hull need no triangle, because points on edges
+/// are rounded. O((n + s) log (n + s)) for n points and s segments, whatever overlaps and whatever meets at a
+/// point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,
                                 const std::vector<std::int32_t>* neighbors,

@@ -1,8 +1,8 @@
 // Why the checks together are complete: triangles are counter-clockwise and joined at all edges but those of
 // a convex polygon, so they cover it once. By the power test, which has no ties, all edges are convex when
-// they are lifted; so the triangles are the lower hull of their corners, and none of these is hidden. All
-// other points are within triangles, and above them. Without weights, that is the canonical Delaunay
-// triangulation: the lower hull of points that all are on the paraboloid.
+// they are lifted; so the triangles are the lower hull of their corners, and no corner is hidden. All other
+// points are within triangles, and above them. Without weights, that is the canonical Delaunay triangulation:
+// the lower hull of points that all are on the paraboloid.
 #include "prove/planar_proof.hpp"
 
 #include <algorithm>

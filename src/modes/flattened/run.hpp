@@ -29,8 +29,8 @@ using SolveRegions = std::function<std::vector<std::int32_t>(const geometry::Poi
 
 /// How blocks of points are triangulated.
 struct BlockSolver {
-  /// Triangulates blocks, which are independent of each other: blocks.merges is empty. Of equal points the
-  /// first represents the others. Waits once.
+  /// Triangulates blocks, which are independent of each other: blocks.merges is empty. The first of several
+  /// equal points represents the others. Waits once.
   std::function<points::Rings(points::Workspace& work, const points::Blocks& blocks,
                               const host::Buffer<cl_int>& representatives)>
       solve;
@@ -45,7 +45,7 @@ struct BlockSolver {
 
 /// Solves what the levels leave.
 struct Solvers {
-  int partition_levels = 0;   ///< mode partition stops after so many levels
+  int partition_levels = 0;   ///< mode partition stops after this many levels
   SolveRegions regions = {};  ///< mode partition
   BlockSolver blocks = {};    ///< mode flattened with Finish::blocks
 };
