@@ -34,7 +34,8 @@ class CrossedTriangles {
 
   /// Moves the triangles of a chunk that lines cross here.
   void take_from(host::Runtime& runtime, ChunkSurface& surface);
-  /// What these cover, with lines as edges. constrain: triangulates points with constraints, with neighbours.
+  /// Triangulates the area of these triangles, with lines as edges. constrain: triangulates points with
+  /// constraints, with neighbours.
   ChunkSurface triangulated(
       const std::function<ConstrainedTriangulation(const std::vector<double>&, const Constraints&)>&
           constrain) const;
@@ -53,7 +54,7 @@ class CrossedTriangles {
   double low_ = 0, bands_by_ = 0;
   std::vector<std::vector<std::uint32_t>> bands_;
   geometry::Magnitudes magnitudes_;
-  // Of the triangles that were taken, three times x and y, and three values each.
+  // For each triangle taken, x and y and the value of each of its three corners.
   std::vector<double> coordinates_, values_;
 };
 

@@ -86,7 +86,7 @@ std::vector<std::int32_t> find_ranks(host::Threads& threads, const GivenPoints& 
   return found;
 }
 
-// What a rank sends in the first round, in the order of the ranks to which it goes.
+// The data that a rank sends in the first round, in the order of receiving ranks.
 struct Outgoing {
   std::vector<double2> points;
   std::vector<int> counts;

@@ -1,4 +1,5 @@
-// Rounds over ranks: each triangulates its points, keeps what is final, and hands on the rest to fewer ranks.
+// Rounds over ranks: each triangulates its points, keeps the final triangles, and hands on the other points
+// to fewer ranks.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace flaunay::mpi {
 
-/// What triangulates a rank's points.
+/// Triangulates a rank's points.
 struct Solver {
   std::string name;
   std::size_t capacity = 0;  ///< points that it can take at once
