@@ -1,4 +1,4 @@
-// What all subcommands share: how they register, and their options.
+// Registration and options that all subcommands share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -55,7 +55,7 @@ class Options {
     return *this;
   }
 
-  // What many subcommands have, with its default.
+  // Options of many subcommands, with their defaults.
   Options& runs(int count = 5) { return add("--runs", request_.runs = count, "counted runs of each"); }
   Options& sizes(const std::vector<std::size_t>& values,
                  const std::string& description = "numbers of points") {

@@ -27,10 +27,10 @@ struct LaunchesRequest : Request {
   double min_angle = 0;
 };
 
-// The share of the work that is done by the launches of which "work_items_of_most_work" is said.
+// "work_items_of_most_work" refers to the launches that do this share of the work.
 constexpr double kMostWork = 0.9;
 
-// Kernels whose steps are not those of merges: they walk along hulls.
+// Kernels that walk along hulls, so that their steps are not steps of merges.
 const std::set<std::string> kWalkHulls = {"mark_outside", "write_hulls"};
 // Kernels that merge the parts of blocks, not the blocks.
 const std::set<std::string> kSolveBlocks = {"solve_blocks", "merge_parts",  "finish_parts",

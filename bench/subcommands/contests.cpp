@@ -56,7 +56,7 @@ Implementations make_variants(std::deque<Triangulator>& triangulators, const Con
 }
 
 /// Where another mode becomes the fastest, between neighbouring sizes by power laws. Differences within noise
-/// are none.
+/// are ignored.
 void add_crossovers(Result& result, const Jobs& jobs) {
   constexpr double kNoise = 0.03;
   result.tables["crossovers"] = Json::array();

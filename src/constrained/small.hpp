@@ -12,7 +12,7 @@
 
 namespace flaunay::constrained {
 
-/// What is asked for of small sets.
+/// The options of a call for small sets.
 struct SmallRequest {
   DepthRules rules{};
   bool has_depths = false;  ///< whether regions have depths, by which they are left or not

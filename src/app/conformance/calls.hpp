@@ -13,7 +13,7 @@ namespace flaunay::conformance {
 
 struct Call {
   std::string name;
-  /// Makes the call on the triangulator's device, and adds its results. n: about so many points.
+  /// Makes the call on the triangulator's device, and adds its results. n: the approximate number of points.
   std::function<void(Triangulator& triangulator, std::size_t n, Arrays& results)> make;
 };
 

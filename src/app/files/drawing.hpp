@@ -40,7 +40,7 @@ class Drawing {
   const Position& position(std::int32_t point) const { return positions_[static_cast<std::size_t>(point)]; }
   bool contains(const Position& p) const { return p.x >= 0 && p.x <= width_ && p.y >= 0 && p.y <= height_; }
 
-  /// Paths have whole numbers, so many per pixel. To be set before the document begins.
+  /// Paths have integer coordinates: `units` per pixel. Call it before the document begins.
   void set_units(double units) { units_ = units; }
   std::int64_t unit(double pixels) const { return std::llround(pixels * units_); }
   /// Whether both are one position in paths.

@@ -1,4 +1,4 @@
-// The points of a file in pieces, of which only one is in memory.
+// The points of a file in pieces. Only one piece is in memory at a time.
 #pragma once
 
 #include <memory>

@@ -47,8 +47,8 @@ class Scan : public ValuedPoints {
        const Columns& columns = {}, std::string_view third = "height");
   ~Scan() override;
 
-  /// What the headers of .las files say, and for other files what is known. Low is above high if there is
-  /// nothing.
+  /// The box that headers of .las files announce, and points known from other files. Low is above high if
+  /// nothing is known.
   Box announced_box() const;
   /// The coordinate systems that files have, each once, with the first file that has it.
   struct System {
@@ -56,7 +56,7 @@ class Scan : public ValuedPoints {
   };
   std::vector<System> systems() const;
 
-  /// Reads all points once, to find which are chosen: before this, there are none to read. Returns the box
+  /// Reads all points once, to find which are chosen: before this, no points can be read. Returns the box
   /// around them. Throws Error(input) for numbers that are not finite. progress: called with the share that
   /// is done.
   Box survey(const std::function<void(double done)>& progress);

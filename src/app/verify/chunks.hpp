@@ -24,11 +24,11 @@ struct VerifySizes {
   int threads = 0;
 };
 
-/// The sizes for so many bytes. Throws Error(usage) if that is too little.
+/// The sizes for this much memory. Throws Error(usage) if it is too little.
 VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::uint64_t rows, int threads);
 
 struct VerifyChunksOptions {
-  std::string scratch;  ///< the folder for what does not fit; empty: TMPDIR, or /tmp
+  std::string scratch;  ///< the folder for data that does not fit memory; empty: TMPDIR, or /tmp
   /// If not empty, called from time to time, from one thread at a time: a stage, and its finished share.
   std::function<void(const std::string& stage, double done)> progress;
 };
@@ -60,7 +60,7 @@ struct VerifyChunksReport : VerifyReport {
 ///    sum of the triangles' oriented boundaries. So each point in general position is covered as often as the
 ///    polygon winds around it: once inside, never outside. The triangles tile a convex polygon.
 /// 2. The tiling has no two vertices at one place: the triangles around an inner vertex close, and so cover
-///    its surroundings once, with no room for those of another; those around a vertex of the boundary cover
+/// its surroundings once, with no room for another vertex's; triangles around a boundary vertex cover
 ///    the polygon's angle there, and the vertices of the polygon are at different places. For the same
 ///    reason no directed edge occurs twice, although a repeated one need not meet its double in a window; so
 ///    pairs are the right ones, and neighbours that agree with them are right.

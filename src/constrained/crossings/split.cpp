@@ -70,7 +70,7 @@ class SetSplitter {
     return is_one_edge;
   }
 
-  // Adds the pieces of a segment, two vertices each. What lies between the edges that others cross is one.
+  // Adds the pieces of a segment, two vertices each. Consecutive edges that no segment crosses are one piece.
   void list_pieces(std::size_t segment, Ids& ends) const {
     const std::int32_t p = piece_of_[segment];
     std::int32_t from = pieces_[p].from;
@@ -292,7 +292,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
       splitter.run(limits);
       result.is_snapped |= splitter.is_snapped();
 
-      // The index of each vertex; those of added ones are in lexicographic order.
+      // The index of each vertex; added vertices are numbered in lexicographic order.
       std::size_t next = offsets.back() + result.added_points.size() / 2;
       const std::size_t all = next + vertices.points.size() - vertices.given;
       if (all > kMostIndices) throw_too_many_points(all);

@@ -1,4 +1,4 @@
-// What a refinement is asked for, as the numbers that kernels decide by.
+// The bounds of a refinement, as numbers that kernels compare.
 #pragma once
 
 #include <cstddef>

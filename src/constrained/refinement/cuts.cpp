@@ -14,7 +14,7 @@ constexpr double kLowQuantile = 0.3, kHighQuantile = 0.7;
 // Places that are nearly the same have no leaf each.
 constexpr int kMostDepth = 60;
 
-// Many places are cut so often before threads share what is left.
+// At least kManyPlaces places are cut this many times before threads share the parts.
 constexpr std::size_t kManyPlaces = 4096;
 constexpr int kLevelsBefore = 4;
 

@@ -1,4 +1,4 @@
-// Meshes that are refined further: their borders as segments, and what is left of a triangulation with these.
+// Meshes that are refined further: their borders as segments, and the triangles inside of these.
 #pragma once
 
 #include <cstddef>
