@@ -33,14 +33,14 @@ static inline halved_blocks blocks_in(int places, GLOBAL const int* offsets, GLO
   return blocks;
 }
 
-// Part `number` of those of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
+// Part `number` of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
 typedef struct {
   int block, first, count, depth, number, begin;
 } block_part;
 
 static inline int edge_at(int place) { return EDGES_PER_VERTEX * place; }
 
-// Frees the edges of a place that has no vertex, in a list of those of all such places up to `end`.
+// Frees the edges of a place without a vertex, in one list with the edges of all such places up to `end`.
 static inline void free_place(rings* g, int place, int end) {
   g->vertex_edge[place] = NO_EDGE;
   for (int e = edge_at(place); e < edge_at(place + 1); e += 2) {

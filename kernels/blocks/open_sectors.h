@@ -20,8 +20,8 @@ INTEGER_CONSTANT(OPEN_GHOST, -3);  // the outside of this block's triangulation
 static inline int is_final(int state) { return state >= 0 || state == GHOST; }
 static inline int is_ghost(int state) { return state == GHOST || state == OPEN_GHOST; }
 
-// A direction from a vertex. What is asked of it is what lies beside it, counter-clockwise: a triangle, or the outside,
-// if this is the last edge in a vertex of the hull.
+// A direction from a vertex. The question is whether the face beside it, counter-clockwise, is open: a
+// triangle, or the outside if this is the last edge at a vertex of the hull.
 typedef struct {
   coordinate2 from, to;
   int vertex, is_last;

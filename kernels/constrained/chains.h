@@ -226,7 +226,7 @@ static inline int edge_after(const polygon* g, int twin, int before) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Random insertion by one work-item
 
-// As of a linear congruential generator (Knuth), whose low bits are bad.
+// Takes the high bits of a linear congruential generator (Knuth), since its low bits are bad.
 static inline int random_below(uint64* state, int end) {
   *state = *state * 6364136223846793005UL + 1442695040888963407UL;
   return (int)((*state >> 32) * (uint64)end >> 32);

@@ -1,5 +1,5 @@
-// What is outside and what is a hole of a triangulation with constraints: see FillRule and Outside in
-// flaunay/constrained.hpp, whose values these are.
+// Rules for the outside and the holes of a triangulation with constraints, with the values of FillRule and
+// Outside in flaunay/constrained.hpp.
 #ifndef FLAUNAY_FILL_RULES_H
 #define FLAUNAY_FILL_RULES_H
 

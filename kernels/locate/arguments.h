@@ -20,9 +20,9 @@
   global const int* restrict PREFIX##hull, global const int* restrict PREFIX##starts, \
   global const fan_part* restrict PREFIX##fans
 
-// The levels of a locator, of samples (locate/nearest_search.h): how many, and of how many sets; where the vertices
-// of sets begin; boxes around vertices; of a set with levels which of those it is; and the vertices below those of
-// samples.
+// The levels of a locator, which are samples (locate/nearest_search.h): their number, and the number of sets
+// that have them; where the vertices of sets begin; boxes around vertices; the number of each set among the
+// sets with levels; and the vertex below each vertex of a sample.
 #define LEVELS(PREFIX) \
   int PREFIX##levels, int PREFIX##sets_with_levels, global const int* restrict PREFIX##first_vertices, \
   global const vertex_box* restrict PREFIX##boxes, global const int* restrict PREFIX##long_sets, \

@@ -15,7 +15,7 @@ INTEGER_CONSTANT(LEAST_LOCAL_BYTES, 1 << 14);
 #ifndef LOCAL_BYTES
 #define LOCAL_BYTES DEFAULT_LOCAL_BYTES
 #endif
-// Sorted runs of samples are merged by so many.
+// Sorted runs of samples are merged MERGED_RUNS at a time.
 INTEGER_CONSTANT(MERGED_RUNS_BITS, 3);
 INTEGER_CONSTANT(MERGED_RUNS, 1 << MERGED_RUNS_BITS);
 

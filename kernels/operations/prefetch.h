@@ -4,7 +4,7 @@
 
 #include "arithmetic/language.h"
 
-// What suits CPUs, with 3 pairs of edges per point of a block: an edge rarely leads farther.
+// The distance that suits CPUs, with 3 pairs of edges per point of a block: an edge rarely leads farther.
 #define CPU_FETCH_AHEAD 6144
 
 // How many elements ahead of its use; 0 for devices that hide waiting otherwise, where fetch() does nothing.

@@ -62,8 +62,8 @@ static inline int circle_filtered(coordinate2 a, coordinate2 b, coordinate2 c, c
   return filtered_sign(det.x, det.y, bound);
 }
 
-// The angle under which a point sees the edge from a to b: its cotangent is the dot product over the cross product, of
-// which this is the pair. Magnitudes bound their errors.
+// The angle under which a point sees the edge from a to b. Its cotangent is the dot product over the cross
+// product; `products` is the pair of both. Magnitudes bound their errors.
 typedef struct {
   real_pair products, magnitudes;
 } angle;
@@ -134,9 +134,9 @@ static inline int comes_before(coordinate2 p, coordinate2 q) { return (p.x < q.x
 // triangulation so defined is unique, and makes of each polygon of cocircular points a fan from its first vertex: the
 // canonical form.
 //
-// With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane
-// through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above
-// it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
+// With a the first of the triangle's vertices: if d comes before it, d is lowered, and lies below the plane
+// through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now
+// above it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
 static inline int canonical_tie(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d, filter_bound bound) {
   while (comes_before(b, a) || comes_before(c, a)) {
     const coordinate2 first = a;

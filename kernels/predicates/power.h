@@ -123,7 +123,7 @@ OUT_OF_LINE static inline int power_exact(weighted_point a, weighted_point b, we
   return expansion_sign(&sum);
 }
 
-// What is not lowered by weights or by the first perturbation is as it is without weights.
+// Power tests that filters cannot decide: exactly, then by the first perturbation, then as without weights.
 OUT_OF_LINE static inline int power_undecided(weighted_point a, weighted_point b, weighted_point c, weighted_point d,
                                               filter_bounds bounds) {
   const int sign = power_exact(a, b, c, d);

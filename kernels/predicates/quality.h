@@ -69,10 +69,10 @@ static inline int cosine_sign(double2 a, double2 b, double2 c, double2 d, double
 // A sine is the cosine to the other vector turned by a right angle.
 static inline double2 turned_right(double2 p) { return VECTOR(double2, p.y, -p.x); }
 
-// Of a counter-clockwise triangle whose sides have the squared lengths u, v and w, and two of them this cross product:
-// whether its smallest angle's squared sine is below this one, or UNDECIDED. All sines have the same numerator, the
-// cross product; the smallest has the largest denominator, that of the two longest sides. The bound has room for what
-// the difference is rounded by.
+// Whether the squared sine of a triangle's smallest angle is below this one, or UNDECIDED. The triangle is
+// counter-clockwise, its sides have the squared lengths u, v and w, and two of them this cross product. All
+// sines have the same numerator, the cross product; the smallest has the largest denominator, the product of
+// the two longest sides. The bound includes the rounding of the difference.
 static inline int sine_of_sides_filtered(double cross, double u, double v, double w, double squared_sine) {
   const double longer = u > v ? u : v, shorter = u < v ? u : v, lengths = longer * (shorter > w ? shorter : w);
   const double excess = cross * fabs(cross) - squared_sine * lengths;

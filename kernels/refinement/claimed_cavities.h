@@ -1,5 +1,5 @@
-// Points claim their cavities, and those that hold all rows list what is around. The claim of a row is an atomic
-// minimum.
+// Points claim the rows of their cavities; points that hold all of theirs list the rows and the sides. The
+// claim of a row is an atomic minimum.
 #ifndef FLAUNAY_CLAIMED_CAVITIES_H
 #define FLAUNAY_CLAIMED_CAVITIES_H
 
@@ -26,7 +26,7 @@ static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 
   return sides;
 }
 
-// What was found of a cavity so far.
+// The part of a cavity that was found so far.
 typedef struct {
   int rows, sides, holds;
 } gathered;
