@@ -46,8 +46,8 @@ bool is_map(const std::string& path);
 
 /// Reads a map from path, by its ending (any case):
 ///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
-/// vertices, the ones of the .node file beside it .geojson .json GeoJSON (RFC 7946): any object; the third
-/// coordinate is a height, those after it are
+///                    vertices, the vertices of the .node file beside it
+///   .geojson .json   GeoJSON (RFC 7946): any object; the third coordinate is a height, later ones are
 ///                    ignored, and rings that are not closed are read as closed
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.

@@ -60,7 +60,7 @@ struct VerifyChunksReport : VerifyReport {
 ///    sum of the triangles' oriented boundaries. So each point in general position is covered as often as the
 ///    polygon winds around it: once inside, never outside. The triangles tile a convex polygon.
 /// 2. The tiling has no two vertices at one place: the triangles around an inner vertex close, and so cover
-/// its surroundings once, with no room for another vertex's; triangles around a boundary vertex cover
+///    its surroundings once, with no room for another vertex's; triangles around a boundary vertex cover
 ///    the polygon's angle there, and the vertices of the polygon are at different places. For the same
 ///    reason no directed edge occurs twice, although a repeated one need not meet its double in a window; so
 ///    pairs are the right ones, and neighbours that agree with them are right.
