@@ -1,6 +1,5 @@
 // How a block's vertices are cut in halves, down to leaves of one to four vertices: into 2^depth parts of equal size,
-// but for one vertex. Parts are counted from 0 in each depth, and their numbers plus 2^depth are nodes of a
-// heap.
+// but for one vertex. Parts are counted from 0 in each depth; plus 2^depth, the numbers form a heap.
 #ifndef FLAUNAY_HALVING_H
 #define FLAUNAY_HALVING_H
 

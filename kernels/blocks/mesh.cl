@@ -89,7 +89,7 @@ static inline void write_triangle(int e, int right, int with_corners, global con
 // Pairs of edges that are tested before the triangles found among them are written.
 #define PAIRS_AT_ONCE 64
 
-// What will be needed is fetched in the order of memory: edges lead anywhere within a block.
+// Edges and points are fetched ahead in the order of memory: edges lead anywhere within a block.
 #define PAIRS_A_CACHE_LINE 2
 #define POINTS_A_CACHE_LINE 4
 static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const coordinate2* points) {

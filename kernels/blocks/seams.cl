@@ -45,8 +45,8 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
 
 SCAN_IN_GROUP(sum_before, uint)
 
-// What a work-group knows of its merge. removed_up and removed_down: by pair of edges, of either walk. slots: the pairs
-// that crossing edges may have, from the merge's first pair on.
+// The data of a work-group for its merge. removed_up and removed_down: by pair of edges, of either walk. slots:
+// the pairs that crossing edges may have, from the merge's first pair on.
 typedef struct {
   whole_seam seam;
   global ring_edge* edges;
@@ -133,7 +133,7 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
   for (int k = me; k < s.seam.down.crossings; k += lanes) {
     if (walks_meet(&s.seam, k, edges)) meets = k;
   }
-  // Neighbours look at neighbouring pairs. What an item has found of its first pairs, it need not look up again.
+  // Neighbours look at neighbouring pairs. An item need not look up again its results for its first pairs.
   const int first = PAIRS_PER_VERTEX * begin, last = PAIRS_PER_VERTEX * end;
   uint own = 0, found = 0, all;
   for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
@@ -146,7 +146,7 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
     if (k < FOUND_BITS ? found >> k & 1 : may_be_sewn(&s, pair)) s.slots[slot++] = pair;
   }
   const int count = s.seam.up.crossings + meets;
-  // A walk that has stopped has not listed all that it should.
+  // A walk that has stopped has an incomplete list.
   const int is_whole = s.seam.up.outcome != WALK_HAS_STOPPED && s.seam.down.outcome != WALK_HAS_STOPPED;
   const int is_sewn = is_merge && is_whole && meets >= 0 && count <= (int)all;
   for (int v = begin + me; is_sewn && v < end; v += lanes) replace_vertex_edge(&s, v);

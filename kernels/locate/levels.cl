@@ -23,8 +23,9 @@ static inline int pick(int i, int level, int ratio) {
   return (int)((x ^ (x >> 16)) % (uint)ratio);
 }
 
-// n entries: those of set s of level l begin at offsets[l * sets + s]. Set s has the vertices from first_vertices[s]
-// on. below: the entry's vertex if that is on level 0, otherwise its entry on the level below.
+// n entries: set s has the entries from offsets[l * sets + s] on at level l. Set s has the vertices from
+// first_vertices[s] on. below: the entry's vertex if that is on level 0, otherwise its entry on the level
+// below.
 kernel void draw_entries(int n, int levels, int sets, int ratio, global const int* restrict offsets,
                          global const int* restrict first_vertices, global const coordinate2* restrict points,
                          global coordinate2* restrict coordinates, global int* restrict below) {
@@ -124,7 +125,7 @@ kernel void box_vertices(int n, int vertices, global const coordinate2* restrict
   }
 }
 
-// n boxes, from `first` on, around those of the level below, from first_below on.
+// n boxes, from `first` on, around the boxes of the level below, from first_below on.
 kernel void box_boxes(int n, int first, int first_below, global vertex_box* boxes) {
   const int i = get_global_id(0);
   if (i < n) {

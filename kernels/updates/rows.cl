@@ -72,7 +72,7 @@ kernel void clear_rows(int n, int first, global mesh_row* restrict rows) {
   }
 }
 
-// n elements, of which those less than 0 are no rows.
+// n elements; negative ones are no rows.
 kernel void flag_touched(int n, global const int* restrict touched, global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) flags[i] = touched[i] >= 0;
