@@ -13,8 +13,8 @@
 // - clip_slots, over the slots: which part of any other Voronoi edge is inside of the polygon.
 // - join_centres, over the points: makes the centres of cocircular triangles the same to the last bit.
 // - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to
-//   each slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over the
-//   slots: the corners.
+//   each slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over
+//   the slots: the corners.
 // - measure_clipped, over the points: areas and centroids. move_to_centroids: the latter in the place of points.
 //
 // The polygon has its corners counter-clockwise, and none on the line through its neighbours. All decisions are
