@@ -90,7 +90,7 @@ class Backend {
   virtual void forget_programs() {}
   /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.
   virtual void launch(Kernel&, std::size_t /*work_items*/, std::size_t /*group*/) {}
-  /// After the next wait, host memory that was wrapped has what kernels have written.
+  /// After the next wait, wrapped host memory has the data that kernels have written.
   virtual void hand_over(cl_mem, std::size_t) {}
   /// See the functions of these names in Runtime.
   virtual void wait_for(const std::vector<cl_event>&) {}

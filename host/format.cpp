@@ -1,6 +1,6 @@
 // fmt::vformat, which fmt::format calls, compiled once for the whole library. The other files include the
 // declarations of fmt only; with all of fmt in each of them, the library takes almost twice as long to
-// compile. If a file uses more of fmt than fmt::format, what it needs must be added here.
+// compile. If a file uses more of fmt than fmt::format, the function must be added here.
 #include <fmt/format.h>
 
 #include <cstdint>

@@ -29,7 +29,7 @@ namespace flaunay::host {
 /// objects hold their arguments.
 class Runtime {
  public:
-  /// settings: what kernels are compiled for and launched with.
+  /// settings: for compiling and launching kernels.
   Runtime(const boost::compute::device& device, Settings settings);
   /// Uses the given context, which the device must belong to.
   Runtime(const boost::compute::context& context, const boost::compute::device& device, Settings settings);
@@ -246,8 +246,8 @@ class Runtime {
     }
     return arena_.allocate<T>(values.size());
   }
-  /// Enqueues the transfer from a buffer that output() has made: after the next wait, `values` has what
-  /// kernels have written until now.
+  /// Enqueues the transfer from a buffer that output() has made: after the next wait, `values` has the data
+  /// that kernels have written until now.
   template <typename T>
   void fetch_later(const Buffer<T>& from, std::vector<T>& values) {
     if (values.empty()) return;
@@ -308,8 +308,8 @@ class Runtime {
     Runtime& runtime_;
   };
 
-  /// Records later launches. words: what each launch counts, in a build of the kernels that is slower; not
-  /// while they count otherwise (set_counters), and not natively.
+  /// Records later launches. words: the counters of each launch, in a slower build of the kernels; not while
+  /// they count otherwise (set_counters), and not natively.
   void record_launches(const CountedWords& words = {});
   void stop_recording();
   /// The launches since the last reset, empty if they are not recorded. Waits, which is not counted.

@@ -24,7 +24,7 @@ struct VertexIndex {
   std::int32_t value = std::numeric_limits<std::int32_t>::max();
 };
 
-/// Infinite faces keep -1: what lies beyond the hull.
+/// Infinite faces keep -1, the outside of the hull.
 struct FaceIndex {
   std::int32_t index = -1;
 };
@@ -45,7 +45,7 @@ using Hierarchy =
 using Point = Kernel::Point_2;
 using IndexedPoint = std::pair<Point, std::int32_t>;
 
-/// Points [first, last) of x0 y0 x1 y1 ... with their indices, in place of what was there.
+/// Points [first, last) of x0 y0 x1 y1 ... with their indices, replacing the contents of `points`.
 void copy_points(const std::vector<double>& coordinates, std::size_t first, std::size_t last,
                  std::vector<IndexedPoint>& points) {
   points.clear();

@@ -28,7 +28,7 @@ struct BuiltPeer {
   explicit BuiltPeer(const Peer& peer) { all_peers().push_back(peer); }
 };
 
-// ---- CGAL's answers to what flaunay's Locator answers
+// ---- CGAL's answers to the queries of flaunay's Locator
 
 /// Where CGAL's walk to a query begins.
 enum class Start {

@@ -1,5 +1,4 @@
-// flaunay-bench device: what a device takes for launches, waits, loads and arithmetic, for predictions of
-// times.
+// flaunay-bench device: times of a device for launches, waits, loads and arithmetic, for predictions.
 #include "host/opencl/device.hpp"
 
 #include <fmt/format.h>

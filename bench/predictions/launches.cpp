@@ -1,4 +1,4 @@
-// flaunay-bench launches: what a call launches, how many work-items that are, and their longest chains of
+// flaunay-bench launches: the launches of a call, their numbers of work-items, and their longest chains of
 // steps.
 #include <fmt/format.h>
 
@@ -120,7 +120,7 @@ Launches refine(host::Runtime& runtime, const Input& input, double min_angle, Js
   const constrained::MeshToRefine mesh = mesh_of(input);
   Refinement wanted;
   wanted.min_angle = min_angle;
-  constrained::refine(runtime, mesh, wanted);  // compiles what it needs
+  constrained::refine(runtime, mesh, wanted);  // compiles the kernels
   runtime.set_profiling(true);
   runtime.record_launches();
   runtime.reset_accounts();

@@ -1,4 +1,4 @@
-// flaunay-bench derived: what is computed from a triangulation, compared with triangulating: Voronoi cells,
+// flaunay-bench derived: computing from a triangulation, compared with triangulating: Voronoi cells,
 // relaxation, rasters, contours, and interpolation, with natural neighbours compared with CGAL.
 #include <fmt/format.h>
 

@@ -71,7 +71,7 @@ research::Triangulation call_on_host(const Input& input, const research::Options
 
 // ---- Quantities of a run
 
-/// Over what precedes the first cut and all levels, by component.
+/// Sums over the work before the first cut and all levels, by component.
 research::Work::Components totals(const research::Work& work) {
   research::Work::Components sums = work.start;
   for (const research::Work::Components& level : work.levels) {
@@ -192,7 +192,7 @@ struct Inputs {
   }
 };
 
-/// Medians, level by level: what was done before the level, and the regions that are cut at it.
+/// Medians, level by level: the work before the level, and the regions that are cut at it.
 Json levels_row(const Inputs& inputs, std::size_t method) {
   std::size_t most = 0;
   for (const Runs& runs : inputs.instances) most = std::max(most, runs[method].work.levels.size());

@@ -1,4 +1,4 @@
-// The arguments of a launch, as a list: what OpenCL sets one by one, and what native kernels take.
+// The list of a launch's arguments, which OpenCL sets one by one and native kernels take as an array.
 #pragma once
 
 #include <cassert>

@@ -10,7 +10,7 @@
 
 namespace flaunay {
 
-/// All sizes, including those of the user of Runtime, who defines this struct.
+/// All sizes, including sizes of the user of Runtime, who defines this struct.
 struct Tuning;
 
 namespace host {
@@ -21,7 +21,7 @@ struct Capabilities {
   bool fixed_point = false;
   /// Kernels compute the errors of products without fma, which is not exact.
   bool split_products = false;
-  /// Kernels read by atomic operations what other work-groups may change meanwhile.
+  /// Kernels use atomic operations to read data that other work-groups may change meanwhile.
   bool atomic_reads = false;
   /// The device ends loops after some ten thousand turns of a work-item.
   bool loops_end_early = false;
@@ -67,7 +67,7 @@ struct Sizes {
   Sizes(const Sizes&) = default;
   Sizes& operator=(const Sizes&) = default;
 
-  /// The tuning values of which these sizes are a part.
+  /// The tuning values that include these sizes.
   virtual const Tuning& tuning() const = 0;
   /// Returns a copy of all tuning values.
   virtual std::shared_ptr<Sizes> copy() const = 0;
@@ -90,8 +90,8 @@ struct DeviceLimits {
 };
 DeviceLimits limits_of(const boost::compute::device& device);
 
-/// Reduces group sizes, the sort's bits per pass, and what tiles take, to what the limits allow. A single
-/// kernel may support only smaller groups; Runtime reduces those when it launches the kernel.
+/// Reduces group sizes, the sort's bits per pass and the sizes of tiles to the limits. A single kernel may
+/// support only smaller groups; Runtime reduces those when it launches the kernel.
 void fit(Sizes& sizes, const DeviceLimits& limits);
 
 }  // namespace host

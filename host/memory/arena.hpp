@@ -62,8 +62,8 @@ MemorySource native_memory();
 inline cl_mem handle_of(void* address) { return reinterpret_cast<cl_mem>(address); }
 inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory); }
 
-/// A stack allocator: scopes release what was allocated last. Work that is enqueued on an in-order queue may
-/// go on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
+/// A stack allocator: scopes release the last allocations. Work that is enqueued on an in-order queue may go
+/// on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
 /// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them. Where
 /// arrays are buffers of their own, scopes only count them.
 class Arena {

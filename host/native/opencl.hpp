@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "host/native/function.hpp"
-// Kernels do not count what they do, see operations/counters.h.
+// Kernels do not count operations, see operations/counters.h.
 #define FLAUNAY_NATIVE_KERNELS
 #include "arithmetic/language.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// In a build without OpenCL, such functions always throw, and the compiler leaves out what follows a call.
+// In a build without OpenCL, such functions always throw, and the compiler leaves out the code after a call.
 #ifdef FLAUNAY_WITHOUT_OPENCL
 #define NEEDS_OPENCL [[noreturn]]
 #else

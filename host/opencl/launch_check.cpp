@@ -29,8 +29,8 @@ Bytes read(Backend& backend, cl_mem array) {
 // Walks begin elsewhere where points are fetched ahead, and so do not end at the same step.
 const char* const kOfManyResults[] = {"find_triangles"};
 
-// The constants that decide what kernels leave in their arrays. A device's kernels are compiled with other
-// values than native ones, which have the defaults of their files.
+// The constants that determine the contents of arrays after a kernel. A device's kernels are compiled with
+// other values than native ones, which have the defaults of their files.
 const char* const kDecidingConstants[] = {"SORT_BITS", "SORT_GROUP", "SMALL_REGION"};
 
 // The largest groups whose launches must leave the same bytes as native ones, whose groups have one

@@ -6,7 +6,7 @@
 
 namespace flaunay::host {
 
-/// Adds the platforms of a driver, a shared library, to those of the system from now on, unless the system
+/// Adds the platforms of a driver, a shared library, to the system's platforms from now on, unless the system
 /// has a platform of that name. The driver is loaded when platforms are listed; if loading fails, it adds no
 /// platforms.
 #ifdef FLAUNAY_WITHOUT_OPENCL

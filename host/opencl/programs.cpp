@@ -110,7 +110,7 @@ const boost::compute::program* Programs::make(const std::string& file, const std
   return &programs_.emplace(std::pair(file, options), std::move(program)).first->second;
 }
 
-// Makes a program of what binary_of returned; null if the driver does not accept it.
+// Makes a program from the result of binary_of; null if the driver does not accept it.
 boost::compute::program Programs::made_of(const std::string& binary, const std::string& options) const {
   const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
   const std::size_t size = binary.size();

@@ -63,7 +63,7 @@ inline std::size_t read_at(int file, std::uint64_t place, std::size_t bytes, voi
   });
 }
 
-/// Returns when what was written is on the disk.
+/// Returns when the written data is on the disk.
 bool write_to_disk(int file);
 /// As write_to_disk for the files that were written in a folder and closed, where systems can do that.
 bool write_folder_to_disk(const std::string& folder);

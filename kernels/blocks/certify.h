@@ -59,7 +59,7 @@ static inline int circle_through(coordinate2 a, coordinate2 b, coordinate2 c, ci
   return 1;
 }
 
-// The least distance to the interval from x, as seen from the origin, less what errors can make of it.
+// The least distance from x, relative to the origin, to the interval, minus the largest possible error.
 static inline real gap_to(real x, coordinate origin, coordinate low, coordinate high, real error) {
   const real to_low = difference(low, origin), to_high = difference(high, origin);
   const real below = to_low - x, above = x - to_high;

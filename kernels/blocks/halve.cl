@@ -152,7 +152,7 @@ WITH_BARRIERS void rank(int count, const block_arrays* s) {
   barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
-// A part that is cut, and what of it comes low: vertices whose place along the axis is below a threshold.
+// A part that is cut. Its vertices whose place along the axis is below the threshold go low.
 typedef struct {
   int number, begin, middle, end, axis;
   ranks threshold;

@@ -62,7 +62,7 @@ static inline int owns(coordinate2 v, int right, int to, int next, global const 
 
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
 // vertex'. The row starts with the smallest index. With corners, each of its edges gets the place of the corner
-// opposite of it. Other work-items do so meanwhile: what they write is not read here.
+// opposite of it. Other work-items do so meanwhile; their writes are not read here.
 static inline void write_triangle(int e, int right, int with_corners, global const coordinate2* points,
                                   global const int* source, global ring_edge* edges, global const uint* first_rows,
                                   global int* triangles) {

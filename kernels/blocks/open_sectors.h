@@ -43,8 +43,8 @@ static inline int where_met(const direction* d, int side) {
   return side < 0 ? MET_CLOCKWISE : side > 0 ? MET_LATE : d->is_last ? MET_OPPOSITE_OF_LAST : MET_OPPOSITE;
 }
 
-// 1 if what lies counter-clockwise beside a direction is open, 0 if not, UNDECIDED, but not if `exactly`. edges: the
-// open edges of the vertex, [begin, end); points: of all vertices.
+// 1 if the face counter-clockwise beside a direction is open, 0 if not, UNDECIDED, but not if `exactly`. edges:
+// the open edges of the vertex, [begin, end); points: of all vertices.
 static inline int begins_open(const direction* d, GLOBAL const open_edge* edges, int begin, int end,
                               GLOBAL const coordinate2* points, filter_bound bound, int exactly) {
   int open = 1, met = MET_LATE + 1;

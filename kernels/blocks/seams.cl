@@ -2,8 +2,8 @@
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
 // cross the seam and mark those that go. Walks that stopped are continued by finish_walks of blocks/merge_exact.cl; in
 // fixed point none stops, since exact predicates of integers take few registers and no stack to speak of. A launch of
-// sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
-// in the rings. Each is one pass over what begins in the cells of that height (blocks/halves.h).
+// sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place in
+// the rings. Each is one pass over the parts that begin in the cells of that height (blocks/halves.h).
 //
 // Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
 // kernels, and the account tells the host.

@@ -151,8 +151,8 @@ static inline void push_twin(const polygon* g, int twin, int* top) {
 }
 
 // Inserts a vertex between two that follow each other: removes the triangles that it takes away, as far as it is
-// connected to them, and fills the hole with triangles at it. If owners are given, it takes away those that are the
-// key's.
+// connected to them, and fills the hole with triangles at it. If owners are given, it removes the triangles
+// that belong to the key.
 static inline void insert_vertex(const polygon* g, int before, int vertex, int after, GLOBAL const uint* owners,
                                  uint key) {
   int top = NO_TWIN, unused = NO_TWIN, h = 3 * own_triangle(vertex), beside = side_from(before);

@@ -276,7 +276,7 @@ kernel void join_sequences(int regions_count, global const int2* restrict before
   }
 }
 
-// A region's points in the order of u, and what their hull is decided by.
+// A region's points in the order of u. hull_frame: the data by which their hull is decided.
 typedef struct {
   global int* ids;
   global double2* projections;
@@ -333,7 +333,8 @@ static inline int chain_of(hull_frame* frame, sequence s, int begin, int end COU
   return size;
 }
 
-// The first of the hull [right, right_end) that the tangent from the point touches last: what follows is above it.
+// The first element of the hull [right, right_end) that the tangent from the point touches last: later ones are
+// above it.
 static inline int tangent_from(hull_frame* frame, sequence s, int id, double2 p, int right, int right_end COUNTERS) {
   int low = right, high = right_end - 1;
   while (low < high) {

@@ -88,8 +88,8 @@ static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, fi
   return turn == UNDECIDED ? UNDECIDED : turn > 0;
 }
 
-// The code of a corner on the path, or CODE_UNDECIDED; then what was counted in v goes, and the exact evaluation
-// counts.
+// The code of a corner on the path, or CODE_UNDECIDED; then the counts in v are dropped, and the exact
+// evaluation counts.
 static inline int code_on_path(path_vertex* v, int before_id, double2 before, int after_id, double2 after,
                                filter_bound bound, int exact) {
   const int a = edge_of(v, after_id, after, bound, exact);

@@ -1,5 +1,5 @@
-// A small region without internal points, triangulated by one work-item. EXACT: 1 to decide what floating point cannot,
-// 0 to give up there.
+// A small region without internal points, triangulated by one work-item. EXACT: 1 to decide exactly where
+// floating point cannot, 0 to give up there.
 #ifndef FLAUNAY_REGION_TRIANGLES_H
 #define FLAUNAY_REGION_TRIANGLES_H
 

@@ -29,8 +29,8 @@
 // How many edges ahead of its use memory is fetched that is read by vertex.
 #define EDGES_AHEAD 192
 
-// Fetches what a walk around a vertex begins with: of vertex v, and at twice the distance its first triangle. last: the
-// last vertex.
+// Fetches the data with which a walk around a vertex begins: of vertex v, and at twice the distance its first
+// triangle. last: the last vertex.
 #define VERTICES_AHEAD 24
 FETCHING void fetch_star(int v, int last, global const double2* points, global const face* faces,
                          global const int* first_triangle) {
@@ -75,7 +75,7 @@ kernel void count_edges(int n, int kept, global const int* restrict vertices, gl
 }
 
 // inverse[3v]: xx, xy and yy of the inverse of the block. Where all edges are on one line but for rounding, it is the
-// inverse on that line, 0 across it: no number says what the slope across is.
+// inverse on that line, 0 across it: no value determines the slope across it.
 static inline void invert_block(double xx, double xy, double yy, global double* inverse) {
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > 0x1p-46 * (trace * trace)) {
@@ -189,8 +189,8 @@ kernel void improve_gradients(int n, int columns, EDGES(), int is_second, double
   }
 }
 
-// scales: what a slope in the units of `points` is multiplied by for the caller's units, by set. results: n rows of
-// `columns` gradients by point, NaN throughout.
+// scales: by set, the factors that bring slopes in the units of `points` to the caller's units. results: n rows
+// of `columns` gradients by point, NaN throughout.
 kernel void take_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
                            global const scaling* restrict scales, global const int* restrict source,
                            global const double2* restrict gradients, global double* restrict results) {

@@ -170,8 +170,8 @@ typedef struct {
 #define LEAST_WEIGHTS 0x1p-700
 #define MOST_SLENDER 0x1p30
 
-// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were. unit: a power of
-// two that brings weights, but not errors, to about 1, so that products with values do not underflow.
+// A query's sums: of the weights, and of the bounds of their errors. steps: the number of terms. unit: a power
+// of two that brings weights, but not errors, to about 1, so that products with values do not underflow.
 typedef struct {
   double weights, errors, unit;
   int steps, is_sound;
@@ -546,7 +546,7 @@ static inline int set_of_query(int place, int sets, global const int* query_offs
   return sets > 1 ? segment_of(place, sets, query_offsets) : 0;
 }
 
-// How many queries ahead of its use a triangle is fetched; what it leads to is fetched half as far ahead.
+// How many queries ahead of its use a triangle is fetched; its corners and neighbours half as far ahead.
 #define QUERIES_AHEAD 16
 
 static inline void fetch_query(int i, int n, global const int* found, global const face* faces,

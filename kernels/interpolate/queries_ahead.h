@@ -1,4 +1,4 @@
-// Fetching into a CPU's cache what later queries need: for a query the face, the corners and their values are one
+// Fetching data of later queries into a CPU's cache: for a query the face, the corners and their values are one
 // behind the other, and each may be anywhere.
 #ifndef FLAUNAY_QUERIES_AHEAD_H
 #define FLAUNAY_QUERIES_AHEAD_H

@@ -12,7 +12,7 @@
   global const query_frame* restrict PREFIX##frames, global const int* restrict PREFIX##order, \
   global const coordinate2* restrict PREFIX##placed
 
-// A triangulation in which nearest vertices are searched, with what levels need.
+// A triangulation in which nearest vertices are searched, with the arrays that levels need.
 #define SEARCHED_MESH(PREFIX) \
   global const mesh_set* restrict PREFIX##records, global const coordinate2* restrict PREFIX##points, \
   global const int* restrict PREFIX##source, global const int* restrict PREFIX##clearances, \

@@ -1,4 +1,4 @@
-// Makes what the search for nearest vertices through levels needs: locate/nearest_search.h has the search.
+// Makes the data for the search for nearest vertices through levels: locate/nearest_search.h has the search.
 //
 // 1. draw_entries, with one work-item per entry of all levels' samples, draws a vertex of each group of the level
 //    below. In fixed point give_coordinates (fixed_point.cl) makes doubles of them. The host triangulates the samples

@@ -6,7 +6,7 @@
 
 BEGIN_SHARED
 
-// The largest work-group that takes a tile of elements, what local memory has room for.
+// The largest work-group that takes a tile of elements: local memory has room for no more.
 INTEGER_CONSTANT(LARGEST_TILE_GROUP, 256);
 // Kernels with tiles need local memory in proportion to the largest tile, at most LOCAL_BYTES, a power of two, which a
 // program's build chooses. By default as much as OpenCL 1.2 guarantees; with less than the least, they cannot be built.

@@ -1,4 +1,4 @@
-// Fetching into a CPU's cache what will be needed soon.
+// Fetching data into a CPU's cache before it is needed.
 #ifndef FLAUNAY_PREFETCH_H
 #define FLAUNAY_PREFETCH_H
 

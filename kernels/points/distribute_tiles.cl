@@ -2,7 +2,7 @@
 // inspect_tiles.cl are parts of this program.
 //
 // The points are sorted stably by the numbers of their blocks, a digit of `bits` bits at a time, the lowest first; a
-// million points have a single digit. A tile of points is what one work-group takes.
+// million points have a single digit. One work-group takes a tile of points.
 //
 // 1. count_tile_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile].
 //    For each further digit, count_digits counts. Each table is scanned.

@@ -34,7 +34,7 @@ static inline lifted_point lifted_from(weighted_point p, weighted_point origin) 
   const lifted_point lifted = {x, y, x * x + y * y - (p.weight - origin.weight)};
   return lifted;
 }
-// The magnitudes of what its height is made of.
+// The magnitudes of the terms of its height.
 static inline double lift_magnitude(weighted_point p, weighted_point origin) {
   const double x = p.at.x - origin.at.x, y = p.at.y - origin.at.y;
   return x * x + y * y + fabs(p.weight - origin.weight);

@@ -20,7 +20,7 @@ BEGIN_SHARED
 
 // With e = DOUBLE_ROUNDOFF and u, v the lengths of two vectors: their dot or cross product has an error below
 // 4.01 e u v, its square one of 8.03 e u^2 v^2 and one more e for rounding; `square` times u^2 v^2, which has nine
-// factors of 1 + e, one of 11.02 e u^2 v^2. The sum is 20.06; what underflows in the last product adds a quarter.
+// factors of 1 + e, one of 11.02 e u^2 v^2. The sum is 20.06; underflow in the last product adds a quarter.
 #define SQUARE_BOUND (24 * DOUBLE_ROUNDOFF)
 
 // With c a cosine, given as the dot product and the product of both vectors' squared lengths: the sign of c |c| -

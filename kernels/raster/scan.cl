@@ -89,8 +89,8 @@ OUT_OF_LINE static inline int scan_exactly(const scanned_triangle* t, double2 ce
   return 0;
 }
 
-// The pixels [first, last] of a row. Most are decided by all three edges at once; the weights then equal those
-// of barycentric().
+// The pixels [first, last] of a row. Most are decided by all three edges at once; the weights then equal the
+// results of barycentric().
 static inline int scan_row(const scanned_triangle* t, int first, int last, double y, pixel_grid grid, SCANNED_MESH(),
                            GLOBAL double* row) {
   int is_wrong = 0;

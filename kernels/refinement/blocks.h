@@ -43,7 +43,7 @@ typedef struct {
   GLOBAL const double* reaches;
   GLOBAL volatile int* counters;
   // Its own: the first and the last place of each class, plus 1; tasks; the sides that are still to be dug; the rows of
-  // a cavity and its sides; what the block begins with.
+  // a cavity and its sides; the tasks with which the block begins.
   GLOBAL int* heads;
   GLOBAL int* tails;
   GLOBAL block_task* tasks;
@@ -181,7 +181,8 @@ static inline int tier_of_large(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 - 1 - tier_of(fabs(u.x * v.y - u.y * v.x), rules);
 }
 
-// Likewise of a triangle with a small angle: after those, the shortest sides first, of this squared length.
+// The class of a triangle with a small angle: after large triangles, the shortest sides first. shortest: their
+// squared length.
 static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules rules, double shortest,
                                 GLOBAL const edge_place* places, GLOBAL const int* ends, GLOBAL const int* wedges) {
   GLOBAL const mesh_row* const at = &mesh->rows[row];
@@ -197,7 +198,7 @@ static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 + tier_of(shortest, rules);
 }
 
-// Likewise of any.
+// The class of any triangle.
 static inline int tier_of_row(const seen_mesh* mesh, int row, refinement_rules rules, double level,
                               GLOBAL const double* areas, int is_new, GLOBAL const edge_place* places,
                               GLOBAL const int* ends, GLOBAL const int* wedges) {
@@ -463,8 +464,8 @@ static inline int is_too_near(const block_work* work, double2 p, int other) {
 // A constraint that rounding did not allow to split is tried again when a triangle there is another one.
 static inline int thawed(int edge) { return edge < 0 ? edge : edge & ~EDGE_FROZEN; }
 
-// Replaces the cavity by triangles around a point; edge: what it is on, between vertices a and b, or NO_EDGE_THERE. If
-// that is on the border, the triangles do not go all the way round.
+// Replaces the cavity by triangles around a point. edge: the edge that it is on, between vertices a and b, or
+// NO_EDGE_THERE. If that is on the border, the triangles do not go all the way round.
 static inline void write_star(block_work* work, double2 p, edge_place place, int edge, int a, int b, int is_open) {
   const int v = work->state.vertex++, count = work->side_count, size = work->cavity_size;
   work->points[v] = p;
@@ -667,7 +668,7 @@ static inline int comes_first(const block_work* work, first_task a, first_task b
   return order != 0 ? order > 0 : a.turn < b.turn;
 }
 
-// Sorts what the block begins with: a heap of what comes last.
+// Sorts the first tasks of the block, by a heap whose root is the last task.
 static inline void sort_first(block_work* work, int count) {
   GLOBAL first_task* const firsts = work->firsts;
   int root = count / 2;
@@ -772,7 +773,7 @@ static inline void end_retry(block_work* work) {
   }
 }
 
-// Goes on with the block; returns 0 at its end, or what it needs.
+// Goes on with the block. Returns 0 at its end, otherwise what it lacks: NEEDS_ROWS and so on.
 static inline int run_block(block_work* work, int* steps) {
   block_state* const state = &work->state;
   while (state->inserted < work->phase.most) {

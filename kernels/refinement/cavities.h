@@ -31,7 +31,7 @@ static inline int neighbor_at(const seen_mesh* mesh, int corner) { return mesh->
 static inline int edge_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].edge[corner % 3]; }
 
 // The number of the corner that is opposite to a neighbour, and the corner. Without branches, since they could not be
-// predicted. Others may change the row's other neighbours meanwhile, which is no matter.
+// predicted. Others may change the row's other neighbours meanwhile, which does not matter.
 #ifdef __cplusplus
 #define neighbor_meanwhile(at) __atomic_load_n(at, __ATOMIC_RELAXED)
 #else
@@ -49,7 +49,7 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + number_facing(&mesh->rows[row], neighbor);
 }
 
-// Fetches a row that a list has far ahead, and of one that is nearer what its triangle and those beside it are made of.
+// Fetches a row far ahead in a list, and for a nearer one the corners of its triangle and its neighbours.
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4

@@ -70,7 +70,7 @@ static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, ui
 }
 
 // Writes the triangle between a vertex and a side of its star, but for what it inherits. after, before: the rows beside
-// it. edge: what the vertex is on, between vertices a and b, or NO_EDGE_THERE.
+// it. edge: the edge that the vertex is on, between vertices a and b, or NO_EDGE_THERE.
 static inline void write_star_row(GLOBAL mesh_row* row, int vertex, star_side side, int to, int after, int before,
                                   int edge, int a, int b) {
   row->corner[0] = vertex;

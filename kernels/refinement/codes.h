@@ -43,7 +43,7 @@ INTEGER_CONSTANT(ROW_MADE, 2);
 INTEGER_CONSTANT(NEEDS_ROWS, 1);
 INTEGER_CONSTANT(NEEDS_ROOM, 2);
 INTEGER_CONSTANT(NEEDS_STEPS, 4);
-// Counters of a phase: blocks taken, rows and vertices in chunks, what a launch needs.
+// Counters of a phase: blocks taken, rows and vertices in chunks, the needs of a launch.
 INTEGER_CONSTANT(COUNT_BLOCKS, 0);
 INTEGER_CONSTANT(COUNT_ROWS, 1);
 INTEGER_CONSTANT(COUNT_VERTICES, 2);

@@ -10,7 +10,7 @@
 
 #ifndef FIXED_POINT
 
-// numbers: what vertices are called here. kept: per edge, if some must be kept.
+// numbers: the numbers of vertices here. kept: per edge, if some must be kept.
 kernel void load_rows(int n, int has_kept, global const int* restrict triangles, global const int* restrict neighbors,
                       global const int* restrict edges, global const uchar* restrict kept,
                       global const int* restrict numbers, global mesh_row* restrict rows,

@@ -5,7 +5,7 @@
 
 // clang-format off
 
-// The mesh as it is.
+// The current mesh.
 #define LIVING_MESH(PREFIX) \
   global const mesh_row* restrict PREFIX##rows, global const double2* restrict PREFIX##points
 

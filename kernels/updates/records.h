@@ -25,7 +25,7 @@ typedef struct {
 } removed_vertex;
 ASSERT_SIZE(removed_vertex, 20);
 
-// A row that a batch has changed: whether it held a triangle before, and what it holds now.
+// A row that a batch has changed: whether it held a triangle before, and its present contents.
 typedef struct {
   int row, was_triangle, holds, corner[3];
 } row_report;

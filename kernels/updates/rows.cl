@@ -1,7 +1,7 @@
 // The mesh that changes: made of triangles and hulls, and read. Segments: rows and hull vertices.
 //
 // number_hull: where vertices are on the hull. load_triangles and load_ghosts, one work-item per triangle and per hull
-// vertex: rows with ghosts. clear_rows: further rows. report_changes: what has become of rows that a batch has
+// vertex: rows with ghosts. clear_rows: further rows. report_changes: the contents of rows that a batch has
 // changed. find_old_triangles: which triangles there were before.
 
 #include "constrained/meanwhile.h"

@@ -583,8 +583,8 @@ kernel void write_corners(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound,
 // Measures
 
 // n points. Areas and centroids, relative to a corner of the cell: since cells are convex, all terms are positive but
-// for their rounding. The first is 0 and the second no number where there is no cell. scale: what makes squares neither
-// overflow nor underflow.
+// for their rounding. Without a cell, the area is 0 and the centroid NaN. scale: the factor with which squares
+// neither overflow nor underflow.
 kernel void measure_clipped(int n, scaling scale, scaling unscale, global const int* restrict cells,
                             global const double* restrict vertices, global double* restrict areas,
                             global double* restrict centroids) {

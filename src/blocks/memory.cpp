@@ -53,8 +53,8 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   if (sets < 2) return counted(runtime, runtime.sizes().copy(), {0, n});
   constexpr std::size_t kMostCounted = std::size_t{1} << 14;
   if (sets <= kMostCounted) return counted_for_any(runtime, n, sets);
-  // Further sets take at most what each of many takes that have next to no points, with a tree among them. A
-  // few more make up for what arrays are rounded up by.
+  // A further set needs at most as much memory as each of many sets with next to no points and one tree. A
+  // few more sets account for the rounding of arrays' sizes.
   const WorkspaceBytes many = counted_for_any(runtime, n, kMostCounted),
                        few_points =
                            counted_for_any(runtime, tuning_of(runtime).block_points + 1, kMostCounted);

@@ -81,7 +81,7 @@ struct OpenPoints {
 struct Round {
   bool is_first;
   bool is_merged;          // up the tree
-  const OpenPoints& open;  // what its points are made from; of the first round, the offsets alone
+  const OpenPoints& open;  // the list from which its points are made; in the first round, the offsets alone
   const Blocks& blocks;
   Rings rings;
   Buffer<cl_int> vertices{};  // by place in the blocks

@@ -10,7 +10,7 @@
 
 namespace flaunay::blocks {
 
-/// Does what run() does, in rounds, with the same bytes as results.
+/// Does the same as run(), in rounds, with the same bytes as results.
 geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
                                      const std::vector<std::size_t>& offsets, const Exchange& exchange,
                                      statistics::Phases& phases);

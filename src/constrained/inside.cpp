@@ -86,7 +86,7 @@ class Inside {
   struct Corner {
     int edges[2], others[2], count;
   };
-  // The end of a set's vertices, and what predicates of them err by at most.
+  // The end of a set's vertices, and the largest errors of predicates on them.
   struct Set {
     int end;
     kernel::largest_errors errors;
@@ -124,8 +124,8 @@ class Inside {
                all_crossed, all_nodes, all_edges);
   }
 
-  // The half-edges that leave each point. Returns false if these are not two everywhere, which takes no time
-  // to know beside what follows.
+  // The half-edges that leave each point. Returns false if these are not two everywhere; compared to the
+  // rest, that takes no time.
   bool find_leaving(std::size_t n) {
     if (static_cast<std::size_t>(segment_count_) != n) return false;
     int* const counts = sized(all_places, n);
@@ -549,9 +549,9 @@ class Inside {
   std::int64_t steps_left_ = 0;
   std::vector<Set> sets_;
   kernel::largest_errors errors_{};  // of the set that is being swept
-  std::vector<int> lower_, upper_;   // what the sweep has of the hull
+  std::vector<int> lower_, upper_;   // the hull of the swept points
 
-  // Arrays, and what they are for this call.
+  // Arrays, which are kept for later calls, and pointers into them for this call.
   std::vector<kernel::double2> all_points, given;
   std::vector<int> all_leaving, all_source, all_leaf, all_vertex_of, given_source, all_open, all_places,
       all_rows;

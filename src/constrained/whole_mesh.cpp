@@ -43,8 +43,8 @@ void check(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   }
 }
 
-// Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for what its hull
-// encloses, which rounding may have made turn to the right.
+// Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for the inside of its
+// hull. Rounding may have made the hull turn to the right.
 bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   const Ids& hull = mesh.hull;
   std::size_t vertices = 0;

@@ -1,5 +1,5 @@
-// The checks of what callers pass to public functions of C++ and C. A call makes them before anything else:
-// before it multiplies a count, allocates memory or reads an array.
+// The checks of arguments that callers pass to public functions of C++ and C. A call makes them before
+// anything else: before it multiplies a count, allocates memory or reads an array.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ constexpr std::size_t kMostPointsAtOnce = kMostIndexed / kernel::EDGES_PER_VERTE
 /// The largest number of points of triangulations in chunks. Sums and products with numbers of bytes do not
 /// overflow.
 constexpr std::uint64_t kMostPointsInChunks = std::uint64_t{1} << 56;
-/// The largest number of rows times columns: what an array has in bytes does not overflow.
+/// The largest number of rows times columns, so that the bytes of an array do not overflow.
 constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
 
 /// Throws Error(input) if there are more than `most` elements. name: what they are, as a plural.

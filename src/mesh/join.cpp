@@ -35,7 +35,7 @@ class Joining {
                   [&](const Result& part) { return (part.*array).size() / columns; });
   }
 
-  // change(values, i, k): what becomes of value i of part k.
+  // change(values, i, k): the new value for value i of part k.
   template <typename T, typename Base, typename Change>
   void array(std::vector<T> Base::*array, const Change& change) {
     const std::vector<std::size_t> first = before(array, 1);

@@ -54,7 +54,7 @@ struct Blocks {
   Buffer<cl_int> device_set_blocks{}, device_offsets{};
   Buffer<kernel::block_merge> device_merges{};
   Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
-  kernel::scaling scale{1, 1, 1};           ///< what the nodes' coordinates are multiplied by
+  kernel::scaling scale{1, 1, 1};           ///< the factor of the nodes' coordinates
   /// The scaled points, block by block, and their indices in the input. After blocks are triangulated, the
   /// distinct points of each block come first; these are its vertices.
   Buffer<cl_double2> vertices{};

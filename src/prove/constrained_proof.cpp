@@ -2,7 +2,7 @@
 // and finds the faces between these pieces, from points and segments alone. Each face is to be covered, or
 // not.
 //
-// 0. Depths of faces follow from what lies between them, by the definitions of `FillRule`.
+// 0. Depths of faces follow from the segments between them, by the definitions of `FillRule`.
 // 1. Every triangle is counter-clockwise, and every directed edge occurs at most once. Each side of each
 //    piece has a triangle if and only if the face there is to be covered. Every edge with one triangle is a
 //    piece. So the sum of the triangles' oriented boundaries is the boundary of the covered faces: every

@@ -1,7 +1,7 @@
 // Each set is checked by the proof of constrained triangulations. Segments on which no point was added are
 // given to it as they were; the others bend where points were rounded, so their edges take their place. These
-// lead from one end of the segment to the other. Between its edges nothing else is known of such a segment,
-// but that is what the definition of splitting and refinement says.
+// lead from one end of the segment to the other. Nothing else is known of such a segment between its edges,
+// in accordance with the definition of splitting and refinement.
 #include "prove/domain_proof.hpp"
 
 #include <algorithm>

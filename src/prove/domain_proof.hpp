@@ -10,7 +10,7 @@
 
 namespace flaunay::prove {
 
-/// A result together with what was asked for.
+/// A result together with its input and options.
 struct DomainClaim {
   const double* points;
   const std::vector<std::size_t>& offsets;

@@ -168,7 +168,7 @@ class ExactPredicates {
   /// lengths.
   ///
   /// The product has an error below 4.1 eps of the lengths, so its square one of 9.3 eps of their squares'
-  /// product; what it is compared with has ten roundings. We take 24 eps, and nothing overflows or
+  /// product; the other side of the comparison has ten roundings. We take 24 eps, and nothing overflows or
   /// underflows.
   template <typename Exactly>
   int compare_squares(double value, double u, double v, double square, const Exactly& exactly) {
@@ -196,7 +196,7 @@ class ExactPredicates {
     return exact_side_of_crossing(a0, a1, b0, b1, p, axis);
   }
 
-  /// Twice the area of a triangle, rounded, and what bounds its error.
+  /// Twice the area of a triangle, rounded, and the magnitude that bounds its error.
   struct Area {
     double value, magnitude;
     Area(const double* a, const double* b, const double* c) {

@@ -118,7 +118,7 @@ class Sweep {
   struct OnHull {
     std::int32_t place, below, above;
   };
-  std::vector<OnHull> on_hull_;  // places on no segment, and the faces beside what they are on
+  std::vector<OnHull> on_hull_;  // places on no segment, and the faces beside the hull edge that they are on
   std::size_t face_count_ = 1;
 };
 

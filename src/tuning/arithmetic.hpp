@@ -18,7 +18,7 @@ namespace flaunay::tuning {
 /// fails.
 void choose_arithmetic(host::Runtime& runtime);
 
-// ---- What it consists of, for tests
+// ---- Its parts, for tests
 
 /// Runs a chain of `steps` steps on every lane, and returns the seconds that it took.
 using RunSteps = std::function<double(Precision, std::size_t steps)>;

@@ -551,7 +551,7 @@ std::vector<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-// given: as FLAUNAY_TUNING has it; what it leaves open is as in `kind`.
+// given: in the form of FLAUNAY_TUNING; values that it does not set are as in `kind`.
 KindOfDevice overridden(KindOfDevice kind, const std::string& given, const Target& target) {
   if (given.empty()) return kind;
   bool is_first = true;
@@ -581,7 +581,7 @@ KindOfDevice kind_of_target(const Target& target, const std::string& given) {
   return overridden(own, given, target);
 }
 
-// Reduces sizes to what kernels have local memory for.
+// Reduces sizes so that kernels have enough local memory.
 void fit_tiles(Tuning& tuning) {
   const auto fit = [](std::size_t& size, std::size_t most) { size = std::clamp<std::size_t>(size, 1, most); };
   const std::size_t samples = tuning.local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE;

@@ -46,8 +46,8 @@ struct Tuning : host::Sizes {
   /// Mode flattened makes paths with one work-item per region if regions have at most this many internal
   /// points, and at most this many corners on average.
   std::size_t hull_alone_most = 0;
-  /// If work-groups take tiles (tile_group): the points and samples per tile, at most what local_bytes holds,
-  /// and the bits of a block's number per pass over the points, at most kernel::MOST_BLOCK_BITS.
+  /// If work-groups take tiles (tile_group): the points and samples per tile, at most as many as fit
+  /// local_bytes, and the bits of a block's number per pass over the points, at most kernel::MOST_BLOCK_BITS.
   std::size_t point_tile = 1;
   std::size_t sample_tile = 1;
   std::size_t block_bits = 1;
@@ -139,8 +139,8 @@ std::string tuning_in_environment();
 /// The capabilities that a device's properties tell, and the sizes for it, reduced to its limits. For tests
 /// and experiments, `given` overrides both. It has the form of FLAUNAY_TUNING: a kind ("cpu", "gpu", "gpu:N"
 /// with all work-groups of N work-items, 1 to 1024, "small", "small-blocks"), or values by name
-/// ("block_group=64"), or both, separated by commas. Throws DeviceError, which says what is allowed, if it is
-/// not valid.
+/// ("block_group=64"), or both, separated by commas. Throws DeviceError, which lists the allowed values, if
+/// it is not valid.
 host::Settings settings_for(const boost::compute::device& device,
                             const std::string& given = tuning_in_environment());
 
@@ -153,8 +153,8 @@ struct KindOfDevice {
 KindOfDevice kind_of_device(const std::string& name, cl_device_type type, std::size_t units,
                             const std::string& given = tuning_in_environment());
 
-/// The sizes for kernels that run natively on the host. `given` overrides them, too, except what the kernels
-/// are compiled for.
+/// The sizes for kernels that run natively on the host. `given` overrides them, too, except values that are
+/// compiled into the kernels.
 std::shared_ptr<const Tuning> native_tuning(const std::string& given = tuning_in_environment());
 
 inline const Tuning& tuning_of(const host::Runtime& runtime) { return runtime.sizes().tuning(); }

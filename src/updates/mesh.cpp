@@ -252,8 +252,8 @@ Ids Mesh::old_triangles() {
   return old;
 }
 
-// Sorts vertices so that vertices that are close in the plane are close in the list. Of several in one place,
-// the smallest stays.
+// Sorts vertices so that vertices that are close in the plane are close in the list. The smallest of several
+// vertices in one place stays.
 Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<Found>& doubled) const {
   if (vertices.size() < 2) return vertices;
@@ -500,7 +500,7 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     const auto others = runtime_.upload(arena, scaled(vertices, coordinates)).as<cl_double2>();
     bool is_turned = false;
     if (!are_many) {
-      // The hull stays what it is, so that triangles that have not turned over are apart.
+      // The hull stays unchanged, so that triangles that have not turned over do not overlap.
       runtime_.map(count,
                    kernels::find_hull_vertices{
                        .vertices = moved, .living_mesh = mesh, .rows_of = rows_of_, .on_hull = turned});

@@ -41,7 +41,7 @@ class Mesh {
 
   /// Begins to account for changes.
   void begin_batch();
-  /// Tells what has changed since.
+  /// Reports the changes since then.
   void end_batch(Changes& changes);
   /// The rows that held triangles when the batch began, also if it has ended by an error.
   Ids old_triangles();

@@ -1,4 +1,4 @@
-// Calls of the library, on small inputs that have every kind of degeneracy: what a device is tested with.
+// Calls of the library with which devices are tested, on small inputs that have every kind of degeneracy.
 #pragma once
 
 #include <cstddef>

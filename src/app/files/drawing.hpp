@@ -61,7 +61,7 @@ class Drawing {
   void end_path() { file_.print("\"/>\n"); }
   void move_to(const Position& p) { step({unit(p.x), unit(p.y)}, true); }
   void line_to(const Position& p) { step({unit(p.x), unit(p.y)}, false); }
-  /// The part of a polygon in the view, enlarged by `room` on each side; what has no area only if
+  /// The part of a polygon in the view, enlarged by `room` on each side. Parts without area only if
   /// `with_flat`.
   void polygon(std::vector<Position>& corners, double room, bool with_flat);
   /// The part of an edge in the view, unless it is too short to show.

@@ -255,7 +255,7 @@ std::string png_of(const std::string& name, const std::uint8_t* bands, std::size
                    std::size_t columns) {
   const Quiet quiet;
   const GDALDriverH png = driver("PNG", name);
-  // GDAL takes what it only reads as it takes what it writes.
+  // GDAL takes a pointer to mutable data even if it only reads.
   const Dataset source = dataset_of(const_cast<std::uint8_t*>(bands), GDT_Byte, 1, 2, rows, columns);
   const MemoryFile file(".png");
   Dataset written(

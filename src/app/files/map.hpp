@@ -36,7 +36,7 @@ struct Map {
   std::vector<std::string> properties = {};
   std::string crs = {};            ///< of GeoJSON that names one: "EPSG:n", or else the name
   bool has_others = false;         ///< lines or points besides polygons
-  std::vector<std::string> notes;  ///< what was left out or mended, a sentence each
+  std::vector<std::string> notes;  ///< a sentence for each thing that was left out or mended
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
 };

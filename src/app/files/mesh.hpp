@@ -19,7 +19,7 @@ struct MeshContents {
   const Triangulation& mesh;
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
-  FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
+  FillRule fill_rule = FillRule::nesting;                 ///< the meaning of depths
   bool is_on_globe = false;  ///< points are longitudes and latitudes, and triangles lie on the sphere
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }

@@ -207,7 +207,7 @@ class Array {
 
   template <typename Value>
   std::vector<Value> values() {
-    // Before there is memory for what the header promises.
+    // Before memory for the header's shape is allocated.
     check_size();
     std::vector<Value> all;
     all.reserve(promised_ / sizeof(Value));

@@ -95,7 +95,7 @@ std::uint64_t least_bytes(const std::string& path, std::uint64_t n);
 void write_points(Outputs& outputs, const std::string& path, const Points& points);
 
 struct Format;
-/// Writes what write_points writes, in pieces.
+/// Writes the same files as write_points, in pieces.
 class PointWriter {
  public:
   /// n: how many points will be written.

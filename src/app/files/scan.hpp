@@ -34,15 +34,15 @@ struct LeftOut {
 /// Least x and y, largest x and y.
 using Box = std::array<double, 4>;
 
-/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv
-/// (x, y and z, and what follows them is ignored, or the columns that are named). Files are opened as they
-/// are read, one at a time.
+/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv (x,
+/// y and z, without later columns, or the named columns). Files are opened as they are read, one at a time.
 class Scan : public ValuedPoints {
  public:
   /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
   /// file without a name in `scratch`. Throws Error(usage) for other endings, and for a choice if there is a
-  /// file that is no .las file; Error(input) for files that cannot be read or are truncated.
-  /// third: what text has beside x and y. Throws Error(usage) for columns if there is a file that is no text.
+  /// file that is no .las file; Error(input) for files that cannot be read or are truncated. third: the name
+  /// of the column beside x and y in text. Throws Error(usage) for columns if there is a file that is no
+  /// text.
   Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch,
        const Columns& columns = {}, std::string_view third = "height");
   ~Scan() override;

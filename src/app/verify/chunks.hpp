@@ -39,9 +39,9 @@ struct VerifyChunksReport : VerifyReport {
   std::uint64_t scratch_bytes = 0;  ///< written to the folder
 };
 
-/// Checks what verify() checks, reading everything in pieces. neighbors may be null. Throws Error(input) if a
-/// point is not finite, naming it, or if a source or the scratch folder fails. One of several violations is
-/// reported: that of the first window, not always that with the smallest index.
+/// Makes the checks of verify(), reading everything in pieces. neighbors may be null. Throws Error(input) if
+/// a point is not finite, naming it, or if a source or the scratch folder fails. One of several violations is
+/// reported: one of the first window, not always the one with the smallest index.
 ///
 /// Rows are taken in windows. The distinct vertices of each window get their coordinates from the points,
 /// which are read range after range. A window then checks its triangles, and the edges that two of them

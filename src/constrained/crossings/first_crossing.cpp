@@ -73,7 +73,8 @@ Point crossing_place(const Line& first, const Line& second) {
       crossing.second, crossing.first);
 }
 
-// The segments of one set, cut into edges that have no vertex inside: what crosses then does so at no point.
+// The segments of one set, cut into edges that have no vertex inside: edges that cross then do so at no
+// point.
 class CutSegments {
  public:
   explicit CutSegments(const SegmentSet& set)

@@ -239,7 +239,7 @@ class Search {
     piece_stack_.resize(kept);
   }
 
-  // Takes a chain away from the items, and finds what all others have to do with it in the slab.
+  // Takes a chain away from the items, and finds its crossings with all others in the slab.
   void take_chain(Slab slab, Items items) {
     take_spanning(slab, items);
     if (chain_.empty()) return;

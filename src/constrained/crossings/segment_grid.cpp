@@ -72,7 +72,7 @@ SegmentGrid::SegmentGrid(const std::vector<Line>& lines) : lines_(lines) {
   offsets_.pop_back();
 }
 
-// Column by column: what a segment has of one, padded.
+// Visits the cells that a segment has in each column, padded.
 template <typename Visit>
 void SegmentGrid::visit_cells(const Line& line, const Visit& visit) const {
   const auto [a, b] = line;

@@ -22,7 +22,7 @@ std::vector<Ids> segments_of_sets(const double* coordinates, const std::vector<s
 
 /// Segments of one set.
 struct SegmentSet {
-  /// numbers: of the segments, none of length zero. Throws what Triangulator::triangulate throws for the
+  /// numbers: of the segments, none of length zero. Throws the errors of Triangulator::triangulate for the
   /// points.
   SegmentSet(const double* coordinates, const std::vector<std::size_t>& offsets, std::size_t set,
              const Ids& segments, const Ids& numbers);

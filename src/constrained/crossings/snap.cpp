@@ -118,7 +118,7 @@ class Snapping {
     return is_left && is_right;
   }
 
-  // Sorts what lies ahead in the direction of an edge, which is ascending in x.
+  // Orders vertices along the direction of an edge, which is ascending in x.
   bool is_ahead(bool descends, std::int32_t u, std::int32_t v) const {
     const Point p = points_[u], q = points_[v];
     return p.x != q.x ? p.x < q.x : descends ? p.y > q.y : p.y < q.y;

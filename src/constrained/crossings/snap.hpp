@@ -27,8 +27,9 @@ struct Chains {
   std::vector<std::int32_t> vertices;  ///< without the ends of the edge
 };
 
-/// Leads each edge through all vertices whose cells it meets, where the cell of a vertex is what would be
-/// rounded to it; and around vertices that it would otherwise pass on the wrong side, on the shortest way.
+/// Leads each edge through all vertices whose cells it meets, where the cell of a vertex has the places that
+/// would be rounded to it; and around vertices that it would otherwise pass on the wrong side, on the
+/// shortest way.
 ///
 /// points: all are vertices, and multiples of the unit, as for round_crossing. edges: the lexicographically
 /// smaller end first; all places where they cross, rounded, must be vertices.

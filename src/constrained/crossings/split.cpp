@@ -161,8 +161,8 @@ class SetSplitter {
   }
 
   bool find_near_by_tree(const std::vector<Line>& all, double distance, const FoundPair& found) const {
-    // A long edge meets O(sqrt(n)) boxes. Where boxes do not tell points apart, it takes less to look for
-    // what crosses.
+    // A long edge meets O(sqrt(n)) boxes. Where boxes do not separate points, searching for crossings takes
+    // less time.
     const double most = 64.0 * (edges_.edges.size() + vertices_.points.size()) +
                         16.0 * edges_.edges.size() * std::sqrt(vertices_.points.size());
     Ids ids(vertices_.points.size());
@@ -184,7 +184,7 @@ class SetSplitter {
   void lead_through(CrossingPlaces& crossings, SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
-    // Both look at what rounding moves by kHalfSpacing at most. Subnormal numbers are farther apart.
+    // Both assume that rounding moves places by at most kHalfSpacing. Subnormal numbers are farther apart.
     const bool is_moved_little = vertices_.unit <= 2 * kHalfSpacing;
     if ((is_moved_little && are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;

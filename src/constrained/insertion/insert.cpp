@@ -218,7 +218,7 @@ class Insertion {
     clear_status();
     runtime_.fill(claims_, rows_, cl_uint{UNCLAIMED});
   }
-  // For other segments, in the triangulation as it is now.
+  // Starts again for other segments, in the present triangulation.
   void start_again() {
     clear_status();
     clear_vertices(true);
@@ -359,7 +359,7 @@ class Insertion {
   // -------------------------------------------------------------------------------------------------------
   // Rounds
 
-  // The constraints that are left in a round, and what became of them.
+  // The constraints that are left in a round, and their outcomes.
   struct Waiting {
     Buffer<cl_int> list{};
     Buffer<cl_uint> offsets{};

@@ -76,7 +76,7 @@ class Cutting {
     return {along(*middle, axis), axis, 0};
   }
 
-  // A gap is what some consecutive places span, about half of the square root of all.
+  // A gap is the interval that some consecutive places span: about half of the square root of their number.
   block_cut gap(std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin,
                       width = std::max<std::size_t>(

@@ -337,7 +337,7 @@ class Refining {
     }
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
-    // With what the first phase takes.
+    // With lists of the first phase's size.
     is_starting_ = runtime_.is_native();
     if (is_starting_ && rows_ <= kFewRows) reserve_lists(1, kLeastRoom, false);
     reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
@@ -851,7 +851,7 @@ class Refining {
   // -------------------------------------------------------------------------------------------------------
   // Order
 
-  // Vertices and rows by what made them, whichever thread that was.
+  // The order of vertices and rows by the blocks that made them, independent of threads.
   struct Order {
     std::size_t rows, made;  // numbers of all rows, and of vertices that were made
     Buffer<cl_ulong> order{};

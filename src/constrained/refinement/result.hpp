@@ -1,5 +1,5 @@
 // Between the result of a call and the mesh that is refined: the arrays of triangles move there and back,
-// edges that must stay are numbered, and what was split carries what the whole had.
+// edges that must stay are numbered, and parts of split edges get the properties of the whole.
 #pragma once
 
 #include <cstddef>

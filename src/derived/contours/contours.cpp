@@ -167,7 +167,7 @@ class Tracer {
   }
   bool is_at_height(std::int32_t v) const { return surface_.value(v) == height_; }
 
-  // Whether rounding leaves the parts in order into which the line divides a triangle: what it cuts off at
+  // Whether rounding keeps the order of the parts into which the line divides a triangle: the part cut off at
   // one corner, and two triangles between the line and the other corners, unless it goes through these.
   bool is_in_order(std::int32_t t, int exit, const Crossing& from, const Crossing& to,
                    bool is_at_border) const {
@@ -268,8 +268,8 @@ Line repeated(Line places) {
   return twice;
 }
 
-// Adds the parts of a line that goes through places again: what it has done in between is a closed line. None
-// goes through a place twice.
+// Adds the parts of a line that goes through places again: the part in between is a closed line. No part goes
+// through a place twice.
 void add_parts(const Line& line, const Line& twice, std::vector<Line>& lines) {
   std::vector<std::size_t> last(twice.size(), line.size());
   Line path;

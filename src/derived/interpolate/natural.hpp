@@ -29,7 +29,7 @@ class NaturalLists {
                const std::vector<std::size_t>& query_offsets);
   /// Query i has the rows [offsets()[i], offsets()[i + 1]); those outside have none.
   const std::vector<std::size_t>& offsets() const { return offsets_; }
-  /// Enqueues what writes them.
+  /// Enqueues the kernels that write them.
   void write(const Buffer<cl_int>& neighbors, const Buffer<cl_double>& weights) const;
 
  private:

@@ -107,7 +107,7 @@ struct LocatedQueries {
 };
 
 /// Finds the triangle of each query with doubles, for kernels that continue from there. The result is
-/// allocated in the runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
+/// allocated in the runtime's arena, in the caller's scope. limits: of these kernels' predicates.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const host::Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets,

@@ -261,7 +261,7 @@ class Mender {
 
   struct Place {
     Point at;
-    std::uint64_t around;  // hashes of next corners without those of corners before: 0 if cells close
+    std::uint64_t around;  // hashes of next corners minus hashes of corners before: 0 if cells close
     std::int32_t root;     // another place if the corners here have moved there
     std::int32_t first, last, count;  // uses_ that are of this place
     bool is_fixed;
@@ -493,7 +493,7 @@ class Mender {
       const std::int32_t a = polygon[k].place, b = polygon[k + 1 < n ? k + 1 : 0].place;
       return is_earlier(b, a) ? Edge{b, a} : Edge{a, b};
     };
-    // Relative to what rounding depends on; infinite if the edge stays.
+    // Lengths relative to the scale of rounding; infinite if the edge stays.
     std::vector<double>& lengths = scratch.lengths;
     lengths.clear();
     const std::size_t listed = scratch.edges.size();

@@ -92,8 +92,8 @@ class Stars {
   Ids triangle_at_, vertices_;
 };
 
-// A convex polygon, seen from a cell's point. sides: what lies beyond the side from each corner to the next
-// one: the place of a neighbour in the ring, or ~k for edge k of the clipping polygon.
+// A convex polygon, seen from a cell's point. sides: per side, from a corner to the next one, the object
+// beyond it: the place of a neighbour in the ring, or ~k for edge k of the clipping polygon.
 struct Polygon {
   std::vector<Point> corners;
   std::vector<int> sides;

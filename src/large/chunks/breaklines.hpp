@@ -1,5 +1,5 @@
 // Breaklines in triangulations in chunks: a triangle that no line crosses is one of the constrained
-// triangulation, too; the others are kept, and what they cover is triangulated again in the end.
+// triangulation, too; the others are kept, and the area that they cover is triangulated again in the end.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Brings points to chunks: from the source in the first round, from what chunks handed on in later ones.
+// Brings points to chunks: from the source in the first round, from points that chunks handed on in later
+// ones.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,7 @@ namespace flaunay::chunks {
 struct Plan {
   std::size_t chunk_points = 0;      ///< chunks have at most this many points, as a rule
   std::size_t largest_chunk = 0;     ///< points that the memory permits at once
-  std::string limit = "the memory";  ///< what does not permit more, for messages
+  std::string limit = "the memory";  ///< the limit that permits no more, for messages
   std::size_t buffer_bytes = 0;      ///< of all buffers to the scratch file
   /// If more than this share of a round's points is handed on, they all go to one last chunk.
   int most_handed_on_percent = 70;

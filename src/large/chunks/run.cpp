@@ -83,7 +83,7 @@ struct Call {
 };
 
 // The chunks of a round, which solvers take from one queue. Each has a thread of its own. A chunk's rows
-// follow those of the chunk before, so a solver that has finished a chunk waits until the sizes of all
+// follow the rows of the chunk before, so a solver that has finished a chunk waits until the sizes of all
 // earlier chunks are known. It writes the chunk while it solves the next one.
 class Round {
  public:
@@ -180,7 +180,7 @@ class Round {
     return error_ ? std::nullopt : take_new(solver, 1);
   }
 
-  // The next chunk of a solver that has none: first what a lost solver gave back. Waits until there is one,
+  // The next chunk of an idle solver: first a chunk that a lost solver gave back. Waits until there is one,
   // or all are done.
   std::optional<std::size_t> await_chunk(std::size_t solver) {
     std::unique_lock lock(mutex_);
@@ -234,7 +234,7 @@ class Round {
     return take_returned();
   }
 
-  // A solver's thread, and what it writes meanwhile.
+  // A solver's thread, and the chunk that it writes meanwhile.
   struct Worker {
     const Solver& solver;
     std::size_t number;

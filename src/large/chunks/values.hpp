@@ -19,7 +19,7 @@ struct ChunkSurface {
   std::vector<std::int32_t> open;
 };
 
-/// Where values come from, and what takes them.
+/// The source of values, and their receiver.
 struct Values {
   ValuedPoints& points;
   Duplicates duplicates;

@@ -51,7 +51,7 @@ chunks::ChunkPoints move_given(Ranks& ranks, host::Threads& threads, const Given
 chunks::ChunkPoints move_open(Ranks& ranks, chunks::ChunkPoints points, const chunks::ChunkTree& tree,
                               const Workers& workers, const CheckCount& check_count);
 
-/// Sorts records by the rank that they go to, sends them, and returns what came in.
+/// Sorts records by the rank that they go to, sends them, and returns the records received.
 template <typename Record, typename RankOf>
 std::vector<Record> send_to_owners(Ranks& ranks, std::vector<Record> records, const RankOf& rank_of) {
   std::vector<int> counts;

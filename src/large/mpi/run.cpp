@@ -149,7 +149,7 @@ class Run {
     last_time_ = now;
   }
 
-  // Throws Error(input) on all ranks if a rank cannot take what it would get.
+  // Throws Error(input) on all ranks if a rank cannot take its points.
   void check_capacity(std::size_t points) const {
     ranks_.together([&] {
       if (points <= solver_.capacity) return;

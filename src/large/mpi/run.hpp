@@ -14,7 +14,7 @@ namespace flaunay::mpi {
 struct Solver {
   std::string name;
   std::size_t capacity = 0;  ///< points that it can take at once
-  /// Whether what it takes comes from the memory of the machine, which other ranks on it use as well.
+  /// Whether it uses the memory of the machine, which other ranks on it use as well.
   bool shares_memory = true;
   /// With neighbours, and with areas if they are wanted.
   std::function<flaunay::Triangulation(const double* coordinates, std::size_t n)> triangulate;

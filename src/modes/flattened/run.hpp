@@ -43,7 +43,7 @@ struct BlockSolver {
       write_rows;
 };
 
-/// Solves what the levels leave.
+/// Solvers of the regions that the levels leave.
 struct Solvers {
   int partition_levels = 0;   ///< mode partition stops after this many levels
   SolveRegions regions = {};  ///< mode partition
@@ -51,8 +51,8 @@ struct Solvers {
 };
 
 /// Triangulates sets with at least one point, whose offsets were checked, in one of the modes flattened,
-/// recursive_device and partition. The offsets in `result` must have their sizes. Throws what
-/// research::triangulate throws. O(n log n) work.
+/// recursive_device and partition. The offsets in `result` must have their sizes. Throws the errors of
+/// research::triangulate. O(n log n) work.
 void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
          const std::vector<std::size_t>& offsets, const research::Options& options, const Solvers& solvers,
          research::Triangulation& result);

@@ -125,7 +125,7 @@ Paths allocate_paths(Arena& arena, std::size_t size);
 /// Copies the vertices, without offsets.
 void copy_paths(Workspace& work, const Paths& from, const Paths& to);
 
-/// The convex hulls of all sets, and what the host must know about them.
+/// The convex hulls of all sets, and the numbers that the host needs about them.
 struct Borders {
   std::size_t size = 0;
   Buffer<cl_int> hull{};  ///< ids, set by set
@@ -200,7 +200,7 @@ Sequences allocate_sequences(Arena& arena, std::size_t regions, std::size_t room
 /// hulls.
 void chain_hulls(Workspace& work, const PointTable& table, const Level& level, const Sequences& sequences,
                  std::size_t group, const Buffer<cl_uint>& sizes);
-/// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: what prune decided
+/// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: prune's decisions
 /// about all points and corners. Waits once.
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                   statistics::LevelStatistics& statistics);
@@ -265,8 +265,8 @@ struct Children {
             .retired = retired.corner_ids};
   }
 };
-/// Prefix sums of what regions give to their children: internal points per region, corners that come from
-/// corners, and corners that come from path vertices that were internal points.
+/// Prefix sums of the elements that regions give to their children: internal points per region, corners that
+/// come from corners, and corners that come from path vertices that were internal points.
 struct ChildCounts {
   Buffer<cl_uint2> points_before, corner_sides;
   Buffer<cl_uint> internal;
@@ -324,8 +324,8 @@ void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
                                        const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
                                        std::size_t count);
-/// Memory for what becomes an array of the result. On a device that works in host memory it is that array,
-/// otherwise it comes from the arena.
+/// Memory for an array of the result. On a device that works in host memory it is that array, otherwise it
+/// comes from the arena.
 Buffer<cl_int> result_memory(Workspace& work, Arena& arena, std::vector<std::int32_t>& values,
                              std::size_t size);
 /// Copies triangles and, if the options ask for them, neighbours and half-edges to the result; or changes
