@@ -80,8 +80,8 @@ class Backend {
 
   // The following functions are for a device with queues. Without queues, there is nothing to wait for.
 
-  /// options: the compiler's options without the one for counting. counting: whether the kernel shall count,
-  /// if it can.
+  /// options: the compiler's, without the one for counting. counting: whether the kernel shall count, if it
+  /// can.
   virtual std::unique_ptr<Kernel> make_kernel(const KernelName&, const std::string& /*options*/,
                                               bool /*counting*/) {
     return nullptr;

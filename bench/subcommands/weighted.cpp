@@ -14,8 +14,7 @@
 namespace flaunay::bench::weighted {
 namespace {
 
-/// Uniform points, and weights up to `areas` times a point's mean area; 2.3 hides about a third of the
-/// points.
+/// Uniform points, with weights up to `areas` times a point's mean area; 2.3 hides about a third of them.
 struct Data {
   Data(Triangulator& triangulator, std::size_t number, double areas)
       : n(number), points(2 * n), weights(n), offsets{0, n} {

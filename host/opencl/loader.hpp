@@ -6,9 +6,8 @@
 
 namespace flaunay::host {
 
-/// Adds the platforms of a driver, a shared library, to the system's platforms from now on, unless the system
-/// has a platform of that name. The driver is loaded when platforms are listed; if loading fails, it adds no
-/// platforms.
+/// Adds the platforms of a driver, a shared library, to the system's from now on, unless one has that name.
+/// The driver is loaded when platforms are listed; if loading fails, it adds no platforms.
 #ifdef FLAUNAY_WITHOUT_OPENCL
 inline void add_driver(const std::string&, const std::string&) {}
 #else

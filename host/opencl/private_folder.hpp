@@ -12,7 +12,7 @@ namespace flaunay::host {
 int make_private_folder(const std::string& folder);
 
 /// An open folder: files are created in the folder that was checked, even if its name has been given to
-/// another one. On Windows it inherits an access control list: the list of the user's own folders lets nobody
+/// another one. On Windows it inherits an access control list; in the user's own folders that lets nobody
 /// else write.
 class PrivateFolder {
  public:

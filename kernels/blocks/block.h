@@ -29,9 +29,8 @@ typedef struct {
   GLOBAL uchar* axes;  // by node
 } block_scratch;
 
-// Keeps the heavier of two points in one place, given by their indices; if they are equally heavy, or without
-// weights, the first. The kept point becomes the other one's representative; its complement if the other one is
-// lighter.
+// Keeps the heavier of two points in one place, given by index; with equal weights, or without weights, the
+// first. The kept point becomes the other one's representative; its complement if the other one is lighter.
 static inline int kept_of(int kept, int other, GLOBAL const real* weights, GLOBAL int* representatives) {
   const int sign = weights == 0 ? 0 : (weights[kept] > weights[other]) - (weights[kept] < weights[other]);
   if (sign < 0) {

@@ -4,7 +4,7 @@
 // A part of a block is a leaf, which has height 0, or the result of merging two parts of the height below. A
 // part of height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are
 // divided into cells of that size, at most one part of the height begins in each, and one work-item per cell
-// does all of them.
+// does it.
 #ifndef FLAUNAY_HALVES_H
 #define FLAUNAY_HALVES_H
 

@@ -4,8 +4,7 @@
 // A triangle is final if its circumcircle lies within the block's rectangle (blocks/certify.h): then it belongs
 // to the triangulation of all points of the round. These are the points that are not done yet, so that
 // triangulation also has triangles over the area that earlier rounds emitted. The open sectors at a vertex
-// (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted likewise, hull
-// edge by hull edge.
+// (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted per hull edge.
 //
 // Each round, when the blocks are solved:
 // 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
@@ -198,8 +197,7 @@ static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) 
   m->hull_previous[m->vertices[w]] = m->vertices[v];
 }
 
-// The emitted corner beyond the open edge from one vertex, where that side begins, to another; GHOST if no
-// triangle is there.
+// The emitted corner beyond an open edge from one vertex, where that side begins, to another; GHOST if none is.
 static inline int corner_beyond(int listed, int to, global const int* open_offsets,
                                 global const open_edge* open_edges) {
   for (int k = open_offsets[listed]; k < open_offsets[listed + 1]; ++k) {

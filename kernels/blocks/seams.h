@@ -251,8 +251,7 @@ static inline seam_walk walk_from(int left, int right, int crossings, int outcom
 }
 
 // Walk w of a height: in cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
-// tangent, otherwise a walk without edges. crossings and removed: of all upward walks, and behind them of all
-// downward ones.
+// tangent, otherwise a walk without edges. crossings and removed: of all upward, then of all downward walks.
 static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
                                      GLOBAL int2* crossings, GLOBAL uchar* removed) {
   const part_halves halves = halves_of_cell(blocks, height, w / 2);

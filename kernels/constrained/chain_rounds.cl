@@ -69,8 +69,8 @@ kernel void list_long_chains(int n, global const uint2* restrict places, global 
   }
 }
 
-// chains: the long ones, whose vertices begin at `offsets`; vertices of all chains begin at `all`. of: the
-// chain of each vertex.
+// chains: the long ones, with vertices from `offsets` on; all chains' vertices begin at `all`. of: chains of
+// vertices.
 kernel void start_vertices(int n, int count, global const int* restrict chains, global const int* restrict offsets,
                            global const int* restrict all, global const coordinate2* restrict all_places,
                            global int* restrict of, global coordinate2* restrict places, global uchar* restrict hubs) {

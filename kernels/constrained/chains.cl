@@ -8,8 +8,8 @@
 // place is offsets[c] - 2c.
 //
 // gather_vertices copies the vertices' coordinates, so that vertices of a chain are contiguous.
-// triangulate_chains has a work-item per chain. It gift-wraps short chains, and inserts the vertices of longer
-// ones in random order.
+// triangulate_chains has a work-item per chain. It gift-wraps short chains, and inserts vertices of others in
+// random order.
 
 #include "constrained/chains.h"
 #include "constrained/records.h"

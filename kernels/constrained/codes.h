@@ -21,13 +21,11 @@ INTEGER_CONSTANT(CONSTRAINT_WAITS, 0);
 INTEGER_CONSTANT(CONSTRAINT_FITS, 1);       // it holds all rows that it crosses, which are few
 INTEGER_CONSTANT(CONSTRAINT_FITS_LONG, 2);  // or many
 
-// The mark of a row that no constraint has claimed. Rows that a constraint has won are marked with RANK_WON and
-// the round.
+// Marks a row that no constraint has claimed. RANK_WON and the round mark rows that a constraint has won.
 #define UNCLAIMED 0xffffffffu
 #define RANK_WON 0x80000000u
 
-// With the number on the hull: the place of a vertex of a set without triangles. Other vertices have a corner
-// as their place.
+// With the number on the hull: the place of a vertex of a set without triangles. Other places are corners.
 #define PLACE_ON_LINE 0x80000000u
 
 END_SHARED

@@ -364,8 +364,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   return left + 1;
 }
 
-// For a constraint that is an edge: 0 if it holds the rows beside it, otherwise the complement of one that it
-// does not hold.
+// 0 if a constraint that is an edge holds the rows beside it; else the complement of one that it does not hold.
 static inline int hold_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
   const int beyond = neighbors[corner];
   return claims[corner / 3] != rank ? ~(corner / 3) : beyond >= 0 && claims[beyond] != rank ? ~beyond : 0;

@@ -6,8 +6,7 @@
 
 BEGIN_SHARED
 
-// A segment's departure is searched in this many triangles around one end, then around both: most vertices have
-// fewer.
+// A departure is searched in this many triangles around one end, then around both: most vertices have fewer.
 INTEGER_CONSTANT(STAR_PATIENCE, 8);
 // A constraint that crosses at most this many triangles is inserted by one work-item. Its turns are bits of a
 // ulong, and the chains of its cavity have at most 4 vertices more.

@@ -27,8 +27,7 @@ typedef struct {
 ASSERT_SIZE(chain_entry, 16);
 
 // A vertex of a chain that is triangulated. Vertices are positions in the chain. In the polygon of inserted
-// vertices: the next one, and the half-edge inside of the edge to it. Then the vertices between which it is
-// inserted.
+// ones: the next one, and the half-edge inside of the edge to it. Then its neighbours when it is inserted.
 typedef struct {
   int next, inside, before, after;
 } chain_vertex;

@@ -4,8 +4,7 @@
 // a region's list, and repeats this with the lists that it makes, until they are short. The hull of the
 // shortest lists prunes the lists before (prune.cl); the hull of the remaining points and of that hull's own
 // vertices prunes the lists before these, and so on up to the level's points and corners. Any path through some
-// of a region's points, with its ends, would do for pruning, so nothing need be decided exactly until the hull
-// itself. A step is:
+// of a region's points, with its ends, can prune, so only the hull itself need be decided exactly. A step is:
 //
 // 1. sequence_of_lists lays out the shortest lists between the ends of their regions' hulls. Later steps have
 //    three kinds of elements, each in the order of (region, u): the path's vertices, the internal points that
@@ -333,7 +332,7 @@ static inline int chain_of(hull_frame* frame, sequence s, int begin, int end COU
   return size;
 }
 
-// The first element of the hull [right, right_end) that the tangent from the point touches last: later ones are
+// The first element of the hull [right, right_end) that the tangent from the point touches: later ones are
 // above it.
 static inline int tangent_from(hull_frame* frame, sequence s, int id, double2 p, int right, int right_end COUNTERS) {
   int low = right, high = right_end - 1;

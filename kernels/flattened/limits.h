@@ -18,8 +18,7 @@ INTEGER_CONSTANT(COUNTED_CORNERS, 256);
 // Quickhull splits at deepest points for this many rounds, then it balances its splits. Only inputs made for
 // that purpose have been seen to take more.
 INTEGER_CONSTANT(MOST_QUICKHULL_ROUNDS, 64);
-// Rounds of splits at deepest points for Hull::balanced: the number that served skewed input well for the
-// paper's authors.
+// Rounds of splits at deepest points for Hull::balanced: they served skewed input well in the paper.
 INTEGER_CONSTANT(ROUNDS_BEFORE_BALANCE, 4);
 // Dropping vertices that are not strictly below their neighbours' segment can expose one vertex at a time.
 // After this many rounds, a quickhull of the remaining vertices finishes.

@@ -6,8 +6,7 @@
 // to that of its neighbour, as in SciPy's CloughTocher2DInterpolator; so the interpolant is invariant under affine
 // maps.
 //
-// One pass, with one work-item per query, which computes all columns: values and results are rows of `columns`
-// numbers.
+// One pass, with one work-item per query, for all columns: values and results are rows of `columns` numbers.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
@@ -68,8 +67,7 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 }
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
-// outside, too. gradients: rows by vertex, or else by point; scales: by set, the factors that bring them to the
-// units of `points`.
+// outside, too. gradients: rows by vertex, or else by point; scales: factors by set, to the units of `points`.
 kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, double outside,
                                       filter_bound bound, int kept, FACES(), global const int* restrict found,
                                       global const double* restrict values, global const double* restrict gradients,

@@ -7,8 +7,8 @@
 //   4 sum e (e.g_v) / L^3 + 2 sum e (e.g_u) / L^3 = 6 sum e (f_u - f_v) / L^3.
 // With D the 2 by 2 blocks of the first sums, all eigenvalues of the system preconditioned by D lie in [1/2, 3/2], as
 // each edge's eigenvalues do. So Chebyshev's semi-iteration (Golub and Varga, 1961) needs no products of whole
-// vectors: each step is one pass, a step's share of the error is known beforehand, and the result does not
-// depend on the device.
+// vectors: each step is one pass, each step's share of the error is known before, and no result depends on the
+// device.
 //
 // 1. count_edges counts the edges of each vertex, by a walk around it. The host scans the numbers.
 // 2. write_edges writes each vertex' neighbours, the weights of the edges, and the inverse of its block.

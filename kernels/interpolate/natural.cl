@@ -9,8 +9,7 @@
 // form a tree, and each of its boundary's vertices is a neighbour of q. A walk goes around the boundary. At each vertex
 // v it rotates through the cavity's triangles that have v as a corner. Their circumcentres are the corners of the piece
 // of v, except for the first and the last corner, which are circumcentres of q, v and a neighbour of v on the
-// boundary. So the walk needs no memory, whatever the number of neighbours. It takes three steps per triangle
-// of the cavity.
+// boundary. So the walk needs no memory for any number of neighbours. It takes three steps per triangle.
 //
 // The piece of v is cut into triangles by diagonals from its first corner A, the centre of the circle through q, p and
 // v, where p comes before v on the boundary. For an edge from v to u, with a triangle on either side, the distance of
@@ -561,7 +560,7 @@ static inline void fetch_query(int i, int n, global const int* found, global con
 #endif
 }
 
-// Brings the rows of values, by point, into the order of vertices, so that rows of neighbours are close in
+// Sorts rows of values from the order of points to the order of vertices, which keeps neighbours close in
 // memory.
 kernel void place_values(int n, int sets, int columns, global const int* restrict first_vertices,
                          global const int* restrict source, global const double* restrict values,

@@ -24,8 +24,7 @@ static inline int pick(int i, int level, int ratio) {
 }
 
 // n entries: set s has the entries from offsets[l * sets + s] on at level l. Set s has the vertices from
-// first_vertices[s] on. below: the entry's vertex if that is on level 0, otherwise its entry on the level
-// below.
+// first_vertices[s] on. below: the entry's vertex on level 0, otherwise its entry one level below.
 kernel void draw_entries(int n, int levels, int sets, int ratio, global const int* restrict offsets,
                          global const int* restrict first_vertices, global const coordinate2* restrict points,
                          global coordinate2* restrict coordinates, global int* restrict below) {

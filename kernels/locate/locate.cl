@@ -104,8 +104,7 @@ kernel void count_vertices(int n, global const face* restrict faces, global cons
   }
 }
 
-// For each vertex: its number, and by number its coordinates, its index among the points, and its first
-// triangle.
+// For each vertex: its number, and by number its coordinates, the index of its point, and its first triangle.
 kernel void number_vertices(int n, global const face* restrict faces, global const int* restrict incident,
                             global const uint* restrict firsts, global const coordinate* restrict input, scaling scale,
                             global int* restrict numbers, global coordinate2* restrict points,
@@ -463,8 +462,8 @@ static inline int walk_straight(coordinate2 q, int start, filter_bound bound, co
 }
 
 // In a mesh with constraints, which has one set, ends walks that find_triangles gave up. Triangles from `kept`
-// on fill the mesh up to the convex hull, and queries in them are outside. found: by place; answers: by query,
-// if is_answer.
+// on fill the mesh up to its hull; queries in them are outside. found: by place; answers: by query, if
+// is_answer.
 kernel void find_in_constrained(int n, PLACED_QUERIES(), int kept, int is_answer, QUERY_TREES(),
                                 global const coordinate* restrict queries, filter_bound bound, WALKED_MESH(),
                                 global int* restrict found, global int* restrict answers) {

@@ -4,9 +4,9 @@
 // Three things are new. On a line, the tangent may pass over vertices that it hides. A candidate may come to lie under
 // the next base, inside of the triangle that was just made: it is hidden there, and its edges into the triangle go.
 // And vertices that a merge has hidden may remain as disconnected pieces. A vertex that has lost an edge to a
-// vertex of the seam is hidden if and only if no edge that crosses the seam ends at it: the triangles that the
-// merge makes all cross the seam, and they cover everything that it removes. Vertices attached to such a vertex
-// are hidden, too.
+// vertex of the seam is hidden if and only if no edge that crosses the seam ends at it: all triangles that the
+// merge makes cross the seam, and they cover all that it removes. Vertices attached to a hidden one are hidden,
+// too.
 #ifndef FLAUNAY_POWER_RINGS_H
 #define FLAUNAY_POWER_RINGS_H
 

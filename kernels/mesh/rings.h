@@ -51,8 +51,7 @@ static inline largest_errors errors_within(real extent, filter_bounds bounds) {
 typedef struct {
   GLOBAL ring_edge* edges;
   GLOBAL const coordinate2* points;  // by vertex
-  // An edge out of each vertex: the counter-clockwise hull edge for a hull's strict corner; NO_EDGE if it has
-  // no edge.
+  // An edge out of each vertex, or NO_EDGE; out of a hull's strict corner, the counter-clockwise hull edge.
   GLOBAL int* vertex_edge;
   filter_bounds bounds;
   largest_errors errors;      // of the triangulations that are being merged

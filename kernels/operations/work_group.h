@@ -1,12 +1,11 @@
 // Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is the
 // share of one work-group. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups
-// behind the last tile, which do nothing. All work-items of a group must call these functions at the same
-// place. In OpenCL C alone.
+// behind the last tile, which do nothing. All work-items of a group must call them at the same place. In OpenCL
+// C alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 
-// For functions with barriers: PoCL 3.1 loses the barriers of functions that are called twice and are not
-// inlined.
+// For functions with barriers: PoCL 3.1 loses barriers of functions that are called twice and not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
 
 // Defines a function that returns the sum of the values of the work-items before this one, and writes the sum

@@ -50,7 +50,7 @@ kernel void draw_samples(int n, int tree_count, global const int* restrict first
 }
 
 // Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one
-// along y. Equal points are in the order in which they were drawn, here and in all later steps.
+// along y. Equal points stay in the order in which they were drawn, also later.
 kernel void sort_chunks(int n, SAMPLED_CHUNKS(), global keyed* elements, global keyed* spare, global int* order) {
   const int w = get_global_id(0);
   if (w < n) {

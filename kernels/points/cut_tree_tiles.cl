@@ -76,8 +76,7 @@ static inline int merged_place(int i, int run, int size, local const int* order,
 }
 
 // Two work-groups per tile, one per axis. order holds the order along x and then the one along y; ranks, for each
-// sample, its places in both. Equal points are in the order in which they were drawn, here and in all later
-// steps.
+// sample, its places in both. Equal points stay in the order in which they were drawn, also later.
 kernel void sort_tiles(int tiles, SAMPLED_CHUNKS(), global int* restrict order, global int* restrict ranks) {
   local coordinate2 points[LARGEST_SAMPLE_TILE];
   local int orders[2 * LARGEST_SAMPLE_TILE];

@@ -88,8 +88,7 @@ typedef struct {
   cut_node node;
 } gap_cut;
 
-// Cuts in the middle of the gap that begins at a place, or without a gap (extent 0) at the node's median
-// sample.
+// Cuts in the middle of the gap at a place, or without a gap (extent 0) at the node's median sample.
 static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, coordinate extent, int first, int axis, int all_samples,
                                  global const coordinate2* samples, global const int* order) {
   gap_cut cut;

@@ -43,8 +43,7 @@ INTEGER_CONSTANT(MOST_BITS, LARGEST_EXPONENT - LOWEST_EXPONENT + 1);
 INTEGER_CONSTANT(COARSE_HULL_BITS, 16);
 INTEGER_CONSTANT(COARSE_ORIENT_BITS, 25);
 INTEGER_CONSTANT(COARSE_CIRCLE_BITS, 11);
-// In fixed point, coordinates of this many bits have differences of one more, whose dot and cross products are
-// below 2^63.
+// In fixed point, differences of coordinates of this many bits have dot and cross products below 2^63.
 INTEGER_CONSTANT(COARSE_FIXED_BITS, 29);
 
 // Queries and the points that they are held against: coordinates below 2^509 that are multiples of 2^-511. No product

@@ -92,8 +92,7 @@ OUT_OF_LINE static inline int circle_sign_by_expansions(const double2* dx, const
   return expansion_sign(&sum);
 }
 
-// The input of in-circle tests: differences of three points from the fourth, and the largest magnitude among
-// them.
+// The input of in-circle tests: differences of three points from the fourth, and their largest magnitude.
 typedef struct {
   double2 x[3], y[3];
   double largest;
@@ -123,8 +122,7 @@ static inline int are_integers(const circle_differences* from, double factor, in
   return integers;
 }
 
-// The in-circle test of coarse points (COARSE_CIRCLE_BITS) after the filter found a tie, which is exact for
-// them.
+// The in-circle test of coarse points (COARSE_CIRCLE_BITS) after a filter, exact for them, found a tie.
 #define circle_coarse(a, b, c, d) 0
 
 // Products and sums of pairs as two_sum gives them, with about twice the precision of doubles.

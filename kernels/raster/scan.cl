@@ -125,8 +125,7 @@ static inline int scan_row(const scanned_triangle* t, int first, int last, doubl
   return is_wrong;
 }
 
-// Triangles [i * chunk, ...) of n. wrong: receives the first triangle with a corner or a neighbour that does
-// not exist.
+// Triangles [i * chunk, ...) of n. wrong: gets the first triangle with an invalid corner or neighbour.
 kernel void scan_triangles(int n, int chunk, pixel_grid grid, SCANNED_MESH(), global const double* restrict values,
                            global double* restrict pixels, volatile global int* restrict wrong) {
   const int begin = get_global_id(0) * chunk, end = min(n, begin + chunk);

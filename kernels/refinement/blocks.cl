@@ -39,8 +39,8 @@ kernel void describe_rows(int n, uint mask, global const int* restrict list, REF
   }
 }
 
-// n rows of the list: the number of levels of area at which they are too large, each `step` times the one
-// before; 0 if they are not.
+// n rows of the list: the number of levels of area, each `step` times the one before, at which they are too
+// large.
 kernel void find_levels(int n, refinement_rules rules, double step, global const int* restrict list, REFINED_MESH(),
                         global uchar* restrict levels) {
   const int i = get_global_id(0);

@@ -1,8 +1,8 @@
 // Refinement within a block, by the sequential algorithm: bad triangles in the order of classes, each mended by a point
 // whose cavity is dug out and replaced by a star. A block changes only rows whose corners are all in its leaf of the
-// plane; it reads the corners of rows that have corners in several leaves, which nobody changes. A task that
-// needs other rows is put aside for the next phase, before anything is changed. Nothing depends on the numbers
-// of rows or vertices.
+// plane; it reads the corners of rows that have corners in several leaves, which nobody changes. Tasks that
+// need other rows are put aside for the next phase, unchanged. Nothing depends on the numbers of rows or
+// vertices.
 #ifndef FLAUNAY_REFINEMENT_BLOCKS_H
 #define FLAUNAY_REFINEMENT_BLOCKS_H
 
@@ -17,7 +17,7 @@
 
 BEGIN_SHARED
 
-// The first digging of a cavity ends at this many rows: if its point is beyond a constraint, it need not be a
+// The first digging of a cavity ends at this many rows: with its point beyond a constraint, it may not be a
 // tree.
 #define MOST_UNPROVEN 64
 // The in-circle test of `dig`: its terms are as in predicates/planar.h, and their magnitude is at most the sum
@@ -181,8 +181,7 @@ static inline int tier_of_large(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 - 1 - tier_of(fabs(u.x * v.y - u.y * v.x), rules);
 }
 
-// The class of a triangle with a small angle: after large triangles, the shortest sides first. shortest: their
-// squared length.
+// The class of a triangle with a small angle: after large triangles, by ascending `shortest`, the squared side.
 static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules rules, double shortest,
                                 GLOBAL const edge_place* places, GLOBAL const int* ends, GLOBAL const int* wedges) {
   GLOBAL const mesh_row* const at = &mesh->rows[row];
@@ -284,8 +283,8 @@ static inline int room_for_tasks(const block_work* work) {
 
 static inline int state_of_tier(int tier) { return tier >= TIER_LATER ? ROW_BAD : TIER_EXCUSED - tier; }
 
-// The class of a bad triangle in a scaffold: triangles whose circumradius exceeds their leaf's reach act, the
-// largest one first.
+// The class of a bad triangle in a scaffold: if its circumradius exceeds its leaf's reach it acts, the largest
+// first.
 static inline int tier_in_scaffold(GLOBAL const block_cut* cuts, GLOBAL const double* reaches, const seen_mesh* mesh,
                                    int row, refinement_rules rules) {
   const ordered_triangle triangle = ordered(mesh, row);

@@ -2,8 +2,7 @@
 // them. Around a point that splits a constraint, those on both of its sides.
 //
 // A cavity has no vertex inside, so its triangles are a tree. A tour around the tree meets the sides of the cavity
-// counter-clockwise and needs no memory except for the way back. It keeps some steps of that: beyond them it
-// tests again.
+// counter-clockwise and needs memory only for the last steps of the way back: beyond them it tests again.
 #ifndef FLAUNAY_CAVITIES_OF_POINTS_H
 #define FLAUNAY_CAVITIES_OF_POINTS_H
 

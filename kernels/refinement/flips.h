@@ -8,8 +8,7 @@
 
 BEGIN_SHARED
 
-// The two rows beside an edge that is flipped, its corner in each, and the neighbours beyond the two sides that
-// change rows.
+// The two rows beside a flipped edge, its corner in each, and the neighbours beyond the sides that change rows.
 typedef struct {
   int row, k, beyond, j, from_row, from_beyond;
 } flip_place;

@@ -158,8 +158,7 @@ static inline double scaled_height(const seen_mesh* mesh, int corner) {
 
 // A corner opposite to a constraint is far from it above this multiple of the smallest edge, squared. If the
 // constraint is longer than six smallest edges, the circles beside it then reach so far around the point that
-// splits it, between a third and two thirds of its length, that all vertices are farther than 1.03 smallest
-// edges from that.
+// splits it, between a third and two thirds of its length, that no vertex is nearer to it than 1.03 of these.
 #define FAR_CORNER 1.5
 
 // Why the constraint, or part of one, opposite to a corner may not be split, as far as the triangles beside it

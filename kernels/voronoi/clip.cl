@@ -77,8 +77,8 @@ static inline int witness_of(const centre_terms* of, int clip, global const doub
   return side_of_edge(of, low, clip, corners, bound) <= 0 ? low : STRICTLY_INSIDE;
 }
 
-// Whether a rounded centre is certainly inside, from the bounds of its errors. The triangles between corner 0
-// and the polygon's edges, as above.
+// Whether a rounded centre is certainly inside, with its errors' bounds. Tests triangles from corner 0, as
+// above.
 static inline int is_surely_inside(double2 centre, double slack, int clip, global const double* corners) {
   const double2 apex = corner_of(0, corners);
   if (centre_side_rounded(centre, slack, apex, corner_of(1, corners)) <= 0) return 0;
@@ -257,8 +257,8 @@ static inline voronoi_edge edge_of(int slot, int points, int triangle_count, int
 
 // The part of a Voronoi edge inside of the polygon, in one number: the polygon's edge through which the Voronoi
 // edge enters and the one through which it leaves, or STRICTLY_INSIDE if it begins or ends inside; whether it
-// begins or ends at a Voronoi vertex, which may be on the polygon's edge; whether a part of it is inside at
-// all; and whether its length is zero.
+// begins or ends at a Voronoi vertex, which may be on the polygon's edge; whether any part is inside; and
+// whether its length is zero.
 #define LEAVES_SHIFT CLIP_BITS
 #define BEGINS_AT_VERTEX (1u << 2 * CLIP_BITS)
 #define ENDS_AT_VERTEX (2u << 2 * CLIP_BITS)
@@ -277,8 +277,7 @@ static inline uint simple_code(int c, int t, int next, global const uchar* flats
                    : 0;
 }
 
-// n triangles. slots: NO_SLOT throughout; codes: 0 throughout. For other arguments see write_cells in
-// voronoi.cl.
+// n triangles. slots: NO_SLOT throughout; codes: 0 throughout. Others: see write_cells in voronoi.cl.
 kernel void write_slots(int n, int chunk, global const int* restrict triangles, global const int* restrict neighbors,
                         global const int* restrict ahead, global const uchar* restrict firsts,
                         global const uchar* restrict flats, global const int* restrict witnesses,
@@ -509,8 +508,8 @@ kernel void count_whole(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound, S
   }
 }
 
-// n points. places: where the corners of each slot begin, and their number. cells: where the corners of each
-// point's cell begin.
+// n points. places: where the corners of each slot begin, and their number. cells: where each cell's corners
+// begin.
 kernel void find_cells(int n, global const uint* restrict offsets, global const uint* restrict places,
                        global int* restrict cells) {
   const int p = get_global_id(0);

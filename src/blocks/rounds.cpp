@@ -95,8 +95,7 @@ struct Round {
   bool can_be_merged() const { return !blocks.offsets.empty(); }
 };
 
-// Makes the triangulations of the blocks canonical. If blocks are merged, these are the triangulations of the
-// sets.
+// Makes the triangulations of the blocks canonical; if blocks are merged, the triangulations of the sets.
 void complete(Workspace& work, const Round& round) {
   if (round.is_merged) merge(work, round.blocks, round.rings);
   // Coarse coordinates have no ties: merges break them.

@@ -27,8 +27,7 @@ namespace {
 // until one ends: at a point that is on the wrong side of the other.
 //
 // Vertices have numbers in the order of sets and, within these, in lexicographic order. A half-edge e has its
-// triangle on the left; e ^ 1 is the other one. Segment s has the half-edges 2 s, in its direction, and 2 s +
-// 1.
+// triangle on the left; e ^ 1 is the other one. Segment s has 2 s, in its direction, and 2 s + 1.
 class Inside {
  public:
   bool run(const double* coordinates, const std::vector<std::size_t>& offsets, const Constraints& constraints,
@@ -234,8 +233,7 @@ class Inside {
     if (above != kNone) crossed_[above].below = below;
   }
 
-  // The depth right above a segment, from the depth right below it. edge: the half-edge from the segment's
-  // left end.
+  // The depth right above a segment, from the depth right below. edge: the half-edge from its left end.
   int depth_above(int depth, int edge) const {
     return !is_winding_ ? depth ^ 1 : (edge & 1) == 0 ? depth + 1 : depth - 1;
   }

@@ -62,8 +62,7 @@ struct NamedCoordinate {
 struct RangeEnds {
   NamedCoordinate largest, finest;
 };
-/// Finds these coordinates among the points [first, last). An end that none of them reaches keeps its
-/// default.
+/// Finds these coordinates among the points [first, last). Ends that none of them reaches keep defaults.
 RangeEnds find_ends(const double* coordinates, std::size_t first, std::size_t last,
                     const Magnitudes& magnitudes);
 

@@ -20,8 +20,7 @@ struct Plan {
 /// first point of each set, and the end. One work-item moves a chunk of points.
 void move_by_chunks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
                     const Buffer<cl_double>& input, const Buffer<cl_int>& representatives, Blocks& blocks);
-/// Does the same with one work-group per tile of points, for devices with many lanes. Waits if sizes shall be
-/// read.
+/// Does the same with one work-group per tile of points, for devices with many lanes. May wait for sizes.
 void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
                    const Buffer<cl_double>& input, BlockSizes sizes, const Buffer<cl_int>& representatives,
                    Blocks& blocks);

@@ -28,8 +28,8 @@ struct VerifyConstraints {
   /// The goals of a refined mesh, in degrees and as an area; 0: none.
   double min_angle = 0, max_area = 0;
   bool conforming = false;  ///< whether it has been asked to be Delaunay without constraints, too
-  /// If given: triangles that may be worse, ascending. Then the angles at which corners see edges are not
-  /// checked.
+  /// If given: triangles that may be worse, ascending. The angles at which corners see edges are unchecked
+  /// then.
   const std::vector<std::int32_t>* worse = nullptr;
   /// If given: per triangle its depth by the fill rule, and the number of its region.
   const std::vector<std::int32_t>*depths = nullptr, *regions = nullptr;
@@ -49,7 +49,7 @@ struct VerifyConstraints {
 /// constraint or on the border at 180 degrees less twice the smallest angle (or less 40) or more; in
 /// conforming meshes, at more than 90 degrees. Slivers between such edges and the hull need no triangle,
 /// because points on edges are rounded. O((n + s) log (n + s)) for n points and s segments, whatever overlaps
-/// and whatever meets at a point.
+/// or meets at a point.
 VerifyReport verify_constrained(const double* coordinates, std::size_t n,
                                 const std::vector<std::int32_t>& triangles,
                                 const std::vector<std::int32_t>* neighbors,

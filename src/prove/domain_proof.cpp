@@ -347,8 +347,8 @@ class DomainProof {
     if (first < last) part.holes.assign(constraints_.holes + 2 * first, constraints_.holes + 2 * last);
   }
 
-  /// Lists the rings of polygons whose segments are in the set. positions: of the set's segments in the
-  /// part's list.
+  /// Lists the rings of polygons with segments in the set. positions: of the set's segments in the part's
+  /// list.
   void list_rings(std::size_t s, const std::vector<std::size_t>& positions, Part& part) const {
     const Rings& all = constraints_.rings;
     const std::vector<std::size_t>& own = segments_of_[s];

@@ -137,8 +137,7 @@ class PeriodicProof : RowsProof {
             "the edge between the triangles {} and {} is not Delaunay, or not canonical", c / 3, other / 3);
   }
 
-  /// The number of periods by which a triangle must be moved so that the edge opposite to its corner d ends
-  /// at b.
+  /// The number of periods by which a triangle must move so that the edge opposite to its corner d ends at b.
   Pair<int> step_to(const Image& b, std::size_t d) const {
     const Image end = corner(after(after(d)));
     return {b.at[0] - end.at[0], b.at[1] - end.at[1]};

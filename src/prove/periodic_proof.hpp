@@ -9,8 +9,7 @@
 
 namespace flaunay::prove {
 
-/// Returns the first error found; empty if all is right. The mesh must have been checked by call::check. O(n
-/// log n).
+/// Returns the first error found; empty if all is right. call::check must have checked the mesh. O(n log n).
 std::string find_problem(const PeriodicTriangulation& mesh);
 
 /// The triangles beyond the edges opposite to corners, or -1. offsets: as in PeriodicTriangulation. If a

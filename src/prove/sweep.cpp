@@ -84,7 +84,7 @@ void Sweep::pass(std::int32_t place) {
 }
 
 /// Ends the pieces of all active spans through the place, and moves spans that continue to leaving_. Returns
-/// the active span above the place.
+/// the span above.
 Sweep::Status::iterator Sweep::end_pieces(std::int32_t place, Status::iterator first) {
   while (first != active_.end() && side(*first, place) == 0) {
     Active rest = *first;
@@ -116,8 +116,7 @@ void Sweep::merge_leaving(std::int32_t place) {
 }
 
 /// Merges spans with one direction. The result extends to their furthest ends and keeps the line of a span
-/// that came through the place, otherwise it gets a new line. If several segments end at the furthest place,
-/// it has the smallest number.
+/// that came through the place, otherwise it gets a new line. The smallest segment that ends there counts.
 Sweep::Active Sweep::merged(std::size_t first, std::size_t last) {
   Active all = leaving_[first];
   for (std::size_t i = first; i < last; ++i) {

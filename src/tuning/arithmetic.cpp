@@ -125,8 +125,7 @@ void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& sl
 
 void choose_arithmetic([[maybe_unused]] host::Runtime& runtime) {
 #ifndef FLAUNAY_WITHOUT_OPENCL
-  // For CPUs the result is known. A device that claims to be a CPU and a GPU is a simulator, whose times mean
-  // nothing.
+  // For CPUs the result is known. A device that claims to be both is a simulator, whose times mean nothing.
   if (runtime.is_native() || (runtime.device().type() & CL_DEVICE_TYPE_CPU) != 0) return;
   choose_arithmetic(runtime, [&] {
     // A changed measurement is another one.

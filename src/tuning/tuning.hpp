@@ -144,8 +144,8 @@ std::string tuning_in_environment();
 host::Settings settings_for(const boost::compute::device& device,
                             const std::string& given = tuning_in_environment());
 
-/// The sizes and capabilities assumed for a device of this name, type and number of compute units, regardless
-/// of its limits.
+/// The sizes and capabilities for a device of this name, type and number of compute units, without its
+/// limits.
 struct KindOfDevice {
   Tuning tuning;
   host::Capabilities capabilities;

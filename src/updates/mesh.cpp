@@ -252,8 +252,7 @@ Ids Mesh::old_triangles() {
   return old;
 }
 
-// Sorts vertices so that vertices that are close in the plane are close in the list. The smallest of several
-// vertices in one place stays.
+// Sorts vertices so that neighbours in the plane are close in the list. Of equal ones the smallest stays.
 Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<Found>& doubled) const {
   if (vertices.size() < 2) return vertices;

@@ -59,8 +59,8 @@ class Mesh {
     std::int32_t vertex, other;
   };
   /// Inserts vertices. coordinates: per number. Returns the vertices whose place another vertex has already,
-  /// first those in the mesh, then those where the smallest of several new vertices is inserted. Adds the
-  /// split constraint edges to `splits`.
+  /// a vertex of the mesh or, after these, the smallest of several new ones. Adds split constraint edges to
+  /// `splits`.
   std::vector<Found> insert(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<SplitEdge>& splits);
   /// Takes vertices out. Returns whether it could: not if one has too many triangles around it, or if no

@@ -41,8 +41,7 @@ class Scan : public ValuedPoints {
   /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
   /// file without a name in `scratch`. Throws Error(usage) for other endings, and for a choice if there is a
   /// file that is no .las file; Error(input) for files that cannot be read or are truncated. third: the name
-  /// of the column beside x and y in text. Throws Error(usage) for columns if there is a file that is no
-  /// text.
+  /// of the column beside x and y in text. Throws Error(usage) for columns if a file is no text.
   Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch,
        const Columns& columns = {}, std::string_view third = "height");
   ~Scan() override;

@@ -22,8 +22,7 @@ constexpr double kPairsPerSegment = 1;
 
 constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
 
-// Two segments that cross, the one with the larger index first. So the error names the least of several
-// pairs.
+// Two segments that cross, the one with the larger index first. So the error names the least pair.
 using Crossing = std::pair<std::int32_t, std::int32_t>;
 
 Crossing crossing_of(std::int32_t a, std::int32_t b) { return {std::max(a, b), std::min(a, b)}; }
@@ -73,8 +72,7 @@ Point crossing_place(const Line& first, const Line& second) {
       crossing.second, crossing.first);
 }
 
-// The segments of one set, cut into edges that have no vertex inside: edges that cross then do so at no
-// point.
+// The segments of one set, cut into edges without inner vertices: edges that cross then do so at no point.
 class CutSegments {
  public:
   explicit CutSegments(const SegmentSet& set)

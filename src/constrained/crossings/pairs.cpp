@@ -144,8 +144,7 @@ class Search {
     return true;
   }
 
-  // Items that may meet on the lower side, and on the upper side of a line. The line itself belongs to the
-  // lower side.
+  // Items that may meet on the lower side, and on the upper side of a line. The lower side includes the line.
   bool is_low(std::int32_t piece, Axis axis, double middle) const {
     const Point a = from(piece), b = to(piece);
     return axis == Axis::x ? a.x < middle || b.x == middle : std::min(a.y, b.y) <= middle;
@@ -375,8 +374,7 @@ class Search {
     const Point pa = from(p), pb = to(p), qa = from(q), qb = to(q);
     if (of_p.known()) return predicates_.orient(qa, qb, {x, of_p.low});
     if (of_q.known()) return -predicates_.orient(pa, pb, {x, of_q.low});
-    // Neither piece ends here; so if they do not cross, a piece that is not below the other at both ends is
-    // above it.
+    // Neither ends here; so if they do not cross, a piece that is not below at both ends is above.
     const int side_qa = predicates_.orient(pa, pb, qa), side_qb = predicates_.orient(pa, pb, qb);
     if (side_qa * side_qb >= 0) return -(side_qa + side_qb > 0) + (side_qa + side_qb < 0);
     const int side_pa = predicates_.orient(qa, qb, pa), side_pb = predicates_.orient(qa, qb, pb);

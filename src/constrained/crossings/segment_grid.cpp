@@ -15,8 +15,7 @@ namespace {
 constexpr std::size_t kInOneCell = 96;
 // All pairs are compared if their number is at most this times the number of entries, the segments in cells.
 constexpr std::size_t kPairsPerEntry = 24;
-// Otherwise pairs are compared as long as one in kPairsPerCrossing crosses, after the first
-// kFirstPairsPerEntry pairs per entry.
+// Otherwise kFirstPairsPerEntry pairs per entry, and as long as one in kPairsPerCrossing crosses.
 constexpr std::size_t kPairsPerCrossing = 32;
 constexpr std::size_t kFirstPairsPerEntry = 4;
 

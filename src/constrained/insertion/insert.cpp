@@ -33,8 +33,7 @@ using points::download;
 
 constexpr std::size_t kMostPieces = std::size_t{1} << 30, kMostRows = 0xffffffff;
 
-// If segments are inserted in stages, each stage has kStageGrowth times as many as all stages before it
-// together.
+// If segments are inserted in stages, each has kStageGrowth times as many as all stages before it together.
 constexpr std::size_t kStageGrowth = 2, kSmallestStage = 16;
 
 // Points as predicates need them.

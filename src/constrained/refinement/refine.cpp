@@ -61,8 +61,7 @@ constexpr int kLevelPlaces = 4;
 constexpr double kLevelStep = 1 << kLevelPlaces, kLevelRest = 0.1;
 // Triangles with a circumradius above this part of the size of their block are cut before.
 constexpr double kScaffold = 0.5;
-// Blocks at once, on devices; natively, as many as threads. The lists of each block have kLeastRoom places at
-// first.
+// Blocks at once, on devices; natively, as many as threads. A block's lists have kLeastRoom places at first.
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
 // A launch has room for this many chunks of rows and of vertices, or for one per block.
 constexpr std::size_t kLeastChunks = 4;
@@ -80,8 +79,7 @@ constexpr double kSmoothedAngle = 20;
 // largest coordinate if that is more, which is at least 16 units in the last place of any coordinate. With
 // 2^-45 of the largest coordinate, rounding moves points by less than 2 % of the smallest edge.
 constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -48, kFineOfLargest = -45;
-// Coordinates of added points are multiples of 2^(e - kBinaryPlaces), where 2^e is the largest coordinate's
-// power of two.
+// Added points have multiples of 2^(e - kBinaryPlaces), with 2^e the largest coordinate's power of two.
 constexpr int kBinaryPlaces = 200;
 // Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
@@ -477,8 +475,7 @@ class Refining {
     return {list, to[parts]};
   }
 
-  // Finds the largest areas of new rows: the areas of their parents, and the results of the caller's
-  // function.
+  // Finds the largest areas of new rows: their parents' areas, and the results of the caller's function.
   void find_areas() {
     if (given_.size() == 0 && !wanted_.areas_at) return;
     Arena::Scope scope(arena_);

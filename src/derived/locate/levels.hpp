@@ -14,8 +14,7 @@ namespace flaunay::locate {
 
 struct Locator;
 
-/// Triangulates sets of points. The mesh is in `results`; `persistent` holds arrays needed until the call
-/// ends.
+/// Triangulates sets of points. The mesh is in `results`; `persistent` holds arrays of the call.
 using Triangulate = points::DeviceMesh (*)(host::Runtime& runtime, host::Arena& persistent,
                                            const std::vector<std::size_t>& offsets,
                                            const host::Buffer<cl_double>& coordinates, host::Arena& results);

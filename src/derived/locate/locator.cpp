@@ -291,8 +291,7 @@ void find_in_constrained(host::Runtime& runtime, const Locator& locator, const P
              .answers = answers != nullptr ? *answers : found});
 }
 
-// Walks from the triangles of the nearest grid places, in `found`, to the triangles of queries off the grid.
-// answers: by query.
+// Walks from triangles of the grid, by place in `found`, to those of queries off the grid. answers: by query.
 void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
                      const Buffer<cl_int>& answers) {

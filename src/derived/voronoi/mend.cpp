@@ -164,8 +164,7 @@ std::vector<Loop> find_faults(const std::vector<Point>& given) {
 // ---------------------------------------------------------------------------------------------------------------------
 // All cells of a set
 
-// A corner of a polygon: its coordinates, and its place among the set's places. On a torus, images are one
-// place.
+// A corner of a polygon: its coordinates, and the number of its place. On a torus, images are one place.
 struct Corner {
   Point at;
   std::int32_t place;

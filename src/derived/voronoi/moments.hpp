@@ -16,8 +16,7 @@ struct Moments {
   Point centroid{NAN, NAN};
 };
 
-/// The moments of a convex polygon, summed over triangles from its first corner. The area is 0 and the
-/// centroid NaN if rounding leaves no area.
+/// The moments of a convex polygon, by triangles from its first corner; 0 and NaN if rounding leaves no area.
 inline Moments moments_of(const std::vector<Point>& polygon) {
   double twice = 0, x = 0, y = 0;
   for (std::size_t k = 2; k < polygon.size(); ++k) {

@@ -34,8 +34,7 @@ class CrossedTriangles {
 
   /// Moves the triangles of a chunk that lines cross here.
   void take_from(host::Runtime& runtime, ChunkSurface& surface);
-  /// Triangulates the area of these triangles, with lines as edges. constrain: triangulates points with
-  /// constraints, with neighbours.
+  /// Triangulates their area with lines as edges. constrain: triangulates with constraints and neighbours.
   ChunkSurface triangulated(
       const std::function<ConstrainedTriangulation(const std::vector<double>&, const Constraints&)>&
           constrain) const;

@@ -1,5 +1,4 @@
-// Brings points to chunks: from the source in the first round, from points that chunks handed on in later
-// ones.
+// Brings points to chunks: from the source in the first round, from handed-on points in later ones.
 #pragma once
 
 #include <cstddef>

@@ -10,8 +10,7 @@
 
 namespace flaunay::chunks {
 
-/// An edge of a final triangle that has a row. The triangle beyond is final and has no row, or no triangle is
-/// there.
+/// An edge of a final triangle that has a row. The triangle beyond, if there is one, is final and has no row.
 struct Fold {
   std::int64_t from, to;     ///< the ends, counter-clockwise
   kernel::double2 a, b;      ///< where they lie

@@ -68,8 +68,7 @@ class Ranks {
     std::vector<Record> records;
     std::vector<int> counts;
   };
-  /// Sends counts[r] records to each rank r. records: first the records for rank 0, then for rank 1, and so
-  /// on.
+  /// Sends counts[r] records to each rank r. records: for rank 0 first, then for rank 1, and so on.
   template <typename Record>
   Received<Record> exchange(const std::vector<Record>& records, const std::vector<int>& counts) {
     static_assert(std::is_trivially_copyable_v<Record>);

@@ -37,8 +37,7 @@ using Join = Ranks::Join;
 // If a round hands on more than this share of its points, all go to one rank.
 constexpr std::int64_t kMostHandedOnPercent = 70;
 // While few ranks triangulate the remaining points, the others wait. So in later rounds a rank has this part
-// of its points of the first round. With fewer points than kLeastRoundPoints, another round costs more than
-// it saves.
+// of its points of the first round. With fewer than kLeastRoundPoints, a round costs more than it saves.
 constexpr std::size_t kRoundPart = 16;
 constexpr std::size_t kLeastRoundPoints = std::size_t{1} << 16;
 

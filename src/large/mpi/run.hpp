@@ -1,5 +1,5 @@
-// Rounds over ranks: each triangulates its points, keeps the final triangles, and hands on the other points
-// to fewer ranks.
+// Rounds over ranks: each triangulates its points, keeps final triangles, and hands on the rest to fewer
+// ranks.
 #pragma once
 
 #include <cstddef>
