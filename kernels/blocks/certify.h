@@ -40,8 +40,7 @@ typedef struct {
 
 // Finds the circle through a, b, c. Returns 0 if they are too close to a line. Differences have relative errors
 // below u, ROUNDOFF. With d the doubled area, whose error is below 4 u m for the sum m of its terms'
-// magnitudes, the centre is n / 2d from a; n is a difference of two products of three, each exact to within 8
-// u.
+// magnitudes, the centre is n / 2d from a; n is a difference of two products of three, with errors below 8 u.
 static inline int circle_through(coordinate2 a, coordinate2 b, coordinate2 c, circle_found* circle) {
   const real2 p = difference2(b, a), q = difference2(c, a);
   const real left = p.x * q.y, right = p.y * q.x;

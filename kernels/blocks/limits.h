@@ -9,8 +9,7 @@ BEGIN_SHARED
 // Room for the edges that cross the seam of a merge: a planar graph each of whose edges joins vertices of two kinds has
 // less than twice as many edges as vertices.
 INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
-// Sorts begin with tiles of this many points, a power of two. In a tile, each point is compared with all
-// others.
+// Sorts begin with tiles of this many points, a power of two. There each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
 // Work-items of the largest work-group that a kernel with local memory per work-item is made for.
 INTEGER_CONSTANT(LARGEST_GROUP, 1024);

@@ -111,8 +111,8 @@ static inline int fill_chain(int size, GLOBAL const chain_entry* chain, GLOBAL c
   return 1;
 }
 
-// Fills the cavity of a constraint, if possible; returns whether. left: the number of entries on its left, the
-// first.
+// Fills the cavity of a constraint; returns whether it could. left: how many entries, the first, are on its
+// left.
 static inline int fill_cavity(constraint_walk walk, int left, GLOBAL const chain_entry* entries,
                               GLOBAL const coordinate* points, filter_bound bound, const replaced_rows* rows) {
   if (walk.rows == 0) {

@@ -88,8 +88,7 @@ static inline int is_clear(nearby vertex, coordinate2 q, coordinate unit, GLOBAL
   return clearance > LEAST_CLEARANCE && 4 * CLEARANCE_MARGIN * squared_length(difference2(q, vertex.at)) < clearance;
 }
 
-// The nearest of points in their order on a line, or -1: distances fall, then rise, with at most two equal
-// ones.
+// The nearest of points in their order on a line, or -1: distances fall, then rise, with two equal at most.
 static inline int nearest_on_line(coordinate2 q, int first, int end, filter_bound bound, coordinate unit,
                                   GLOBAL const coordinate2* hull_points) {
   if (first == end) return -1;

@@ -5,8 +5,7 @@
 // the next base, inside of the triangle that was just made: it is hidden there, and its edges into the triangle go.
 // And vertices that a merge has hidden may remain as disconnected pieces. A vertex that has lost an edge to a
 // vertex of the seam is hidden if and only if no edge that crosses the seam ends at it: all triangles that the
-// merge makes cross the seam, and they cover all that it removes. Vertices attached to a hidden one are hidden,
-// too.
+// merge makes cross the seam, and they cover all that it removes. All vertices attached to it are hidden, too.
 #ifndef FLAUNAY_POWER_RINGS_H
 #define FLAUNAY_POWER_RINGS_H
 

@@ -418,8 +418,7 @@ static inline int rules_out(rings* g, coordinate_pair left, coordinate_pair righ
 
 static inline coordinate_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
 
-// Merges above a base. Returns MERGE_IS_DONE, or the base at which it stopped, from which another call can go
-// on.
+// Merges above a base. Returns MERGE_IS_DONE, or the base at which it stopped, where a call can go on.
 //
 // It mostly waits: for memory, for predicates, and after wrong predictions of these. So the in-circle tests
 // over a base compare angles, which are computed once and also tell which apexes rise above it. The side whose

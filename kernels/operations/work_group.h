@@ -1,7 +1,7 @@
-// Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is the
-// share of one work-group. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups
-// behind the last tile, which do nothing. All work-items of a group must call them at the same place. In OpenCL
-// C alone.
+// Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is one
+// work-group's share. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind
+// the last tile, which do nothing. All work-items of a group must call them at the same place. In OpenCL C
+// alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 

@@ -1,8 +1,7 @@
 // Refinement within a block, by the sequential algorithm: bad triangles in the order of classes, each mended by a point
 // whose cavity is dug out and replaced by a star. A block changes only rows whose corners are all in its leaf of the
 // plane; it reads the corners of rows that have corners in several leaves, which nobody changes. Tasks that
-// need other rows are put aside for the next phase, unchanged. Nothing depends on the numbers of rows or
-// vertices.
+// need other rows are put aside for the next phase. Nothing depends on numbers of rows or vertices.
 #ifndef FLAUNAY_REFINEMENT_BLOCKS_H
 #define FLAUNAY_REFINEMENT_BLOCKS_H
 
@@ -17,8 +16,7 @@
 
 BEGIN_SHARED
 
-// The first digging of a cavity ends at this many rows: with its point beyond a constraint, it may not be a
-// tree.
+// The first digging of a cavity ends at this many rows: with the point beyond a constraint, it may be no tree.
 #define MOST_UNPROVEN 64
 // The in-circle test of `dig`: its terms are as in predicates/planar.h, and their magnitude is at most the sum
 // of the products of two squared distances each (Cauchy and Schwarz); that sum takes seven roundings.
@@ -283,8 +281,7 @@ static inline int room_for_tasks(const block_work* work) {
 
 static inline int state_of_tier(int tier) { return tier >= TIER_LATER ? ROW_BAD : TIER_EXCUSED - tier; }
 
-// The class of a bad triangle in a scaffold: if its circumradius exceeds its leaf's reach it acts, the largest
-// first.
+// The class of a bad triangle in a scaffold: it acts if its circumradius exceeds its leaf's reach.
 static inline int tier_in_scaffold(GLOBAL const block_cut* cuts, GLOBAL const double* reaches, const seen_mesh* mesh,
                                    int row, refinement_rules rules) {
   const ordered_triangle triangle = ordered(mesh, row);
