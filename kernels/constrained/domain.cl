@@ -222,8 +222,7 @@ static inline int find_edge(int from, int to, int mask, global const int* edges,
   }
 }
 
-// The sum of segments that a path crosses from right to left over the edge from v to w. sums: of edge e at e +
-// 1.
+// The sum of segments that a path crosses over the edge from v to w, right to left. sums: edge e at e + 1.
 static inline int crossed(int v, int w, int mask, global const double_bits* input, global const uint* needed,
                           global const uint* sums, global const int* edges, global const int* slots) {
   if (!needed[0]) return 1;

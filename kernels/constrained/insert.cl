@@ -6,15 +6,16 @@
 // - walk_segments: how many edges each segment consists of, in the Delaunay triangulation, in which it walks
 //   from vertex to vertex. Segments that are edges already are flagged as constraints; the others claim the
 //   rows that they cross. If any segment consists of several edges, write_pieces writes those, and
-//   walk_segments begins again with these as segments. The host scans what they need.
-// - In each round, keep_waiting makes a list of the constraints that are left. choose_constraints: those that
-//   hold all rows that they cross win. It writes the border of these rows, two chains of vertices, to the
-//   entries of the constraint. fill_cavities: winners replace their rows by the canonical triangulations of
-//   both chains, which they gift-wrap. If they are many, constrained/fill_filtered.cl has done so before, as
-//   far as floating point decides. join_cavities: joins the new rows to the rows beyond the chains.
-//   walk_constraints: the others walk and claim again.
-// - Winners with long walks: gather_long writes their chains, chain_vertices the vertices to triangulate,
-//   fill_long has a work-item per triangle, and join_long one per entry.
+//   walk_segments begins again with these as segments. The host scans the sizes that they need.
+// - In each round, keep_waiting lists the constraints that are left. choose_constraints: constraints that hold
+//   all rows that they cross win. It writes the two chains of vertices around these rows to their entries.
+//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they
+//   gift-wrap. If they are many, constrained/fill_filtered.cl has done so before, as far as floating point
+//   decides.
+//   join_cavities: joins the new rows to the rows beyond the chains. walk_constraints: the others walk and
+//   claim again.
+// - Winners with long walks: gather_long writes their chains, chain_vertices the chains' vertices, fill_long
+//   has a work-item per triangle, and join_long one per entry.
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
 // rows are marked by the round, which anyone may claim again. A constraint that found a row held by another one of

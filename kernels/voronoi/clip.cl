@@ -4,17 +4,17 @@
 // an edge that goes to infinity is one. Slots of all cells follow each other in the order of the points. The
 // passes:
 //
-// - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; for each other one, an
-//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero. Both look at
-//   rounded centres first, whose errors are known.
+// - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; for each other
+//   one, an edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero.
+//   Both look at rounded centres first, whose errors are known.
 // - add_open_slots, over the hull: cells on the hull have one slot more than triangles. The host scans the sizes.
 //   write_slots, over chunks of triangles, and write_line_slots, over the hulls of sets on one line. The former follows
 //   the triangles, since their order keeps neighbours in the plane close in memory, and decides simple cases.
 // - clip_slots, over the slots: which part of any other Voronoi edge is inside of the polygon.
 // - join_centres, over the points: makes the centres of cocircular triangles the same to the last bit.
-// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to
-//   each slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over
-//   the slots: the corners.
+// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell
+//   belong to each slot. The host scans the counts. find_cells, over the points: where clipped cells begin.
+//   write_corners, over the slots: the corners.
 // - measure_clipped, over the points: areas and centroids. move_to_centroids: the latter in the place of points.
 //
 // The polygon has its corners counter-clockwise, and none on the line through its neighbours. All decisions are

@@ -252,7 +252,7 @@ Ids Mesh::old_triangles() {
   return old;
 }
 
-// Sorts vertices so that neighbours in the plane are close in the list. Of equal ones the smallest stays.
+// Sorts vertices so that neighbours in the plane are close in the list. The smallest of equals stays.
 Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<Found>& doubled) const {
   if (vertices.size() < 2) return vertices;

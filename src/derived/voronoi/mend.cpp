@@ -22,7 +22,7 @@ using kernel::comes_before;
 using kernel::fetch;
 
 // An edge stays if it is longer than kLong times its distance from the cell's point, longer than kLongAtAll
-// times the largest coordinate, and at most kRemote times as far away as the extent of all points: rounding
+// times the largest coordinate, and no farther away than kRemote times the extent of all points: rounding
 // cannot have made it. Edges longer than kTiny times their distance are not removed as coincident corners.
 constexpr double kLong = 0x1p-10, kLongAtAll = 0x1p-46, kRemote = 0x1p30, kTiny = 0x1p-12;
 
