@@ -1,5 +1,5 @@
-// flaunay-bench: measures flaunay, its parts, and others that do the same. Subcommands print what they
-// measure as tables, and write it as records.
+// flaunay-bench: measures flaunay, its parts, and other programs for the same tasks. Subcommands print
+// measurements as tables, and write them as records.
 #include <fmt/format.h>
 
 #include <exception>

@@ -228,8 +228,8 @@ def endgame(record, panel, method):
 TITLES = {OURS: "flaunay", PUBLISHED: "the paper's variant", DWYER: "Dwyer's algorithm"}
 LARGEST, SIZES = "internal points of the largest region", "(internal points + corners) / n"
 COARSE = {"xlabel": "levels done", "yscale": "log"}
-# By file, numbered as in the paper, where those from 13 on are not: what it shows, the figure's title, the size of a
-# panel, and what draws each panel.
+# Per file its description, the figure's title, the size of a panel, and the functions that draw the panels.
+# Files are numbered as in the paper; figures from 13 on are not in the paper.
 SECTIONS = {
     "figure-7-work": (
         "Floating-point operations per point, and as multiples of Dwyer's. The paper has 1.1 to 2.5 times.",

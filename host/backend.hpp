@@ -1,5 +1,5 @@
-// What runs the commands of a Runtime: an OpenCL device (host/opencl) or threads of the host (host/native).
-// It is chosen when the runtime is made.
+// The back end that runs the commands of a Runtime: an OpenCL device (host/opencl) or threads of the host
+// (host/native). It is chosen when the runtime is made.
 #pragma once
 
 #include <CL/cl.h>
@@ -30,7 +30,7 @@ class Kernel {
   const std::string& name() const { return name_; }
   /// Sets an argument to these bytes. The value of an array is its cl_mem.
   virtual void set_argument(cl_uint index, const void* value, std::size_t bytes) = 0;
-  /// Whether it takes counters behind so many arguments.
+  /// Whether the kernel takes counters after its first `arguments` arguments.
   virtual bool takes_counters(cl_uint arguments) const = 0;
   /// The largest size of a work-group: 0 if it needs more local memory than the device has.
   std::size_t largest_group = 1;
@@ -68,7 +68,7 @@ class Backend {
   /// See Runtime::use_queue.
   virtual void use_queue(cl_command_queue wanted, bool profiling) = 0;
 
-  // What follows is for threads of the host.
+  // The following functions are for threads of the host.
 
   /// Launches a function that a kernel is compiled to. arguments: see NativeFunction.
   virtual void launch(const KernelName&, NativeFunction, void* const* /*arguments*/,
@@ -78,9 +78,10 @@ class Backend {
     for (std::size_t k = 0; k < n; ++k) work(k);
   }
 
-  // What follows is for a device with queues. Without them, there is nothing to wait for.
+  // The following functions are for a device with queues. Without queues, there is nothing to wait for.
 
-  /// options: those of the compiler, but for counting: whether the kernel is to count, if it can.
+  /// options: the compiler's, without the one for counting. counting: whether the kernel shall count, if it
+  /// can.
   virtual std::unique_ptr<Kernel> make_kernel(const KernelName&, const std::string& /*options*/,
                                               bool /*counting*/) {
     return nullptr;
@@ -89,7 +90,7 @@ class Backend {
   virtual void forget_programs() {}
   /// Launches a kernel that make_kernel returned; global sizes are rounded up to whole groups.
   virtual void launch(Kernel&, std::size_t /*work_items*/, std::size_t /*group*/) {}
-  /// After the next wait, host memory that was wrapped has what kernels have written.
+  /// After the next wait, wrapped host memory has the data that kernels have written.
   virtual void hand_over(cl_mem, std::size_t) {}
   /// See the functions of these names in Runtime.
   virtual void wait_for(const std::vector<cl_event>&) {}

@@ -25,7 +25,7 @@ class DeviceError : public std::runtime_error {
 /// The name of an error code, "CL_OUT_OF_RESOURCES" for -5; "unknown OpenCL error -1234" if it has none.
 std::string error_name(cl_int code);
 
-/// What a user can do about this error; empty if no remedy is known.
+/// Advice on how to fix this error; empty if no remedy is known.
 std::string error_advice(cl_int code);
 
 /// Throws DeviceError unless the code is CL_SUCCESS. call: the source text of the call; kernel: the name of

@@ -1,6 +1,6 @@
 // fmt::vformat, which fmt::format calls, compiled once for the whole library. The other files include the
 // declarations of fmt only; with all of fmt in each of them, the library takes almost twice as long to
-// compile. If a file uses more of fmt than fmt::format, what it needs must be added here.
+// compile. If a file uses more of fmt than fmt::format, the function must be added here.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@ using Format = std::string (*)(fmt::string_view text, fmt::format_args values);
 extern const Format format;
 const Format format = &fmt::vformat;
 
-// What formatting into a buffer calls, as files that are written do.
+// Functions that formatting into a buffer calls, which is how files are written.
 using IsPrintable = bool (*)(std::uint32_t character);
 extern const IsPrintable is_printable;
 const IsPrintable is_printable = &fmt::detail::is_printable;

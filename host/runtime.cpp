@@ -52,7 +52,7 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
       arena_(memory()) {
 }
 
-// Kernels may still use what is kept, and the memory of the arena.
+// Kernels may still use kept buffers and the memory of the arena.
 Runtime::~Runtime() { settle(); }
 
 MemorySource Runtime::memory() const {
@@ -105,7 +105,7 @@ std::vector<Launch> Runtime::recorded_launches() {
   return accounts_.log->launches();
 }
 
-// Reads what the last launch has counted and sets it to 0.
+// Reads the counts of the last launch and sets them to 0.
 void Runtime::record_counted() {
   const CountedWords& words = accounts_.log->words();
   const std::size_t offset = words.first * sizeof(cl_uint), bytes = words.count * sizeof(cl_uint);

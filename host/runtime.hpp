@@ -1,6 +1,5 @@
-// A device that is ready for work: its kernels, memory and accounts, and typed launches and copies. What runs
-// them is a back end: an OpenCL device, or the host itself with the kernels that are compiled as C++
-// (host/backend.hpp).
+// A device that is ready for work: its kernels, memory and accounts, and typed launches and copies. A back
+// end runs them: an OpenCL device, or the host itself with kernels compiled as C++ (host/backend.hpp).
 #pragma once
 
 #include <algorithm>
@@ -30,7 +29,7 @@ namespace flaunay::host {
 /// objects hold their arguments.
 class Runtime {
  public:
-  /// settings: what kernels are compiled for and launched with.
+  /// settings: for compiling and launching kernels.
   Runtime(const boost::compute::device& device, Settings settings);
   /// Uses the given context, which the device must belong to.
   Runtime(const boost::compute::context& context, const boost::compute::device& device, Settings settings);
@@ -42,8 +41,8 @@ class Runtime {
   Runtime(const Runtime& counted, std::shared_ptr<const Sizes> sizes);
   ~Runtime();
 
-  /// What depends on data: the value, or the most that it can be if the runtime counts memory only. Whatever
-  /// decides about the size of an array is to be read through this.
+  /// Returns a value that depends on data, or if the runtime only counts memory, its upper bound. Every value
+  /// that determines the size of an array must be read through this function.
   template <typename T>
   T at_most(T value, T most) const {
     return counts_only_ ? most : value;
@@ -63,8 +62,8 @@ class Runtime {
   boost::compute::context context() const { return backend_->context(); }
   /// The device's name; "host" if kernels run natively.
   std::string name() const { return backend_->name(); }
-  /// What compiled programs and measurements of a device depend on besides their text: platform, device and
-  /// driver, with their versions. Only of devices.
+  /// Platform, device and driver with their versions: all that compiled programs, apart from their text, and
+  /// measurements depend on. For devices only.
   std::string identity() const { return backend_->identity(); }
   /// The number of threads that run native kernels; 0 on a device.
   std::size_t threads() const { return backend_->threads(); }
@@ -78,10 +77,10 @@ class Runtime {
   static constexpr std::size_t kPart = std::size_t{1} << 14;
   /// Where arenas and buffers get their memory from.
   MemorySource memory() const;
-  /// What the device can do; the host can do everything.
+  /// The capabilities of the device; the host has all.
   const Capabilities& capabilities() const { return capabilities_; }
   const Sizes& sizes() const { return *sizes_; }
-  /// Change what kernels are launched with. If they are compiled for what differs, they are compiled again.
+  /// Change the settings for launches. Kernels are compiled again if a changed setting is compiled into them.
   void set_capabilities(const Capabilities& capabilities) { set({sizes_, capabilities}); }
   void set_sizes(std::shared_ptr<const Sizes> sizes) { set({std::move(sizes), capabilities_}); }
   Arena& arena() { return arena_; }
@@ -108,8 +107,8 @@ class Runtime {
     launch(n, sizes_->map_group, n, kernel);
   }
 
-  /// map for a kernel with large private arrays. PoCL keeps those of a whole group on the stack of a thread,
-  /// which may be small.
+  /// map for a kernel with large private arrays. PoCL keeps the private arrays of a whole group on the stack
+  /// of one thread, which may be small.
   template <typename Kernel>
   void map_in_small_groups(std::size_t n, const Kernel& kernel) {
     launch(n, sizes_->private_group, n, kernel);
@@ -152,7 +151,7 @@ class Runtime {
                 kernel.result);
   }
 
-  /// Launches a kernel that has no launcher, such as those of tests. The arguments are not checked.
+  /// Launches a kernel that has no launcher, such as kernels of tests. The arguments are not checked.
   template <typename... Arguments>
   void launch_unchecked(const KernelName& name, std::size_t work_items, std::size_t group,
                         const Arguments&... arguments) {
@@ -247,8 +246,8 @@ class Runtime {
     }
     return arena_.allocate<T>(values.size());
   }
-  /// Enqueues the transfer from a buffer that output() has made: after the next wait, `values` has what
-  /// kernels have written until now.
+  /// Enqueues the transfer from a buffer that output() has made: after the next wait, `values` has the data
+  /// that kernels have written until now.
   template <typename T>
   void fetch_later(const Buffer<T>& from, std::vector<T>& values) {
     if (values.empty()) return;
@@ -309,15 +308,15 @@ class Runtime {
     Runtime& runtime_;
   };
 
-  /// Records later launches. words: what each launch counts, in a build of the kernels that is slower; not
-  /// while they count otherwise (set_counters), and not natively.
+  /// Records later launches. words: the counters of each launch, in a slower build of the kernels; not while
+  /// they count otherwise (set_counters), and not natively.
   void record_launches(const CountedWords& words = {});
   void stop_recording();
   /// The launches since the last reset, empty if they are not recorded. Waits, which is not counted.
   std::vector<Launch> recorded_launches();
   /// For the record: how many elements each work-item of the next launch goes through, at most.
   void note_elements(std::size_t elements) { accounts_.next.elements = elements; }
-  /// For the record: only each so many-th work-item of the next launch has work.
+  /// For the record: one of `spread` consecutive work-items of the next launch has work.
   void note_spread(std::size_t spread) { accounts_.next.spread = spread; }
 
   /// Makes later launches use kernels that are compiled with FLAUNAY_COUNT. Kernels that count get these
@@ -375,7 +374,7 @@ class Runtime {
   Kernel& find_kernel(const KernelName& name);
   void read_bytes(cl_mem from, std::size_t offset, std::size_t bytes, void* to);
   void record_counted();
-  /// Does what is no command of the call: it is neither counted nor recorded.
+  /// Runs commands that do not belong to the call. They are neither counted nor recorded.
   template <typename Commands>
   void uncounted(const Commands& commands) {
     const struct Restored {

@@ -68,7 +68,7 @@ void print_table(const std::string& title, const Json& rows) {
 
 // ---- Records
 
-/// What the host's processor calls itself, and how many threads it runs at once.
+/// The name of the host's processor, and the number of threads that it runs at once.
 std::string host_description() {
   std::ifstream information("/proc/cpuinfo");
   std::string line;

@@ -1,4 +1,4 @@
-// What all subcommands share: how they register, and their options.
+// Registration and options that all subcommands share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,8 +14,8 @@
 
 namespace flaunay::bench {
 
-/// How often and on what to measure, and where the record goes. Each subcommand has options for some of it;
-/// those with options of their own derive from it.
+/// The number of runs, the inputs, and the file for the record. Each subcommand has options for some of
+/// these; subcommands with options of their own derive from it.
 struct Request {
   int runs = 5;
   std::string device, json_path, program;
@@ -55,7 +55,7 @@ class Options {
     return *this;
   }
 
-  // What many subcommands have, with its default.
+  // Options of many subcommands, with their defaults.
   Options& runs(int count = 5) { return add("--runs", request_.runs = count, "counted runs of each"); }
   Options& sizes(const std::vector<std::size_t>& values,
                  const std::string& description = "numbers of points") {
@@ -89,7 +89,7 @@ using Action = std::function<int(const std::string& command_line)>;
 int measure_and_record(const std::string& subcommand, const std::string& command_line, const Request& request,
                        const std::function<Result()>& measure);
 
-/// All subcommands by name: what adds each to the program's.
+/// All subcommands by name, each with the function that adds it to the program.
 using Subcommands = std::map<std::string, std::function<void(CLI::App&, Action&)>>;
 Subcommands& all_subcommands();
 

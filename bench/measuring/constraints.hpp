@@ -10,7 +10,7 @@
 
 namespace flaunay::bench {
 
-/// Points and segments, as sets; or as polygons with holes, each of which is a set.
+/// Points and segments, in sets; or polygons with holes, each polygon a set.
 struct ConstrainedInput {
   Input points;
   std::vector<std::int32_t> segments;             ///< 2 indices of points per segment, over all sets

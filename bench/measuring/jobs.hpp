@@ -30,10 +30,10 @@ double seconds_of(const Work& work) {
   return watch.seconds();
 }
 
-/// What processors have spent on all threads of this process, and on its children that have ended.
+/// The processor time of all threads of this process, and of its children that have ended.
 double processor_seconds();
 
-/// Tells standard error every ten seconds what is running, and how far all of it is.
+/// Reports the running job and the overall progress to standard error every ten seconds.
 class Progress {
  public:
   explicit Progress(std::size_t steps) : steps_(steps) {}
@@ -49,16 +49,16 @@ struct Summary {
   double median = 0, low = 0, high = 0;
 };
 
-/// Of at least one value; the median of an even number is the mean of the middle two.
+/// Summarises at least one value. The median of an even number of values is the mean of the middle two.
 Summary summary(std::vector<double> values);
 
-/// What one run gave.
+/// The result of one run.
 struct Outcome {
   Outcome(double of_run = 0, Json more = Json::object()) : seconds(of_run), details(std::move(more)) {}
   Outcome(double of_run, std::size_t triangles) : Outcome(of_run, {{"triangles", triangles}}) {}
   double seconds;
   Json details;  ///< more keys for the job's row
-  /// If not those of the whole run.
+  /// If different from the processor time of the whole run.
   std::optional<double> processor_seconds = {};
 };
 
@@ -72,7 +72,7 @@ struct Job {
   std::string question = {};
   const Input* input = nullptr;                   ///< the points, if it triangulates some
   std::optional<research::Options> options = {};  ///< of flaunay's modes
-  Json details = Json::object();                  ///< of the last run; what is there before is kept
+  Json details = Json::object();                  ///< of the last run; earlier entries are kept
   std::vector<double> seconds = {};               ///< of the counted runs
   std::vector<double> processor_seconds = {};     ///< in the same runs
   std::string skipped = {};                       ///< why it has no times; else empty
@@ -91,7 +91,7 @@ using Jobs = std::vector<Job>;
 /// skipped. With a limit, so are jobs that throw Error; without one, nothing catches it.
 void measure(Jobs& jobs, int runs, std::optional<double> limit = {});
 
-/// The first of the valid jobs that have these values in their rows; null if there is none.
+/// The first of the valid jobs that have these values in their rows; null if no job has them.
 const Job* find_job(const Jobs& jobs, const Json& keys);
 std::optional<double> median_of(const Jobs& jobs, const Json& keys);
 

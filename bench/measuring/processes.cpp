@@ -55,7 +55,7 @@ Answer ask_child(const std::function<std::string()>& work, double limit) {
   int ends[2];
   // Closed by the program that takes the child's place, if one does.
   if (pipe2(ends, O_CLOEXEC) != 0) return {"", "cannot make a pipe"};
-  std::fflush(nullptr);  // what is buffered would be written twice
+  std::fflush(nullptr);  // buffered output would be written twice
   const pid_t child = fork();
   if (child == 0) answer(work, ends[1]);
   close(ends[1]);

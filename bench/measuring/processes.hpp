@@ -1,5 +1,5 @@
-// Work in processes of its own, for what must be ended when it takes too long, whose memory is to be told
-// from all else, or whose driver is to read another environment; and programs, in folders of their own.
+// Runs work in separate processes: work that must be ended when it takes too long, whose memory is measured
+// separately, or whose driver shall read another environment. Also runs programs, in folders of their own.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace flaunay::bench {
 
-/// What became of a child process.
+/// The outcome of a child process.
 struct Answer {
   std::string text;               ///< what its work returned
   std::string failure;            ///< empty if it went well

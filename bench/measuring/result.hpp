@@ -1,4 +1,4 @@
-// What subcommands have measured, of which tables are printed and records are written. It is apart from their
+// Measurements of subcommands, which are printed as tables and written as records. They are separate from
 // options, since peers need no parser of command lines, whose header takes as long to compile as they do.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace flaunay::bench {
 /// Objects keep the order in which their keys were added.
 using Json = nlohmann::ordered_json;
 
-/// What a subcommand has measured.
+/// The measurements of a subcommand.
 struct Result {
   explicit Result(DeviceInfo of_device = {}) : device(std::move(of_device)) {}
   DeviceInfo device;

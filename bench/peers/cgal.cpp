@@ -24,7 +24,7 @@ struct VertexIndex {
   std::int32_t value = std::numeric_limits<std::int32_t>::max();
 };
 
-/// Infinite faces keep -1: what lies beyond the hull.
+/// Infinite faces keep -1, the outside of the hull.
 struct FaceIndex {
   std::int32_t index = -1;
 };
@@ -45,7 +45,7 @@ using Hierarchy =
 using Point = Kernel::Point_2;
 using IndexedPoint = std::pair<Point, std::int32_t>;
 
-/// Points [first, last) of x0 y0 x1 y1 ... with their indices, in place of what was there.
+/// Points [first, last) of x0 y0 x1 y1 ... with their indices, replacing the contents of `points`.
 void copy_points(const std::vector<double>& coordinates, std::size_t first, std::size_t last,
                  std::vector<IndexedPoint>& points) {
   points.clear();
@@ -61,8 +61,8 @@ void sort_spatially(std::vector<IndexedPoint>& points) {
   CGAL::spatial_sort(points.begin(), points.end(), Traits());
 }
 
-/// What CGAL's own insertion of a range of points does, and as fast, with the points' indices beside them.
-/// Its insertion of points with information, which sorts indices, takes 1.4 times as long.
+/// Does the same as CGAL's insertion of a range of points, as fast, but keeps the points' indices. CGAL's
+/// insertion of points with information, which sorts indices, takes 1.4 times as long.
 template <typename Triangulation>
 void insert(Triangulation& triangulation, std::vector<IndexedPoint>& points) {
   sort_spatially(points);
@@ -79,8 +79,8 @@ struct Mesh {
   std::vector<std::uint8_t> constrained;  ///< of constrained triangulations
 };
 
-/// Appends triangles, neighbours and, if there are any, constraints to those of the sets before, for the
-/// faces that are kept; they get their indices.
+/// Appends the triangles, neighbours and, if any, constraints of kept faces to the arrays of the sets before.
+/// Kept faces get their indices.
 template <typename Triangulation, typename IsKept>
 void append_faces(const Triangulation& triangulation, Mesh& mesh, const IsKept& is_kept) {
   const std::size_t first = mesh.triangles.size() / 3;

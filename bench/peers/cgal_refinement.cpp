@@ -57,7 +57,7 @@ void insert(Refinable& triangulation, const ConstrainedInput& input, std::size_t
   triangulation.insert_constraints(points.begin(), points.end(), pairs.begin(), pairs.end());
 }
 
-/// Appends the mesh to those of the sets before.
+/// Appends the mesh to the meshes of the sets before.
 void append_mesh(const Refinable& triangulation, Refined& refined) {
   auto index = static_cast<std::int32_t>(refined.coordinates.size() / 2);
   for (const auto vertex : triangulation.finite_vertex_handles()) {

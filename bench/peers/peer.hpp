@@ -19,7 +19,7 @@ struct Peer {
   Outcome (*run)(const Input&);   ///< all but CGAL's take one set
 };
 
-/// Those that this build has. An object of the second type in the file of each adds it.
+/// The peers that this build has. An object of the type below in each peer's file adds the peer.
 inline std::vector<Peer>& all_peers() {
   static std::vector<Peer> peers;
   return peers;
@@ -28,7 +28,7 @@ struct BuiltPeer {
   explicit BuiltPeer(const Peer& peer) { all_peers().push_back(peer); }
 };
 
-// ---- CGAL's answers to what flaunay's Locator answers
+// ---- CGAL's answers to the queries of flaunay's Locator
 
 /// Where CGAL's walk to a query begins.
 enum class Start {
@@ -70,8 +70,8 @@ inline std::unique_ptr<CgalQueries> (*make_cgal_queries)(const std::vector<doubl
 
 /// CGAL's Constrained_Delaunay_triangulation_2 with the same predicates and segments that must not cross, by
 /// its insertion of points and pairs of indices, the sets of an input in a loop; to triangles and neighbours
-/// in arrays. Of polygons, only the triangles inside, found by crossing edges from the outside, as CGAL's
-/// manual has it.
+/// in arrays. For polygons, only the triangles inside, found by crossing edges from the outside, as CGAL's
+/// manual does.
 inline Outcome (*run_cgal_constrained)(const ConstrainedInput& input) = nullptr;
 
 // ---- Points on a sphere
@@ -95,7 +95,7 @@ inline Outcome (*run_cgal_weighted)(const std::vector<double>& points,
 
 // ---- Refined meshes
 
-/// What a mesh is refined to: a smallest angle in degrees, and a largest area; 0 for any.
+/// The goals of refinement: a smallest angle in degrees, and a largest area; 0 for any.
 struct Wanted {
   double min_angle, max_area;
 };

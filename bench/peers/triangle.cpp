@@ -6,7 +6,7 @@
 
 #include "bench/peers/peer.hpp"
 
-// What the header needs.
+// The header needs these macros.
 #define REAL double
 #define VOID void
 #define ANSI_DECLARATORS

@@ -1,5 +1,4 @@
-// flaunay-bench device: what a device takes for launches, waits, loads and arithmetic, for predictions of
-// times.
+// flaunay-bench device: times of a device for launches, waits, loads and arithmetic, for predictions.
 #include "host/opencl/device.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +48,7 @@ Result measure_device(const DeviceRequest& request) {
   result.facts = {{"compute_units", result.device.compute_units}, {"clock_mhz", result.device.clock_mhz}};
 
   Jobs jobs;
-  // Work of so many operations: seconds for each, or operations per second.
+  // Measures work of this many operations: seconds per operation, or operations per second.
   const auto add = [&](const std::string& what, const char* unit, std::size_t operations,
                        const std::function<void()>& work) {
     const Json row{{"what", what}, {"unit", unit}, {"operations", operations}};

@@ -1,4 +1,4 @@
-// flaunay-bench launches: what a call launches, how many work-items that are, and their longest chains of
+// flaunay-bench launches: the launches of a call, their numbers of work-items, and their longest chains of
 // steps.
 #include <fmt/format.h>
 
@@ -27,10 +27,10 @@ struct LaunchesRequest : Request {
   double min_angle = 0;
 };
 
-// The share of the work that is done by the launches of which "work_items_of_most_work" is said.
+// "work_items_of_most_work" refers to the launches that do this share of the work.
 constexpr double kMostWork = 0.9;
 
-// Kernels whose steps are not those of merges: they walk along hulls.
+// Kernels that walk along hulls, so that their steps are not steps of merges.
 const std::set<std::string> kWalkHulls = {"mark_outside", "write_hulls"};
 // Kernels that merge the parts of blocks, not the blocks.
 const std::set<std::string> kSolveBlocks = {"solve_blocks", "merge_parts",  "finish_parts",
@@ -120,7 +120,7 @@ Launches refine(host::Runtime& runtime, const Input& input, double min_angle, Js
   const constrained::MeshToRefine mesh = mesh_of(input);
   Refinement wanted;
   wanted.min_angle = min_angle;
-  constrained::refine(runtime, mesh, wanted);  // compiles what it needs
+  constrained::refine(runtime, mesh, wanted);  // compiles the kernels
   runtime.set_profiling(true);
   runtime.record_launches();
   runtime.reset_accounts();

@@ -27,11 +27,11 @@ import pathlib
 import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-# Of a kernel that the static table lacks.
+# Assumed for a kernel that the static table lacks.
 REGISTERS = 64
-# The share of the instructions of which "work_items_of_most_instructions" is said.
+# "work_items_of_most_instructions" refers to the launches with this share of the instructions.
 MOST = 0.9
-# With so many elements a work-item has a chunk of its own, so that a warp's accesses are far apart.
+# A work-item with at least this many elements has a chunk of its own, so a warp's accesses are far apart.
 LEAST_ELEMENTS_OF_CHUNKS = 2
 
 
@@ -139,7 +139,7 @@ class Model:
         cycles += cost.get("conversions", 0) * (m["conversion_cycles"] - m["cycles_per_instruction"])
         cycles += cost["mispredictions"] * m["misprediction_cycles"]
         seconds = cycles / m["clock_hz"]
-        # Out-of-order cores overlap the loads of one element with those of the next, unless a step needs the last.
+        # Out-of-order cores overlap the loads of consecutive elements, unless a step needs the one before.
         if m["kind"] == "gpu" or cost["serial"]:
             seconds += cost["near"] * m["near_seconds"] + cost["far"] * m["far_seconds"]
         return seconds
@@ -166,7 +166,7 @@ class Model:
             paths = self.paths(cost, launch)
             scattered = m["kind"] == "gpu" and (cost["divergent"] or launch["elements"] >= LEAST_ELEMENTS_OF_CHUNKS)
             step = self.step_seconds(cost) * paths
-            # What a divergent warp does at once are the lanes of one path.
+            # A divergent warp executes only the lanes of one path at once.
             per_core = m["lanes_per_core"] / (m["cycles_per_instruction"] if m["kind"] == "cpu" else 1)
             active_share = m["active_share"] if cost["divergent"] else 1
             rate = m["cores"] * per_core * m["clock_hz"] * active_share

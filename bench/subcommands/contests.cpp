@@ -36,7 +36,7 @@ Implementations make_variants(std::deque<Triangulator>& triangulators, const Con
   Implementations variants;
   const std::string given = variable("FLAUNAY_TUNING");
   for (const std::string& tuning : request.tunings) {
-    // Besides what the environment says.
+    // In addition to the environment.
     Triangulator& triangulator = triangulators.emplace_back(
         tuning.empty() ? Triangulator(request.device)
                        : triangulator_with("FLAUNAY_TUNING", given.empty() ? tuning : given + "," + tuning,
@@ -56,7 +56,7 @@ Implementations make_variants(std::deque<Triangulator>& triangulators, const Con
 }
 
 /// Where another mode becomes the fastest, between neighbouring sizes by power laws. Differences within noise
-/// are none.
+/// are ignored.
 void add_crossovers(Result& result, const Jobs& jobs) {
   constexpr double kNoise = 0.03;
   result.tables["crossovers"] = Json::array();
@@ -145,7 +145,7 @@ Result measure_contest(const ContestRequest& request) {
   return result;
 }
 
-/// own: what else there is to say of a subcommand.
+/// own: further text about a subcommand.
 void add_options(Options& options, ContestRequest& request, const std::string& own = "") {
   std::vector<std::string> names;
   std::string of_peers;

@@ -1,5 +1,5 @@
-// flaunay-bench derived: what is made of a triangulation, beside it: Voronoi cells, relaxation, rasters,
-// contours, and interpolation, of natural neighbours beside CGAL's.
+// flaunay-bench derived: computing from a triangulation, compared with triangulating: Voronoi cells,
+// relaxation, rasters, contours, and interpolation, with natural neighbours compared with CGAL.
 #include <fmt/format.h>
 
 #include <cmath>

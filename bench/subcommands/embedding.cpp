@@ -1,5 +1,5 @@
-// flaunay-bench embedding: what a program with an OpenCL context of its own asks of flaunay. Everything stays
-// in device memory: calls, and what is derived of their results, beside the host's interface and CGAL.
+// flaunay-bench embedding: calls of a program that has its own OpenCL context. Points and results, and arrays
+// derived from these, stay in device memory. Compared with the host's interface and CGAL.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ struct OfCgal {
   std::size_t cell_corners = 0;
 };
 
-/// Points, queries, and what is made of them. Jobs refer to it.
+/// Points, queries, and their results. Jobs refer to it.
 class Subject {
  public:
   Subject(Caller& caller, std::vector<double> coordinates, std::vector<double> queries)

@@ -71,7 +71,7 @@ research::Triangulation call_on_host(const Input& input, const research::Options
 
 // ---- Quantities of a run
 
-/// Over what precedes the first cut and all levels, by component.
+/// Sums over the work before the first cut and all levels, by component.
 research::Work::Components totals(const research::Work& work) {
   research::Work::Components sums = work.start;
   for (const research::Work::Components& level : work.levels) {
@@ -97,7 +97,7 @@ double operations_of(const research::Work::Components& components, Component com
 /// Comparisons before the first cut, which bring the points in order.
 double sorting(const Run& run) { return operations_of(run.work.start, Component::cut); }
 
-/// Operations of what precedes the first cut and of so many levels.
+/// The operations before the first cut and in this many levels.
 double operations_until(const Run& run, std::size_t levels) {
   double sum = operations(run.work.start);
   for (std::size_t l = 0; l < std::min(levels, run.work.levels.size()); ++l) {
@@ -115,7 +115,7 @@ double largest_region(const Run& run, std::size_t level) {
   return static_cast<double>(level_of(run, level).largest_region);
 }
 
-/// What a run took by level.
+/// Quantities of a run that depend on levels.
 Json quantities_by_level(const Run& run, double of_dwyer) {
   // Levels until there are as many regions as a coarse partition would have; all if there never are.
   constexpr std::size_t kCoarseRegions = 16;
@@ -130,7 +130,7 @@ Json quantities_by_level(const Run& run, double of_dwyer) {
   return {{"sorting_over_dwyer", sorting(run) / of_dwyer},
           {"coarse_levels", static_cast<double>(coarse)},
           {"coarse_unsorted_over_dwyer", (operations_until(run, coarse) - sorting(run)) / of_dwyer},
-          // By what the largest region shrinks from level to level, at worst and as a geometric mean.
+          // The factor by which the largest region shrinks per level: the worst one and the geometric mean.
           {"worst_decline", worst_decline},
           {"mean_decline", std::pow(decline, 1 / static_cast<double>(std::max<std::size_t>(last, 1)))}};
 }
@@ -169,14 +169,14 @@ struct Inputs {
             {"algorithm", kMethods[method].algorithm},
             {"cut", alternate ? "alternate" : "interquartile"}};
   }
-  /// Of quantity(run, Dwyer's), over the instances.
+  /// Summarises quantity(run, Dwyer's run) over the instances.
   template <typename Quantity>
   Summary summary_of(std::size_t method, const Quantity& quantity) const {
     std::vector<double> values;
     for (const Runs& runs : instances) values.push_back(quantity(runs[method], runs[0]));
     return summary(values);
   }
-  /// Of each quantity the median of the instances, the minimum and the maximum.
+  /// The median, minimum and maximum of each quantity over the instances.
   Json row(std::size_t method, bool is_largest) const {
     const auto all_of = [&](const Run& run, const Run& dwyer) {
       return quantities_of(run, dwyer, static_cast<double>(n), is_largest, kMethods[method].by_level);
@@ -192,7 +192,7 @@ struct Inputs {
   }
 };
 
-/// Medians, level by level: what was done before the level, and the regions that are cut at it.
+/// Medians, level by level: the work before the level, and the regions that are cut at it.
 Json levels_row(const Inputs& inputs, std::size_t method) {
   std::size_t most = 0;
   for (const Runs& runs : inputs.instances) most = std::max(most, runs[method].work.levels.size());

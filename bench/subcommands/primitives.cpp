@@ -180,7 +180,7 @@ class Operations {
         unsort);
   }
 
-  /// Random points, of which quickhull's balanced rounds choose a pair of each segment.
+  /// Random points, from which quickhull's balanced rounds choose a pair per segment.
   void add_segmented() {
     std::vector<std::size_t> one, tens, mixture;
     append_segments(one, n_, n_);

@@ -94,7 +94,7 @@ std::size_t rounds_of_most(Triangulator& triangulator, const Task& task, std::si
   return last;
 }
 
-/// What a mesh is like: rounded, for telling that each does what was asked for.
+/// Rounded properties of a mesh, to check that each implementation reaches the goals.
 Json looked_at(const Refined& mesh, double min_angle) {
   constexpr double kDegrees = 180 / 3.14159265358979323846, kRounding = 1e-6;
   std::size_t below = 0;
@@ -219,7 +219,7 @@ Result measure_refinement(const RefinementRequest& request) {
 
   Triangulator triangulator(request.device);
   std::optional<Triangulator> single;
-  // Only the host has threads of its own: other devices' threads are those of the process.
+  // Only the host has threads of its own: other devices use the threads of the process.
   if (triangulator.device().name == "host") single = triangulator_with("FLAUNAY_THREADS", "1", "host");
   Jobs jobs;
   for (const Task& task : tasks) add_jobs(jobs, triangulator, single, task);

@@ -101,7 +101,7 @@ Result measure_targets(const TargetsRequest& request) {
   append(all, peer_implementations({kCgal}));
   Implementations with_single = all;
   std::optional<Triangulator> single;
-  // Only the host has threads of its own: other devices' threads are those of the process.
+  // Only the host has threads of its own: other devices use the threads of the process.
   if (std::count(request.modes.begin(), request.modes.end(), "blocks") > 0 &&
       triangulator.device().name == "host") {
     single = triangulator_with("FLAUNAY_THREADS", "1", "host");

@@ -1,4 +1,4 @@
-// flaunay-bench threads: what more threads are worth, of the host's or of the driver's.
+// flaunay-bench threads: the speed-up by more threads, of the host or of the driver.
 #include <fmt/format.h>
 
 #include <cstdlib>

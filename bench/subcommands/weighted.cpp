@@ -1,5 +1,5 @@
-// flaunay-bench weighted: regular triangulations beside CGAL's and beside Delaunay triangulations, and what
-// is derived from them.
+// flaunay-bench weighted: regular triangulations and arrays derived from them, compared with CGAL and with
+// Delaunay triangulations.
 #include "flaunay/weighted.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace flaunay::bench::weighted {
 namespace {
 
-/// Uniform points, and weights up to so many areas of a point's square: about 2.3 of them hide a third.
+/// Uniform points, with weights up to `areas` times a point's mean area; 2.3 hides about a third of them.
 struct Data {
   Data(Triangulator& triangulator, std::size_t number, double areas)
       : n(number), points(2 * n), weights(n), offsets{0, n} {

@@ -1,4 +1,4 @@
-// What a runtime has done since its accounts were reset: numbers, times, and with a log every launch.
+// The accounts of a runtime since they were last reset: counts, times, and with a log every launch.
 #pragma once
 
 #include <algorithm>
@@ -29,10 +29,10 @@ struct Accounts {
   std::map<std::string, KernelTime> times;
   std::unique_ptr<LaunchLog> log;  ///< null unless launches are recorded
 
-  /// What the next launch is recorded with.
+  /// Properties of the next launch, for its record.
   struct Next {
     std::size_t elements = 1;  ///< how many each work-item goes through, at most
-    std::size_t spread = 1;    ///< only each so many-th work-item has work
+    std::size_t spread = 1;    ///< one of this many consecutive work-items has work
     /// How many work-items have work, if the launch spreads these over more.
     std::size_t busy = std::numeric_limits<std::size_t>::max();
   };

@@ -1,4 +1,4 @@
-// The arguments of a launch, as a list: what OpenCL sets one by one, and what native kernels take.
+// The list of a launch's arguments, which OpenCL sets one by one and native kernels take as an array.
 #pragma once
 
 #include <cassert>
@@ -42,7 +42,7 @@ class ArgumentList {
   /// As native kernels take them.
   void* const* values() const { return values_; }
   std::size_t bytes(std::size_t k) const { return bytes_[k]; }
-  /// The array that argument k is; null if it is none.
+  /// The array passed as argument k; null if the argument is a value.
   cl_mem array(std::size_t k) const { return arrays_[k]; }
 
  private:

@@ -1,4 +1,4 @@
-// A record of what a runtime launches, for programs that predict or explain times.
+// A record of a runtime's launches, for programs that predict or explain times.
 #pragma once
 
 #include <CL/cl.h>
@@ -20,11 +20,11 @@ struct Launch {
   std::size_t busy = 0;               ///< the most work-items of a group that have work
   std::size_t elements = 0;           ///< the most elements that one work-item goes through
   std::size_t bytes = 0;              ///< of fills and copies
-  std::vector<cl_uint> counted = {};  ///< what the kernel counted, if it did
+  std::vector<cl_uint> counted = {};  ///< the kernel's counts, if it counts
   double seconds = 0;                 ///< 0 without profiling
 };
 
-/// Words of an array of counters, of which each launch of a kernel that counts has its own.
+/// The words of an array of counters that belong to one launch of a counting kernel.
 struct CountedWords {
   std::size_t length = 0;  ///< of the array; 0: kernels do not count
   std::size_t first = 0, count = 0;
@@ -43,7 +43,7 @@ class LaunchLog {
   /// The position of the last launch.
   std::size_t last() const { return launches_.size() - 1; }
   void set_seconds(std::size_t launch, double seconds) { launches_[launch].seconds = seconds; }
-  /// The memory to which what the last launch has counted is to be read.
+  /// The memory into which the counts of the last launch must be read.
   cl_uint* counted_of_last();
   /// The launches so far. Reads into counted_of_last() must be complete.
   std::vector<Launch> launches() const;

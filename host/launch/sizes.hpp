@@ -1,4 +1,4 @@
-// What a runtime works by: what its device can do, and the sizes of launches and of the vector operations.
+// The settings of a runtime: the capabilities of its device, and the sizes of launches and vector operations.
 #pragma once
 
 #include <boost/compute/device.hpp>
@@ -10,18 +10,18 @@
 
 namespace flaunay {
 
-/// All sizes, with those of the user of Runtime, who defines this.
+/// All sizes, including sizes of the user of Runtime, who defines this struct.
 struct Tuning;
 
 namespace host {
 
-/// What a device can do, by its properties and its self-test. Kernels are compiled for it.
+/// The capabilities of a device, from its properties and its self-test. Kernels are compiled for them.
 struct Capabilities {
   /// Kernels compute in fixed point: the device has no doubles, or they fail the self-test, or are too slow.
   bool fixed_point = false;
   /// Kernels compute the errors of products without fma, which is not exact.
   bool split_products = false;
-  /// Kernels read by atomic operations what other work-groups may change meanwhile.
+  /// Kernels use atomic operations to read data that other work-groups may change meanwhile.
   bool atomic_reads = false;
   /// The device ends loops after some ten thousand turns of a work-item.
   bool loops_end_early = false;
@@ -30,7 +30,7 @@ struct Capabilities {
   std::string build_options() const;
 };
 
-/// What is good for one device. Tuning derives from it.
+/// The sizes that suit one device. Tuning derives from this struct.
 struct Sizes {
   /// Work-group size of kernels with one work-item per element.
   std::size_t map_group = 1;
@@ -42,7 +42,7 @@ struct Sizes {
   std::size_t chunk_least = 2;
   /// There are at most this many chunks; 0: no limit.
   std::size_t chunks_most = 0;
-  /// Radix sort: bits per pass, work-group size, and elements per work-item (0: those of a chunk).
+  /// Radix sort: bits per pass, work-group size, and elements per work-item (0: as many as a chunk has).
   std::size_t sort_bits = 1;
   std::size_t sort_group = 1;
   std::size_t sort_items = 0;
@@ -59,7 +59,7 @@ struct Sizes {
   std::size_t scan_groups = 1;
   /// Other than 0: kernels read and write the caller's host memory instead of copies.
   std::size_t in_host_memory = 0;
-  /// What arrays are made of, a value of ArrayMemory.
+  /// How arrays get memory: a value of ArrayMemory.
   std::size_t separate_buffers = 0;
 
   virtual ~Sizes() = default;
@@ -67,9 +67,9 @@ struct Sizes {
   Sizes(const Sizes&) = default;
   Sizes& operator=(const Sizes&) = default;
 
-  /// What these sizes are a part of.
+  /// The tuning values that include these sizes.
   virtual const Tuning& tuning() const = 0;
-  /// Returns a copy of all of it.
+  /// Returns a copy of all tuning values.
   virtual std::shared_ptr<Sizes> copy() const = 0;
   /// The number of elements per chunk if there are n elements.
   std::size_t chunk(std::size_t n) const;
@@ -77,7 +77,7 @@ struct Sizes {
   virtual std::string build_options() const;
 };
 
-/// What a runtime on a device is made with.
+/// The settings with which a runtime on a device is made.
 struct Settings {
   std::shared_ptr<const Sizes> sizes;  ///< not null
   Capabilities capabilities{};
@@ -90,8 +90,8 @@ struct DeviceLimits {
 };
 DeviceLimits limits_of(const boost::compute::device& device);
 
-/// Reduces group sizes, the sort's bits per pass, and what tiles take, to what the limits allow. A single
-/// kernel may support only smaller groups; Runtime reduces those when it launches the kernel.
+/// Reduces group sizes, the sort's bits per pass and the sizes of tiles to the limits. A single kernel may
+/// support only smaller groups; Runtime reduces those when it launches the kernel.
 void fit(Sizes& sizes, const DeviceLimits& limits);
 
 }  // namespace host

@@ -41,7 +41,7 @@ struct ScanKernels<cl_uint8> {
 
 std::size_t divided_up(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
-// What work-groups take of n elements: `count` spans, each a whole number of tiles.
+// How n elements are divided among work-groups: `count` spans, each a whole number of tiles.
 struct Spans {
   std::size_t length, count;
 };
@@ -80,7 +80,7 @@ void scan_by_spans(Runtime& runtime, const Buffer<T>& input, std::size_t n, cons
                                        .output = output});
 }
 
-// Flags, of which those that have a value are packed.
+// Flags. The indices of flags that equal `wanted` are packed.
 struct Flags {
   const Buffer<cl_uchar>& values;
   std::size_t count;

@@ -35,7 +35,7 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-/// What arrays are made of.
+/// How arrays get their memory.
 enum class ArrayMemory {
   parts,     ///< parts of larger blocks
   separate,  ///< a buffer each of exactly its size, so that a simulator detects every access out of bounds;
@@ -62,14 +62,14 @@ MemorySource native_memory();
 inline cl_mem handle_of(void* address) { return reinterpret_cast<cl_mem>(address); }
 inline char* address_of(cl_mem memory) { return reinterpret_cast<char*>(memory); }
 
-/// A stack allocator: scopes release what was allocated last. Work that is enqueued on an in-order queue may
-/// go on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
+/// A stack allocator: scopes release the last allocations. Work that is enqueued on an in-order queue may go
+/// on using released memory, because the work that reuses it is enqueued later. If the blocks are full, a
 /// further block is allocated and kept. On a CPU, blocks use huge pages if the system provides them. Where
 /// arrays are buffers of their own, scopes only count them.
 class Arena {
  public:
-  /// pool: of another arena, which counts what is in it, for arrays that are buffers of their own; null: a
-  /// pool of its own.
+  /// pool: for arrays that are separate buffers, the pool of another arena, which counts its bytes; null: the
+  /// arena makes a pool.
   explicit Arena(MemorySource source, std::shared_ptr<BufferPool> pool = nullptr);
   ~Arena();
   Arena(const Arena&) = delete;

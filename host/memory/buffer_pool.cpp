@@ -16,7 +16,7 @@ constexpr std::size_t kSmallest = std::size_t{1} << 16;
 constexpr std::size_t kSteps = 8;
 // A buffer serves arrays that need at least half of it.
 constexpr std::size_t kMostSpare = 2;
-// The pool holds at most so many times what was in use at once.
+// The pool holds at most this many times the bytes that were in use at once.
 constexpr std::size_t kMostHeld = 2;
 
 std::size_t rounded_up(std::size_t bytes) {

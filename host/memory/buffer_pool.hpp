@@ -21,9 +21,9 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
   /// make: makes a buffer; it throws DeviceError if there is no memory for it.
   explicit BufferPool(Make make) : make_(std::move(make)) {}
 
-  /// Returns a buffer of at least this many bytes, and of at most so many in one piece. It comes back to the
-  /// pool when the last copy of the pointer is gone. The pool keeps about as much as was in use at once.
-  /// O(log b) for b buffers.
+  /// Returns a buffer of at least `bytes` bytes. `largest` is the limit for one buffer. The buffer comes back
+  /// to the pool when the last copy of the pointer is gone. The pool keeps about as much as was in use at
+  /// once. O(log b) for b buffers.
   std::shared_ptr<_cl_mem> take(std::size_t bytes, std::size_t largest);
 
   /// The bytes of all buffers, in use or not.

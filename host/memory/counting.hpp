@@ -9,10 +9,10 @@
 
 namespace flaunay::host {
 
-/// What is read is not written: destinations keep their values. No kernel is launched.
+/// Reads do nothing: destinations keep their values. No kernel is launched.
 class CountingBackend : public Backend {
  public:
-  /// alignment: of arrays, as that of the runtime whose memory is counted.
+  /// alignment: of arrays, equal to the alignment in the runtime whose memory is counted.
   CountingBackend(Accounts& accounts, std::size_t alignment) : Backend(accounts), alignment_(alignment) {}
 
   std::string name() const override { return "counting"; }

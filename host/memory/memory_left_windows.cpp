@@ -40,7 +40,7 @@ MemoryLeft memory_left(const MemoryFiles&) {
   if ((limits & JOB_OBJECT_LIMIT_PROCESS_MEMORY) != 0) {
     limit(difference(job.ProcessMemoryLimit, used.PagefileUsage), "the job's memory limit for a process");
   }
-  // What the other processes of the job use is not known.
+  // The memory that other processes of the job use is not known.
   if ((limits & JOB_OBJECT_LIMIT_JOB_MEMORY) != 0) {
     limit(difference(job.JobMemoryLimit, used.PagefileUsage), "the memory limit of the job");
   }

@@ -7,7 +7,7 @@
 
 namespace flaunay::host {
 
-// What an allocation must leave to the OpenCL implementation.
+// Memory that an allocation must leave to the OpenCL implementation.
 constexpr std::size_t kSpare = 32 * kMebibyte;
 
 std::string mebibytes(std::size_t bytes) { return fmt::format("{} MiB", bytes / kMebibyte); }

@@ -24,16 +24,16 @@ struct MemoryFiles {
 /// The address space that the limits of the process leave; the largest number of bytes if there is no limit.
 MemoryLeft address_space_left(const MemoryFiles& files = {});
 
-/// The memory that the process can still use: the least of the machine's free memory with its swap space,
-/// what the limits of the control groups leave, and the address space. The largest number of bytes if nothing
+/// The memory that the process can still use: the least of the machine's free memory with its swap space, the
+/// rest below the limits of the control groups, and the address space. The largest number of bytes if nothing
 /// is known. Reads some files, which takes a tenth of a millisecond.
 MemoryLeft memory_left(const MemoryFiles& files = {});
 
 /// The bytes of memory that the machine has; 0 if that is not known.
 std::size_t physical_memory();
 
-/// Throws DeviceError, with what lacks and what limits it, unless this many bytes are left, and some more for
-/// the OpenCL implementation itself. what: what they are for, such as "a buffer".
+/// Throws DeviceError, with the missing amount and its limit, unless this many bytes are left, and some more
+/// for the OpenCL implementation itself. what: the purpose of the bytes, such as "a buffer".
 void require_memory(std::size_t bytes, const std::string& what);
 
 /// "512 MiB".

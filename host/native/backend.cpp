@@ -10,7 +10,7 @@
 
 namespace flaunay::host {
 
-// Parts of a launch are several groups, but not so many that threads would wait for the last one for long.
+// A part of a launch is several groups, but small enough that threads do not wait long for the last part.
 constexpr std::size_t kPartsPerThread = 8;
 
 void NativeBackend::launch(const KernelName& name, NativeFunction function, void* const* arguments,

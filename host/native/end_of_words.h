@@ -1,4 +1,4 @@
-// Ends what host/native/words.h begins.
+// Undefines the macros of host/native/words.h.
 #undef kernel
 #undef global
 #undef restrict

@@ -1,4 +1,4 @@
-// What kernel files use of OpenCL C beyond the text that kernels and host share
+// The part of OpenCL C that kernel files use beyond the text that kernels and host share
 // (kernels/arithmetic/language.h), for kernel files that are compiled as C++.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "host/native/function.hpp"
-// Kernels do not count what they do, see operations/counters.h.
+// Kernels do not count operations, see operations/counters.h.
 #define FLAUNAY_NATIVE_KERNELS
 #include "arithmetic/language.h"
 
@@ -52,8 +52,8 @@ inline bool isfinite(double x) { return std::isfinite(x); }
 // Whether this thread runs all work-items of the launch: then nobody else changes memory meanwhile.
 inline thread_local bool is_alone [[gnu::tls_model("initial-exec")]] = false;
 
-// Atomic operations; as in OpenCL C 1.2, they order nothing else. What a thread does alone takes a fraction
-// of the time.
+// Atomic operations; as in OpenCL C 1.2, they order nothing else. A thread that is alone uses plain
+// operations, which take a fraction of the time.
 template <typename T, typename Change, typename Atomically>
 T atomic_change(volatile T* at, const Change& change, Atomically atomically) {
   if (!is_alone) return atomically();
@@ -85,7 +85,7 @@ inline int atomic_cmpxchg(volatile int* at, int expected, int value) {
         return expected;
       });
 }
-// Of what other work-items change meanwhile; see constrained/meanwhile.h.
+// Reads and writes of memory that other work-items change meanwhile; see constrained/meanwhile.h.
 inline int read_shared(const volatile int* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
 inline uint read_shared(const volatile uint* at) { return __atomic_load_n(at, __ATOMIC_RELAXED); }
 inline void write_shared(volatile int* at, int value) { __atomic_store_n(at, value, __ATOMIC_RELAXED); }

@@ -7,8 +7,8 @@
 
 namespace flaunay::host {
 
-/// The number of threads that run native kernels: what the environment variable FLAUNAY_THREADS says, or one
-/// per core that this process may use. Throws DeviceError if FLAUNAY_THREADS is not a number from 1 to 1024.
+/// The number of threads that run native kernels: the environment variable FLAUNAY_THREADS, or one per core
+/// that this process may use. Throws DeviceError if FLAUNAY_THREADS is not a number from 1 to 1024.
 std::size_t native_threads();
 
 /// Threads that wait for work, and do it together with the thread that has it. Must be used by one thread at

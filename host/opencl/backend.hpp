@@ -47,7 +47,7 @@ class OpenClBackend : public Backend {
 
  private:
   boost::compute::command_queue make_queue(bool profiling) const;
-  /// Makes later commands wait for what was enqueued on the other queue.
+  /// Makes later commands wait for commands enqueued on the other queue.
   void follow(cl_command_queue other);
   /// To be called after each command: on an out-of-order queue, makes the next command wait for it.
   void keep_order();

@@ -19,8 +19,8 @@
 namespace flaunay::host {
 namespace {
 
-// What drivers of GPUs make below /dev: any of Linux's own, AMD's, NVIDIA's (on desktops and on boards), the
-// one of Linux below Windows, ARM's, Qualcomm's, Imagination's and Vivante's.
+// Files that drivers of GPUs make in /dev: Linux's own drivers, AMD's, NVIDIA's (on desktops and on boards),
+// the driver of Linux in Windows, ARM's, Qualcomm's, Imagination's and Vivante's.
 constexpr const char* kGpuFiles[] = {"dri", "kfd",   "nvidiactl", "nvidia-caps", "nvhost-gpu", "nvgpu",
                                      "dxg", "mali0", "kgsl-3d0",  "pvrsrvkm",    "pvr_sync",   "galcore"};
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-// In a build without OpenCL, such functions always throw, and the compiler leaves out what follows a call.
+// In a build without OpenCL, such functions always throw, and the compiler leaves out the code after a call.
 #ifdef FLAUNAY_WITHOUT_OPENCL
 #define NEEDS_OPENCL [[noreturn]]
 #else
@@ -33,7 +33,7 @@ constexpr const char* kHostName = "host";
 /// empty if neither names one.
 std::string wanted_device(const std::string& given);
 
-/// Finds the first GPU with fp64, or if there is none, the first GPU; nothing if there is none, or no OpenCL.
+/// Finds the first GPU with fp64, otherwise the first GPU. Returns nothing if no GPU or no OpenCL is found.
 std::optional<boost::compute::device> find_gpu();
 
 /// Whether this system may have a GPU, as far as its device files in `folder` tell. Loading OpenCL to look
@@ -42,7 +42,7 @@ std::optional<boost::compute::device> find_gpu();
 bool may_have_gpu(const std::string& folder = "/dev");
 
 /// The first GPU with fp64, else the first GPU, else the first device with fp64, else the first one. Throws
-/// DeviceError if there is none.
+/// DeviceError if no device is found.
 NEEDS_OPENCL boost::compute::device best_device();
 
 /// Finds a device. wanted: "" (the environment variable FLAUNAY_DEVICE if set, else that of best_device),

@@ -29,8 +29,8 @@ Bytes read(Backend& backend, cl_mem array) {
 // Walks begin elsewhere where points are fetched ahead, and so do not end at the same step.
 const char* const kOfManyResults[] = {"find_triangles"};
 
-// The constants that decide what kernels leave in their arrays. A device's kernels are compiled with other
-// values than native ones, which have the defaults of their files.
+// The constants that determine the contents of arrays after a kernel. A device's kernels are compiled with
+// other values than native ones, which have the defaults of their files.
 const char* const kDecidingConstants[] = {"SORT_BITS", "SORT_GROUP", "SMALL_REGION"};
 
 // The largest groups whose launches must leave the same bytes as native ones, whose groups have one
@@ -146,8 +146,8 @@ void LaunchCheck::launch(const KernelName& name, const ArgumentList& arguments, 
         std::mismatch(found.begin(), found.end(), expected.begin()).first - found.begin());
     if (at == found.size()) continue;
     const std::string argument = declaration(name, k, arguments.size());
-    // What scratch memory holds in the end means nothing. What several work-items change may depend on their
-    // order; of it later kernels make what does not.
+    // The final contents of scratch memory mean nothing. Memory that several work-items change may depend on
+    // their order; later kernels compute results from it that do not.
     if (argument.find(" scratch") != argument.npos || argument.find(" volatile ") != argument.npos) continue;
     kernel.difference =
         fmt::format("launch {}, {} work-items: {}, byte {} of {}: {} on the device, {} on the host",

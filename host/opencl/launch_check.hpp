@@ -17,11 +17,11 @@ namespace flaunay::host {
 /// so it is for small inputs.
 class LaunchCheck {
  public:
-  /// What is known of one kernel.
+  /// The results of comparing one kernel.
   struct Tested {
     std::size_t launches = 0;
     bool was_compared = false;           ///< whether it ran natively, too
-    std::size_t largest_comparable = 0;  ///< only with groups of at most so many work-items
+    std::size_t largest_comparable = 0;  ///< largest work-group with which it can run natively
     std::string difference;              ///< where its first difference was; empty if there was none
   };
 
@@ -31,7 +31,7 @@ class LaunchCheck {
   LaunchCheck(const LaunchCheck&) = delete;
   LaunchCheck& operator=(const LaunchCheck&) = delete;
 
-  /// That of this thread; null if there is none.
+  /// The check of this thread; null if it has none.
   static LaunchCheck* of_thread();
 
   /// Launches by `on_device`, and compares. work_items: with those that fill up the last group; options:
@@ -40,7 +40,7 @@ class LaunchCheck {
               std::size_t group, const std::string& options, Backend& backend,
               const std::function<void()>& on_device);
 
-  /// By program and kernel, "blocks/mesh: emit_triangles".
+  /// The results per program and kernel, such as "blocks/mesh: emit_triangles".
   const std::map<std::string, Tested>& kernels() const { return kernels_; }
 
  private:

@@ -32,7 +32,7 @@ struct Signature<R(P...)> {
   using Parameter = std::tuple_element_t<k, std::tuple<P...>>;
 };
 
-// What a function answers if there is no OpenCL.
+// The result of a function if there is no OpenCL.
 template <typename Result>
 Result missing() {
   if constexpr (std::is_same_v<Result, cl_int>) return -1001;  // CL_PLATFORM_NOT_FOUND_KHR
@@ -74,7 +74,7 @@ const cl_icd_dispatch* functions_for(const cl_context_properties*, cl_uint count
 
 using Platforms = std::vector<cl_platform_id>;
 
-// The platforms of a driver; none if it cannot be loaded or is none.
+// The platforms of a driver; none if it cannot be loaded or is not a driver.
 Platforms platforms_of(const std::string& driver) {
   using Find = void*(CL_API_CALL*)(const char*);
   void* const library = system::open_library(driver);
@@ -205,7 +205,7 @@ void add_driver(const std::string& platform, const std::string& path) {
 #define FUNCTION_10(name) \
   RESULT(name) name(PARAMETERS_10(name)) PASS_ON(name, p0, p1, p2, p3, p4, p5, p6, p7, p8, p9)
 
-// By the number of parameters.
+// Forwarding functions, by the number of parameters.
 extern "C" {
 FUNCTION_1(clFinish)
 FUNCTION_1(clFlush)

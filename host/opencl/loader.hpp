@@ -6,8 +6,8 @@
 
 namespace flaunay::host {
 
-/// Adds the platforms of a driver, a shared library, to those of the system from now on, unless the system
-/// has a platform of that name. It is loaded when platforms are listed; if that fails, it has none.
+/// Adds the platforms of a driver, a shared library, to the system's from now on, unless one has that name.
+/// The driver is loaded when platforms are listed; if loading fails, it adds no platforms.
 #ifdef FLAUNAY_WITHOUT_OPENCL
 inline void add_driver(const std::string&, const std::string&) {}
 #else

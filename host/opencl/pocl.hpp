@@ -1,5 +1,5 @@
-// What PoCL, the OpenCL implementation for CPUs, needs of the system. Where it lacks, PoCL ends the process;
-// so it is checked before PoCL is asked.
+// Checks whether the system has what PoCL, the OpenCL implementation for CPUs, needs. If anything is missing,
+// PoCL ends the process, so the check comes before the first call of PoCL.
 #pragma once
 
 #include <CL/cl.h>

@@ -11,8 +11,9 @@ namespace flaunay::host {
 /// if there is something of this name.
 int make_private_folder(const std::string& folder);
 
-/// A folder that is open: whatever has its name by then, its files are in what was checked. On Windows it has
-/// the access control list that it inherits: that of the user's own folders lets nobody else write.
+/// An open folder: files are created in the folder that was checked, even if its name has been given to
+/// another one. On Windows it inherits an access control list; in the user's own folders that lets nobody
+/// else write.
 class PrivateFolder {
  public:
   /// Opens the folder if it is there and nobody else can write to it.

@@ -15,7 +15,7 @@
 namespace flaunay::host {
 namespace {
 
-// Of a file or folder.
+// The descriptor of a file or folder, which it closes.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}

@@ -59,7 +59,7 @@ std::optional<std::string> unpacked(const std::string& content, const std::strin
 
 std::string name_of(const std::string& key) { return hash_of(key) + kEnding; }
 
-// What the user is still to be told.
+// The message that the user has not read yet.
 struct Note {
   std::mutex mutex;
   bool is_made = false;

@@ -21,7 +21,7 @@ class ProgramCache {
   /// programs take more, those that were stored first are removed.
   explicit ProgramCache(std::string folder, std::size_t most_bytes = std::size_t{64} << 20);
 
-  /// The program that was stored with this key; nothing if there is none.
+  /// The program that was stored with this key, if any.
   std::optional<std::string> load(const std::string& key) const;
   /// Stores a program, in one step as seen by other processes.
   void store(const std::string& key, const std::string& program) const;
@@ -40,7 +40,7 @@ class ProgramCache {
 std::string take_cache_note();
 
 /// The folder of the cache: the environment variable FLAUNAY_CACHE_DIR if it is set ("" for no cache), else
-/// flaunay in the folder of the user's caches; empty if there is none.
+/// flaunay in the folder of the user's caches; empty if the user has no such folder.
 std::string default_cache_folder();
 
 }  // namespace flaunay::host

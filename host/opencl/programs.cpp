@@ -82,7 +82,7 @@ std::string used_options(const std::string& options, const std::string& source) 
   return used;
 }
 
-// What a copy of a compiled program needs at most, the driver's own work included.
+// The most memory that copying a compiled program needs, including the driver's own work.
 constexpr std::size_t kSpaceForBinaries = std::size_t{512} << 20;
 
 const boost::compute::program* Programs::find(const std::string& file, const std::string& options) const {
@@ -110,7 +110,7 @@ const boost::compute::program* Programs::make(const std::string& file, const std
   return &programs_.emplace(std::pair(file, options), std::move(program)).first->second;
 }
 
-// Makes a program of what binary_of returned; null if the driver does not accept it.
+// Makes a program from the result of binary_of; null if the driver does not accept it.
 boost::compute::program Programs::made_of(const std::string& binary, const std::string& options) const {
   const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
   const std::size_t size = binary.size();
@@ -143,7 +143,7 @@ boost::compute::program Programs::compiled(const std::string& file, const std::s
 
 // The compiled program as the driver stores it; empty if it does not.
 std::string Programs::binary_of(const boost::compute::program& program) const {
-  // One entry per device of the context, of which only ours has a binary.
+  // One entry per device of the context. Only ours has a binary.
   cl_uint devices = 0;
   if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof devices, &devices, nullptr) !=
       CL_SUCCESS)

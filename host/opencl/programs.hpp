@@ -25,7 +25,7 @@ class Programs {
   Programs(boost::compute::context context, boost::compute::device device, std::string identity)
       : context_(std::move(context)), device_(std::move(device)), identity_(std::move(identity)) {}
 
-  /// The program of a file, compiled with these options; null if there is none yet.
+  /// The program of a file, compiled with these options; null if it is not compiled yet.
   const boost::compute::program* find(const std::string& file, const std::string& options) const;
   /// Makes it; macros that its text does not name are left out of the options. before_compiling: called
   /// before it is compiled from its source, if set. Throws DeviceError with the compiler's messages if that

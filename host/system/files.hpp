@@ -1,5 +1,5 @@
 // Files by descriptors, in one way on all systems: files_posix.cpp and files_windows.cpp. Names are in UTF-8
-// and contents are bytes. What fails leaves its reason in errno.
+// and contents are bytes. Functions that fail leave the reason in errno.
 #pragma once
 
 #include <cerrno>
@@ -28,7 +28,7 @@ std::int64_t read_some(int file, void* to, std::size_t bytes);
 std::int64_t write_some(int file, const void* data, std::size_t bytes);
 std::int64_t read_some_at(int file, std::uint64_t place, void* to, std::size_t bytes);
 std::int64_t write_some_at(int file, std::uint64_t place, const void* data, std::size_t bytes);
-/// Leaves so many bytes of the file. Returns whether that is done.
+/// Truncates the file to this size. Returns whether it succeeded.
 bool cut_file(int file, std::uint64_t bytes);
 
 /// Calls `part(done)`, which reads or writes some of the bytes after those that are done, until all are or no
@@ -63,7 +63,7 @@ inline std::size_t read_at(int file, std::uint64_t place, std::size_t bytes, voi
   });
 }
 
-/// Returns when what was written is on the disk.
+/// Returns when the written data is on the disk.
 bool write_to_disk(int file);
 /// As write_to_disk for the files that were written in a folder and closed, where systems can do that.
 bool write_folder_to_disk(const std::string& folder);
@@ -86,7 +86,7 @@ bool is_writable(const std::string& name);
 /// Whether both are one file, or folder, that exists.
 bool is_one_file(const std::string& a, const std::string& b);
 
-/// Gives what is there another name, in one step, in place of a file that has it.
+/// Renames a file or folder in one step, and replaces a file that has the new name.
 bool rename_file(const std::string& from, const std::string& to);
 /// Gives a file a second name.
 bool link_file(const std::string& name, const std::string& second);

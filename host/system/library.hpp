@@ -7,10 +7,10 @@ namespace flaunay::system {
 
 using AnyFunction = void();
 
-/// OpenCL's loader, and the library of a path; null if there is none.
+/// Open OpenCL's loader, and the library at a path; null if it is not found.
 void* open_opencl();
 void* open_library(const std::string& path);
-/// A function of a library; null if it has none of this name.
+/// A function of a library; null if the library has no function of this name.
 AnyFunction* find_function(void* library, const char* name);
 /// A function of any library that was loaded for all to see.
 AnyFunction* find_among_loaded(const char* name);

@@ -5,7 +5,7 @@
 
 namespace flaunay::system {
 
-// Neither from the current folder nor from those of PATH, to which others may write.
+// Looks neither in the current folder nor in the folders of PATH, to which others may write.
 void* open_opencl() { return LoadLibraryExW(L"OpenCL.dll", nullptr, LOAD_LIBRARY_SEARCH_DEFAULT_DIRS); }
 
 void* open_library(const std::string& path) { return LoadLibraryW(wide(path).c_str()); }

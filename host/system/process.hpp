@@ -16,8 +16,8 @@ void end_on_closed_pipe();
 /// The arguments of main, in UTF-8.
 std::vector<std::string> arguments_of_main(int argc, char** argv);
 
-/// From now on, what asks the process to end, such as Ctrl-C, calls `clean_up` on a thread of its own before,
-/// unless it is ignored. To be called before there are other threads.
+/// From now on, signals that end the process, such as Ctrl-C, first call `clean_up` on a separate thread,
+/// unless they are ignored. To be called before there are other threads.
 void clean_up_when_interrupted(void (*clean_up)());
 
 /// The number of columns if standard error is a terminal that obeys escape sequences, else 0.

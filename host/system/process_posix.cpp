@@ -16,7 +16,7 @@ namespace flaunay::system {
 namespace {
 
 // The system gives a file the lowest free descriptor. If a standard stream is closed, that would be the
-// stream's, and what is meant for the stream would go into the file.
+// stream's descriptor, and the stream's output would go into the file.
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
@@ -66,7 +66,7 @@ void clean_up_when_interrupted(void (*clean_up)()) {
   try {
     std::thread([awaited, clean_up] { wait_and_clean_up(awaited, clean_up); }).detach();
   } catch (const std::system_error&) {
-    // If the system refuses the thread, signals end the process at once, and what is not complete stays.
+    // If the system refuses the thread, signals end the process at once, and incomplete files stay.
     pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
   }
 }

@@ -1,5 +1,5 @@
-// Text for the functions of Windows, which is UTF-16 there and UTF-8 everywhere else. What is not valid
-// becomes U+FFFD.
+// Text for the functions of Windows, which is UTF-16 there and UTF-8 everywhere else. Invalid characters
+// become U+FFFD.
 #pragma once
 
 #include <windows.h>

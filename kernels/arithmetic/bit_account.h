@@ -1,6 +1,6 @@
 // The bits of coordinates as they come from the caller, in double precision: the account of them, which kernels of
-// points/inspect.cl and points/inspect_tiles.cl make, and numbers in fixed point. By integers alone, so that devices
-// without double precision read them, too.
+// points/inspect.cl and points/inspect_tiles.cl make, and numbers in fixed point. They use integers alone, so
+// that devices without double precision can read them.
 #ifndef FLAUNAY_BIT_ACCOUNT_H
 #define FLAUNAY_BIT_ACCOUNT_H
 
@@ -13,7 +13,7 @@ BEGIN_SHARED
 INTEGER_CONSTANT(NO_LARGEST, -10000);
 INTEGER_CONSTANT(NO_LOWEST, 10000);
 
-// What coordinates have in common: the largest magnitude, as its bits, and the exponent of the lowest set bit.
+// The account of coordinates: the largest magnitude, as its bits, and the exponent of the lowest set bit.
 typedef struct {
   uint64 most;
   int lowest;
@@ -83,7 +83,7 @@ static inline int lies_before(int i, int j, GLOBAL const double_bits* input) {
   return order_of_bits(input[2 * (int64)i + 1]) < order_of_bits(input[2 * (int64)j + 1]);
 }
 
-// The bits of a float as those of a double.
+// The bits of the double that equals a float.
 static inline uint64 widened_bits(uint bits) {
   const uint64 sign = (uint64)(bits >> 31) << 63, magnitude = bits & 0x7fffffffU;
   if (magnitude >= 0x7f800000U) return sign | INFINITE_BITS | (magnitude & 0x007fffffU) << 29;

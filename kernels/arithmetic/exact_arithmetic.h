@@ -160,7 +160,7 @@ static inline void expansion_cross(double2 ax, double2 ay, double2 bx, double2 b
   expansion_add_product(e, -ay, bx);
 }
 
-// Of a compressed expansion, with all bits right except the last.
+// The value of a compressed expansion, with all bits right except the last.
 static inline double expansion_value(const expansion* e) {
   double value = 0.0;
   for (int k = 0; k < e->size; ++k) value = value + e->part[k];

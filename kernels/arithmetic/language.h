@@ -3,11 +3,11 @@
 // close a namespace, which has the types and built-in functions of OpenCL C that the headers use; in OpenCL C they are
 // nothing.
 //
-// What the two languages spell differently is spelled by a macro here: GLOBAL for the address space `global`, RESTRICT,
-// VECTOR(type, x, y) for a vector, VECTOR3, 4 and 8 likewise, INTEGER_CONSTANT(NAME, value) for a constant of type
-// int, OUT_OF_LINE for a function that is called rarely and is long (in OpenCL C nothing, unless a program chooses),
-// and ASSERT_SIZE(type, bytes), which does not compile unless the type has that size. OpenCL C has no variadic macros,
-// and NVIDIA's compiler refuses them.
+// Macros cover what the two languages spell differently: GLOBAL for the address space `global`, RESTRICT,
+// VECTOR(type, x, y) for a vector, VECTOR3, 4 and 8 likewise, INTEGER_CONSTANT(NAME, value) for a constant of
+// type int, OUT_OF_LINE for a function that is called rarely and is long (in OpenCL C nothing, unless a program
+// chooses), and ASSERT_SIZE(type, bytes), which does not compile unless the type has that size. OpenCL C has no
+// variadic macros, and NVIDIA's compiler refuses them.
 #ifndef FLAUNAY_LANGUAGE_H
 #define FLAUNAY_LANGUAGE_H
 
@@ -83,7 +83,7 @@ inline int64 min(int64 a, int64 b) { return b < a ? b : a; }
 inline int64 max(int64 a, int64 b) { return a < b ? b : a; }
 inline uint64 min(uint64 a, uint64 b) { return b < a ? b : a; }
 inline uint64 max(uint64 a, uint64 b) { return a < b ? b : a; }
-// Of 0 the number of bits.
+// The number of leading zeros; all bits for 0.
 inline int clz(int x) { return x == 0 ? 32 : __builtin_clz(static_cast<uint>(x)); }
 inline uint64 clz(uint64 x) { return x == 0 ? 64 : static_cast<uint64>(__builtin_clzll(x)); }
 

@@ -18,7 +18,7 @@
 
 BEGIN_SHARED
 
-// Bounds of filters are the same type in both. Those of predicates/bounds.h are rounded up.
+// Bounds of filters have the same type in both. The bounds in predicates/bounds.h are rounded up.
 typedef float filter_bound;
 
 // The bits of the caller's numbers.
@@ -54,13 +54,13 @@ typedef float2 real_pair;
 
 // Differences are below 2^(COORDINATE_BITS + 1), and below 2^30 as multiples of UNIT.
 #define UNIT REAL(0x1p-33)
-// What underflow can add to the error of a sum of products of four differences, and more.
+// More than underflow can add to the error of a sum of products of four differences.
 #define UNDERFLOW_ERROR REAL(0x1p-110)
 // Beyond all coordinates.
 #define COORDINATE_LARGEST 0x7fffffffffffffffL
 
-// An exact difference as a real number, rounded once. By halves of 32 bits, it would take more instructions, also where
-// those are faster.
+// An exact difference as a real number, rounded once. Converting halves of 32 bits would take more
+// instructions, even where these are faster.
 static inline real real_of(int64 difference) { return convert_float(difference) * UNIT; }
 
 static inline real difference(coordinate a, coordinate b) { return real_of(a - b); }

@@ -7,8 +7,8 @@
 
 BEGIN_SHARED
 
-// Coordinates are scaled by the product of three powers of two, which may be no double itself. Those in fixed point
-// are scaled already.
+// Coordinates are scaled by the product of three powers of two, which may be no double itself. Coordinates in
+// fixed point are scaled already.
 typedef struct {
   coordinate s0, s1, s2;
 } scaling;

@@ -12,7 +12,7 @@
   global const int* restrict PREFIX##distinct, global const int* restrict PREFIX##block_of_place, \
   global const uchar* restrict PREFIX##axes
 
-// The points of blocks, which are brought into order, and what is known of them then.
+// The points of blocks, which are sorted, and the results: representatives, solved blocks, numbers of points.
 #define BLOCK_POINTS(PREFIX) \
   global coordinate2* PREFIX##points, global int* PREFIX##source, global int* PREFIX##representatives, \
   global solved_block* PREFIX##solved, global int* PREFIX##distinct_counts
@@ -21,8 +21,8 @@
 #define BLOCK_SCRATCH(PREFIX) \
   global coordinate2* PREFIX##scratch_points, global int* PREFIX##scratch_source, global uint64* PREFIX##scratch_ranks
 
-// The vertices of a round: whether it is the first one, in which all are open; their numbers among all points; those
-// that are listed; and what is open at them.
+// The vertices of a round: whether it is the first one, in which all are open; their numbers among all points;
+// their places in the list of open points; and their open edges.
 #define OPEN_VERTICES(PREFIX) \
   int PREFIX##is_first, global const int* restrict PREFIX##vertices, global const int* restrict PREFIX##listed, \
   global const int* restrict PREFIX##open_offsets, global const open_edge* restrict PREFIX##open_edges

@@ -29,8 +29,8 @@ typedef struct {
   GLOBAL uchar* axes;  // by node
 } block_scratch;
 
-// Of two points in one place, by their indices, keeps the heavier one; of equally heavy ones, and without weights, the
-// first. The other one gets what is kept as its representative; if it is lighter, the complement of that.
+// Keeps the heavier of two points in one place, given by index; with equal weights, or without weights, the
+// first. The kept point becomes the other one's representative; its complement if the other one is lighter.
 static inline int kept_of(int kept, int other, GLOBAL const real* weights, GLOBAL int* representatives) {
   const int sign = weights == 0 ? 0 : (weights[kept] > weights[other]) - (weights[kept] < weights[other]);
   if (sign < 0) {
@@ -67,7 +67,7 @@ static inline int distinct_by_x(int count, GLOBAL const coordinate2* points, GLO
 
 static inline void rank(int count, block_scratch* s) {
   GLOBAL keyed* elements = (GLOBAL keyed*)s->by_y;
-  // Of equal y, the larger x comes first.
+  // If y is equal, the larger x comes first.
   for (int i = 0; i < count; ++i) elements[i] = keyed_place(0, count - 1 - i);
   elements = sort_along(elements, (GLOBAL keyed*)s->spare, count, s->points, 1);
   if (elements != (GLOBAL keyed*)s->by_y) {
@@ -81,7 +81,7 @@ static inline void rank(int count, block_scratch* s) {
   }
 }
 
-// Splits an order stably: what is below the threshold comes first.
+// Splits an order stably: ranks below the threshold come first.
 static inline void split_order(int count, ranks threshold, GLOBAL ranks* RESTRICT order, GLOBAL ranks* RESTRICT spare) {
   int64 low = 0;
   for (int64 i = 0; i < count; ++i) {
@@ -142,7 +142,7 @@ static inline int order_block(int first, int count, GLOBAL const real* weights, 
   return distinct;
 }
 
-// Of the node `node` of the cuts' heap, whose leaves have this depth: its first vertex, counted from the block's first.
+// The first vertex of node `node` of the cuts' heap, counted from the block's first.
 static inline int begin_of_node(int count, int node) {
   const int depth = 31 - (int)clz(node);
   return part_begin(count, depth, node - (1 << depth));

@@ -14,7 +14,7 @@ BEGIN_SHARED
 
 #define FRAME_SIDES 4
 
-// What lies beyond side k of the rectangle, within the box around all points. Returns 0 if there is nothing.
+// The area beyond side k of the rectangle, within the box around all points. Returns 0 if it is empty.
 static inline int beyond_side(const block_frame* frame, int k, vertex_box* beyond) {
   *beyond = frame->all;
   if (k == 0) beyond->high.x = frame->rectangle.low.x;
@@ -31,16 +31,16 @@ static inline int has_other_blocks(const block_frame* frame) {
   return any;
 }
 
-// A circle through `origin`. Of its centre, as seen from there, the coordinates are wrong by at most `error`. Seen from
-// the input's origin, which may be far away, they would be wrong by more than points differ.
+// A circle through `origin`. x and y are its centre relative to `origin`, with errors of at most `error`.
+// Relative to the input's origin, which may be far away, the errors could exceed distances of points.
 typedef struct {
   coordinate2 origin;
   real x, y, error;
 } circle_found;
 
-// Of the triangle a, b, c. Returns 0 if the points are too close to a line. Differences are exact to within ROUNDOFF,
-// u, relatively. With d the doubled area, whose error is below 4 u m for the sum m of its terms' magnitudes, the centre
-// is n / 2d from a; n is a difference of two products of three, each exact to within 8 u.
+// Finds the circle through a, b, c. Returns 0 if they are too close to a line. Differences have relative errors
+// below u, ROUNDOFF. With d the doubled area, whose error is below 4 u m for the sum m of its terms'
+// magnitudes, the centre is n / 2d from a; n is a difference of two products of three, with errors below 8 u.
 static inline int circle_through(coordinate2 a, coordinate2 b, coordinate2 c, circle_found* circle) {
   const real2 p = difference2(b, a), q = difference2(c, a);
   const real left = p.x * q.y, right = p.y * q.x;
@@ -58,7 +58,7 @@ static inline int circle_through(coordinate2 a, coordinate2 b, coordinate2 c, ci
   return 1;
 }
 
-// The least distance to the interval from x, as seen from the origin, less what errors can make of it.
+// The least distance from x, relative to the origin, to the interval, minus the largest possible error.
 static inline real gap_to(real x, coordinate origin, coordinate low, coordinate high, real error) {
   const real to_low = difference(low, origin), to_high = difference(high, origin);
   const real below = to_low - x, above = x - to_high;

@@ -3,8 +3,8 @@
 // solve_blocks is one launch; each work-item takes one block after the other. It sorts the block's points along x and
 // along y, drops duplicates, cuts the block in halves down to leaves of one to four vertices, each time across the
 // longer interquartile range, and merges from the leaves up (mesh/rings.h). Vertices are numbered in the order of the
-// leaves, so what a merge touches lies together. merge_blocks merges the two triangulations on either side of the cut
-// of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
+// leaves, so the data of a merge is contiguous. merge_blocks merges the two triangulations on either side of
+// the cut of a tree's node: one launch per level of the trees, from the leaves up, with one work-item per node.
 
 #include "blocks/arguments.h"
 #include "blocks/block.h"

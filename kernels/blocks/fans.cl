@@ -8,8 +8,8 @@
 // 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
 //    comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the first one at
 //    that vertex, counter-clockwise, or the one opposite to it, if it has none.
-// 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes nothing but what lies
-//    inside of one polygon.
+// 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes only edges that
+//    lie inside of one polygon.
 
 #include "blocks/codes.h"
 #include "mesh/limits.h"

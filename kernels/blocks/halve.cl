@@ -1,16 +1,16 @@
 // The first half of solving blocks on devices with many lanes: each block's points are sorted along x and along y,
-// duplicates are dropped, and what is left is cut in halves down to leaves (blocks/halving.h), exactly as solve_blocks
-// of blocks/divide.cl does. blocks/merge.cl does the rest.
+// duplicates are dropped, and the remaining points are cut in halves down to leaves (blocks/halving.h), exactly
+// as solve_blocks of blocks/divide.cl does. blocks/merge.cl does the rest.
 //
 // name_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
-// work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs, in which each element finds
-// its place by binary search in the other run. For blocks of more than `capacity` points, which have many equal points
-// as a rule, launches over all places do the same before: sort_large_tiles, merge_large_runs for each width of runs,
-// flag_distinct, a scan of its flags, move_distinct and name_duplicates. Each cut splits the order that is not cut by
-// position, stably, by a scan over the group, for all parts of a depth at once.
+// work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs: each element finds
+// its place by binary search in the other run. For blocks of more than `capacity` points, which have many equal
+// points as a rule, launches over all places do the same before: sort_large_tiles, merge_large_runs for each
+// width of runs, flag_distinct, a scan of its flags, move_distinct and name_duplicates. Each cut splits the
+// order that is not cut by position, stably, by a scan over the group, for all parts of a depth at once.
 //
-// If most blocks are tiny, halve_tiny_blocks, per block, does those of at most TINY_BLOCK points; flag_larger_blocks
-// and a scan list the others for the groups of halve_blocks.
+// If most blocks are tiny, halve_tiny_blocks, per block, halves blocks of at most TINY_BLOCK points;
+// flag_larger_blocks and a scan list the others for the groups of halve_blocks.
 
 #include "blocks/arguments.h"
 #include "blocks/halving.h"
@@ -22,7 +22,7 @@
 #include "operations/work_group.h"
 #include "predicates/order.h"
 
-// A block's own arrays, which begin at its place in those of all points.
+// A block's own arrays, which begin at its place in the arrays of all points.
 typedef struct {
   global coordinate2* points;  // distinct, by x
   global int* source;
@@ -152,7 +152,7 @@ WITH_BARRIERS void rank(int count, const block_arrays* s) {
   barrier(CLK_GLOBAL_MEM_FENCE);
 }
 
-// A part that is cut, and what of it comes low: vertices whose place along the axis is below a threshold.
+// A part that is cut. Its vertices whose place along the axis is below the threshold go low.
 typedef struct {
   int number, begin, middle, end, axis;
   ranks threshold;
@@ -360,7 +360,7 @@ static inline int axis_of_tiny(int count, global const coordinate2* points) {
          rounded_difference(points[high].x, points[low].x);
 }
 
-// n blocks, of which those of at most TINY_BLOCK points become what halve_blocks would make of them.
+// n blocks. Halves blocks of at most TINY_BLOCK points as halve_blocks would.
 kernel void halve_tiny_blocks(int n, global const int* restrict offsets, BLOCK_POINTS(), global uchar* axes,
                               global coordinate2* scratch_points, global int* scratch_source) {
   const int b = get_global_id(0);

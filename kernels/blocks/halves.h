@@ -1,9 +1,10 @@
 // The leaves of all blocks, and merges of their halves and of blocks. With RINGS_STOP they stop at a predicate that
 // floating point cannot decide, and a program without it continues them.
 //
-// A part of a block is a leaf, which has height 0, or what two parts of the height below are merged to. A part of
-// height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are divided into cells of
-// that size, at most one part of the height begins in each, and one work-item per cell does all of them.
+// A part of a block is a leaf, which has height 0, or the result of merging two parts of the height below. A
+// part of height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are
+// divided into cells of that size, at most one part of the height begins in each, and one work-item per cell
+// does it.
 #ifndef FLAUNAY_HALVES_H
 #define FLAUNAY_HALVES_H
 
@@ -33,14 +34,14 @@ static inline halved_blocks blocks_in(int places, GLOBAL const int* offsets, GLO
   return blocks;
 }
 
-// Part `number` of those of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
+// Part `number` of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
 typedef struct {
   int block, first, count, depth, number, begin;
 } block_part;
 
 static inline int edge_at(int place) { return EDGES_PER_VERTEX * place; }
 
-// Frees the edges of a place that has no vertex, in a list of those of all such places up to `end`.
+// Frees the edges of a place without a vertex, in one list with the edges of all such places up to `end`.
 static inline void free_place(rings* g, int place, int end) {
   g->vertex_edge[place] = NO_EDGE;
   for (int e = edge_at(place); e < edge_at(place + 1); e += 2) {
@@ -163,7 +164,7 @@ static inline int do_cell(rings* g, const halved_blocks* blocks, int height, int
   return height == 0 ? make_leaves_of_cell(g, blocks, cell) : merge_halves_of_cell(g, blocks, height, cell, state);
 }
 
-// Merges two blocks, or what has been merged to them. Returns how far it is.
+// Merges two blocks, or the triangulations into which they were merged. Returns how far it is.
 static inline int merge_two_blocks(rings* g, GLOBAL solved_block* solved, block_merge merge, int axis, int state) {
   const solved_block low = solved[merge.low], high = solved[merge.high];
   const hull_ends both = joined_ends(g, low.ends, high.ends, axis);

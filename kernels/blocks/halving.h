@@ -1,5 +1,5 @@
 // How a block's vertices are cut in halves, down to leaves of one to four vertices: into 2^depth parts of equal size,
-// but for one vertex. Parts are counted from 0 in each depth, and their numbers behind 2^depth are those of a heap.
+// but for one vertex. Parts are counted from 0 in each depth; plus 2^depth, the numbers form a heap.
 #ifndef FLAUNAY_HALVING_H
 #define FLAUNAY_HALVING_H
 
@@ -16,7 +16,7 @@ static inline ranks ranks_of(int own, int other) { return (uint64)other << 32 | 
 static inline int own_rank(ranks both) { return (int)(uint)both; }
 static inline int other_rank(ranks both) { return (int)(both >> 32); }
 
-// The least depth of which all parts are leaves.
+// The least depth at which all parts are leaves.
 static inline int halving_depth(int count) {
   return count <= LEAF_VERTICES ? 0 : 32 - (int)clz((count - 1) / LEAF_VERTICES);
 }

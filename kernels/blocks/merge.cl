@@ -1,11 +1,11 @@
 // The second half of solving blocks on devices with many lanes: leaves and merges, see blocks/halves.h and
-// mesh/rings.h. What meets a predicate that floating point cannot decide stops there, so that no exact predicates
-// take registers here; blocks/merge_exact.cl continues it.
+// mesh/rings.h. A merge stops at a predicate that floating point cannot decide, so that exact predicates take
+// no registers here; blocks/merge_exact.cl continues it.
 //
-// There is a launch of merge_parts per height, the first of which makes the leaves of all blocks, and then one of
-// merge_trees per level of the trees of cuts. There is one work-item per cell or merge, but where these are few, only
-// each `spread`-th work-item has one, so that merges are not in the same warp and do not wait for each other. Kernels
-// that continue merges have the same arguments; the account is theirs alone.
+// There is a launch of merge_parts per height; the first one makes the leaves of all blocks. Then there is one
+// of merge_trees per level of the trees of cuts. There is one work-item per cell or merge, but if these are
+// few, only one in `spread` work-items has one, so that merges are not in the same warp and do not wait for
+// each other. Kernels that continue merges have the same arguments; the account is theirs alone.
 
 #define RINGS_STOP
 #include "blocks/arguments.h"

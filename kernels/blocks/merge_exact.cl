@@ -1,6 +1,7 @@
-// Leaves and merges at which floating point could not decide, with exact predicates: what blocks/merge.cl has stopped
-// at is continued to its end, and so are walks along seams at which blocks/seams.cl has stopped. Each kernel is
-// one pass over the states of a launch, most of which are done, with the work-items and arguments of that launch.
+// Leaves and merges at which floating point could not decide, with exact predicates: merges that
+// blocks/merge.cl has stopped are continued to their end, and so are walks along seams that blocks/seams.cl has
+// stopped. Each kernel is one pass over the states of a launch, mostly done ones, with its work-items and
+// arguments.
 
 // Compiled in half the time, and these are called rarely.
 #define OUT_OF_LINE __attribute__((noinline))

@@ -62,7 +62,7 @@ static inline int owns(coordinate2 v, int right, int to, int next, global const 
 
 // Writes the triangle left of edge e, which belongs to the edge's origin v; first_row: of v's rows, closed by the next
 // vertex'. The row starts with the smallest index. With corners, each of its edges gets the place of the corner
-// opposite of it. Other work-items do so meanwhile: what they write is not read here.
+// opposite of it. Other work-items do so meanwhile; their writes are not read here.
 static inline void write_triangle(int e, int right, int with_corners, global const coordinate2* points,
                                   global const int* source, global ring_edge* edges, global const uint* first_rows,
                                   global int* triangles) {
@@ -89,7 +89,7 @@ static inline void write_triangle(int e, int right, int with_corners, global con
 // Pairs of edges that are tested before the triangles found among them are written.
 #define PAIRS_AT_ONCE 64
 
-// What will be needed is fetched in the order of memory: edges lead anywhere within a block.
+// Edges and points are fetched ahead in the order of memory: edges lead anywhere within a block.
 #define PAIRS_A_CACHE_LINE 2
 #define POINTS_A_CACHE_LINE 4
 static inline void fetch_ahead(int pair, int last, global const ring_edge* edges, global const coordinate2* points) {

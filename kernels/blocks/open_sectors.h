@@ -20,8 +20,8 @@ INTEGER_CONSTANT(OPEN_GHOST, -3);  // the outside of this block's triangulation
 static inline int is_final(int state) { return state >= 0 || state == GHOST; }
 static inline int is_ghost(int state) { return state == GHOST || state == OPEN_GHOST; }
 
-// A direction from a vertex. What is asked of it is what lies beside it, counter-clockwise: a triangle, or the outside,
-// if this is the last edge in a vertex of the hull.
+// A direction from a vertex. The question is whether the face beside it, counter-clockwise, is open: a
+// triangle, or the outside if this is the last edge at a vertex of the hull.
 typedef struct {
   coordinate2 from, to;
   int vertex, is_last;
@@ -43,8 +43,8 @@ static inline int where_met(const direction* d, int side) {
   return side < 0 ? MET_CLOCKWISE : side > 0 ? MET_LATE : d->is_last ? MET_OPPOSITE_OF_LAST : MET_OPPOSITE;
 }
 
-// 1 if what lies counter-clockwise beside a direction is open, 0 if not, UNDECIDED, but not if `exactly`. edges: the
-// open edges of the vertex, [begin, end); points: of all vertices.
+// 1 if the face counter-clockwise beside a direction is open, 0 if not, UNDECIDED, but not if `exactly`. edges:
+// the open edges of the vertex, [begin, end); points: of all vertices.
 static inline int begins_open(const direction* d, GLOBAL const open_edge* edges, int begin, int end,
                               GLOBAL const coordinate2* points, filter_bound bound, int exactly) {
   int open = 1, met = MET_LATE + 1;

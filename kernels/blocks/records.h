@@ -7,10 +7,10 @@
 
 BEGIN_SHARED
 
-// A walk along the seam of a merge: the vertices of its first crossing edge, of which a downward walk has the high
-// side's as its left one, and the hull edges out of them that it saw there; the edges along which it came to its last
-// crossing edge, out of that edge's vertices, or NO_EDGE before it has found the tangent; how many crossing edges it
-// has, and how it ended.
+// A walk along the seam of a merge: the vertices of its first crossing edge (a downward walk's left vertex is
+// on the high side), and the hull edges out of them that it saw there; the edges along which it came to its
+// last crossing edge, out of that edge's vertices, or NO_EDGE before it has found the tangent; its number of
+// crossing edges, and how it ended.
 typedef struct {
   int left, right, left_edge, right_edge;
   int left_from, right_from;
@@ -18,9 +18,9 @@ typedef struct {
 } seam_walk;
 ASSERT_SIZE(seam_walk, 32);
 
-// Where a block of points lies in its set. All other points of the round are on or beyond the sides of its rectangle,
-// which are infinite where there are none beyond; `all` is the box around the set. outside: if the block's hull has
-// three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
+// Where a block of points lies in its set. All other points of the round are on or beyond the sides of its
+// rectangle; sides without points beyond are infinite. `all` is the box around the set. outside: if the block's
+// hull has three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
 typedef struct {
   vertex_box rectangle, all;
   int outside[3];
@@ -28,9 +28,9 @@ typedef struct {
 } block_frame;
 ASSERT_SIZE(block_frame, 80);
 
-// An edge of which the triangles on one side are emitted and those on the other are not, seen from one of its
-// vertices: the other vertex, or NO_VERTEX for the ray to infinity from a vertex of the hull; the place of the emitted
-// corner opposite to it, or GHOST; and whether the side that is open begins at it, counter-clockwise.
+// An edge whose face on one side is emitted and on the other is not, seen from one of its vertices: the other
+// vertex, or NO_VERTEX for the ray to infinity from a vertex of the hull; the place of the emitted corner
+// opposite to it, or GHOST; and whether the side that is open begins at it, counter-clockwise.
 typedef struct {
   int to, corner, begins;
 } open_edge;

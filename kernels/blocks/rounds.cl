@@ -1,10 +1,10 @@
-// Rounds of blocks: what is final in the blocks' triangulations is emitted, and the points around which something is
-// missing go on to the next round, in other blocks.
+// Rounds of blocks: final triangles of the blocks' triangulations are emitted, and the points around which
+// triangles are missing go on to the next round, in other blocks.
 //
-// A triangle is final if its circumcircle lies within the block's rectangle (blocks/certify.h): then it is one of the
-// triangulation of all points of the round. These are the points that are not done yet, so that triangulation also has
-// triangles that cover what was emitted in rounds before; they are told from those still missing by the open sectors at
-// one of their vertices (blocks/open_sectors.h). The outside is emitted likewise, hull edge by hull edge.
+// A triangle is final if its circumcircle lies within the block's rectangle (blocks/certify.h): then it belongs
+// to the triangulation of all points of the round. These are the points that are not done yet, so that
+// triangulation also has triangles over the area that earlier rounds emitted. The open sectors at a vertex
+// (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted per hull edge.
 //
 // Each round, when the blocks are solved:
 // 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
@@ -13,9 +13,9 @@
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. After the first round, emit_unsure, per pair of edges,
 //    decides exactly what the filters could not.
-// 3. link_triangles, per pair of edges, joins emitted triangles, also with those of rounds before.
-// 4. Unless each set has one triangulation: count_open, per vertex, counts what goes on; after a scan write_open writes
-//    the points and their open edges.
+// 3. link_triangles, per pair of edges, joins emitted triangles, also with triangles of earlier rounds.
+// 4. Unless each set has one triangulation: count_open, per vertex, counts vertices that go on; after a scan
+//    write_open writes the points and their open edges.
 // After the rounds:
 // 5. count_rows, per place, and after a scan write_rows, per place, close the gaps between triangles.
 // 6. count_hull and list_hull, per vertex, list the hulls' vertices; rank_hull, in one launch per doubling, finds how
@@ -66,7 +66,7 @@ kernel void box_blocks(int n, global const solved_block* restrict solved, global
   }
 }
 
-// n blocks. step: the first of so many blocks of a set has the box of them all.
+// n blocks. step: the first of this many blocks of a set has the box around them all.
 kernel void join_boxes(int n, int sets, int step, global const int* restrict set_blocks, global vertex_box* boxes) {
   const int b = get_global_id(0);
   if (b < n) {
@@ -131,7 +131,7 @@ kernel void name_round_vertices(int n, int is_first, global const int* restrict 
   if (k < n) vertices[k] = is_first ? k : listed_vertices[listed[k]];
 }
 
-// What the triangles of a round are emitted from and to.
+// The arrays from which and to which a round's triangles are emitted.
 typedef struct {
   int is_first;
   filter_bound bound;  // of orientations
@@ -155,7 +155,7 @@ static inline int is_outside(int e, global const ring_edge* edges, const block_f
          e == frame->outside[2];
 }
 
-// Whether what is left of the edge from `from` to `to` is missing; UNDECIDED if that takes exact arithmetic.
+// Whether the face left of the edge from `from` to `to` is missing; UNDECIDED if that takes exact arithmetic.
 static inline int is_missing(const emission* m, int from, int to, int is_ghost, int exactly) {
   const int begin = m->open_offsets[m->listed[from]], end = m->open_offsets[m->listed[from] + 1];
   if (begin == end) return 1;
@@ -197,7 +197,7 @@ static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) 
   m->hull_previous[m->vertices[w]] = m->vertices[v];
 }
 
-// The emitted corner beyond the open edge from one vertex, where that side begins, to another; GHOST if there is none.
+// The emitted corner beyond an open edge from one vertex, where that side begins, to another; GHOST if none is.
 static inline int corner_beyond(int listed, int to, global const int* open_offsets,
                                 global const open_edge* open_edges) {
   for (int k = open_offsets[listed]; k < open_offsets[listed + 1]; ++k) {
@@ -218,11 +218,11 @@ static inline int is_ghost_missing(const emission* m, int from, int to, int is_l
 static inline int decide_ghost(const emission* m, const block_frame* frame, int e, int exactly) {
   const int to = m->edges[e].to, from = m->edges[e ^ 1].to;
   const int is_line = is_outside(e ^ 1, m->edges, frame);
-  // Of points on one line it is not known on which side others are.
+  // If the points are on one line, it is not known on which side others are.
   const int is_final =
       !has_other_blocks(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
   const int missing = is_final && !m->is_first ? is_ghost_missing(m, from, to, is_line, exactly) : is_final;
-  // If something is emitted, the set has triangles, and points on one line are what is left along its hull.
+  // If something is emitted, the set has triangles, and the points on one line are the rest of its hull.
   const int is_set_on_line = is_line && (m->is_first || open_count(m, from) == 0);
   if (missing == 1) emit_hull_edge(m, to, from, is_set_on_line);
   m->states[e] = missing == 1 ? GHOST : OPEN_GHOST;
@@ -338,7 +338,7 @@ static inline void add_open(open_list* list, int to, int corner, int begins) {
   ++list->count;
 }
 
-// Whether an edge that was open is closed by what is emitted on its other side now.
+// Whether an open edge is closed by a face that this round emits on its other side.
 static inline int is_closed_now(open_edge before, int first, global const ring_edge* edges, global const int* states,
                                 global const int* vertices) {
   int e = first;
@@ -394,7 +394,7 @@ static inline open_list open_list_of(int k, int is_first, global const int* list
 }
 
 // Counts each vertex that goes on, and its open edges. n places; in the first round, the first `distinct` of each block
-// are vertices, later all, also those of blocks that were left unsolved. Nothing goes on of sets of one block.
+// are vertices, later all, also in blocks that were left unsolved. No vertex of a set with one block goes on.
 kernel void count_open(int n, OPEN_VERTICES(), int sets, int blocks, global const int* restrict set_blocks,
                        global const int* restrict offsets, global const int* restrict distinct,
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
@@ -498,7 +498,7 @@ kernel void rank_hull(int n, global const int2* restrict from, global int2* rest
   }
 }
 
-// n hull vertices, those of set s from hull_offsets[s] on; each knows the distance to the end.
+// n hull vertices; set s has the ones from hull_offsets[s] on. Each knows the distance to the end.
 kernel void write_hull(int n, int sets, global const int* restrict hull_offsets,
                        global const int* restrict hull_vertices, global const int2* restrict ahead,
                        global const int* restrict indices, global int* restrict hull) {

@@ -11,12 +11,12 @@ typedef struct {
   int v, a, b;
 } row_places;
 
-// Of the indices of the corners.
+// Finds the places from the indices of the corners.
 static inline row_places places_in_row(int at_v, int at_a, int at_b) {
   const int least = min(at_v, min(at_a, at_b));
   const int from = (at_a == least) + 2 * (at_b == least);
   row_places to;
-  // By tables of 0, 2, 1 and of 1, 0, 2 in pairs of bits: compilers make branches of choices here, which cannot be
+  // Tables of 0, 2, 1 and of 1, 0, 2 in pairs of bits: compilers would make branches here, which cannot be
   // predicted.
   to.v = 24 >> 2 * from & 3;
   to.a = 33 >> 2 * from & 3;

@@ -2,8 +2,8 @@
 // of walk_seams for the halves of one height has two work-items per merge, which read, and only list the edges that
 // cross the seam and mark those that go. Walks that stopped are continued by finish_walks of blocks/merge_exact.cl; in
 // fixed point none stops, since exact predicates of integers take few registers and no stack to speak of. A launch of
-// sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place
-// in the rings. Each is one pass over what begins in the cells of that height (blocks/halves.h).
+// sew_seams then has a work-group per merge: it gives each crossing edge a free pair of edges and its place in
+// the rings. Each is one pass over the parts that begin in the cells of that height (blocks/halves.h).
 //
 // Walks that do not meet would be an error of the program. Such halves stay as they are, which is safe for all later
 // kernels, and the account tells the host.
@@ -45,8 +45,8 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
 
 SCAN_IN_GROUP(sum_before, uint)
 
-// What a work-group knows of its merge. removed_up and removed_down: by pair of edges, of either walk. slots: the pairs
-// that crossing edges may have, from the merge's first pair on.
+// The data of a work-group for its merge. removed_up and removed_down: by pair of edges, of either walk. slots:
+// the pairs that crossing edges may have, from the merge's first pair on.
 typedef struct {
   whole_seam seam;
   global ring_edge* edges;
@@ -133,7 +133,7 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
   for (int k = me; k < s.seam.down.crossings; k += lanes) {
     if (walks_meet(&s.seam, k, edges)) meets = k;
   }
-  // Neighbours look at neighbouring pairs. What an item has found of its first pairs, it need not look up again.
+  // Neighbours look at neighbouring pairs. An item need not look up again its results for its first pairs.
   const int first = PAIRS_PER_VERTEX * begin, last = PAIRS_PER_VERTEX * end;
   uint own = 0, found = 0, all;
   for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
@@ -146,7 +146,7 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
     if (k < FOUND_BITS ? found >> k & 1 : may_be_sewn(&s, pair)) s.slots[slot++] = pair;
   }
   const int count = s.seam.up.crossings + meets;
-  // A walk that has stopped has not listed all that it should.
+  // A walk that has stopped has an incomplete list.
   const int is_whole = s.seam.up.outcome != WALK_HAS_STOPPED && s.seam.down.outcome != WALK_HAS_STOPPED;
   const int is_sewn = is_merge && is_whole && meets >= 0 && count <= (int)all;
   for (int v = begin + me; is_sewn && v < end; v += lanes) replace_vertex_edge(&s, v);

@@ -33,8 +33,8 @@ typedef struct {
   real middle, error;
 } seam_line;
 
-// What a walk works on. crossings: by the edge along which it came there, and the vertex on the other side; of the
-// first one the walk itself has the vertices. removed: by pair of edges.
+// The data of a walk. crossings: per crossing the edge along which the walk came there, and the vertex on the
+// other side; the walk itself has the vertices of the first one. removed: by pair of edges.
 typedef struct {
   seam_line line;
   int is_downward, most;
@@ -154,8 +154,8 @@ static inline seam_side moved_side(const rings* g, const seam* s, const seam_sid
   return side_from(g, s, side->to, side->edge ^ 1, is_right);
 }
 
-// Of a side's ends, the one from which a line to a point of the other side passes the cut lowest, as the plane is
-// turned.
+// The end of a side from which the line to a point of the other side passes the cut lowest, or for a downward
+// walk highest.
 static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, coordinate2 other, int is_of_high) {
   int lowest = ends.first_x;
   real least = INFINITY;
@@ -250,8 +250,8 @@ static inline seam_walk walk_from(int left, int right, int crossings, int outcom
   return walk;
 }
 
-// Walk w of those of a height: cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
-// tangent, or else one without edges. crossings and removed: of all upward walks, and behind them of all downward ones.
+// Walk w of a height: in cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
+// tangent, otherwise a walk without edges. crossings and removed: of all upward, then of all downward walks.
 static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
                                      GLOBAL int2* crossings, GLOBAL uchar* removed) {
   const part_halves halves = halves_of_cell(blocks, height, w / 2);
@@ -273,8 +273,8 @@ static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int 
   return walk_along(g, &s, walk_from(left, right, 1, WALK_HAS_STOPPED));
 }
 
-// The crossing edges of two walks, from below: all those of the upward walk, and of the other those before the edge at
-// which they met, from its last to its first one.
+// The crossing edges of two walks, from below: all of the upward walk, then from the downward walk the edges
+// before the one at which they met, from the last to the first.
 typedef struct {
   int count, middle;  // middle: the first vertex of the high side
   seam_walk up, down;

@@ -1,5 +1,5 @@
-// Regular triangulations of blocks of weighted points, and their merges: what blocks/divide.cl does without weights,
-// with the same order of vertices, in as many launches. weights: by index of the input. vertex_weights: by vertex.
+// Regular triangulations of blocks of weighted points, and their merges: as in blocks/divide.cl, with the same
+// order of vertices, in as many launches. weights: by index of the input. vertex_weights: by vertex.
 
 #include "blocks/arguments.h"
 #include "blocks/block.h"

@@ -1,6 +1,6 @@
-// What a device takes for the least that kernels do, for predictions of times (flaunay-bench device): to begin a
-// launch, to wait for a load that needs the one before, and to compute with a result that was just computed. One pass
-// each.
+// Measures how long a device takes for the smallest tasks of kernels, for predictions of times (flaunay-bench
+// device): to begin a launch, to wait for a load that needs the one before, and to compute with a result that
+// was just computed. One pass each.
 
 #include "arithmetic/language.h"
 

@@ -1,5 +1,5 @@
 // How fast a device computes in single and in double precision when all of its lanes are busy: each work-item computes
-// a chain of multiplications and additions. One pass each; src/call/arithmetic.hpp compares them.
+// a chain of multiplications and additions. One pass each; src/tuning/arithmetic.hpp compares them.
 //
 // Nothing is ever written, since all x stay positive, which no compiler knows. Loops are unrolled, so that counting
 // does not take as long as computing.

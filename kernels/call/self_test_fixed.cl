@@ -6,7 +6,7 @@
 #include "arithmetic/numbers.h"
 #include "call/turns.h"
 
-// Whether two positive floats differ by at most so many units in the last place.
+// Whether two positive floats differ by at most `units` units in the last place.
 static inline int is_near(float x, uint expected, int units) {
   const int apart = as_int(x) - (int)expected;
   return -units <= apart && apart <= units;

@@ -9,8 +9,8 @@ BEGIN_SHARED
 
 INTEGER_CONSTANT(MANY_TURNS, 100000);
 
-// What a generator of random numbers has after MANY_TURNS steps from 1, which no compiler knows if the 1 is read from
-// memory.
+// The state of a random number generator after MANY_TURNS steps from 1. No compiler can precompute it if the 1
+// is read from memory.
 #define AFTER_MANY_TURNS 0x295fbfa1u
 
 static inline int loops_end_early(uint one) {

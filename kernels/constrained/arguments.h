@@ -9,7 +9,7 @@
 #define TRIANGULATION(PREFIX) \
   global const int* restrict PREFIX##triangles, global const int* restrict PREFIX##neighbors
 
-// What changes where cavities are triangulated again.
+// The arrays that change where cavities are triangulated again.
 #define REBUILT_ROWS(PREFIX) \
   global int* restrict PREFIX##triangles, global int* restrict PREFIX##neighbors, \
   global uint* restrict PREFIX##claims, global uchar* restrict PREFIX##flags, global uchar* restrict PREFIX##changed, \

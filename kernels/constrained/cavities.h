@@ -13,8 +13,8 @@
 
 BEGIN_SHARED
 
-// What became of a constraint that stays blocked, and of one whose cavity is filled already, by
-// constrained/fill_filtered.cl; see constrained/codes.h for other outcomes.
+// Outcomes of a constraint that stays blocked, and of one whose cavity constrained/fill_filtered.cl has filled
+// already; see constrained/codes.h for other outcomes.
 #define CONSTRAINT_BLOCKED 3
 #define CONSTRAINT_FILLED 4
 
@@ -111,7 +111,8 @@ static inline int fill_chain(int size, GLOBAL const chain_entry* chain, GLOBAL c
   return 1;
 }
 
-// Fills the cavity of a constraint, whose entries begin with so many on its left. Returns whether it could.
+// Fills the cavity of a constraint; returns whether it could. left: how many entries, the first, are on its
+// left.
 static inline int fill_cavity(constraint_walk walk, int left, GLOBAL const chain_entry* entries,
                               GLOBAL const coordinate* points, filter_bound bound, const replaced_rows* rows) {
   if (walk.rows == 0) {

@@ -1,21 +1,22 @@
 // The triangulations of long chains, by many work-items together: as constrained/chains.cl, with a work-item per
 // vertex.
 //
-// Vertices are removed and inserted in rounds. In a round of thin_chains, each chain loses a random set of vertices of
-// which no two follow each other, about a third of what it has: O(log k) rounds for k vertices. What these rounds
-// leave, finish_thinning removes. Then vertices are inserted in the opposite order: each as soon as the two between
-// which it was removed are there. In each round, claim_triangles puts the random keys of these vertices on the
-// triangles that they take away. A vertex wins if it has all of them, and no better key is on a triangle beside them
-// (choose_vertices). So the triangles of winners neither overlap nor touch, and it is as if insert_vertices inserted
-// them one after the other. The best key always wins.
+// Vertices are removed and inserted in rounds. In a round of thin_chains, each chain loses a random set of
+// vertices, no two of them neighbours, about a third of its vertices: O(log k) rounds for k vertices.
+// finish_thinning removes the rest. Then vertices are inserted in the opposite order: each as soon as the two
+// between which it was removed are there. In each round, claim_triangles puts the random keys of these vertices
+// on the triangles that they remove. A vertex wins if it has all of them, and no better key is on a triangle
+// beside them (choose_vertices). So the triangles of winners neither overlap nor touch, and it is as if
+// insert_vertices inserted them one after the other. The best key always wins.
 //
 // A vertex with very many triangles would keep all others waiting. If a walk takes more than `longest_walk` steps, the
 // vertex is marked as a hub, and all starts again, with hubs removed last and inserted first, when there are few
 // others.
 //
-// check_triangles checks the result. Places of triangles are those of a preorder. The triangle (i, j, k) has place i
-// plus the number of ancestors whose left children lead to it. Vertex j is the apex of one triangle, so this number is
-// one more for k = j: link_apexes and jump_apexes find it by pointer jumping. write_chain_rows writes the triangles.
+// check_triangles checks the result. Triangles are placed in preorder. The triangle (i, j, k) has place i plus
+// the number of ancestors whose left children lead to it. Vertex j is the apex of one triangle, so this number
+// is one more for k = j: link_apexes and jump_apexes find it by pointer jumping. write_chain_rows writes the
+// triangles.
 
 #include "constrained/arguments.h"
 #include "constrained/chains.h"
@@ -23,11 +24,11 @@
 #include "operations/counters.h"
 #include "operations/search.h"
 
-// Of the vertices in a list: before and after it. A vertex that is removed has NOT_LISTED.
+// For each vertex in a list, the vertices before and after it. A vertex that is removed has NOT_LISTED.
 #define NOT_LISTED VECTOR(int2, -2, -2)
 #define NO_OWNER 0xffffffffu
 
-// A random number of so many bits for each vertex, different for each; they must suffice for all.
+// A different random number of this many bits for each vertex; the bits must suffice for all.
 static inline uint random_key(int vertex, int bits, int round) {
   const uint most = (1u << bits) - 1u;
   const int half_bits = (bits + 1) / 2;
@@ -68,7 +69,8 @@ kernel void list_long_chains(int n, global const uint2* restrict places, global 
   }
 }
 
-// chains: the long ones, whose vertices begin at `offsets`; those of all chains at `all`. of: the chain of each vertex.
+// chains: the long ones, with vertices from `offsets` on; all chains' vertices begin at `all`. of: chains of
+// vertices.
 kernel void start_vertices(int n, int count, global const int* restrict chains, global const int* restrict offsets,
                            global const int* restrict all, global const coordinate2* restrict all_places,
                            global int* restrict of, global coordinate2* restrict places, global uchar* restrict hubs) {
@@ -180,7 +182,7 @@ kernel void finish_thinning(int n, global const int* restrict offsets, global co
 // ---------------------------------------------------------------------------------------------------------------------
 // Insertion
 
-// What a vertex does in a round: it waits for another one, takes triangles away, or takes none.
+// The action of a vertex in a round: it waits for another one, takes triangles away, or takes none.
 #define WAITS 0
 #define TAKES 1
 #define TAKES_NONE 2

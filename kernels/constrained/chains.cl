@@ -2,13 +2,14 @@
 // of it (docs/constrained.md).
 //
 // Chain c has the vertices chain[offsets[c]] to chain[offsets[c + 1] - 1]. Its triangles are positions (i, j, k) in the
-// chain, ascending: j is the apex of the chord from i to k. They are in preorder, so those of a chord with d vertices
-// between its ends are at d places that follow each other: the triangle (i, j, k) at place p has the child on (i, j) at
-// p + 1 and the child on (j, k) at p + j - i. As a chain of k vertices has k - 2 triangles, its first place is
-// offsets[c] - 2c.
+// chain, ascending: j is the apex of the chord from i to k. They are in preorder, so a chord with d vertices
+// between its ends has triangles at d consecutive places: the triangle (i, j, k) at place p has the child on
+// (i, j) at p + 1 and the child on (j, k) at p + j - i. As a chain of k vertices has k - 2 triangles, its first
+// place is offsets[c] - 2c.
 //
-// gather_vertices copies the vertices' places, so that those of a chain follow each other. triangulate_chains has a
-// work-item per chain. Short chains are gift-wrapped; of longer ones it inserts the vertices in random order.
+// gather_vertices copies the vertices' coordinates, so that vertices of a chain are contiguous.
+// triangulate_chains has a work-item per chain. It gift-wraps short chains, and inserts vertices of others in
+// random order.
 
 #include "constrained/chains.h"
 #include "constrained/records.h"

@@ -151,8 +151,8 @@ static inline void push_twin(const polygon* g, int twin, int* top) {
 }
 
 // Inserts a vertex between two that follow each other: removes the triangles that it takes away, as far as it is
-// connected to them, and fills the hole with triangles at it. If owners are given, it takes away those that are the
-// key's.
+// connected to them, and fills the hole with triangles at it. If owners are given, it removes the triangles
+// that belong to the key.
 static inline void insert_vertex(const polygon* g, int before, int vertex, int after, GLOBAL const uint* owners,
                                  uint key) {
   int top = NO_TWIN, unused = NO_TWIN, h = 3 * own_triangle(vertex), beside = side_from(before);
@@ -226,7 +226,7 @@ static inline int edge_after(const polygon* g, int twin, int before) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Random insertion by one work-item
 
-// As of a linear congruential generator (Knuth), whose low bits are bad.
+// Takes the high bits of a linear congruential generator (Knuth), since its low bits are bad.
 static inline int random_below(uint64* state, int end) {
   *state = *state * 6364136223846793005UL + 1442695040888963407UL;
   return (int)((*state >> 32) * (uint64)end >> 32);

@@ -6,7 +6,7 @@
 
 BEGIN_SHARED
 
-// What the insertion of segments tells the host: the places of its numbers.
+// Numbers that the insertion of segments reports to the host, by their places.
 INTEGER_CONSTANT(INSERTION_WRONG, 0);    // whether a segment is wrong: no points, or of different sets
 INTEGER_CONSTANT(INSERTION_CROSSED, 1);  // whether segments cross
 INTEGER_CONSTANT(INSERTION_BROKEN, 2);   // whether a walk left the triangulation, which is an error of the program
@@ -16,16 +16,16 @@ INTEGER_CONSTANT(INSERTION_ROWS, 5);     // how many rows were walked through, o
 INTEGER_CONSTANT(INSERTION_STOPPED, 6);  // whether walks ended early, because there were too many rows
 INTEGER_CONSTANT(INSERTION_NUMBERS, 7);
 
-// What became of a constraint in a round.
+// Outcomes of a constraint in a round.
 INTEGER_CONSTANT(CONSTRAINT_WAITS, 0);
 INTEGER_CONSTANT(CONSTRAINT_FITS, 1);       // it holds all rows that it crosses, which are few
 INTEGER_CONSTANT(CONSTRAINT_FITS_LONG, 2);  // or many
 
-// A row that no constraint has claimed. Those that a constraint has won are marked with RANK_WON and the round.
+// Marks a row that no constraint has claimed. RANK_WON and the round mark rows that a constraint has won.
 #define UNCLAIMED 0xffffffffu
 #define RANK_WON 0x80000000u
 
-// With the number on the hull: the place of a vertex of a set without triangles. Of others it is a corner.
+// With the number on the hull: the place of a vertex of a set without triangles. Other places are corners.
 #define PLACE_ON_LINE 0x80000000u
 
 END_SHARED

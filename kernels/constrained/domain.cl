@@ -1,11 +1,12 @@
-// Domains of a triangulation with constraints: regions, their depths, and what is left of the triangles. The elements
-// are triangles, segments, constraint edges or regions of all sets at once; no kernel knows of sets.
+// Domains of a triangulation with constraints: regions, their depths, and the kept triangles. The elements are
+// triangles, segments, constraint edges or regions of all sets at once; no kernel knows of sets.
 //
-// 1. Regions. start_regions joins what is connected within chunks of triangles without crossing a constraint, and
-//    join_regions what is connected between them: to a forest in which every parent has a smaller number, so that roots
-//    are the first triangles of their regions, whatever the order of joins (Jaiganesh and Burtscher, "A
-//    high-performance connected components implementation for GPUs", 2018). find_roots and, after a scan over roots,
-//    number_regions give each triangle its region's number. Few triangles are visited by one work-item (visit_regions).
+// 1. Regions. start_regions joins triangles of a chunk that are connected without crossing a constraint, and
+//    join_regions joins triangles of different chunks: to a forest in which every parent has a smaller number,
+//    so that roots are the first triangles of their regions, whatever the order of joins (Jaiganesh and
+//    Burtscher, "A high-performance connected components implementation for GPUs", 2018). find_roots and, after
+//    a scan over roots, number_regions give each triangle its region's number. Few triangles are visited by one
+//    work-item (visit_regions).
 // 2. Weights of constraint edges, if the fill rule needs them: cover_edges writes where segments begin and end to
 //    cover edges; a scan of this gives each edge's sum. count_ends and find_unbalanced find points where segments are
 //    no closed curves. list_edges puts the edges into a hash table, by which triangles find them.
@@ -13,9 +14,9 @@
 //    or to the outside; after a scan write_borders lists them.
 // 4. Depths. Each pass of reach_regions over the borders goes one level further from outside. Where there are too many
 //    levels the host goes on, one region after the other (src/constrained/domains/domain.cpp). finish_regions says
-//    which regions are left.
+//    which regions are kept.
 // 5. Holes. drop_holes marks the regions of the triangles that contain seeds, which seeds.cl has found.
-// 6. Result. count_left and, after a scan, write_left move the triangles that are left; find_offsets, number_labels and
+// 6. Result. count_left and, after a scan, write_left move the kept triangles; find_offsets, number_labels and
 //    write_labels do the rest.
 
 #include "arithmetic/bit_account.h"
@@ -24,8 +25,8 @@
 #include "constrained/fill_rules.h"
 #include "constrained/meanwhile.h"
 
-// Where another work-item has joined meanwhile: an older parent is an ancestor, too, and what an old root is taken for
-// is checked when it is joined (constrained/meanwhile.h).
+// Where another work-item has joined meanwhile: an older parent is an ancestor, too, and whether an old root is
+// still a root is checked when it is joined (constrained/meanwhile.h).
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Regions
@@ -171,8 +172,8 @@ kernel void cover_edges(int n, int rule, global const double_bits* restrict inpu
   }
 }
 
-// balances: 0 throughout; gets how many segments begin at a point, less those that end there, or how many do either. Of
-// points with the same coordinates, their representative has them all.
+// balances: 0 throughout; gets the number of segments that begin at a point minus the segments that end there,
+// or the number that do either. The representative of equal points has the segments of all.
 kernel void count_ends(int n, int rule, global const int* restrict segments, global const int* restrict representatives,
                        global volatile uint* restrict balances) {
   const int s = get_global_id(0);
@@ -195,8 +196,8 @@ kernel void find_even(int n, int rule, global const uint* restrict sums, global 
   if (e < n && (rule == FILL_WINDING || (sums[e + 1] & 1) == 0)) needed[0] = 1;
 }
 
-// Where an edge may be in the hash table: first by its first point, so that what is near in memory stays near, and then
-// anywhere, since very many edges may have the same first point.
+// Where an edge may be in the hash table: first by its first point, so that edges that are close in memory stay
+// close, and then anywhere, since very many edges may have the same first point.
 #define PLACES_BY_POINT 4
 static inline int slot_of(int from, int to, uint attempt, int mask) {
   const uint home = attempt < PLACES_BY_POINT ? 2 * (uint)from : edge_hash(from, to);
@@ -221,7 +222,7 @@ static inline int find_edge(int from, int to, int mask, global const int* edges,
   }
 }
 
-// What is crossed on a path over the edge from v to w from its right to its left. sums: by edge, one place further.
+// The sum of segments that a path crosses over the edge from v to w, right to left. sums: edge e at e + 1.
 static inline int crossed(int v, int w, int mask, global const double_bits* input, global const uint* needed,
                           global const uint* sums, global const int* edges, global const int* slots) {
   if (!needed[0]) return 1;
@@ -259,8 +260,8 @@ kernel void count_borders(int n, global const int* restrict neighbors, global co
   }
 }
 
-// Each border has two regions, of which the first is -1 if it is the outside; steps: what is crossed from the first one
-// to the second one, if the rule is not nesting.
+// Each border has two regions; the first is -1 if it is the outside. steps: the sum of segments crossed from
+// the first to the second one, if the rule is not nesting.
 kernel void write_borders(int n, int rule, int mask, TRIANGULATION(), global const uchar* restrict constrained,
                           global const int* restrict regions, global const uint* restrict places,
                           global const double_bits* restrict input, global const uint* restrict needed,
@@ -348,7 +349,7 @@ kernel void find_offsets(int n, global const int* restrict triangle_offsets, glo
   if (s < n) offsets[s] = places[triangle_offsets[s]];
 }
 
-// places: of triangles; numbers: of regions, both scans of what is left.
+// places: of triangles; numbers: of regions; both are scans of the kept ones.
 kernel void write_left(int n, TRIANGULATION(), global const uchar* restrict constrained,
                        global const int* restrict regions, global const uint* restrict places,
                        global const uint* restrict numbers, global int* restrict left_triangles,

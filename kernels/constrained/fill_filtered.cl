@@ -1,5 +1,5 @@
 // Fills the cavities of constraints as fill_cavities does (constrained/insert.cl), but by floating point alone, so that
-// no exact predicate takes registers: one pass over many winners, of which few are left for fill_cavities.
+// no exact predicate takes registers: one pass over many winners. Few are left for fill_cavities.
 
 #define CAVITIES_STOP
 #include "constrained/arguments.h"

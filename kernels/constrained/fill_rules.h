@@ -1,5 +1,5 @@
-// What is outside and what is a hole of a triangulation with constraints: see FillRule and Outside in
-// flaunay/constrained.hpp, whose values these are.
+// Rules for the outside and the holes of a triangulation with constraints, with the values of FillRule and
+// Outside in flaunay/constrained.hpp.
 #ifndef FLAUNAY_FILL_RULES_H
 #define FLAUNAY_FILL_RULES_H
 
@@ -19,7 +19,7 @@ INTEGER_CONSTANT(OUTSIDE_HOLES, 2);
 INTEGER_CONSTANT(UNREACHED, 0x7fffffff);
 
 // The depth of a region: level is the least number of constraint edges on a path from outside, potential the sum of
-// what such a path crosses.
+// segments that such a path crosses.
 static inline int depth_of(int level, int potential, int rule) {
   return rule == FILL_NESTING ? level : rule == FILL_EVEN_ODD ? potential & 1 : potential;
 }

@@ -3,18 +3,19 @@
 // A row is a triangle; corner 3t + k stands for the vertex there and for the edge opposite to it. A constraint's rank
 // is a random number, which is always the same. Each kernel has a work-item per constraint unless it says otherwise.
 //
-// - walk_segments: how many edges each segment consists of, in the Delaunay triangulation, in which it walks from
-//   vertex to vertex. Those that are edges already are flagged as constraints; the others claim the rows that they
-//   cross. If any segment consists of several edges, write_pieces writes those, and walk_segments begins again with
-//   these as segments. The host scans what they need.
-// - In each round, keep_waiting makes a list of the constraints that are left. choose_constraints: those that hold all
-//   rows that they cross win. It writes what bounds these rows, two chains of vertices, to the entries of the
-//   constraint.
-//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they gift-wrap. If
-//   they are many, constrained/fill_filtered.cl has done so before, as far as floating point decides.
-//   join_cavities: joins the new rows to what is beyond the chains. walk_constraints: the others walk and claim again.
-// - Winners with long walks: gather_long writes their chains, chain_vertices what triangulates them, fill_long has a
-//   work-item per triangle, and join_long one per entry.
+// - walk_segments: how many edges each segment consists of, in the Delaunay triangulation, in which it walks
+//   from vertex to vertex. Segments that are edges already are flagged as constraints; the others claim the
+//   rows that they cross. If any segment consists of several edges, write_pieces writes those, and
+//   walk_segments begins again with these as segments. The host scans the sizes that they need.
+// - In each round, keep_waiting lists the constraints that are left. choose_constraints: constraints that hold
+//   all rows that they cross win. It writes the two chains of vertices around these rows to their entries.
+//   fill_cavities: winners replace their rows by the canonical triangulations of both chains, which they
+//   gift-wrap. If they are many, constrained/fill_filtered.cl has done so before, as far as floating point
+//   decides.
+//   join_cavities: joins the new rows to the rows beyond the chains. walk_constraints: the others walk and
+//   claim again.
+// - Winners with long walks: gather_long writes their chains, chain_vertices the chains' vertices, fill_long
+//   has a work-item per triangle, and join_long one per entry.
 //
 // Claims of constraints that did not win remain: on rows that have not changed since, they are as before, and winners'
 // rows are marked by the round, which anyone may claim again. A constraint that found a row held by another one of
@@ -56,8 +57,8 @@ static inline walked_mesh mesh_of(global const coordinate* points, global const 
   return mesh;
 }
 
-// Follows a segment from a corner that it leaves by crossing, to the next vertex on it, of which it returns the corner
-// in the last row; -1 if it leaves the triangulation. Claims the rows if there is an array for that.
+// Follows a segment from a corner that it leaves by crossing, to the next vertex on it. Returns the corner of
+// that vertex in the last row; -1 if it leaves the triangulation. Claims the rows if `claims` is not null.
 static inline int follow(const walked_mesh* mesh, int corner, int goal, uint rank, global volatile uint* claims,
                          constraint_walk* walk) {
   const coordinate2 from = vload2(mesh->triangles[corner], mesh->points), to = vload2(goal, mesh->points);
@@ -86,10 +87,10 @@ static inline int follow(const walked_mesh* mesh, int corner, int goal, uint ran
   }
 }
 
-// Instead of the number of rows, of a constraint that is blocked; its turns are the row that it is blocked at.
+// Stands for the number of rows of a blocked constraint; its turns are the row at which it is blocked.
 #define BLOCKED -1
 
-// What a constraint adds to the scanned sizes: its entries, and 1 if it is left.
+// The share of a constraint in the scanned sizes: its entries, and 1 if it is left.
 static inline uint2 size_of_walk(int rows) {
   return VECTOR(uint2, rows > 0 && rows <= SHORT_WALK ? (uint)rows + 4u : 0u, 1u);
 }
@@ -102,9 +103,9 @@ static inline uint2 size_of_walk(int rows) {
 // From how many rows on it counts those; most walks are shorter.
 #define COUNTED_ROWS 16u
 
-// The next piece of what is left of a segment between two corners, which it moves. last: at which end the piece before
-// was, where it looks first: the other end may have very many triangles. Returns at which end it was, see
-// find_departure. walk: of the piece; rows is 0 if it is an edge already.
+// The next piece of the remaining part of a segment, between two corners, which it moves. last: the end at
+// which the piece before was. It looks there first: the other end may have very many triangles. Returns the
+// piece's end, see find_departure. walk: of the piece; rows is 0 if it is an edge already.
 static inline int next_piece(const walked_mesh* mesh, int* first, int* second, int last, uint rank,
                              global volatile uint* claims, constraint_walk* walk) {
   // As a rule the segment is an edge, which is found without arithmetic.
@@ -156,19 +157,19 @@ FETCHING void fetch_points(int row, const walked_mesh* mesh) {
   for (int k = 0; k < 3; ++k) fetch(&mesh->points[2 * mesh->triangles[3 * row + k]]);
 }
 
-// How many segments ahead what a walk needs is fetched: the rows at both ends; then their neighbours, and the points
-// of the row; then the points of the neighbours.
+// How many segments ahead the data of a walk is fetched: the rows at both ends; then their neighbours, and the
+// points of the row; then the points of the neighbours.
 #define ROWS_AHEAD 24
 #define NEIGHBORS_AHEAD 16
 #define POINTS_AHEAD 8
-// Few segments have all in the cache.
+// With fewer segments than this, everything is in the cache.
 #define FETCHED_SEGMENTS 4096
 FETCHING void fetch_segments(int s, int n, global const uint64* keys, const walked_mesh* mesh) {
 #if FETCH_AHEAD
   if (n < FETCHED_SEGMENTS) return;
   const uint64 far = keys[min(n - 1, s + ROWS_AHEAD)], middle = keys[min(n - 1, s + NEIGHBORS_AHEAD)],
                near = keys[min(n - 1, s + POINTS_AHEAD)];
-  // Those of points on a line do not come before others.
+  // Keys of points on a line come last.
   if ((uint)far >= PLACE_ON_LINE) return;
   fetch_row((int)(far >> 32), mesh);
   fetch(&mesh->triangles[(uint)far]);
@@ -251,7 +252,7 @@ kernel void walk_segments(int n, uint most_pieces, uint most_rows, filter_bound 
 }
 
 // The pieces of all segments, by their ends, in lexicographic order in each segment. offsets: the scanned numbers.
-// claims: of which nothing is used any more.
+// claims: not used any more.
 kernel void write_pieces(int n, filter_bound bound, global const coordinate* restrict points, TRIANGULATION(),
                          global const int* restrict hull, global const uint64* restrict keys,
                          global const uint* restrict offsets, global volatile uint* restrict claims,
@@ -309,9 +310,9 @@ static inline void write_side(int corner, const walked_mesh* mesh, global const 
 }
 
 // Walks along a constraint as long as it holds the rows, and writes entries if there are any: the row in each, in the
-// order of the walk; what is on the left of the constraint, from its origin to its goal, and what is on its right, from
-// the goal to the origin. Returns the number of entries of the former; or, if the constraint does not hold all rows,
-// the first of those that it does not hold, complemented.
+// order of the walk; the chain on the left of the constraint, from its origin to its goal, and the chain on its
+// right, from the goal to the origin. Returns the number of entries on the left; if the constraint does not
+// hold all rows, the complement of the first row that it does not hold.
 static inline int gather_cavity(const constraint_walk* walk, uint rank, const walked_mesh* mesh,
                                 global const uint* claims, global const uchar* flags, global chain_entry* entries,
                                 int* crosses) {
@@ -364,7 +365,7 @@ static inline int gather_cavity(const constraint_walk* walk, uint rank, const wa
   return left + 1;
 }
 
-// Of a constraint that is an edge: 0 if it holds the rows beside it, or one that it does not hold, complemented.
+// 0 if a constraint that is an edge holds the rows beside it; else the complement of one that it does not hold.
 static inline int hold_edge(int corner, uint rank, global const int* neighbors, global const uint* claims) {
   const int beyond = neighbors[corner];
   return claims[corner / 3] != rank ? ~(corner / 3) : beyond >= 0 && claims[beyond] != rank ? ~beyond : 0;
@@ -435,7 +436,7 @@ kernel void fill_cavities(int n, uint mark, filter_bound bound, global const int
   }
 }
 
-// Joins a side to what is beyond it, and makes the place of its vertex a new one if its row was replaced.
+// Joins a side to the row beyond it, and gives its vertex a new place if the row of its place was replaced.
 static inline void join_side(chain_entry entry, uint mark, global const uint* claims, global const uint* marks,
                              global const int* new_corners, global int* neighbors, global volatile uint* places) {
   const int inside = new_corners[entry.corner], row = inside / 3, twin = (int)(entry.side >> 1) - 1;
@@ -491,7 +492,7 @@ kernel void join_cavities(int n, uint mark, global const int* restrict list, glo
   }
 }
 
-// The constraints of the list that have not won walk and claim again. sizes: as those of walk_segments.
+// The constraints of the list that have not won walk and claim again. sizes: as in walk_segments.
 kernel void walk_constraints(int n, filter_bound bound, global const int* restrict list,
                              global const uchar* restrict outcomes, global const coordinate* restrict points,
                              TRIANGULATION(), global const uint* restrict places, global volatile uint* restrict claims,

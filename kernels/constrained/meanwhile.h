@@ -1,4 +1,4 @@
-// Reading and writing what other work-items of the same launch change, where both the old and the new value will do.
+// Reading and writing data that other work-items of a launch change, where the old and the new value will do.
 //
 // Atomic operations see all changes. Where caches are coherent, plain ones do as well. host/native/opencl.hpp has them
 // for the host.

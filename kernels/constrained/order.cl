@@ -33,8 +33,8 @@ kernel void note_rows(int n, global const int* restrict rows, global const int* 
   if (i < n) row_at[place_of_row(rows[i], triangles, points)] = rows[i];
 }
 
-// What a copied row has for a neighbour: a row that changed, the corner of one that did not which is to refer to it
-// (with this bit), or all bits beyond the hull.
+// The neighbours of a copied row: a changed row; with this bit, the corner of an unchanged row that must refer
+// to the copied one; or all bits beyond the hull.
 #define UNCHANGED 0x80000000u
 #define OUTSIDE 0xffffffffu
 

@@ -26,8 +26,8 @@ typedef struct {
 } chain_entry;
 ASSERT_SIZE(chain_entry, 16);
 
-// A vertex of a chain that is triangulated, by positions in the chain. Of the polygon of those vertices that are
-// inserted: the next one, and the half-edge inside of the edge to it. Then the vertices between which it is inserted.
+// A vertex of a chain that is triangulated. Vertices are positions in the chain. In the polygon of inserted
+// ones: the next one, and the half-edge inside of the edge to it. Then its neighbours when it is inserted.
 typedef struct {
   int next, inside, before, after;
 } chain_vertex;

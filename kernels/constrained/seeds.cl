@@ -1,7 +1,6 @@
-// Which triangles contain seeds, of holes or of attributes: one pass over the triangles of all sets, each of which
-// looks at the seeds in its range of x. Seeds are any places, whose coordinates need not be on a grid with those of the
-// points. So this is for double precision alone; where a device computes in fixed point, another one or the host finds
-// them.
+// Which triangles contain seeds, of holes or of attributes: one pass over the triangles of all sets. Each looks
+// at the seeds in its range of x. Seeds may be anywhere: they need not share a grid with the points. So this is
+// for double precision alone; where a device computes in fixed point, another one or the host finds them.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/language.h"

@@ -142,8 +142,8 @@ static inline int star_search_step(const walked_mesh* mesh, star_search* star, d
 #define LEAVES_SECOND 1
 #define LEAVES_NONE 2
 
-// Looks around both ends of a segment in turns, of which the search around the first end has begun. Out of line and
-// with both searches in memory, as this is rare, and kernels have more registers without.
+// Looks around both ends of a segment in turns. begun: the search around the first end. Out of line and with
+// both searches in memory, as this is rare, and kernels have more registers without.
 OUT_OF_LINE static inline int find_departure_in_turns(walked_mesh mesh, star_search begun, int second,
                                                       departure* found) {
   star_search stars[2];

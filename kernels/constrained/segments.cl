@@ -1,14 +1,14 @@
-// Segments and their edges: what is sorted and numbered before and after constraints are inserted (insert.cl).
+// Segments and their edges: sorting and numbering before and after constraints are inserted (insert.cl).
 //
 // A vertex' *place* is the first corner at which it stands in the array of triangles; so the order of places is one of
 // places in the plane. A vertex of a set without triangles has PLACE_ON_LINE and its number on the hull. Before
 // insertion:
 // - mark_ends, over the segments: checks them, and marks the vertices at their ends. clear_vertices is before that.
 // - start_rows, over the triangles: the places of the marked vertices; all rows are unclaimed, and at first unchanged
-//   and without constraints. line_places, over the hulls: those in sets on a line.
+//   and without constraints. line_places, over the hulls: the places of vertices in sets on a line.
 // - segment_keys, over the segments: a key of the places of both ends, by which the host sorts them.
-// - find_runs and write_unique, over the sorted segments: leave out what is equal.
-// After insertion, of constraint edges that are linked to straight chains:
+// - find_runs and write_unique, over the sorted segments: leave out equal segments.
+// After insertion, for constraint edges that are linked to straight chains:
 // - link_pieces, over the segments; start_chains, jump and measure_chains, over the edges: the first edge of each
 //   chain, the distance from there, and lengths, by pointer jumping.
 // - edge_keys, over the edges, by which the host sorts chains; sorted_lengths, over these; number_edges and

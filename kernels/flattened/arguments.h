@@ -34,12 +34,12 @@
   global const int* restrict PREFIX##ids, global const int* restrict PREFIX##segment, \
   global const double2* restrict PREFIX##projections
 
-// Those that are made.
+// The points that are made for quickhull.
 #define NEW_HULL_POINTS(PREFIX) \
   global int* restrict PREFIX##new_ids, global int* restrict PREFIX##new_segment, \
   global double2* restrict PREFIX##new_projections
 
-// What becomes of elements that may be on a path.
+// The results for elements that may be on a path.
 #define CANDIDATES(PREFIX) \
   global int* restrict PREFIX##ids, global int* restrict PREFIX##chord, global double* restrict PREFIX##depth, \
   global uchar* restrict PREFIX##flags
@@ -49,7 +49,7 @@
   global const int* restrict PREFIX##corner_ids, global const int* restrict PREFIX##corner_owners, \
   global const double2* restrict PREFIX##corner_projections
 
-// Those corners in another order.
+// The same arrays after sorting.
 #define NEW_CORNERS(PREFIX) \
   global int* restrict PREFIX##new_ids, global int* restrict PREFIX##new_owners, \
   global double2* restrict PREFIX##new_projections

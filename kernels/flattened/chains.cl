@@ -1,19 +1,20 @@
 // Chains: the strict lower hulls of all regions at once, as paths in the order of u, without rounds.
 //
 // A region's internal points are sorted along its cut line. thin_lists takes the lowest point of each of equal parts of
-// a region's list, and again of the lists that this makes, until they are short. The hull of the shortest lists prunes
-// the lists before (prune.cl), and the hull of what is left and of that hull's own vertices prunes those before these,
-// up to the level's points and corners. Any path through some of a region's points, its ends among them, would be good
-// enough to prune by, so nothing need be decided exactly until the hull itself. A step is:
+// a region's list, and repeats this with the lists that it makes, until they are short. The hull of the
+// shortest lists prunes the lists before (prune.cl); the hull of the remaining points and of that hull's own
+// vertices prunes the lists before these, and so on up to the level's points and corners. Any path through some
+// of a region's points, with its ends, can prune, so only the hull itself need be decided exactly. A step is:
 //
-// 1. sequence_of_lists lays out the shortest lists between the ends of their regions' hulls. Later steps have three
-//    kinds of elements, each in the order of (region, u): the path's vertices, what prune kept of the internal points,
-//    and of the corners. keep_bounds finds where regions begin among them. gather_kept_corners and place_kept_corners
-//    put corners in order, or merge_corner_runs does where regions have many. join_sequences merges the three: each
-//    element's place is the number of elements before it, which it finds by binary searches.
+// 1. sequence_of_lists lays out the shortest lists between the ends of their regions' hulls. Later steps have
+//    three kinds of elements, each in the order of (region, u): the path's vertices, the internal points that
+//    prune kept, and the corners that it kept. keep_bounds finds where regions begin among them.
+//    gather_kept_corners and place_kept_corners put corners in order, or merge_corner_runs does where regions
+//    have many. join_sequences merges the three: each element's place is the number of elements before it,
+//    which it finds by binary searches.
 // 2. hull_chains makes the hull of each region's sequence. A work-group takes a region; each work-item makes the hull
 //    of consecutive points by a monotone chain, and neighbouring hulls are joined along their common tangent, in steps
-//    of which each halves their number. The tangent is found by a search for its left end, in which each probe is a
+//    that each halve their number. The tangent is found by a search for its left end; each probe is a
 //    binary search for the right one; the work-items of both hulls take a probe each, and one of them goes on alone.
 // 3. A scan (scan.cl) of the hulls' sizes tells where paths begin, and write_paths writes them.
 //
@@ -244,7 +245,7 @@ static inline int count_kept_before(double u, int with_equal, int low, int high,
   return least;
 }
 
-// Of one u, path vertices come first, then internal points, then corners.
+// If u is equal, path vertices come first, then internal points, then corners.
 kernel void join_sequences(int regions_count, global const int2* restrict before, global const int* restrict begins,
                            global const int* restrict positions, global const int* restrict regions, LISTS(),
                            global const double2* restrict point_projections, global const int* restrict axis, PATHS(),
@@ -274,7 +275,7 @@ kernel void join_sequences(int regions_count, global const int2* restrict before
   }
 }
 
-// A region's points in the order of u, and what their hull is decided by.
+// A region's points in the order of u. hull_frame: the data by which their hull is decided.
 typedef struct {
   global int* ids;
   global double2* projections;
@@ -331,7 +332,8 @@ static inline int chain_of(hull_frame* frame, sequence s, int begin, int end COU
   return size;
 }
 
-// The first of the hull [right, right_end) that the tangent from the point touches last: what follows is above it.
+// The first element of the hull [right, right_end) that the tangent from the point touches: later ones are
+// above it.
 static inline int tangent_from(hull_frame* frame, sequence s, int id, double2 p, int right, int right_end COUNTERS) {
   int low = right, high = right_end - 1;
   while (low < high) {
@@ -469,7 +471,7 @@ kernel void hull_chains(int regions, filter_bound bound, global const int* restr
   COUNT_STEPS(frame.counted.steps);
 }
 
-// So many corners are put in order of u one by one, before such runs are merged.
+// Runs of this many corners are sorted by u by insertion, before runs are merged.
 #define CORNERS_RUN 12
 
 // Sorts the corners s by u into `spare`, which has as much room; s is lost.

@@ -1,9 +1,9 @@
 // The layout of the next level: how large each child of a region is, and where its points and corners begin.
 //
-// child_sizes computes the numbers of points and corners of the two children of each region, set_sizes those of the one
-// child of each set. The host scans the sizes. child_places then separates the children: those with internal points are
-// the regions of the next level, those without retire to the end game. Each kernel is one pass, with one work-item per
-// region, set or child.
+// child_sizes computes the numbers of points and corners of the two children of each region, set_sizes the
+// numbers of the one child of each set. The host scans the sizes. child_places then separates the children:
+// children with internal points are the regions of the next level, the others retire to the end game. Each
+// kernel is one pass, with one work-item per region, set or child.
 
 #include "arithmetic/language.h"
 

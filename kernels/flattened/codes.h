@@ -6,7 +6,7 @@
 
 BEGIN_SHARED
 
-// What kernels that flag elements write: 0 for no, 1 for yes, or one of these.
+// Flags of elements that kernels write: 0 for no, 1 for yes, or one of these.
 INTEGER_CONSTANT(FLAG_UNDECIDED, 2);  // by floating point; exact kernels take these up
 INTEGER_CONSTANT(FLAG_ON_PATH, 3);    // prune: a vertex of the path itself
 INTEGER_CONSTANT(FLAG_TOO_LARGE, 3);  // end game: a region with too many corners for one work-item
@@ -16,8 +16,8 @@ INTEGER_CONSTANT(SIDE_LEFT, 0);
 INTEGER_CONSTANT(SIDE_RIGHT, 1);
 INTEGER_CONSTANT(SIDE_BORDER, 2);
 
-// What keep_bounds tells the host: how many elements are to be joined, how many of them are corners, and the most
-// corners of a region.
+// Numbers that keep_bounds reports to the host: the elements to be joined, how many of them are corners, and
+// the most corners of a region.
 INTEGER_CONSTANT(KEPT_ALL, 0);
 INTEGER_CONSTANT(KEPT_CORNERS, 1);
 INTEGER_CONSTANT(KEPT_CORNERS_MOST, 2);

@@ -1,4 +1,4 @@
-// Exact depths below chords, for what floating point could not decide in prune, quickhull and the clean-up of paths.
+// Exact depths below chords, for elements that prune, quickhull and the clean-up of paths could not decide.
 //
 // One pass, with one work-item per element. Few are undecided as a rule, so that a list of them would take more
 // launches than it would save work.

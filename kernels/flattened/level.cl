@@ -1,5 +1,5 @@
 // The kernels of the stages that every call runs, as one program: compiling the headers once saves PoCL a second at the
-// first call. The end game, strips and regions define what their headers are to be.
+// first call. The end game, strips and regions are separate, because they define macros for their headers.
 
 #include "flattened/border.cl"
 #include "flattened/canonical.cl"

@@ -49,7 +49,7 @@ kernel void list_counts(int n, int chunk, global const int* restrict list, globa
   }
 }
 
-// before[r]: those of all regions before r; the same for both lists.
+// before[r]: the points of all regions before r; the same for both lists.
 kernel void list_bounds(int n, int chunk, int regions_count, global const int* restrict list,
                         global const int* restrict regions, global const uchar* restrict side,
                         global const uint2* restrict scanned, global uint2* restrict before) {
@@ -106,7 +106,7 @@ kernel void list_split(int n, int chunk, global const int* restrict list, global
   }
 }
 
-// The first lists, before any cut: what is internal of a list of all ids, and its region.
+// The first lists, before any cut: the internal points in a list of all ids, and their regions.
 kernel void first_flags(int n, global const int* restrict list, global const uchar* restrict side,
                         global uint* restrict counts) {
   const int i = get_global_id(0);

@@ -16,7 +16,7 @@
 
 // A corner's code: the child it goes to (0, 1), if its vertex is off the path; CODE_UNDECIDED; else CODE_ON_PATH and
 // how the path's two edges at the vertex lie in the corner's wedge. Angles are counter-clockwise from the edge to
-// `after`: those of the path's next edge, of its previous one, and of the edge to `before`, which ends the wedge.
+// `after`: to the path's next edge, to its previous one, and to the edge to `before`, which ends the wedge.
 #define CODE_NEXT_IS_AFTER 1      // the next edge's angle is 0
 #define CODE_PREVIOUS_IS_AFTER 2  // the previous edge's angle is 0
 #define CODE_NEXT_IN 4            // the next edge's angle is below the wedge's
@@ -57,7 +57,7 @@ static inline path_vertex path_vertex_at(int place, int first, int last, int a, 
 #define EDGE_PREVIOUS 3
 #define EDGE_UNDECIDED 4
 
-// Of the path's vertex, b and c.
+// The turn at the path's vertex, b and c.
 static inline int turn_at(path_vertex* v, double2 b, double2 c, filter_bound bound, int exact) {
   TALLY(*v, orientations, 1);
   return exact ? orient_exact(v->m, b, c) : orient_filtered(v->m, b, c, bound);
@@ -88,8 +88,8 @@ static inline int comes_first(path_vertex* v, int side, double2 x, double2 y, fi
   return turn == UNDECIDED ? UNDECIDED : turn > 0;
 }
 
-// The code of a corner on the path, or CODE_UNDECIDED; then what was counted in v goes, and the exact evaluation
-// counts.
+// The code of a corner on the path, or CODE_UNDECIDED; then the counts in v are dropped, and the exact
+// evaluation counts.
 static inline int code_on_path(path_vertex* v, int before_id, double2 before, int after_id, double2 after,
                                filter_bound bound, int exact) {
   const int a = edge_of(v, after_id, after, bound, exact);

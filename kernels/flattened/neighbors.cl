@@ -16,8 +16,8 @@ static inline uint edge_hash(int low, int high) {
   return (uint)(z >> 32);
 }
 
-// The first slots tried are those of the smaller vertex, which has three edges on average: neighbours in the plane are
-// neighbours in the table. A vertex with many edges overflows into slots all over it, by double hashing.
+// The first slots tried belong to the smaller vertex, which has three edges on average: neighbours in the plane
+// are neighbours in the table. A vertex with many edges overflows into slots all over it, by double hashing.
 #define SLOTS_PER_VERTEX 4
 #define SLOTS_NEAR 8
 

@@ -4,10 +4,9 @@
 //    one nearest to the line: one pass, with one work-item per bucket. Quickhull makes a path of chords from these
 //    candidates. If there are many, thin_regions and thin_offsets make them a level of their own, to be pruned first.
 // 2. chord_bands computes for each chord the height above which no point can be below it.
-// 3. prune_points and prune_corners hold every internal point and corner against that height and then against the
-// chord:
-//    one pass each, with a binary search per bucket or corner. What floating point cannot decide gets FLAG_UNDECIDED
-//    and goes to hull_depth.cl.
+// 3. prune_points and prune_corners hold every internal point and corner against that height and then against
+//    the chord: one pass each, with a binary search per bucket or corner. Elements that floating point cannot
+//    decide get FLAG_UNDECIDED and go to hull_depth.cl.
 //
 // Quickhull then continues from that path: chord_keys, a sort, gather_below and chord_begins bring the kept points
 // together by their chords. Or it begins with the ends of the hull alone: begin_paths and gather_points bring flagged

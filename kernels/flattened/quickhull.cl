@@ -12,14 +12,14 @@
 //
 // The deepest point is chosen by rounded depths, so it may be no vertex of the hull. When no points are left,
 // path_flags (and hull_depth.cl) find the vertices on or above the segment of their neighbours, and compact_path drops
-// them, until there are none. Dropping may lay bare one vertex per round. restart_paths and restart_segments make a
+// them, until none is left. Dropping may expose one vertex per round. restart_paths and restart_segments make a
 // path's vertices the points of a quickhull that begins with the ends, which needs fewer rounds.
 //
 // Quickhull's splits can be lopsided. A balanced round (Chan, Snoeyink and Yap 1997; with a random pair's slope in
 // place of the median one, Bhattacharya and Sen 1997) pairs neighbouring points of a segment. random_pairs takes one
-// pair of each segment; tilted_depths computes the points' depths above a line of that pair's slope, of which
-// deepest_points takes the greatest. drop_pairs then finds, in each pair on one side of it, a point that is above a
-// chord, and drops that point.
+// pair of each segment; tilted_depths computes the points' depths above a line of that pair's slope, and
+// deepest_points takes the greatest. drop_pairs then finds, in each pair on one side of it, a point that is
+// above a chord, and drops that point.
 
 #include "flattened/arguments.h"
 #include "flattened/codes.h"
@@ -206,9 +206,9 @@ kernel void find_path_offsets(int n, global const int* restrict path_region, glo
   }
 }
 
-// flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours. Of two neighbours
-// with equal u, the one whose projection is not the lower one is above. kept: where the vertices stood in the path of
-// the round before; those whose neighbours are the same need no second look.
+// flags: 1 for the ends of paths and for vertices strictly below the segment of their neighbours. If two
+// neighbours have equal u, the one with the higher projection is above. kept: where the vertices stood in the
+// path of the round before; vertices with the same neighbours need no second look.
 kernel void path_flags(int n, filter_bound bound, int first_round, global const int* restrict kept, PATHS(),
                        global const int* restrict path_region, CUTS(), global uchar* restrict flags COUNTERS) {
   const int k = get_global_id(0);

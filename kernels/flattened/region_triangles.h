@@ -1,5 +1,5 @@
-// A small region without internal points, triangulated by one work-item. EXACT: 1 to decide what floating point cannot,
-// 0 to give up there.
+// A small region without internal points, triangulated by one work-item. EXACT: 1 to decide exactly where
+// floating point cannot, 0 to give up there.
 #ifndef FLAUNAY_REGION_TRIANGLES_H
 #define FLAUNAY_REGION_TRIANGLES_H
 
@@ -47,8 +47,8 @@ static inline int in_circle(region_cycle* g, double2 a, double2 b, double2 c, do
   return DECIDE(sign, circle_undecided(a, b, c, d, g->bounds.circle));
 }
 
-// Of the vertices on the circle through base, chain i to j, and apex, one that no edge of the chain hides from the
-// base.
+// Returns a vertex of the chain i to j, on the circle through the base and `apex`, that no edge of the chain
+// hides from the base.
 static inline int visible_apex(region_cycle* g, int i, int j, int apex) {
   const double2 a = on_chain(g, j);
   const double2 b = on_chain(g, i);
@@ -121,9 +121,10 @@ static inline int apex_of(region_cycle* g, int i, int j) {
 // The triangles of the region with `count` corners, three ids each, into triangles[] (which may be corners[]: it is
 // read first and holds count - 2 triangles at least); returns their number, or REGION_UNDECIDED if a predicate was.
 //
-// The corners link into simple cycles. Of each, the triangle on one edge leaves two chains, which their own edges close
-// to polygons again. Border edges are Delaunay edges, so no vertex in a circle hides behind one; but of several
-// vertices on one circle some may. A region that is left undecided is not counted. O(count^2) predicates at worst.
+// The corners link into simple cycles. The triangle on one edge of a cycle leaves two chains, which their own
+// edges close to polygons again. Border edges are Delaunay edges, so no vertex in a circle hides behind one;
+// but if several vertices are on one circle, some may. A region that is left undecided is not counted.
+// O(count^2) predicates at worst.
 static inline int region_triangles(GLOBAL const int* corners, int count, GLOBAL const double2* RESTRICT points,
                                    filter_bounds bounds, GLOBAL int* triangles COUNTERS) {
   if (count == 3) {

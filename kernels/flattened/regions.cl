@@ -1,15 +1,15 @@
-// Regions that are small enough for the solver of blocks: their points as blocks, and of the blocks' triangulations
-// what lies inside of the regions' borders.
+// Regions that are small enough for the solver of blocks: their points as blocks, and the triangles of the
+// blocks that lie inside of the regions' borders.
 //
 // 1. region_offsets, place_points and place_corners make a block of each region: its internal points, and behind them
 //    the vertices of its corners. A vertex with several corners is there several times; the solver drops equal points.
 // 2. The solver triangulates the blocks. name_vertices names the rings' vertices by ids, and tells where they are;
 //    corner_vertices finds the vertex of each corner. (strips.cl has the two passes that follow: border_edges finds the
 //    edges of the borders, and restore_border flips in those that ties have kept out.)
-// 3. What lies left of an edge at a border's vertex is inside if and only if it is in the wedge of a corner there.
-//    close_vertices marks all edges out of such vertices as having the outside on their left, by the complement of the
-//    next edge; open_wedges takes the marks from the edges in wedges and counts the rows of these vertices as
-//    blocks/mesh.cl does, of each triangle at its middle vertex.
+// 3. The face left of an edge at a border's vertex is inside if and only if it is in the wedge of a corner
+//    there. close_vertices marks all edges out of such vertices as having the outside on their left, by the
+//    complement of the next edge; open_wedges takes the marks from the edges in wedges and counts the rows of
+//    these vertices as blocks/mesh.cl does, each triangle at its middle vertex.
 //
 // Each kernel is one pass, with one work-item per region, point, corner or vertex.
 
@@ -23,8 +23,8 @@ kernel void region_offsets(int n, global const int* restrict point_offsets, glob
   if (r < n) offsets[r] = point_offsets[r] + corner_offsets[r];
 }
 
-// places: of internal points and, behind them, of corners; ids: of points by place; owners: their own places, which
-// become those of the first of equal points.
+// places: of internal points and, behind them, of corners; ids: of points by place; owners: their own places,
+// later the place of the first of equal points.
 static inline void put_point(int place, int id, global const double2* points, global double2* vertices,
                              global int* source, global int* owners, global int* ids) {
   vertices[place] = points[id];
@@ -51,8 +51,8 @@ kernel void place_corners(int n, global const int* restrict corners, global cons
   }
 }
 
-// source: of the solver's vertices, their places; becomes their ids. vertex_of: by place. counts: the rows of internal
-// points; those of borders are still to be counted.
+// source: the places of the solver's vertices; becomes their ids. vertex_of: by place. counts: the rows of
+// internal points; rows of border vertices are counted later.
 kernel void name_vertices(int n, global const int* restrict vertex_edge, global const int* restrict ids,
                           global const uchar* restrict side, global int* restrict source,
                           global int* restrict vertex_of, global uint* restrict counts) {
@@ -77,7 +77,7 @@ kernel void corner_vertices(int n, global const int* restrict regions, global co
   if (c < n) corner_vertex[c] = vertex_of[owners[c + point_offsets[regions[c] + 1]]];
 }
 
-// Of the corners at one vertex the first one works.
+// The first of several corners at one vertex works.
 kernel void close_vertices(int n, global const int* restrict regions, global const int* restrict point_offsets,
                            global const int* restrict owners, global const int* restrict corner_vertex,
                            global const int* restrict vertex_edge, global ring_edge* restrict edges) {

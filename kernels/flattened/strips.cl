@@ -6,12 +6,11 @@
 // 1. large_sizes, gather_large, vertex_flags and write_vertices bring each large region's distinct vertices into the
 //    order of ids, which is by x: one pass each.
 // 2. merge_strips merges the two halves of each block of consecutive vertices (mesh/rings.h): one pass per level from
-//    the leaves up, with one work-item per vertex, of which the first of a block works.
-// 3. Of cocircular points the merges may have chosen other edges than the border's. border_edges looks each border edge
-//    up, and restore_border flips in those that are missing, within the polygon of their circle.
+//    the leaves up, with one work-item per vertex. The first one of a block works.
+// 3. Between cocircular points the merges may have chosen other edges than the border's. border_edges looks
+//    each border edge up, and restore_border flips in the missing ones, within the polygon of their circle.
 // 4. count_fans counts, and in a second launch writes, the triangles in each corner's wedge whose smallest vertex is
-// the
-//    corner's, with one work-item per corner.
+//    the corner's, with one work-item per corner.
 
 // Borders are not canonical, and a merge of two canonical triangulations of one circle's points would change every
 // edge.
@@ -82,7 +81,7 @@ kernel void merge_strips(int n, int depth, filter_bounds bounds, global const in
     const int base = vertex_offsets[region];
     const int count = vertex_offsets[region + 1] - base;
     const int relative = v - base;
-    // Is v the first of a block at this depth, and of which?
+    // Finds whether v is the first vertex of a block at this depth, and the block.
     const int64 blocks = (int64)1 << depth;
     const int64 j = ((int64)relative * blocks + count - 1) / count;
     const int begins = j < blocks && block_begin(count, depth, j) == relative;

@@ -6,7 +6,7 @@
 // to that of its neighbour, as in SciPy's CloughTocher2DInterpolator; so the interpolant is invariant under affine
 // maps.
 //
-// One pass, with one work-item per query, which computes all columns: values and results are rows of so many numbers.
+// One pass, with one work-item per query, for all columns: values and results are rows of `columns` numbers.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
@@ -18,9 +18,9 @@
 #include "operations/search.h"
 #include "points/records.h"
 
-// Where the direction across the edge opposite to corner k of the triangle leads, of which p are the corners: from the
-// centroid, c, to a point of the edge's line, which is a + g (a - b) with the edge from a to b. Beyond the edge is
-// `apex`.
+// The direction across the edge opposite to corner k of a triangle with the corners p. It leads from the
+// centroid to a point a + g (a - b) on the line of that edge, from a to b; returns g. The corner beyond the
+// edge is `apex`.
 static inline double across_edge(const double2* p, int k, double2 apex) {
   const double2 a = p[next_corner(k)], b = p[corner_before(k)];
   const double2 at_a = area_filtered(b, p[k], apex), at_b = area_filtered(p[k], a, apex);
@@ -67,7 +67,7 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 }
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
-// outside, too. gradients: rows by vertex, or else by point; scales: by set, what brings them to the units of `points`.
+// outside, too. gradients: rows by vertex, or else by point; scales: factors by set, to the units of `points`.
 kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, double outside,
                                       filter_bound bound, int kept, FACES(), global const int* restrict found,
                                       global const double* restrict values, global const double* restrict gradients,

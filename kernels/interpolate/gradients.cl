@@ -6,8 +6,9 @@
 // The integral of its squared second derivative is least, over all edges, where at each vertex
 //   4 sum e (e.g_v) / L^3 + 2 sum e (e.g_u) / L^3 = 6 sum e (f_u - f_v) / L^3.
 // With D the 2 by 2 blocks of the first sums, all eigenvalues of the system preconditioned by D lie in [1/2, 3/2], as
-// those of each edge do. So Chebyshev's semi-iteration (Golub and Varga, 1961) needs no products of whole vectors: each
-// step is one pass, a step's share of the error is known beforehand, and the result does not depend on the device.
+// each edge's eigenvalues do. So Chebyshev's semi-iteration (Golub and Varga, 1961) needs no products of whole
+// vectors: each step is one pass, each step's share of the error is known before, and no result depends on the
+// device.
 //
 // 1. count_edges counts the edges of each vertex, by a walk around it. The host scans the numbers.
 // 2. write_edges writes each vertex' neighbours, the weights of the edges, and the inverse of its block.
@@ -28,8 +29,8 @@
 // How many edges ahead of its use memory is fetched that is read by vertex.
 #define EDGES_AHEAD 192
 
-// Fetches what a walk around a vertex begins with: of vertex v, and at twice the distance its first triangle. last: the
-// last vertex.
+// Fetches the data with which a walk around a vertex begins: of vertex v, and at twice the distance its first
+// triangle. last: the last vertex.
 #define VERTICES_AHEAD 24
 FETCHING void fetch_star(int v, int last, global const double2* points, global const face* faces,
                          global const int* first_triangle) {
@@ -56,8 +57,8 @@ static inline int next_kept(star_walk* walk, int kept, global const face* faces)
   }
 }
 
-// n: points, of which the first so many are vertices as vertices[0] says. The others have no edges. kept: the triangles
-// that have edges; others fill the mesh.
+// n: points. The first vertices[0] of them are vertices; the others have no edges. kept: the triangles that
+// have edges; others fill the mesh.
 kernel void count_edges(int n, int kept, global const int* restrict vertices, global const double2* restrict points,
                         global const face* restrict faces, global const int* restrict first_triangle,
                         global uint* restrict counts) {
@@ -74,7 +75,7 @@ kernel void count_edges(int n, int kept, global const int* restrict vertices, gl
 }
 
 // inverse[3v]: xx, xy and yy of the inverse of the block. Where all edges are on one line but for rounding, it is the
-// inverse on that line, 0 across it: no number says what the slope across is.
+// inverse on that line, 0 across it: no value determines the slope across it.
 static inline void invert_block(double xx, double xy, double yy, global double* inverse) {
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > 0x1p-46 * (trace * trace)) {
@@ -88,8 +89,8 @@ static inline void invert_block(double xx, double xy, double yy, global double* 
   }
 }
 
-// room: no edge is written there or behind; there are more only if the mesh is none. weights: 1 / L^3, relative to 1 /
-// L of the vertex' shortest edge, which keeps them in range.
+// room: no edge is written there or behind; there are more edges only if the mesh is not valid. weights: 1 /
+// L^3, relative to 1 / L of the vertex' shortest edge, which keeps them in range.
 kernel void write_edges(int n, int kept, int room, global const int* restrict vertices,
                         global const uint* restrict firsts, global const double2* restrict points,
                         global const face* restrict faces, global const int* restrict first_triangle,
@@ -188,8 +189,8 @@ kernel void improve_gradients(int n, int columns, EDGES(), int is_second, double
   }
 }
 
-// scales: what a slope in the units of `points` is multiplied by for the caller's units, by set. results: n rows of
-// `columns` gradients by point, NaN throughout.
+// scales: by set, the factors that bring slopes in the units of `points` to the caller's units. results: n rows
+// of `columns` gradients by point, NaN throughout.
 kernel void take_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
                            global const scaling* restrict scales, global const int* restrict source,
                            global const double2* restrict gradients, global double* restrict results) {

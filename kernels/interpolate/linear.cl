@@ -1,5 +1,5 @@
 // Interpolation from the corners of the triangle that a query lies in, and from the nearest point. One pass each, with
-// one work-item per query, which computes all columns: values and results are rows of so many numbers.
+// one work-item per query, which computes all columns: values and results are rows of `columns` numbers.
 
 #include "interpolate/arguments.h"
 #include "interpolate/queries_ahead.h"
@@ -40,7 +40,7 @@ kernel void interpolate_linear(int n, PLACED_QUERIES(), int columns, double outs
   }
 }
 
-// nearest: per query the point whose values it takes, -1 if there is none.
+// nearest: per query the point whose values it takes, -1 without one.
 kernel void take_nearest(int n, int columns, double outside, global const int* restrict nearest,
                          global const double* restrict values, global double* restrict results) {
   const int i = get_global_id(0);

@@ -8,8 +8,8 @@
 // The triangles whose circles have q strictly inside are the cavity of q. It contains no vertex, so that its triangles
 // form a tree, and each of its boundary's vertices is a neighbour of q. A walk goes around the boundary. At each vertex
 // v it rotates through the cavity's triangles that have v as a corner. Their circumcentres are the corners of the piece
-// of v, except for the first one and the last one, which are those of q, v and a neighbour of v on the boundary. So the
-// walk needs no memory, whatever the number of neighbours. It takes three steps per triangle of the cavity.
+// of v, except for the first and the last corner, which are circumcentres of q, v and a neighbour of v on the
+// boundary. So the walk needs no memory for any number of neighbours. It takes three steps per triangle.
 //
 // The piece of v is cut into triangles by diagonals from its first corner A, the centre of the circle through q, p and
 // v, where p comes before v on the boundary. For an edge from v to u, with a triangle on either side, the distance of
@@ -19,8 +19,7 @@
 //
 // Each query is one work-item. Values take two passes:
 // 1. interpolate_natural decides and computes in floating point, with bounds of all errors. If a test is not decided,
-// or
-//    the weights are not certain to NATURAL_ERROR, it leaves the query to the second pass.
+//    or the weights are not certain to NATURAL_ERROR, it leaves the query to the second pass.
 // 2. interpolate_natural_exactly decides exactly. It multiplies and adds positive numbers with small relative errors
 //    alone, which interpolate/determinants.h computes, so that its weights have small relative errors, whatever the
 //    points.
@@ -76,7 +75,7 @@ static inline void clear_row(receiver* to, double value) {
   for (int c = 0; c < to->columns; ++c) to->row[c] = value;
 }
 
-// What the receiver has got by the sum of the weights.
+// Divides the numbers that the receiver has got by the sum of the weights.
 static inline void divide_by(receiver* to, double sum) {
   const int numbers = to->columns == 0 ? min(to->count, to->room) : to->columns;
   for (int c = 0; c < numbers; ++c) to->row[c] /= sum;
@@ -170,8 +169,8 @@ typedef struct {
 #define LEAST_WEIGHTS 0x1p-700
 #define MOST_SLENDER 0x1p30
 
-// A query's sums: of the weights, and of what bounds their errors. steps: how many terms there were. unit: a power of
-// two that brings weights, but not errors, to about 1, so that products with values do not underflow.
+// A query's sums: of the weights, and of the bounds of their errors. steps: the number of terms. unit: a power
+// of two that brings weights, but not errors, to about 1, so that products with values do not underflow.
 typedef struct {
   double weights, errors, unit;
   int steps, is_sound;
@@ -198,7 +197,7 @@ static inline centre centre_of_triangle(seen_circle seen, sight a, sight b, sigh
   return centre_by(by, magnitude, seen.area, seen.area_magnitude, all);
 }
 
-// Of the query and an edge.
+// The centre of the circle through the query and an edge's ends.
 static inline centre centre_of_edge(sight a, sight b, estimate* all) {
   const double ab = a.at.x * b.at.y, ba = a.at.y * b.at.x;
   const double2 by = VECTOR(double2, a.lift * b.at.y - b.lift * a.at.y, b.lift * a.at.x - a.lift * b.at.x);
@@ -219,7 +218,7 @@ static inline void go_to(piece* around, centre next, estimate* all) {
   ++all->steps;
 }
 
-// Of v, from one corner of the query's cell to the next one.
+// The weight of v, from one corner of the query's cell to the next one.
 static inline double laplace_weight(sight v, centre from, centre to, estimate* all) {
   const double2 along = to.at - from.at;
   const double inverse = 1.0 / v.lift;
@@ -263,7 +262,7 @@ static inline void enter(entered* top, centre middle, sight to, int triangle, in
 
 // Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. Triangles that the
 // walk is in, from `start` on, are kept, so that each is tested once. A piece takes the centres of the triangles that
-// the walk is in while it is at a vertex. Gives weights, of which *all has the sum. Returns WEIGHED or UNDECIDED.
+// the walk is in while it is at a vertex. Gives weights; *all has their sum. Returns WEIGHED or UNDECIDED.
 static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int method, estimate* all, receiver* to) {
   entered path[MOST_ENTERED];
   const face f = mesh.faces[start];
@@ -279,7 +278,7 @@ static inline int estimate_weights(natural_mesh mesh, double2 q, int start, int 
   const centre middle = centre_of_triangle(circle_through(x, y, third), x, y, third, all);
   enter(&path[0], middle, first, start, f.neighbor[1]);
   enter(&path[1], middle, third, start, f.neighbor[0]);
-  // Of the first vertex the piece is in two parts, as the walk begins inside of it.
+  // The piece of the first vertex is in two parts, as the walk begins inside of it.
   piece around = {0.0, middle};
   centre before = around.last, first_after = before;
   double first_area = 0.0;
@@ -497,8 +496,8 @@ static inline int weigh_exactly_at(natural_mesh mesh, double2 q, int method, sta
 }
 
 // Goes around the cavity of q, which lies in triangle `start`, but not on the hull nor at a vertex. gives: whether
-// weights are given, of which `whole` is the sum; sum: that sum. Returns WEIGHED, or ASTRAY after so
-// many steps, which happens only if the mesh is no Delaunay triangulation.
+// weights are given; `whole` is then their sum; sum: set to that sum. Returns WEIGHED, or ASTRAY after `steps`
+// steps, which happens only if the mesh is no Delaunay triangulation.
 static inline int walk_exactly(natural_mesh mesh, double2 q, int start, int steps, int method, int gives, wide whole,
                                wide* sum, receiver* to) {
   stand at;
@@ -546,7 +545,7 @@ static inline int set_of_query(int place, int sets, global const int* query_offs
   return sets > 1 ? segment_of(place, sets, query_offsets) : 0;
 }
 
-// How many queries ahead of its use a triangle is fetched; what it leads to is fetched half as far ahead.
+// How many queries ahead of its use a triangle is fetched; its corners and neighbours half as far ahead.
 #define QUERIES_AHEAD 16
 
 static inline void fetch_query(int i, int n, global const int* found, global const face* faces,
@@ -561,7 +560,8 @@ static inline void fetch_query(int i, int n, global const int* found, global con
 #endif
 }
 
-// Brings the rows of values, by point, into the order of vertices, so that those of neighbours are near each other.
+// Sorts rows of values from the order of points to the order of vertices, which keeps neighbours close in
+// memory.
 kernel void place_values(int n, int sets, int columns, global const int* restrict first_vertices,
                          global const int* restrict source, global const double* restrict values,
                          global double* restrict placed) {
@@ -571,8 +571,8 @@ kernel void place_values(int n, int sets, int columns, global const int* restric
   }
 }
 
-// n queries in order of places; found: their triangles, less than 0 outside of the hull. Values and results are rows of
-// so many columns, by point, or by vertex, and by query. left: whether a query, by place, is left to
+// n queries in order of places; found: their triangles, less than 0 outside of the hull. Values are rows of
+// `columns` numbers by point or by vertex, results by query. left: whether a query, by place, is left to
 // interpolate_natural_exactly.
 kernel void interpolate_natural(int n, PLACED_QUERIES(), int columns, int is_by_vertex, int method, double outside,
                                 FACES(), global const int* restrict found, global const double* restrict values,

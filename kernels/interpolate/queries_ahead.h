@@ -1,4 +1,4 @@
-// Fetching into a CPU's cache what later queries need: for a query the face, the corners and their values are one
+// Fetching data of later queries into a CPU's cache: for a query the face, the corners and their values are one
 // behind the other, and each may be anywhere.
 #ifndef FLAUNAY_QUERIES_AHEAD_H
 #define FLAUNAY_QUERIES_AHEAD_H
@@ -14,7 +14,7 @@ BEGIN_SHARED
 // The triangle of query i of n; the first one for those without, and for those behind the end.
 static inline int triangle_ahead(int i, int n, GLOBAL const int* found) { return max(0, found[min(n - 1, i)]); }
 
-// found: the triangles of n queries, of which query i is the present one and has one. values: rows by point.
+// found: the triangles of n queries. i: the current query, which has a triangle. values: rows by point.
 FETCHING void fetch_rows(int i, int n, int columns, GLOBAL const int* found, GLOBAL const face* faces,
                          GLOBAL const double2* points, GLOBAL const int* source, GLOBAL const double* values) {
 #if FETCH_AHEAD

@@ -12,7 +12,7 @@
   global const query_frame* restrict PREFIX##frames, global const int* restrict PREFIX##order, \
   global const coordinate2* restrict PREFIX##placed
 
-// A triangulation in which nearest vertices are searched, with what levels need.
+// A triangulation in which nearest vertices are searched, with the arrays that levels need.
 #define SEARCHED_MESH(PREFIX) \
   global const mesh_set* restrict PREFIX##records, global const coordinate2* restrict PREFIX##points, \
   global const int* restrict PREFIX##source, global const int* restrict PREFIX##clearances, \
@@ -20,9 +20,9 @@
   global const int* restrict PREFIX##hull, global const int* restrict PREFIX##starts, \
   global const fan_part* restrict PREFIX##fans
 
-// The levels of a locator, of samples (locate/nearest_search.h): how many, and of how many sets; where the vertices
-// of sets begin; boxes around vertices; of a set with levels which of those it is; and the vertices below those of
-// samples.
+// The levels of a locator, which are samples (locate/nearest_search.h): their number, and the number of sets
+// that have them; where the vertices of sets begin; boxes around vertices; the number of each set among the
+// sets with levels; and the vertex below each vertex of a sample.
 #define LEVELS(PREFIX) \
   int PREFIX##levels, int PREFIX##sets_with_levels, global const int* restrict PREFIX##first_vertices, \
   global const vertex_box* restrict PREFIX##boxes, global const int* restrict PREFIX##long_sets, \

@@ -1,4 +1,4 @@
-// What locators need in fixed point alone.
+// Kernels that locators need in fixed point alone.
 //
 // Queries that are not on the grid of points (locate/off_grid.h): locate.cl takes each for the place of the grid
 // nearest to it, mostly less than one place away. From its answers two kernels go on, with exact predicates alone. Each
@@ -62,7 +62,7 @@ static inline int is_clear_around(int vertex, coordinate2 at, coordinate2 place,
   return 4 * CLEARANCE_MARGIN * (x * x + y * y) < clearance_in_frame(clearances[vertex], unit);
 }
 
-// The nearest vertex, from one on; GIVEN_UP if it takes more than so many neighbours.
+// The nearest vertex, by descent from `vertex`; GIVEN_UP if it takes more than `most` neighbours.
 #define GIVEN_UP INT_MIN
 static inline int descend_wide(wide2 q, coordinate2 place, int vertex, int most, coordinate unit,
                                global const coordinate2* points, global const face* faces,

@@ -1,4 +1,4 @@
-// Makes what the search for nearest vertices through levels needs: locate/nearest_search.h has the search.
+// Makes the data for the search for nearest vertices through levels: locate/nearest_search.h has the search.
 //
 // 1. draw_entries, with one work-item per entry of all levels' samples, draws a vertex of each group of the level
 //    below. In fixed point give_coordinates (fixed_point.cl) makes doubles of them. The host triangulates the samples
@@ -23,8 +23,8 @@ static inline int pick(int i, int level, int ratio) {
   return (int)((x ^ (x >> 16)) % (uint)ratio);
 }
 
-// n entries: those of set s of level l begin at offsets[l * sets + s]. Set s has the vertices from first_vertices[s]
-// on. below: the entry's vertex if that is on level 0, otherwise its entry on the level below.
+// n entries: set s has the entries from offsets[l * sets + s] on at level l. Set s has the vertices from
+// first_vertices[s] on. below: the entry's vertex on level 0, otherwise its entry one level below.
 kernel void draw_entries(int n, int levels, int sets, int ratio, global const int* restrict offsets,
                          global const int* restrict first_vertices, global const coordinate2* restrict points,
                          global coordinate2* restrict coordinates, global int* restrict below) {
@@ -124,7 +124,7 @@ kernel void box_vertices(int n, int vertices, global const coordinate2* restrict
   }
 }
 
-// n boxes, from `first` on, around those of the level below, from first_below on.
+// n boxes, from `first` on, around the boxes of the level below, from first_below on.
 kernel void box_boxes(int n, int first, int first_below, global vertex_box* boxes) {
   const int i = get_global_id(0);
   if (i < n) {

@@ -1,6 +1,6 @@
 // Queries in a triangulation: the triangle that a query lies in, and the nearest vertex.
 //
-// Making the locator: what walks read is brought together, in the order of the triangles, which mostly is an order by
+// Making the locator: data that walks read is stored in the order of the triangles, which mostly is an order by
 // place; the points may be in any order.
 // 1. make_faces, one pass over the triangles, finds the first triangle of each vertex. The host scans the numbers of
 //    vertices that each triangle is the first of; number_vertices numbers and copies them, and renumber_faces puts the
@@ -37,7 +37,7 @@
 // ---------------------------------------------------------------------------------------------------------------------
 // Making
 
-// Per triangle, memory is fetched of the corners of the one that is so many later: points may be in any order.
+// For each triangle, corners of the triangle this many places ahead are fetched: points may be in any order.
 #define TRIANGLES_AHEAD 16
 
 static inline face read_face(int t, global const int* triangles, global const int* neighbors) {
@@ -83,7 +83,7 @@ kernel void make_faces(int n, int sets, global const int* restrict triangle_offs
     if (good) {
       for (int k = 0; k < 3; ++k) atomic_min(&incident[f.corner[k]], t);
     } else {
-      // Leads nowhere, for those that come before it is told.
+      // Leads nowhere, for kernels that run before the host reads the error.
       for (int k = 0; k < 3; ++k) {
         f.corner[k] = 0;
         f.neighbor[k] = -1;
@@ -104,7 +104,7 @@ kernel void count_vertices(int n, global const face* restrict faces, global cons
   }
 }
 
-// Of each vertex: its number, and by number where it is, its index among the points, and its first triangle.
+// For each vertex: its number, and by number its coordinates, the index of its point, and its first triangle.
 kernel void number_vertices(int n, global const face* restrict faces, global const int* restrict incident,
                             global const uint* restrict firsts, global const coordinate* restrict input, scaling scale,
                             global int* restrict numbers, global coordinate2* restrict points,
@@ -271,7 +271,7 @@ static inline int step_towards(coordinate2 q, int t, filter_bound bound, coordin
 }
 
 // Brings walks of queries [first, last), DESCENTS at most, nearer to their ends at the same time, as each step waits
-// for the one before: until few of them move, and by no more than so many steps.
+// for the one before: until few of them move, and by at most MOST_APPROACH steps.
 #define MOST_APPROACH 32
 static inline void approach(int first, int last, filter_bound bound, coordinate unit, global const coordinate2* placed,
                             global const coordinate2* points, global const face* faces, int* at) {
@@ -394,7 +394,7 @@ kernel void find_triangles(int n, int chunk, int sets, walk_options options, glo
 static inline int walk_straight(coordinate2 q, int start, filter_bound bound, coordinate unit,
                                 global const coordinate2* points, global const face* faces,
                                 global const int* first_triangle) {
-  // Triangle t, of which the walk is at corner k, v.
+  // The walk is at corner k of triangle t.
   int t = start, k = 0;
   face f = faces[t];
   for (;;) {
@@ -461,8 +461,9 @@ static inline int walk_straight(coordinate2 q, int start, filter_bound bound, co
   }
 }
 
-// Of a mesh with constraints, which has one set: ends walks that find_triangles gave up. Triangles from `kept` on fill
-// the mesh up to the convex hull, and queries in them are outside. found: by place; answers: by query, if is_answer.
+// In a mesh with constraints, which has one set, ends walks that find_triangles gave up. Triangles from `kept`
+// on fill the mesh up to its hull; queries in them are outside. found: by place; answers: by query, if
+// is_answer.
 kernel void find_in_constrained(int n, PLACED_QUERIES(), int kept, int is_answer, QUERY_TREES(),
                                 global const coordinate* restrict queries, filter_bound bound, WALKED_MESH(),
                                 global int* restrict found, global int* restrict answers) {
@@ -528,9 +529,9 @@ static inline nearby best_around(nearby vertex, coordinate2 q, filter_bound boun
   return best;
 }
 
-// Greedy descent, from a corner of triangle t, over at most so many neighbours; GIVEN_UP if these do not suffice. In a
-// Delaunay triangulation a vertex that is not nearest has a neighbour that is nearer; those that are nearest with
-// others lie on one empty circle, whose first vertex is joined to all.
+// Greedy descent, from a corner of triangle t, over at most `most` neighbours; GIVEN_UP if these do not
+// suffice. In a Delaunay triangulation a vertex that is not nearest has a nearer neighbour; several nearest
+// vertices lie on one empty circle, whose first vertex is joined to all.
 static inline int nearest_vertex(coordinate2 q, int t, int most, filter_bound bound, coordinate unit,
                                  global const coordinate2* points, global const face* faces,
                                  global const int* clearances) {

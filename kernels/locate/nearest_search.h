@@ -50,7 +50,7 @@ typedef struct {
   coordinate2 at;
 } nearby;
 
-// Of two vertices that are as near, the first in the order of x and y is taken.
+// If two vertices are equally near, the first in the order of x and y is taken.
 static inline void consider(nearby* best, int vertex, int triangle, coordinate2 q, filter_bound bound, coordinate unit,
                             GLOBAL const coordinate2* points) {
   const coordinate2 p = in_frame(points[vertex], unit);
@@ -88,7 +88,7 @@ static inline int is_clear(nearby vertex, coordinate2 q, coordinate unit, GLOBAL
   return clearance > LEAST_CLEARANCE && 4 * CLEARANCE_MARGIN * squared_length(difference2(q, vertex.at)) < clearance;
 }
 
-// Of points on one line, in their order: distances fall and then rise, with two equal ones at most. -1 of none.
+// The nearest of points in their order on a line, or -1: distances fall, then rise, with two equal at most.
 static inline int nearest_on_line(coordinate2 q, int first, int end, filter_bound bound, coordinate unit,
                                   GLOBAL const coordinate2* hull_points) {
   if (first == end) return -1;
@@ -158,8 +158,8 @@ static inline int go_to_nearest(nearby* best, coordinate2 q, filter_bound bound,
 // ---------------------------------------------------------------------------------------------------------------------
 // Boxes
 
-// Of how many boxes each level consists, from the lowest, and where it begins; returns the number of levels, which is 0
-// without vertices. The highest has one box.
+// Finds the number of boxes of each level, from the lowest, and where the level begins. Returns the number of
+// levels, 0 without vertices. The highest level has one box.
 static inline int box_levels(int vertices, int* counts, int* begins) {
   int levels = 0, begin = 0, count = vertices;
   while (vertices > 0 && (levels == 0 || count > 1)) {

@@ -10,7 +10,7 @@
 
 BEGIN_SHARED
 
-// Of slender triangles, whose magnitudes are larger by this factor than their area, areas are computed exactly.
+// Triangles whose magnitudes exceed their area by this factor are slender. Their areas are computed exactly.
 #define SLENDER 4096.0
 
 // The weights of a triangle's corners at q, which lies in it. Where q lies on an edge, the opposite corner has none.

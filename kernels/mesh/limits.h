@@ -11,9 +11,9 @@ BEGIN_SHARED
 INTEGER_CONSTANT(HIDDEN_VERTEX, -2);
 INTEGER_CONSTANT(EDGES_PER_VERTEX, 6);
 INTEGER_CONSTANT(PAIRS_PER_VERTEX, EDGES_PER_VERTEX / 2);
-// Divide and conquer ends with leaves of at most so many vertices.
+// Divide and conquer ends with leaves of at most this many vertices.
 INTEGER_CONSTANT(LEAF_VERTICES, 4);
-// A block of at most so many points, which one cut divides into leaves, needs no work-group of its own.
+// A block of at most this many points, which one cut divides into leaves, needs no work-group of its own.
 INTEGER_CONSTANT(TINY_BLOCK, 2 * LEAF_VERTICES);
 
 END_SHARED

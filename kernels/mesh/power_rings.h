@@ -3,9 +3,9 @@
 //
 // Three things are new. On a line, the tangent may pass over vertices that it hides. A candidate may come to lie under
 // the next base, inside of the triangle that was just made: it is hidden there, and its edges into the triangle go.
-// And what a merge has hidden may be left over as pieces without connection. A vertex that has lost an edge to a vertex
-// of the seam is hidden if and only if no edge that crosses the seam ends at it: the triangles that the merge makes all
-// cross the seam, and they cover all that it takes away. What hangs on such a vertex is hidden, too.
+// And vertices that a merge has hidden may remain as disconnected pieces. A vertex that has lost an edge to a
+// vertex of the seam is hidden if and only if no edge that crosses the seam ends at it: all triangles that the
+// merge makes cross the seam, and they cover all that it removes. All vertices attached to it are hidden, too.
 #ifndef FLAUNAY_POWER_RINGS_H
 #define FLAUNAY_POWER_RINGS_H
 
@@ -97,7 +97,7 @@ static inline int goes_on(power_rings* g, int side, int next, int vertex, int ot
   return is_between(a.at, c.at, b.at) && is_hidden_between(a, b, c);
 }
 
-// As lower_tangent; where the hulls have a common line, the edge that hides what is hidden on it.
+// As lower_tangent; if the hulls have a common line, the edge that hides the hidden vertices on it.
 static inline int lower_power_tangent(power_rings* g, int left, int right) {
   GLOBAL const ring_edge* edges = g->all.edges;
   GLOBAL const double2* points = g->all.points;
@@ -126,7 +126,7 @@ static inline int lower_power_tangent(power_rings* g, int left, int right) {
   return base;
 }
 
-// A base, and the vertex that the triangle below it has besides; if there is none, is_first.
+// A base, and the third vertex of the triangle below it; is_first if it is the first base.
 typedef struct {
   int edge, is_first;
   weighted_point left, right;
@@ -191,7 +191,7 @@ static inline int beyond_edge(const power_rings* g, int e, int is_right) {
   return is_right ? g->all.edges[e].previous : g->all.edges[e].next;
 }
 
-// Finds a side's candidate; removes the edges before it. Returns 0 if there is none.
+// Finds a side's candidate; removes the edges before it. Returns 0 if the side has no candidate.
 static inline int find_power_candidate(power_rings* g, const power_base* base, int is_right, power_candidate* found) {
   const int own = is_right ? base->edge : base->edge ^ 1;
   for (;;) {

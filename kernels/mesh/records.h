@@ -1,4 +1,4 @@
-// Edges, triangles and what is made of them, in arrays that kernels and the host share.
+// Edges, triangles and records made of them, in arrays that kernels and the host share.
 #ifndef FLAUNAY_MESH_RECORDS_H
 #define FLAUNAY_MESH_RECORDS_H
 

@@ -33,9 +33,9 @@ static inline int has_coarse_points(filter_bounds bounds) {
 #endif
 }
 
-// What orientations and angle_difference err by at most, of points whose coordinates differ by at most `extent`: the
-// bounds of their filters with the largest magnitudes that their terms can have, and a little more for the rounding of
-// these numbers. Larger than what the filters allow for, but computed once.
+// The largest errors of orientations and angle_difference for points whose coordinates differ by at most
+// `extent`: the bounds of their filters for the largest magnitudes that their terms can have, with a margin for
+// the rounding of these numbers. They exceed the errors that the filters assume, but are computed once.
 typedef struct {
   real side, angle;
 } largest_errors;
@@ -47,11 +47,11 @@ static inline largest_errors errors_within(real extent, filter_bounds bounds) {
   return errors;
 }
 
-// What one work-item works on: its own edges, all free at first.
+// The data of one work-item: its own edges, all free at first.
 typedef struct {
   GLOBAL ring_edge* edges;
   GLOBAL const coordinate2* points;  // by vertex
-  // An edge out of each vertex: of a hull's strict corner the counter-clockwise hull edge; NO_EDGE if there is none.
+  // An edge out of each vertex, or NO_EDGE; out of a hull's strict corner, the counter-clockwise hull edge.
   GLOBAL int* vertex_edge;
   filter_bounds bounds;
   largest_errors errors;      // of the triangulations that are being merged
@@ -60,7 +60,7 @@ typedef struct {
   uint undecided;             // predicates that floating point could not decide
   uint ties;                  // how many of these found cocircular points
   uint ties_left;             // how many of these left edges as they were
-  // Polygons with so many ties in a row are left; 0 for all polygons, otherwise at least 2.
+  // Polygons with this many consecutive ties are left; 0 for all polygons, otherwise at least 2.
   uint most_ties, ties_in_row;
   coordinate2 tied[4];  // the points of the last tie
   TALLY_MEMBER
@@ -87,7 +87,7 @@ static inline hull_ends joined_ends(const rings* g, hull_ends low, hull_ends hig
   return axis ? ends_of(least, most, low.first_y, high.last_y) : ends_of(low.first_x, high.last_x, least, most);
 }
 
-// By which nothing is decided.
+// Errors with which nothing is decided.
 static inline largest_errors unknown_errors(void) {
   const largest_errors errors = {INFINITY, INFINITY};
   return errors;
@@ -124,8 +124,8 @@ static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* 
 #define EXACT_OR_STOPPED(sign) (sign)
 #endif
 
-// What filters could not decide; out of line, so that merges have more registers. In fixed point, exact orientations
-// are a few products, for which no merge needs to stop.
+// Orientations that filters could not decide; out of line, so that merges have more registers. In fixed point,
+// exact orientations are a few products, for which no merge needs to stop.
 OUT_OF_LINE static inline int side_undecided(rings* g, coordinate2 a, coordinate2 b, coordinate2 c) {
 #if defined(FIXED_POINT) && defined(RINGS_STOP)
   return orient_exact(a, b, c);
@@ -165,7 +165,7 @@ static inline int is_tied(const rings* g, coordinate2 p) {
   return is_same(p, g->tied[0]) | is_same(p, g->tied[1]) | is_same(p, g->tied[2]) | is_same(p, g->tied[3]);
 }
 
-// Counts the ties in a row that are known to be those of one polygon, each of which brings another point.
+// Counts consecutive ties that are known to belong to one polygon. Each brings another point.
 static inline void count_tie(rings* g, coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
   int is_again = 0;
   if (is_tied(g, a) & is_tied(g, b)) {
@@ -418,12 +418,11 @@ static inline int rules_out(rings* g, coordinate_pair left, coordinate_pair righ
 
 static inline coordinate_pair point_at(const rings* g, int vertex) { return load_pair(&g->points[vertex]); }
 
-// Merges what is above a base. Returns MERGE_IS_DONE, or the base at which it stopped: the rings then are as this
-// begins with them.
+// Merges above a base. Returns MERGE_IS_DONE, or the base at which it stopped, where a call can go on.
 //
-// Its time is that of waiting: for memory, for predicates, and for predictions of them that were wrong. So the
-// in-circle tests over a base compare angles, which are computed once and also tell which apexes rise above it. The
-// side whose vertex stays keeps its candidate in registers.
+// It mostly waits: for memory, for predicates, and after wrong predictions of these. So the in-circle tests
+// over a base compare angles, which are computed once and also tell which apexes rise above it. The side whose
+// vertex stays keeps its candidate in registers.
 static inline int merge_above(rings* g, int base) {
   GLOBAL const ring_edge* edges = g->edges;
   int left = edges[base].to, right = edges[base ^ 1].to;
@@ -523,7 +522,7 @@ INTEGER_CONSTANT(FOUR_ARE_STRAIGHT, 0);
 INTEGER_CONSTANT(FOUR_ARE_STAR, 1);
 INTEGER_CONSTANT(FOUR_ARE_CONVEX, 2);
 
-// Of four vertices from v on, in the order of axis 0. q: for make_star or make_quadrilateral.
+// How four vertices from v on lie, in the order of axis 0. q: for make_star or make_quadrilateral.
 static inline int lie_of_four(rings* g, int v, int4* q) {
   const coordinate2 a = g->points[v], b = g->points[v + 1], c = g->points[v + 2], d = g->points[v + 3];
   // Sides of the line from a to d, on which b and c are: 1 is below.

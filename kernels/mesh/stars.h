@@ -24,7 +24,7 @@ static inline star_walk star_begin(int vertex, int triangle) {
   return walk;
 }
 
-// Finds the next neighbour; 0 if there is none.
+// Finds the next neighbour; 0 after the last one.
 static inline int star_next(star_walk* walk, GLOBAL const face* faces) {
   if (walk->triangle < 0) return 0;
   const face f = faces[walk->triangle];

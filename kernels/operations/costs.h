@@ -1,5 +1,5 @@
-// What operations cost by the rules of docs/counting.md, as the predicates are written: additions, multiplications and
-// comparisons of one evaluation.
+// Costs of operations by the rules of docs/counting.md, as the predicates are written: additions,
+// multiplications and comparisons of one evaluation.
 #ifndef FLAUNAY_COSTS_H
 #define FLAUNAY_COSTS_H
 

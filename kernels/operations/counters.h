@@ -8,7 +8,7 @@
 
 BEGIN_SHARED
 
-// What is counted for each component of the algorithm: operations of each kind.
+// Counters for each component of the algorithm, one for each kind of operation.
 INTEGER_CONSTANT(COMPONENT_CUT, 0);
 INTEGER_CONSTANT(COMPONENT_HULL, 1);
 INTEGER_CONSTANT(COMPONENT_MERGE, 2);
@@ -32,7 +32,7 @@ INTEGER_CONSTANT(COUNTER_STEPS, COUNTER_SIZES + MOST_COUNTED_SIZE + 1);
 INTEGER_CONSTANT(STEP_COUNTERS, 3);
 INTEGER_CONSTANT(COUNTERS_LENGTH, COUNTER_STEPS + STEP_COUNTERS);
 
-// What one work-item counts in a variable of its own, before COUNT_TALLY adds it to the counters.
+// The counts of one work-item, in its own variable, before COUNT_TALLY adds them to the counters.
 typedef struct {
   uint arithmetic, orientations, circles;
   uint steps;  // of merges

@@ -1,9 +1,9 @@
 // The positions at which an array of flags holds a given value, in order, as in pack.cl; for devices with many lanes:
 // by work-groups.
 //
-// Spans and tiles are those of scan_tiles.cl. Two passes: pack_span_counts counts in each span, and pack_spans adds up
-// the counts of the spans before, reads the flags again and writes. If there is a single span, pack_spans does it
-// alone.
+// Spans and tiles are as in scan_tiles.cl. Two passes: pack_span_counts counts in each span, and pack_spans
+// adds up the counts of the spans before, reads the flags again and writes. If there is a single span,
+// pack_spans does it alone.
 
 #include "operations/limits.h"
 #include "operations/work_group.h"

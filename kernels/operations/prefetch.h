@@ -1,10 +1,10 @@
-// Fetching into a CPU's cache what will be needed soon.
+// Fetching data into a CPU's cache before it is needed.
 #ifndef FLAUNAY_PREFETCH_H
 #define FLAUNAY_PREFETCH_H
 
 #include "arithmetic/language.h"
 
-// What suits CPUs, with 3 pairs of edges per point of a block: an edge rarely leads farther.
+// The distance that suits CPUs, with 3 pairs of edges per point of a block: an edge rarely leads farther.
 #define CPU_FETCH_AHEAD 6144
 
 // How many elements ahead of its use; 0 for devices that hide waiting otherwise, where fetch() does nothing.

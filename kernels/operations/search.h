@@ -7,8 +7,8 @@
 
 BEGIN_SHARED
 
-// The last of `count` segments that begins at i or before; offsets ascend and offsets[0] <= i. Of segments that begin
-// at the same place, the last, which is the one that is not empty.
+// The last of `count` segments that begins at i or before; offsets ascend and offsets[0] <= i. If several
+// segments begin at the same place, it is the last one, which is not empty.
 static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offsets) {
   int low = 0, high = count;
   while (high - low > 1) {
@@ -36,8 +36,8 @@ static inline int positions_below(int i, int count, GLOBAL const int* RESTRICT p
   return low;
 }
 
-// The last path vertex of first..last with u no greater than the given one; first if there is none. Projections are
-// (h, u), ascending in u.
+// The last path vertex of first..last with u no greater than the given one; first if all are greater.
+// Projections are (h, u), ascending in u.
 static inline int search_path(real u, int first, int last, GLOBAL const real2* RESTRICT path_projections) {
   int low = first, high = last + 1;
   while (high - low > 1) {

@@ -1,14 +1,15 @@
-// What the work-items of a group compute together, for kernels that work on tiles: a tile is what one work-group takes.
-// Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind the last tile, which do
-// nothing. All work-items of a group must call these functions at the same place. In OpenCL C alone.
+// Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is one
+// work-group's share. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind
+// the last tile, which do nothing. All work-items of a group must call them at the same place. In OpenCL C
+// alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 
-// For functions with barriers: PoCL 3.1 loses those of functions that are called twice and are not inlined.
+// For functions with barriers: PoCL 3.1 loses barriers of functions that are called twice and not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
 
-// Defines a function that returns the sum of the values of the work-items before this one, and writes that of all of
-// them to *total. sums: LARGEST_TILE_GROUP elements, which may be used again afterwards.
+// Defines a function that returns the sum of the values of the work-items before this one, and writes the sum
+// of all values to *total. sums: LARGEST_TILE_GROUP elements, which may be used again afterwards.
 #define SCAN_IN_GROUP(NAME, T)                                 \
   WITH_BARRIERS T NAME(T value, local T* sums, T* total) {     \
     const int me = get_local_id(0), group = get_local_size(0); \

@@ -1,8 +1,8 @@
 // Cut trees (points/cut_tree.h) of sets of points, made from samples of the points; all sets at once.
 //
-// The samples of a tree are cut in halves down to the leaves: those of each node at the median, across the longer of
-// their interquartile ranges. One work-item takes one chunk of samples of one tree: those of a leaf, or 2, 4, 8...
-// times as many. cut_tree_tiles.cl does the same for devices with many lanes.
+// The samples of a tree are cut in halves down to the leaves: each node's samples at the median, across the
+// longer of their interquartile ranges. One work-item takes one chunk of samples of one tree: as many as a leaf
+// has, or 2, 4, 8... times as many. cut_tree_tiles.cl does the same for devices with many lanes.
 //
 // 1. draw_samples fetches one point from each of equal parts of a set.
 // 2. sort_chunks sorts each chunk along x and along y. merge_runs merges sorted runs, in one launch per doubling.
@@ -49,8 +49,8 @@ kernel void draw_samples(int n, int tree_count, global const int* restrict first
   }
 }
 
-// Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one along y. Of
-// equal points the one drawn first comes first, here and in all that follows.
+// Two work-items per chunk, one per axis. elements, spare and order hold the order along x and then the one
+// along y. Equal points stay in the order in which they were drawn, also later.
 kernel void sort_chunks(int n, SAMPLED_CHUNKS(), global keyed* elements, global keyed* spare, global int* order) {
   const int w = get_global_id(0);
   if (w < n) {
@@ -136,8 +136,8 @@ kernel void count_low(int n, SAMPLED_CHUNKS(), int level, global const int* orde
   }
 }
 
-// Of nodes that are larger than chunks, halves to their places in both orders; what else there is, as it is. The order
-// along the axis falls apart by position, the other one by a stable split.
+// Moves the halves of nodes that are larger than chunks to their places in both orders; copies other samples.
+// The order along the axis is split by position, the other one by a stable split.
 kernel void split_chunks(int n, SAMPLED_CHUNKS(), int level, global const uint* restrict scanned,
                          global const int* from, global int* to) {
   const int c = get_global_id(0);

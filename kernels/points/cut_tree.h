@@ -27,7 +27,7 @@ static inline int goes_high(const point_keys* keys, GLOBAL const cut_node* cut) 
   return is_at_least(keys->major[axis], keys->minor[axis], cut->major, cut->minor);
 }
 
-// What is left of a rectangle on the one side of a cut.
+// The part of a rectangle on one side of a cut.
 static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int is_high, scaling scale) {
   const coordinate at = scaled(from_orderable(cut.major), scale);
   if (cut_axis(cut)) {
@@ -40,8 +40,8 @@ static inline vertex_box cut_rectangle(vertex_box rectangle, cut_node cut, int i
   return rectangle;
 }
 
-// Points that go down a tree at the same time, since each step waits for the one before: of so many, those that
-// compilers keep in registers.
+// DESCENTS points go down a tree together, since each step waits for the one before. Compilers keep
+// DESCENTS_AT_ONCE of them in registers.
 #define DESCENTS 16
 #define DESCENTS_AT_ONCE 8
 

@@ -5,7 +5,7 @@
 // 1. draw_each_sample fetches one point from each of equal parts of a set.
 // 2. sort_tiles sorts each tile along x and along y in local memory. merge_tiles merges MERGED_RUNS runs into one:
 //    a sample's place is the number of samples before it, which it finds by a binary search in each run. The places in
-//    both orders are the samples' ranks. All later comparisons are those of ranks.
+//    both orders are the samples' ranks. All later comparisons are of ranks.
 // 3. Nodes larger than a tile are cut level by level: count_tiles counts how many samples of each tile go low, and
 //    split_tiles adds up the counts of the tiles before and moves the samples. cut_tiles then cuts all other nodes, a
 //    tile in local memory, in one launch.
@@ -76,7 +76,7 @@ static inline int merged_place(int i, int run, int size, local const int* order,
 }
 
 // Two work-groups per tile, one per axis. order holds the order along x and then the one along y; ranks, for each
-// sample, its places in both. Of equal points the one drawn first comes first, here and in all that follows.
+// sample, its places in both. Equal points stay in the order in which they were drawn, also later.
 kernel void sort_tiles(int tiles, SAMPLED_CHUNKS(), global int* restrict order, global int* restrict ranks) {
   local coordinate2 points[LARGEST_SAMPLE_TILE];
   local int orders[2 * LARGEST_SAMPLE_TILE];
@@ -144,7 +144,7 @@ kernel void merge_tiles(int n, int tree_count, global const int* restrict first_
   }
 }
 
-// A tile's part of a node that is larger than a tile. Of other nodes: not is_large.
+// A tile's part of a node that is larger than a tile. For other nodes, is_large is 0.
 typedef struct {
   int is_large, begin, size;
   sample_cut cut;
@@ -194,8 +194,8 @@ kernel void count_tiles(int tiles, SAMPLED_CHUNKS(), int level, global const int
   }
 }
 
-// Of nodes that are larger than tiles, halves to their places in both orders; what else there is, as it is. The order
-// along the axis falls apart by position, the other one by a stable split.
+// Moves the halves of nodes that are larger than tiles to their places in both orders; copies other samples.
+// The order along the axis is split by position, the other one by a stable split.
 kernel void split_tiles(int tiles, SAMPLED_CHUNKS(), int level, global const uint* restrict counts,
                         global const int* restrict from, global const int* restrict ranks, global int* restrict to) {
   local uint sums[LARGEST_TILE_GROUP];
@@ -264,7 +264,7 @@ kernel void cut_tiles(int tiles, SAMPLED_CHUNKS(), global const int* restrict so
       const int2 cut = cuts[i / size];
       lows += is_below(cut.x ? by_x[i] : by_y[i], cut);
     }
-    // Of each node before, half of its samples went low.
+    // Half of the samples of each node before went low.
     int low = (int)scan_samples(lows, sums, &all);
     for (int i = first; i < last; ++i) {
       const int2 cut = cuts[i / size];

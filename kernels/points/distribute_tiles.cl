@@ -2,7 +2,7 @@
 // inspect_tiles.cl are parts of this program.
 //
 // The points are sorted stably by the numbers of their blocks, a digit of `bits` bits at a time, the lowest first; a
-// million points have a single digit. A tile of points is what one work-group takes.
+// million points have a single digit. One work-group takes a tile of points.
 //
 // 1. count_tile_blocks finds each point's block, and counts the lowest digits of each tile into table[digit][tile].
 //    For each further digit, count_digits counts. Each table is scanned.
@@ -94,7 +94,7 @@ kernel void count_digits(int n, int size, int shift, int bits, global const int*
 #define PADDED_TILE (LARGEST_POINT_TILE + LARGEST_POINT_TILE / 32)
 static inline int padded(int i) { return i + i / 32; }
 
-// A digit of two bits, of which the group counts all four values at once, in fields of 16 bits.
+// A digit of two bits. The group counts its four values at once, in fields of 16 bits.
 #define PAIR_BITS 2
 static inline int field_of(uint element, int shift) { return (int)(element >> (PLACE_BITS + shift) & 3) * 16; }
 
@@ -122,7 +122,7 @@ WITH_BARRIERS int sort_digits(local uint* elements, int count, int bits, local u
   return from;
 }
 
-// What a tile is sorted with: starts[d] is where its elements of digit d go, less the place of the first one in the
+// Sorts a tile by a digit. starts[d]: where its elements of digit d go, minus the place of the first one in the
 // tile. So place i of the sorted tile goes to starts[d] + i.
 WITH_BARRIERS int sort_tile(point_tile tile, int shift, int bits, global const int* blocks, global const uint* scanned,
                             local uint* elements, local int* starts, local uint64* sums) {

@@ -25,7 +25,7 @@ typedef struct {
   int begin, size, half_size;
 } gap_node;
 
-// Group w's node at a level; first_groups: those of each tree. If there are fewer nodes, it has no samples.
+// Group w's node at a level. first_groups: of each tree. If there are fewer nodes, it has no samples.
 static inline gap_node node_of_group(int w, int groups, int level, int tree_count, global const int* first_groups,
                                      global const sampled_tree* trees, global const int2* ranges) {
   gap_node node;
@@ -45,7 +45,7 @@ static inline gap_node node_of_group(int w, int groups, int level, int tree_coun
   return node;
 }
 
-// Of the halves, no part shall have more or fewer samples than these shares of what it would have if all were equal.
+// Each half shall have samples between these shares of the number that it would have if all were equal.
 #define MOST_OF_HALF REAL(1.4)
 #define LEAST_OF_HALF REAL(0.5)
 // No part shall have less than this share of its node.
@@ -88,7 +88,7 @@ typedef struct {
   cut_node node;
 } gap_cut;
 
-// In the middle of the gap that begins at a place; at the node's median sample if there is none, extent 0.
+// Cuts in the middle of the gap at a place, or without a gap (extent 0) at the node's median sample.
 static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, coordinate extent, int first, int axis, int all_samples,
                                  global const coordinate2* samples, global const int* order) {
   gap_cut cut;
@@ -146,7 +146,7 @@ kernel void cut_at_gaps(int groups, int level, int tree_count, global const int*
   extents[me] = extent;
   places[me] = place;
   barrier(CLK_LOCAL_MEM_FENCE);
-  // Of gaps as wide as each other, the first along x, or else the first along y.
+  // If gaps are equally wide, the first along x is taken, or else the first along y.
   for (int k = 0; k < group; ++k) {
     const int2 other = places[k];
     const int is_before = other.y < place.y || (other.y == place.y && other.x < place.x);
@@ -156,7 +156,7 @@ kernel void cut_at_gaps(int groups, int level, int tree_count, global const int*
     }
   }
   const int has_samples = node.size > 0;
-  // Of a node without samples.
+  // The cut of a node without samples.
   gap_cut cut;
   cut.axis = cut.split = 0;
   cut.node = node_of(0, VECTOR(coordinate2, 0, 0));

@@ -11,7 +11,7 @@
 #include "operations/search.h"
 #include "points/codes.h"
 
-// Points of single precision from `first` on. The bits are those of doubles.
+// Points of single precision from `first` on. They become the bits of doubles.
 kernel void widen_points(int n, uint64 first, global const float_bits* restrict narrow,
                          global double_bits* restrict points) {
   const int i = get_global_id(0);

@@ -7,12 +7,12 @@
 
 BEGIN_SHARED
 
-// So many bytes for each point of a tile of points, and for each sample of a tile of samples.
+// Bytes of local memory per point of a tile of points, and per sample of a tile of samples.
 INTEGER_CONSTANT(LOCAL_BYTES_PER_POINT, 16);
 INTEGER_CONSTANT(LOCAL_BYTES_PER_SAMPLE, 32);
 INTEGER_CONSTANT(LARGEST_POINT_TILE, LOCAL_BYTES / LOCAL_BYTES_PER_POINT);
 INTEGER_CONSTANT(LARGEST_SAMPLE_TILE, LOCAL_BYTES / LOCAL_BYTES_PER_SAMPLE);
-// A tile of points is sorted by at most so many bits of their blocks' numbers.
+// A tile of points is sorted by at most this many bits of their blocks' numbers.
 INTEGER_CONSTANT(MOST_BLOCK_BITS, 10);
 
 END_SHARED

@@ -29,9 +29,9 @@ typedef struct {
 } set_of_blocks;
 ASSERT_SIZE(set_of_blocks, 12);
 
-// Points [first, last) that one work-item brings to their blocks. Of a set with a tree: its depth, where its nodes
-// begin, where the chunk's row of cursors begins, the set's first count, the chunk's number in the set, and the set's
-// number of chunks.
+// Points [first, last) that one work-item brings to their blocks. For a set with a tree: its depth, where its
+// nodes begin, where the chunk's row of cursors begins, the set's first count, the chunk's number in the set,
+// and the set's number of chunks.
 typedef struct {
   int first, last, depth, nodes, row, counts, number, chunks;
 } chunk_of_points;

@@ -28,7 +28,7 @@ typedef struct {
   coordinate2 pivot;
 } sample_cut;
 
-// Of the node with the samples of both orders from `begin` on.
+// The cut of the node whose samples begin at `begin` in both orders.
 static inline sample_cut cut_of(int begin, int size, GLOBAL const coordinate2* samples, GLOBAL const int* by_x,
                                 GLOBAL const int* by_y) {
   const int low = begin + size / 4, high = begin + size - 1 - size / 4;

@@ -38,12 +38,12 @@ BEGIN_SHARED
 INTEGER_CONSTANT(LARGEST_EXPONENT, 249);
 INTEGER_CONSTANT(LOWEST_EXPONENT, -255);
 INTEGER_CONSTANT(MOST_BITS, LARGEST_EXPONENT - LOWEST_EXPONENT + 1);
-// Coordinates that span so many bits, k, are coarse for a predicate: it takes 3k + 4, 2k + 3 or 4k + 8 of a
-// double's 53.
+// Coordinates that span at most this many bits, k, are coarse for a predicate, which needs 3k + 4, 2k + 3 or 4k
+// + 8 of 53 bits.
 INTEGER_CONSTANT(COARSE_HULL_BITS, 16);
 INTEGER_CONSTANT(COARSE_ORIENT_BITS, 25);
 INTEGER_CONSTANT(COARSE_CIRCLE_BITS, 11);
-// In fixed point, differences of so many bits and one more have dot and cross products below 2^63.
+// In fixed point, differences of coordinates of this many bits have dot and cross products below 2^63.
 INTEGER_CONSTANT(COARSE_FIXED_BITS, 29);
 
 // Queries and the points that they are held against: coordinates below 2^509 that are multiples of 2^-511. No product
@@ -51,7 +51,7 @@ INTEGER_CONSTANT(COARSE_FIXED_BITS, 29);
 INTEGER_CONSTANT(LARGEST_QUERY_EXPONENT, 508);
 INTEGER_CONSTANT(LOWEST_QUERY_EXPONENT, -511);
 INTEGER_CONSTANT(MOST_QUERY_BITS, LARGEST_QUERY_EXPONENT - LOWEST_QUERY_EXPONENT + 1);
-// Coordinates of so many bits are coarse: orientation and nearness take 2k + 4.
+// Coordinates of at most this many bits, k, are coarse: orientation and nearness need 2k + 4 bits.
 INTEGER_CONSTANT(COARSE_QUERY_BITS, 24);
 
 END_SHARED

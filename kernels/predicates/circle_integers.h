@@ -15,8 +15,8 @@ static inline integer128 dot_product(int64 ax, int64 ay, int64 bx, int64 by) {
   return sum_128(product_128(ax, bx), product_128(ay, by));
 }
 
-// What in-circle tests compare: the angles over the edge from a to b, under which it is seen from the fourth point and
-// from c, as in predicates/planar.h.
+// The terms of in-circle tests: the angles under which the fourth point and c see the edge from a to b, as in
+// predicates/planar.h.
 typedef struct {
   integer128 dot, cross, other_dot, other_cross;
 } integer_angles;
@@ -34,7 +34,7 @@ static inline integer_angles angles_of(int64 ax, int64 ay, int64 bx, int64 by, i
   return angles;
 }
 
-// Of differences below 2^SHORT_BITS, whose dot and cross products are below 2^63.
+// The in-circle test of differences below 2^SHORT_BITS, whose dot and cross products are below 2^63.
 #define SHORT_BITS 30
 static inline int circle_short(int64 ax, int64 ay, int64 bx, int64 by, int64 cx, int64 cy) {
   const int64 dot = ax * bx + ay * by, cross = ax * by - ay * bx;

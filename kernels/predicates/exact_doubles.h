@@ -45,7 +45,7 @@ static inline int is_short_integer(double2 difference, double factor, int64* int
 
 static inline double larger_magnitude(double a, double b) { return fabs(a) > fabs(b) ? fabs(a) : fabs(b); }
 
-// Of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
+// The sign of the cross product of (bx, by) and (cx, cy), all differences of coordinates as two_sum gives them.
 OUT_OF_LINE static inline int cross_by_expansions(double2 bx, double2 by, double2 cx, double2 cy) {
   expansion sum;
   expansion_cross(bx, by, cx, cy, &sum);
@@ -92,7 +92,7 @@ OUT_OF_LINE static inline int circle_sign_by_expansions(const double2* dx, const
   return expansion_sign(&sum);
 }
 
-// What in-circle tests are made of: differences of three points from the fourth, and the largest magnitude among them.
+// The input of in-circle tests: differences of three points from the fourth, and their largest magnitude.
 typedef struct {
   double2 x[3], y[3];
   double largest;
@@ -122,7 +122,7 @@ static inline int are_integers(const circle_differences* from, double factor, in
   return integers;
 }
 
-// Of coarse points (COARSE_CIRCLE_BITS), of which the filter has found this.
+// The in-circle test of coarse points (COARSE_CIRCLE_BITS) after a filter, exact for them, found a tie.
 #define circle_coarse(a, b, c, d) 0
 
 // Products and sums of pairs as two_sum gives them, with about twice the precision of doubles.
@@ -160,7 +160,7 @@ static inline int circle_closely(const circle_differences* from, double2 a, doub
   return fabs(det) > CLOSE_BOUND * magnitude ? sign_of(det) : 0;
 }
 
-// Of any four points, by their differences from d, not all 0.
+// The in-circle test of any four points, by their differences from d, not all 0.
 static inline int circle_of_differences(const circle_differences* from, double2 a, double2 b, double2 c) {
   const int sign = circle_closely(from, a, b, c);
   if (sign != 0) return sign;

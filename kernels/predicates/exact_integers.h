@@ -54,7 +54,7 @@ static inline int circle_if_short(const circle_differences* from) {
   return circle_short(from->x[0], from->y[0], from->x[1], from->y[1], from->x[2], from->y[2]);
 }
 
-// The in-circle test of coarse points (COARSE_FIXED_BITS), which have so many zeros in front of their lowest bit.
+// The in-circle test of coarse points (COARSE_FIXED_BITS), whose lowest COARSE_ZEROS bits are 0.
 INTEGER_CONSTANT(COARSE_ZEROS, COORDINATE_BITS - COARSE_FIXED_BITS);
 static inline int circle_coarse(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d) {
   return circle_short((a.x - d.x) >> COARSE_ZEROS, (a.y - d.y) >> COARSE_ZEROS, (b.x - d.x) >> COARSE_ZEROS,

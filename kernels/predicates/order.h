@@ -29,10 +29,10 @@ static inline int place_of_keyed(keyed element) { return (int)(uint)element; }
 #define COARSE_DIGITS (1 << COARSE_DIGIT)
 #define MOST_COARSE_DIGITS 3
 static inline uint coarse_digit(uint key, int digit) { return key >> digit * COARSE_DIGIT & (COARSE_DIGITS - 1); }
-// Up to so many points, keys of one digit tell most of them apart.
+// Keys of one digit distinguish most points if there are at most this many.
 #define ONE_DIGIT_POINTS 64
 
-// Sorts stably by a digit, of whose values these are the counts.
+// Sorts stably by a digit. counts: of the digit's values.
 static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* RESTRICT to, int n, int digit,
                                uint* counts) {
   uint sum = 0;
@@ -47,8 +47,8 @@ static inline void stable_pass(GLOBAL const keyed* RESTRICT from, GLOBAL keyed* 
   }
 }
 
-// Sorts elements stably by the leading bits of a coordinate, so many digits of those that tell points of this block
-// apart. Returns elements or spare, whichever holds the result.
+// Sorts elements stably by the leading `digits` digits of a coordinate, among the bits that distinguish points
+// of this block. Returns elements or spare, whichever holds the result.
 static inline GLOBAL keyed* sort_coarsely(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
                                           GLOBAL const coordinate2* points, int number, int digits) {
   if (n == 0) return elements;
@@ -126,9 +126,8 @@ static inline GLOBAL keyed* sort_by_merging(GLOBAL keyed* elements, GLOBAL keyed
 // So few are sorted by insertion alone: a digit has more values than there are points.
 #define INSERTED_POINTS 12
 
-// Sorts elements, whose places stand in [0, n) and whose keys are equal, by the order of the axis; those of equal
-// points stay in their order. Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at
-// worst.
+// Sorts elements, whose places stand in [0, n) and whose keys are equal, by the order of the axis; equal points
+// keep their order. Returns elements or spare, whichever holds the result. O(n) as a rule, O(n log n) at worst.
 static inline GLOBAL keyed* sort_along(GLOBAL keyed* elements, GLOBAL keyed* spare, int n,
                                        GLOBAL const coordinate2* points, int axis) {
   if (n <= INSERTED_POINTS && sort_ties(elements, n, points, axis)) return elements;

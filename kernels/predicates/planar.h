@@ -62,8 +62,8 @@ static inline int circle_filtered(coordinate2 a, coordinate2 b, coordinate2 c, c
   return filtered_sign(det.x, det.y, bound);
 }
 
-// The angle under which a point sees the edge from a to b: its cotangent is the dot product over the cross product, of
-// which this is the pair. Magnitudes bound their errors.
+// The angle under which a point sees the edge from a to b. Its cotangent is the dot product over the cross
+// product; `products` is the pair of both. Magnitudes bound their errors.
 typedef struct {
   real_pair products, magnitudes;
 } angle;
@@ -129,14 +129,14 @@ static inline int circle_sign(coordinate2 a, coordinate2 b, coordinate2 c, coord
 // The order of the canonical form: by x, then by y.
 static inline int comes_before(coordinate2 p, coordinate2 q) { return (p.x < q.x) | ((p.x == q.x) & (p.y < q.y)); }
 
-// For four different points on one circle, a, b, c counter-clockwise: what the in-circle test says if the first of the
-// four (comes_before) is lowered a little below the paraboloid that all are lifted to. Never 0. The Delaunay
-// triangulation so defined is unique, and makes of each polygon of cocircular points a fan from its first vertex: the
-// canonical form.
+// For four different points on one circle, a, b, c counter-clockwise: the result of the in-circle test if the
+// first of the four (comes_before) is lowered a little below the paraboloid that all are lifted to. Never 0.
+// The Delaunay triangulation so defined is unique, and makes of each polygon of cocircular points a fan from
+// its first vertex: the canonical form.
 //
-// With a the first of the triangle's vertices: if d comes before it, d is what is lowered, and lies below the plane
-// through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now above
-// it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
+// With a the first of the triangle's vertices: if d comes before it, d is lowered, and lies below the plane
+// through the others: inside. Else a is, and at d the plane sinks by a's barycentric coordinate there: d is now
+// above it, unless b and c separate it from a (it cannot lie on their line). See docs/exactness.md.
 static inline int canonical_tie(coordinate2 a, coordinate2 b, coordinate2 c, coordinate2 d, filter_bound bound) {
   while (comes_before(b, a) || comes_before(c, a)) {
     const coordinate2 first = a;

@@ -34,7 +34,7 @@ static inline lifted_point lifted_from(weighted_point p, weighted_point origin) 
   const lifted_point lifted = {x, y, x * x + y * y - (p.weight - origin.weight)};
   return lifted;
 }
-// The magnitudes of what its height is made of.
+// The magnitudes of the terms of its height.
 static inline double lift_magnitude(weighted_point p, weighted_point origin) {
   const double x = p.at.x - origin.at.x, y = p.at.y - origin.at.y;
   return x * x + y * y + fabs(p.weight - origin.weight);
@@ -123,7 +123,7 @@ OUT_OF_LINE static inline int power_exact(weighted_point a, weighted_point b, we
   return expansion_sign(&sum);
 }
 
-// What is not lowered by weights or by the first perturbation is as it is without weights.
+// Power tests that filters cannot decide: exactly, then by the first perturbation, then as without weights.
 OUT_OF_LINE static inline int power_undecided(weighted_point a, weighted_point b, weighted_point c, weighted_point d,
                                               filter_bounds bounds) {
   const int sign = power_exact(a, b, c, d);

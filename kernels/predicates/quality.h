@@ -20,7 +20,7 @@ BEGIN_SHARED
 
 // With e = DOUBLE_ROUNDOFF and u, v the lengths of two vectors: their dot or cross product has an error below
 // 4.01 e u v, its square one of 8.03 e u^2 v^2 and one more e for rounding; `square` times u^2 v^2, which has nine
-// factors of 1 + e, one of 11.02 e u^2 v^2. The sum is 20.06; what underflows in the last product adds a quarter.
+// factors of 1 + e, one of 11.02 e u^2 v^2. The sum is 20.06; underflow in the last product adds a quarter.
 #define SQUARE_BOUND (24 * DOUBLE_ROUNDOFF)
 
 // With c a cosine, given as the dot product and the product of both vectors' squared lengths: the sign of c |c| -
@@ -69,10 +69,10 @@ static inline int cosine_sign(double2 a, double2 b, double2 c, double2 d, double
 // A sine is the cosine to the other vector turned by a right angle.
 static inline double2 turned_right(double2 p) { return VECTOR(double2, p.y, -p.x); }
 
-// Of a counter-clockwise triangle whose sides have the squared lengths u, v and w, and two of them this cross product:
-// whether its smallest angle's squared sine is below this one, or UNDECIDED. All sines have the same numerator, the
-// cross product; the smallest has the largest denominator, that of the two longest sides. The bound has room for what
-// the difference is rounded by.
+// Whether the squared sine of a triangle's smallest angle is below this one, or UNDECIDED. The triangle is
+// counter-clockwise, its sides have the squared lengths u, v and w, and two of them this cross product. All
+// sines have the same numerator, the cross product; the smallest has the largest denominator, the product of
+// the two longest sides. The bound includes the rounding of the difference.
 static inline int sine_of_sides_filtered(double cross, double u, double v, double w, double squared_sine) {
   const double longer = u > v ? u : v, shorter = u < v ? u : v, lengths = longer * (shorter > w ? shorter : w);
   const double excess = cross * fabs(cross) - squared_sine * lengths;

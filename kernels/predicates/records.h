@@ -1,4 +1,4 @@
-// What predicates get from the host.
+// Records that predicates get from the host.
 #ifndef FLAUNAY_PREDICATES_RECORDS_H
 #define FLAUNAY_PREDICATES_RECORDS_H
 

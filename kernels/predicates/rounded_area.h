@@ -86,7 +86,7 @@ static inline uint64 half_rounded(uint64* sum, int words, int lowest) {
   return sign | (bits < INFINITE_BITS ? bits : INFINITE_BITS);
 }
 
-// By integers alone.
+// Computes the area with integers alone.
 OUT_OF_LINE static inline uint64 area_by_integers(const uint64* x, const uint64* y) {
   int lowest = 2 * LOWEST_UNIT + 4096, highest = 2 * LOWEST_UNIT;
   for (int k = 0; k < 3; ++k) {
@@ -114,7 +114,7 @@ static inline int area_by_doubles(double2 a, double2 b, double2 c, double* area)
   const double2 left = two_product(bx.x, cy.x), right = two_product(by.x, cx.x), high = two_sum(left.x, -right.x);
   const double p = bx.x * cy.y, q = bx.y * cy.x, r = by.x * cx.y, s = by.y * cx.x;
   const double low = high.y + ((left.y - right.y) + ((p + q) - (r + s)));
-  // Of the terms of `low`, rounding loses less than 2^-49, and underflow less than 2^-1060.
+  // Rounding loses less than 2^-49 of the terms of `low`, and underflow less than 2^-1060.
   const double terms = fabs(high.y) + fabs(left.y) + fabs(right.y) + fabs(p) + fabs(q) + fabs(r) + fabs(s);
   const double error = 0x1p-48 * terms + 0x1p-1060;
   const double most = high.x + (low + error);

@@ -5,7 +5,7 @@
 
 // clang-format off
 
-// A mesh of so many points and triangles, with the triangle opposite to each corner.
+// A mesh with its numbers of points and triangles, and the triangle opposite to each corner.
 #define SCANNED_MESH(PREFIX) \
   int PREFIX##points, int PREFIX##count, global const double* restrict PREFIX##coordinates, \
   global const int* restrict PREFIX##triangles, global const int* restrict PREFIX##neighbors

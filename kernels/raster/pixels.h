@@ -15,10 +15,10 @@ typedef struct {
   int first, last;
 } pixel_range;
 
-// What a pixel is to a triangle: -1 if its centre lies outside, otherwise the number of edges that it lies on.
+// How a pixel lies to a triangle: -1 if its centre is outside, otherwise the number of edges that it lies on.
 INTEGER_CONSTANT(IS_OUTSIDE, -1);
 
-// The pixels whose numbers lie between two computed ones, of which each may be wrong by the margin.
+// The pixels whose numbers lie between two computed ones. Each of the two may be wrong by the margin.
 static inline pixel_range pixels_between(double a, double b, double margin, int count) {
   const double low = max(min(a, b) - margin, 0.0), high = min(max(a, b) + margin, count - 1.0);
   pixel_range range = {0, -1};

@@ -27,7 +27,7 @@ static inline void write_pixel(GLOBAL double* at, double value) {
 #endif
 }
 
-// Whether a triangle has three of so many points as corners, which are put into p.
+// Whether the corners of a triangle are in the range of points. Writes their coordinates into p.
 static inline int load_corners(int t, int points, GLOBAL const int* triangles, GLOBAL const double* coordinates,
                                double2* p) {
   for (int k = 0; k < 3; ++k) {
@@ -63,7 +63,7 @@ static inline scanned_triangle scanned(int t, const double2* q, GLOBAL const int
 }
 
 // A pixel on an edge, or so near to one that floating point cannot tell, or in a slender triangle. Returns whether the
-// triangle's neighbour is none of the mesh.
+// triangle's neighbour is not in the mesh.
 OUT_OF_LINE static inline int scan_exactly(const scanned_triangle* t, double2 centre, SCANNED_MESH(), double longest,
                                            GLOBAL double* pixel) {
   int edge = 0;
@@ -89,8 +89,8 @@ OUT_OF_LINE static inline int scan_exactly(const scanned_triangle* t, double2 ce
   return 0;
 }
 
-// The pixels [first, last] of a row. Most are decided by all three edges at once; the weights are then those of
-// barycentric().
+// The pixels [first, last] of a row. Most are decided by all three edges at once; the weights then equal the
+// results of barycentric().
 static inline int scan_row(const scanned_triangle* t, int first, int last, double y, pixel_grid grid, SCANNED_MESH(),
                            GLOBAL double* row) {
   int is_wrong = 0;
@@ -125,7 +125,7 @@ static inline int scan_row(const scanned_triangle* t, int first, int last, doubl
   return is_wrong;
 }
 
-// Triangles [i * chunk, ...) of n. wrong: receives the first triangle with a corner or a neighbour that is none.
+// Triangles [i * chunk, ...) of n. wrong: gets the first triangle with an invalid corner or neighbour.
 kernel void scan_triangles(int n, int chunk, pixel_grid grid, SCANNED_MESH(), global const double* restrict values,
                            global double* restrict pixels, volatile global int* restrict wrong) {
   const int begin = get_global_id(0) * chunk, end = min(n, begin + chunk);

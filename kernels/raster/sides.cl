@@ -50,7 +50,7 @@ kernel void count_side_pixels(int n, pixel_grid grid, SCANNED_MESH(), global con
   if (i < n) counts[i] = (uint)pixels_on_side(sides[i], grid, coordinates, triangles, 0, 0, 0);
 }
 
-// Those of side i begin at offsets[i]. places: row * columns + column.
+// The pixels of side i begin at offsets[i]. places: row * columns + column.
 kernel void list_side_pixels(int n, pixel_grid grid, SCANNED_MESH(), global const double* restrict values,
                              global const int* restrict sides, global const uint* restrict offsets,
                              global uint64* restrict places, global double* restrict found) {

@@ -21,7 +21,7 @@ kernel void mark_pending(int n, int mask, global const uchar* restrict states, g
 }
 
 // n rows of the list: the middle of the shortest side; the squared circumradius; and whether they are in the sample by
-// which the plane is cut, of which there is one in mask + 1.
+// which the plane is cut, one row in mask + 1.
 kernel void describe_rows(int n, uint mask, global const int* restrict list, REFINED_MESH(),
                           global double2* restrict middles, global double* restrict radii,
                           global uchar* restrict is_sampled) {
@@ -39,7 +39,8 @@ kernel void describe_rows(int n, uint mask, global const int* restrict list, REF
   }
 }
 
-// n rows of the list: of those that are too large, at how many levels of area, each `step` times the one before, or 0.
+// n rows of the list: the number of levels of area, each `step` times the one before, at which they are too
+// large.
 kernel void find_levels(int n, refinement_rules rules, double step, global const int* restrict list, REFINED_MESH(),
                         global uchar* restrict levels) {
   const int i = get_global_id(0);
@@ -77,7 +78,7 @@ kernel void find_starts(int n, int leaves, global const uint64* restrict keys, g
   }
 }
 
-// Of each work-item there are states and lists. inserted: per block.
+// States and lists are per work-item. inserted: per block.
 kernel void refine_blocks(refinement_rules rules, refinement_phase phase, global mesh_row* rows, global double2* points,
                           global edge_place* places, global const int* ends, global const int* wedges,
                           global const double* areas, global const mesh_row* given, global uchar* states,
@@ -136,7 +137,7 @@ kernel void refine_blocks(refinement_rules rules, refinement_phase phase, global
 // ---------------------------------------------------------------------------------------------------------------------
 // The order in the end
 
-// n vertices, of which the first `known` have their numbers: those of the input, if it has some, what it calls them.
+// n vertices. The first `known` have their numbers already; vertices of the input get their names in it.
 // firsts: per block of all phases.
 kernel void number_added(int n, int known, int inputs, global const int2* restrict births,
                          global const int* restrict firsts, global const int* restrict names,

@@ -1,7 +1,7 @@
 // Refinement within a block, by the sequential algorithm: bad triangles in the order of classes, each mended by a point
 // whose cavity is dug out and replaced by a star. A block changes only rows whose corners are all in its leaf of the
-// plane; it reads the corners of rows that have corners in several leaves, which nobody changes. What would need others
-// is put aside for the next phase, before anything is changed. Nothing depends on the numbers of rows or vertices.
+// plane; it reads the corners of rows that have corners in several leaves, which nobody changes. Tasks that
+// need other rows are put aside for the next phase. Nothing depends on numbers of rows or vertices.
 #ifndef FLAUNAY_REFINEMENT_BLOCKS_H
 #define FLAUNAY_REFINEMENT_BLOCKS_H
 
@@ -16,14 +16,14 @@
 
 BEGIN_SHARED
 
-// The first digging of a cavity ends at so many rows: if its point is beyond a constraint, it need not be a tree.
+// The first digging of a cavity ends at this many rows: with the point beyond a constraint, it may be no tree.
 #define MOST_UNPROVEN 64
-// The in-circle test of `dig`: its terms are those of predicates/planar.h, whose magnitude is at most the sum of the
-// products of two squared distances each (Cauchy and Schwarz); that sum takes seven roundings.
+// The in-circle test of `dig`: its terms are as in predicates/planar.h, and their magnitude is at most the sum
+// of the products of two squared distances each (Cauchy and Schwarz); that sum takes seven roundings.
 #define DIG_BOUND (10.5 * DOUBLE_ROUNDOFF)
 #define NO_ROW INT_MAX
 
-// What a work-item has at hand.
+// The data of a work-item.
 typedef struct {
   seen_mesh mesh;
   refinement_rules rules;
@@ -41,7 +41,7 @@ typedef struct {
   GLOBAL const double* reaches;
   GLOBAL volatile int* counters;
   // Its own: the first and the last place of each class, plus 1; tasks; the sides that are still to be dug; the rows of
-  // a cavity and its sides; what the block begins with.
+  // a cavity and its sides; the tasks with which the block begins.
   GLOBAL int* heads;
   GLOBAL int* tails;
   GLOBAL block_task* tasks;
@@ -56,7 +56,7 @@ typedef struct {
 // ---------------------------------------------------------------------------------------------------------------------
 // Leaves
 
-// What a block calls itself where it notes which vertices it made.
+// The number by which a block marks vertices as its own.
 static inline int birth_of(const block_work* work) { return work->phase.first_block + work->state.block; }
 
 // Vertices that a block makes are its own, whatever rounding does. It meets none that others make in the same phase.
@@ -93,7 +93,7 @@ static inline int is_own_constraint(const block_work* work, int corner) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// What is bad
+// Bad triangles
 
 static inline double shorter(double l, double m, double n) {
   const double first = l < m ? l : m;
@@ -150,8 +150,8 @@ static inline int walk_within(const seen_mesh* mesh, int row, double2 p) {
   }
 }
 
-// Of a row that was made in the place of another one of the same region: the triangle of the mesh at first with its
-// centroid in it. given: the rows of that mesh.
+// The parent of a row that was made in the place of another one of the same region: the triangle of the given
+// mesh that contains its centroid. given: the rows of that mesh.
 static inline int parent_of(const seen_mesh* mesh, GLOBAL const mesh_row* given, int row, refinement_rules rules) {
   const seen_mesh before = {given, mesh->points};
   const double2 p = centroid_of(mesh, row);
@@ -159,7 +159,7 @@ static inline int parent_of(const seen_mesh* mesh, GLOBAL const mesh_row* given,
                      VECTOR(double2, rounded_to(p.x, rules.coarse), rounded_to(p.y, rules.coarse)));
 }
 
-// The area that a triangle may have, or 0. Of rows that a block makes, areas by rows are not known yet.
+// The largest area of a triangle, or 0. For rows that a block makes, areas by rows are not known yet.
 static inline double area_of_row(const seen_mesh* mesh, int row, refinement_rules rules, GLOBAL const double* areas,
                                  int is_new) {
   if (rules.area_kind == AREAS_BY_ROW && is_new) return rules.area;
@@ -179,7 +179,7 @@ static inline int tier_of_large(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 - 1 - tier_of(fabs(u.x * v.y - u.y * v.x), rules);
 }
 
-// Likewise of a triangle with a small angle: after those, the shortest sides first, of this squared length.
+// The class of a triangle with a small angle: after large triangles, by ascending `shortest`, the squared side.
 static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules rules, double shortest,
                                 GLOBAL const edge_place* places, GLOBAL const int* ends, GLOBAL const int* wedges) {
   GLOBAL const mesh_row* const at = &mesh->rows[row];
@@ -195,7 +195,7 @@ static inline int tier_of_small(const seen_mesh* mesh, int row, refinement_rules
   return TASK_CLASSES / 2 + tier_of(shortest, rules);
 }
 
-// Likewise of any.
+// The class of any triangle.
 static inline int tier_of_row(const seen_mesh* mesh, int row, refinement_rules rules, double level,
                               GLOBAL const double* areas, int is_new, GLOBAL const edge_place* places,
                               GLOBAL const int* ends, GLOBAL const int* wedges) {
@@ -281,7 +281,7 @@ static inline int room_for_tasks(const block_work* work) {
 
 static inline int state_of_tier(int tier) { return tier >= TIER_LATER ? ROW_BAD : TIER_EXCUSED - tier; }
 
-// Of a bad triangle in a scaffold: those whose circumradius exceeds what suits their leaf act, the largest one first.
+// The class of a bad triangle in a scaffold: it acts if its circumradius exceeds its leaf's reach.
 static inline int tier_in_scaffold(GLOBAL const block_cut* cuts, GLOBAL const double* reaches, const seen_mesh* mesh,
                                    int row, refinement_rules rules) {
   const ordered_triangle triangle = ordered(mesh, row);
@@ -342,9 +342,9 @@ static inline void put_side(GLOBAL dug_side* side, double bx, double by, double 
   side->from = from;
 }
 
-// Goes on with the cavity of p over the sides on the stack, depth first, so that sides come out counter-clockwise. Of a
-// point that is on no constraint, sides that it encroaches are counted and have their corner in the place of a row;
-// is_beyond: whether it is not strictly before one.
+// Goes on with the cavity of p over the sides on the stack, depth first, so that sides come out
+// counter-clockwise. If p is on no constraint, sides that it encroaches are counted and have their corner in
+// the place of a row; is_beyond: whether p is not strictly before one of them.
 static inline int dig(block_work* work, double2 p, int is_free, int most) {
   const seen_mesh mesh = work->mesh;
   GLOBAL const mesh_row* const rows = mesh.rows;
@@ -419,8 +419,8 @@ static inline void start_cavity(block_work* work) {
   work->depth = work->cavity_size = work->side_count = work->hits = work->is_beyond = 0;
 }
 
-// Adds the sides of a row, of which `count` follow on the one opposite to corner k, that one last if there are three.
-// Returns whether p is in the row's circle.
+// Adds the `count` sides of a row that follow the side opposite to corner k; that one comes last if count is
+// three. Returns whether p is in the row's circle.
 static inline int dig_from(block_work* work, int row, int k, int count, double2 p) {
   GLOBAL const mesh_row* const at = &work->rows[row];
   double x[3], y[3], l[3], cross[3];
@@ -460,8 +460,8 @@ static inline int is_too_near(const block_work* work, double2 p, int other) {
 // A constraint that rounding did not allow to split is tried again when a triangle there is another one.
 static inline int thawed(int edge) { return edge < 0 ? edge : edge & ~EDGE_FROZEN; }
 
-// Replaces the cavity by triangles around a point; edge: what it is on, between vertices a and b, or NO_EDGE_THERE. If
-// that is on the border, the triangles do not go all the way round.
+// Replaces the cavity by triangles around a point. edge: the edge that it is on, between vertices a and b, or
+// NO_EDGE_THERE. If that is on the border, the triangles do not go all the way round.
 static inline void write_star(block_work* work, double2 p, edge_place place, int edge, int a, int b, int is_open) {
   const int v = work->state.vertex++, count = work->side_count, size = work->cavity_size;
   work->points[v] = p;
@@ -469,7 +469,7 @@ static inline void write_star(block_work* work, double2 p, edge_place place, int
   work->births[v] = VECTOR(int2, birth_of(work), work->state.inserted);
   ++work->state.inserted;
   for (int i = size; i < count; ++i) work->cavity[i] = work->state.row++;
-  // What comes after the last one.
+  // The side after the last one.
   work->sides[count].from = is_open ? a : work->sides[0].from;
   work->cavity[count] = is_open ? -1 : work->cavity[0];
   int before = is_open ? -1 : work->cavity[count - 1];
@@ -664,7 +664,7 @@ static inline int comes_first(const block_work* work, first_task a, first_task b
   return order != 0 ? order > 0 : a.turn < b.turn;
 }
 
-// Sorts what the block begins with: a heap of what comes last.
+// Sorts the first tasks of the block, by a heap whose root is the last task.
 static inline void sort_first(block_work* work, int count) {
   GLOBAL first_task* const firsts = work->firsts;
   int root = count / 2;
@@ -769,7 +769,7 @@ static inline void end_retry(block_work* work) {
   }
 }
 
-// Goes on with the block; returns 0 at its end, or what it needs.
+// Goes on with the block. Returns 0 at its end, otherwise what it lacks: NEEDS_ROWS and so on.
 static inline int run_block(block_work* work, int* steps) {
   block_state* const state = &work->state;
   while (state->inserted < work->phase.most) {
@@ -816,7 +816,7 @@ static inline int run_block(block_work* work, int* steps) {
   return 0;
 }
 
-// What was not done is still marked in the states of rows.
+// Tasks that were not done are still marked in the states of rows.
 static inline void end_block(block_work* work) {
   block_state* const state = &work->state;
   if (state->retry >= 0 && work->rows[state->retry].changed == state->retry_changed)

@@ -2,7 +2,7 @@
 // them. Around a point that splits a constraint, those on both of its sides.
 //
 // A cavity has no vertex inside, so its triangles are a tree. A tour around the tree meets the sides of the cavity
-// counter-clockwise and takes no memory but the way back, of which it keeps some steps: beyond them it tests again.
+// counter-clockwise and needs memory only for the last steps of the way back: beyond them it tests again.
 #ifndef FLAUNAY_CAVITIES_OF_POINTS_H
 #define FLAUNAY_CAVITIES_OF_POINTS_H
 
@@ -30,7 +30,7 @@ static inline int neighbor_at(const seen_mesh* mesh, int corner) { return mesh->
 static inline int edge_at(const seen_mesh* mesh, int corner) { return mesh->rows[corner / 3].edge[corner % 3]; }
 
 // The number of the corner that is opposite to a neighbour, and the corner. Without branches, since they could not be
-// predicted. Others may change the row's other neighbours meanwhile, which is no matter.
+// predicted. Others may change the row's other neighbours meanwhile, which does not matter.
 #ifdef __cplusplus
 #define neighbor_meanwhile(at) __atomic_load_n(at, __ATOMIC_RELAXED)
 #else
@@ -48,11 +48,11 @@ static inline int corner_facing(const seen_mesh* mesh, int row, int neighbor) {
   return 3 * row + number_facing(&mesh->rows[row], neighbor);
 }
 
-// Fetches a row that a list has far ahead, and of one that is nearer what its triangle and those beside it are made of.
+// Fetches a row far ahead in a list, and for a nearer one the corners of its triangle and its neighbours.
 #define ROWS_FAR_AHEAD 16
 #define ROWS_AHEAD 8
 #define ROWS_NEXT 4
-// Of so few rows, all that belongs to them is in the cache.
+// At most this many rows are in the cache, with everything that belongs to them.
 #define ROWS_IN_CACHE 4096
 FETCHING void fetch_row(const seen_mesh* mesh, int row) {
 #if FETCH_AHEAD
@@ -72,7 +72,7 @@ FETCHING void fetch_neighbors(const seen_mesh* mesh, int row) {
 }
 
 // Never on the circle: see planar.h. With GHOSTS, rows beyond the hull have a corner at infinity, whose number is less
-// than 0; their circle is the half-plane beyond their edge, with what is inside of the edge.
+// than 0; their circle is the half-plane beyond their edge, with the inside of the edge.
 static inline int is_in_circle(const seen_mesh* mesh, int row, double2 p) {
   GLOBAL const int* const corners = mesh->rows[row].corner;
 #ifdef GHOSTS

@@ -1,5 +1,5 @@
-// Points claim their cavities, and those that hold all rows list what is around. The claim of a row is an atomic
-// minimum.
+// Points claim the rows of their cavities; points that hold all of theirs list the rows and the sides. The
+// claim of a row is an atomic minimum.
 #ifndef FLAUNAY_CLAIMED_CAVITIES_H
 #define FLAUNAY_CLAIMED_CAVITIES_H
 
@@ -26,7 +26,7 @@ static inline int claim_tour(const seen_mesh* mesh, int start, int end, double2 
   return sides;
 }
 
-// What was found of a cavity so far.
+// The part of a cavity that was found so far.
 typedef struct {
   int rows, sides, holds;
 } gathered;
@@ -70,7 +70,7 @@ static inline gathered gather_tour(const seen_mesh* mesh, int start, int end, ui
 }
 
 // Writes the triangle between a vertex and a side of its star, but for what it inherits. after, before: the rows beside
-// it. edge: what the vertex is on, between vertices a and b, or NO_EDGE_THERE.
+// it. edge: the edge that the vertex is on, between vertices a and b, or NO_EDGE_THERE.
 static inline void write_star_row(GLOBAL mesh_row* row, int vertex, star_side side, int to, int after, int before,
                                   int edge, int a, int b) {
   row->corner[0] = vertex;

@@ -8,7 +8,7 @@
 
 BEGIN_SHARED
 
-// The two rows beside an edge that is flipped, its corner in each, and what is beyond the two sides that change hands.
+// The two rows beside a flipped edge, its corner in each, and the neighbours beyond the sides that change rows.
 typedef struct {
   int row, k, beyond, j, from_row, from_beyond;
 } flip_place;

@@ -9,7 +9,7 @@
 
 BEGIN_SHARED
 
-// A move that is not good is tried with so many lengths, each half of the one before.
+// A bad move is tried with this many lengths, each half of the one before.
 INTEGER_CONSTANT(MOST_HALVINGS, 4);
 
 // The corner of the same vertex in the next triangle counter-clockwise. There must be one.
@@ -74,7 +74,7 @@ static inline double doubled_area(const double2* p) {
   return u.x * v.y - u.y * v.x;
 }
 
-// Of the smallest angle.
+// The squared sine of the smallest angle.
 static inline double squared_sine_of(const double2* p) {
   const double a = squared_distance(p[1], p[2]), b = squared_distance(p[2], p[0]), c = squared_distance(p[0], p[1]);
   const double area = doubled_area(p), longest = fmax(a, fmax(b, c));

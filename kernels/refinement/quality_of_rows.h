@@ -1,4 +1,4 @@
-// What is wrong with single triangles, and in what order bad ones are mended.
+// Tests of single triangles, and the order in which bad ones are mended.
 #ifndef FLAUNAY_QUALITY_OF_ROWS_H
 #define FLAUNAY_QUALITY_OF_ROWS_H
 
@@ -13,8 +13,8 @@ BEGIN_SHARED
 // Nominal distances from an apex that differ by no more than this part of themselves count as equal.
 #define EQUAL_DISTANCES 0.001
 
-// A triangle's corners from the lexicographically smallest one on, so that what is computed from them does not depend
-// on the order in which they are stored.
+// A triangle's corners from the lexicographically smallest one on, so that values computed from them do not
+// depend on the order in which they are stored.
 typedef struct {
   int corner[3];  // of the mesh
   double2 point[3];
@@ -42,7 +42,7 @@ static inline int opposite_to_shortest(const double2* p) {
   return 2 - is_second - 2 * is_first;
 }
 
-// Of two areas that triangles may have, 0 for any.
+// The smaller of two largest areas, 0 for any.
 static inline double smaller_area(double a, double b) { return b > 0.0 && !(a > 0.0 && a < b) ? b : a; }
 
 static inline double area_wanted(const seen_mesh* mesh, int row, refinement_rules rules, GLOBAL const double* areas) {
@@ -108,8 +108,8 @@ static inline uint64 hash_with(uint64 hash, double2 p) {
   return mixed(hash + 0x9e3779b97f4a7c15UL + as_ulong(p.y));
 }
 
-// A key for an order of triangles that does not depend on how they are stored: the squared length of the shortest side,
-// of which a double has more digits, and a hash.
+// A key for an order of triangles that does not depend on how they are stored: the leading digits of the
+// squared length of the shortest side, and a hash.
 static inline uint64 key_of(const ordered_triangle* triangle) {
   const double2* const p = triangle->point;
   const int k = opposite_to_shortest(p);
@@ -156,15 +156,15 @@ static inline double scaled_height(const seen_mesh* mesh, int corner) {
   return cross * cross;
 }
 
-// What sees a constraint is far from it above this multiple of the smallest edge, squared. If the constraint is longer
-// than six smallest edges, the circles beside it then reach so far around the point that splits it, between a third and
-// two thirds of its length, that all vertices are farther than 1.03 smallest edges from that.
+// A corner opposite to a constraint is far from it above this multiple of the smallest edge, squared. If the
+// constraint is longer than six smallest edges, the circles beside it then reach so far around the point that
+// splits it, between a third and two thirds of its length, that no vertex is nearer to it than 1.03 of these.
 #define FAR_CORNER 1.5
 
-// Of a constraint or a part of one, opposite to a corner: whether it may be split as far as the triangles beside it
-// tell, EXCUSED_NOT, or why not; *is_far: whether no vertex can be too near to the point that splits it. Where a corner
-// is nearer to it than points may be to each other, the triangle is between constraints that are straight but for
-// rounding, and splits would go on to make more of them.
+// Why the constraint, or part of one, opposite to a corner may not be split, as far as the triangles beside it
+// tell; EXCUSED_NOT if it may. *is_far: whether no vertex can be too near to the point that splits it. If a
+// corner is nearer to it than points may be to each other, the triangle is between constraints that are
+// straight but for rounding, and splits would make more such triangles.
 static inline int why_not_split_here(const seen_mesh* mesh, int corner, refinement_rules rules, int* is_far) {
   const int edge = edge_at(mesh, corner);
   *is_far = 0;
@@ -189,8 +189,8 @@ static inline int why_not_split(const seen_mesh* mesh, int corner, GLOBAL const 
   return is_split_crowded(mesh, corner, places, ends, rules) ? EXCUSED_MIN_EDGE : EXCUSED_NOT;
 }
 
-// Whether a point encroaches a constraint between two vertices. With a cosine of 0, a right angle is none: triangles
-// are Delaunay beyond the constraint, too.
+// Whether a point encroaches a constraint between two vertices. With a cosine of 0, a right angle does not
+// encroach: triangles are Delaunay beyond the constraint, too.
 static inline int encroaches(double2 from, double2 to, double2 p, double squared_cosine) {
   return squared_cosine > 0.0 ? is_encroached(from, to, p, squared_cosine) : cosine_sign(from, p, p, to, 0.0) > 0;
 }

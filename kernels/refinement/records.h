@@ -24,7 +24,7 @@ typedef struct {
 } edge_place;
 ASSERT_SIZE(edge_place, 24);
 
-// What is asked for, and what else is the same for all triangles; docs/refinement.md.
+// The goals of a refinement, and other values that are the same for all triangles; docs/refinement.md.
 typedef struct {
   double squared_sine;    // of the smallest angle
   double off_centre;      // how far off-centres are from the shortest edge
@@ -36,14 +36,14 @@ typedef struct {
   int area_kind;
   int has_apexes;          // whether there are any
   int has_given;           // whether triangles of one region may have different areas, by the mesh that was given
-  int vertices;            // those of the input
+  int vertices;            // of the input
   int least_class, spare;  // see tier_of
 } refinement_rules;
 ASSERT_SIZE(refinement_rules, 80);
 
-// A phase. Triangles that are too large act if they exceed the area that is wanted by the factor `level`, or in a
-// scaffold if their circumradius exceeds that of their leaf. room: of the lists of each work-item; most: a block
-// inserts at most so many points; steps: a launch takes so many of each block.
+// A phase. Triangles that are too large act if they exceed their largest area by the factor `level`, or in a
+// scaffold if their circumradius exceeds their leaf's. room: of the lists of each work-item; most: the most
+// points that a block inserts; steps: of each block in a launch.
 typedef struct {
   double level;
   int is_whole, segments_only, is_scaffold, blocks, first_block, most, room, row_room, vertex_room, steps;
@@ -58,15 +58,15 @@ typedef struct {
 } block_cut;
 ASSERT_SIZE(block_cut, 16);
 
-// What a block has to do: a row as it was when it had this count of changes, and what is to be done with it. next: the
-// place of the next one of its class, or one of the free places, plus 1; 0: none.
+// A task of a block: a row as it was when it had this count of changes, and the task for it. next: the place of
+// the next task of its class, or the next free place, plus 1; 0 at the end.
 typedef struct {
   int row, changed, task, next;
 } block_task;
 ASSERT_SIZE(block_task, 16);
 
-// What a block begins with: a row, its key, what is to be done with it, and the class of that. turn: for an order of
-// what is to be done with one row.
+// A task with which a block begins: a row, its key, the task and its class. turn: for an order of the tasks of
+// one row.
 typedef struct {
   uint64 key;
   int row, task, tier, turn;
@@ -81,10 +81,10 @@ typedef struct {
 } dug_side;
 ASSERT_SIZE(dug_side, 64);
 
-// Where a work-item is in its block, so that it can go on when there is more room. block: less than 0 without one.
-// free_task: the first free place in the list of tasks, plus 1; used_tasks: how many places were used. retry: a row
-// that waits for the splits of constraints that it wants. rows and vertices: what is left of the last chunks. low and
-// high: the block's leaf, from the first ones on and below the second ones.
+// The progress of a work-item in its block, so that it can go on when there is more room. block: less than 0
+// without one. free_task: the first free place in the list of tasks, plus 1; used_tasks: how many places were
+// used. retry: a row that waits for the splits of constraints that it wants. rows and vertices: the rest of the
+// last chunks. low and high: the block's leaf, from the first ones on and below the second ones.
 typedef struct {
   uint64 classes[32];
   double low[2], high[2];
@@ -94,9 +94,9 @@ typedef struct {
 } block_state;
 ASSERT_SIZE(block_state, 352);
 
-// A side of a cavity: the vertex at its beginning, what is beyond it and which corner there is opposite, whether it
-// must stay, and the parent of the row inside. Also one of the rows of the new triangles, which has nothing to do with
-// it.
+// A side of a cavity: the vertex at its beginning, the row beyond it and which corner there is opposite,
+// whether it must stay, and the parent of the row inside. Also a row of the new triangles, unrelated to the
+// side.
 typedef struct {
   int from, outside, facing, edge, parent, row;
 } star_side;

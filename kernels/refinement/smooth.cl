@@ -3,9 +3,9 @@
 //
 // find_stars: a corner of each vertex. propose_moves: where it is to go. find_spoiled and cancel_moves, until nothing
 // is spoiled: corners of triangles that would turn over or be bad stay. apply_moves. find_moved: triangles that have
-// other shapes. find_flips, claim_flips, decide_flips and flip, after a sort by the keys of edges, until there are
-// none: edges that are not Delaunay are replaced by the other diagonals (Lawson, 1977), by keys, since triangles
-// inherit from those before. forget_changed: what is tested again.
+// other shapes. find_flips, claim_flips, decide_flips and flip, after a sort by the keys of edges, until none
+// is left: edges that are not Delaunay are replaced by the other diagonals (Lawson, 1977), in the order of
+// keys, since triangles inherit from the triangles before. forget_changed: rows to test again.
 
 #include "refinement/arguments.h"
 #include "refinement/flips.h"
@@ -46,8 +46,7 @@ kernel void propose_moves(int n, refinement_rules rules, global const int* restr
   }
 }
 
-// n rows, of which those that changed with the last pass are tested: at first all with vertices that move. spoiled: 1
-// or 0.
+// n rows. Tests rows that changed with the last pass: at first all with vertices that move. spoiled: 1 or 0.
 kernel void find_spoiled(int n, int pass, refinement_rules rules, REFINED_MESH(),
                          global const double2* restrict targets, global const int* restrict moves,
                          global uchar* restrict spoiled) {
@@ -169,7 +168,7 @@ kernel void flip(int n, uint next_pass, global const int* restrict corners, glob
   }
 }
 
-// n rows: what is known of those that were changed is forgotten, as if they had just been made.
+// n rows. Resets the states of changed rows, as if they had just been made.
 kernel void forget_changed(int n, global const uint* restrict changes, global mesh_row* restrict rows,
                            global uchar* restrict states) {
   const int row = get_global_id(0);

@@ -1,8 +1,8 @@
-// What is bad, of one triangle each. Segments: none; one pass each.
+// Tests of single triangles. Segments: none; one pass each.
 //
-// load_rows and load_vertices: the mesh, from the arrays of the host. test_rows: what is to be done with them.
-// retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas, and
-// set_areas.
+// load_rows and load_vertices: the mesh, from the arrays of the host. test_rows: the tasks for rows.
+// retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas,
+// and set_areas.
 
 #include "refinement/arguments.h"
 #include "refinement/blocks.h"
@@ -10,7 +10,7 @@
 
 #ifndef FIXED_POINT
 
-// numbers: what vertices are called here. kept: per edge, if some must be kept.
+// numbers: the numbers of vertices here. kept: per edge, if some must be kept.
 kernel void load_rows(int n, int has_kept, global const int* restrict triangles, global const int* restrict neighbors,
                       global const int* restrict edges, global const uchar* restrict kept,
                       global const int* restrict numbers, global mesh_row* restrict rows,
@@ -37,7 +37,7 @@ kernel void load_vertices(int n, global int2* restrict births, global edge_place
   }
 }
 
-// n rows, of which those that were refused are left out: constraints first, and then what is bad.
+// n rows; refused ones are left out. Tests constraints first, and then triangles.
 kernel void test_rows(int n, int segments_only, refinement_rules rules, REFINED_MESH(), global uchar* restrict states) {
   const int row = get_global_id(0);
   if (row < n && rows[row].corner[0] != NO_TRIANGLE) {
@@ -83,7 +83,7 @@ kernel void find_parents(int n, refinement_rules rules, global const int* restri
   }
 }
 
-// n rows of the list: the areas that the host was given for them, and those of their parents, if these have some; and
+// n rows of the list: sets their areas from the host's values and from the areas of their parents, if any; and
 // whether they are too large.
 kernel void set_areas(int n, int has_parents, refinement_rules rules, global const int* restrict list,
                       global const mesh_row* restrict rows, global const double2* restrict points,

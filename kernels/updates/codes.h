@@ -10,16 +10,16 @@ BEGIN_SHARED
 // every row has three neighbours.
 INTEGER_CONSTANT(INFINITE_VERTEX, -2);
 
-// What a row holds.
+// The contents of a row.
 INTEGER_CONSTANT(ROW_FREE, 0);
 INTEGER_CONSTANT(ROW_GHOST, 1);
 INTEGER_CONSTANT(ROW_TRIANGLE, 2);
 
-// What is wrong with a row when vertices have moved.
+// Faults of a row after vertices have moved.
 INTEGER_CONSTANT(ROW_TURNED, 1);  // it has turned over, or the hull is not convex at its end
 INTEGER_CONSTANT(ROW_WRONG, 2);   // it has an edge that is not locally Delaunay
 
-// What becomes of a vertex to be removed, or of an edge to be flipped, in a step.
+// Outcomes of a vertex to be removed, or of an edge to be flipped, in a step.
 INTEGER_CONSTANT(UPDATE_WAITS, 0);
 INTEGER_CONSTANT(UPDATE_DONE, 1);
 INTEGER_CONSTANT(UPDATE_TOO_LARGE, 2);  // the star of the vertex has too many triangles

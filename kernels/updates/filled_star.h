@@ -1,5 +1,5 @@
-// What is left when a vertex is removed, made triangles again: the canonical triangulation of the polygon around it, or
-// of the part of it that the hull of the other points keeps, with ghosts.
+// Fills the hole that a removed vertex leaves: the canonical triangulation of the polygon around it, or of the
+// part of the polygon inside the hull of the other points, with ghosts.
 //
 // A first triangulation cuts off corners; where the vertex was on the hull, it has a ghost on each side instead. Flips
 // then make it Delaunay, or convex.
@@ -12,8 +12,8 @@
 
 BEGIN_SHARED
 
-// The rows around a vertex, counter-clockwise: each with its side, from a vertex to the next one, and with what is
-// beyond that.
+// The rows around a vertex, counter-clockwise: each with its side, from a vertex to the next one, and with the
+// row beyond that side.
 typedef struct {
   int count, infinite;  // infinite: which vertex is at infinity, or -1
   int vertex[MOST_AROUND], row[MOST_AROUND], outside[MOST_AROUND], facing[MOST_AROUND], edge[MOST_AROUND];
@@ -27,7 +27,7 @@ typedef struct {
   int corner[3 * MOST_AROUND], beyond[3 * MOST_AROUND];
 } star_filling;
 
-// Lists the rows around a corner's vertex, of which there are no more than fit.
+// Lists the rows around a corner's vertex, at most MOST_AROUND.
 static inline void list_around(const seen_mesh* mesh, int corner, star_around* star) {
   int at = corner, count = 0;
   star->infinite = -1;
@@ -54,7 +54,7 @@ static inline void set_beyond(star_filling* filling, int corner, int beyond) {
   if (beyond >= 0) filling->beyond[beyond] = corner;
 }
 
-// Adds a triangle, with what is beyond its sides opposite to a and to c. Returns its corner b.
+// Adds a triangle, with the neighbours beyond its sides opposite to a and to c. Returns its corner b.
 static inline int add_triangle(star_filling* filling, int a, int b, int c, int beyond_a, int beyond_c) {
   const int first = 3 * filling->count++;
   filling->corner[first] = a;
@@ -78,7 +78,7 @@ static inline void cut_corners(const star_around* star, double2 v, star_filling*
   while (left > 3) {
     const int j = next[i], k = next[j];
     const double2 p = star->point[i], q = star->point[j], r = star->point[k];
-    // Of four corners, the vertex may be where the diagonals meet.
+    // If four corners are left, the vertex may be where the diagonals meet.
     const double2 kept = left == 4 ? star->point[next[k]] : v;
     if (orient_sign(p, q, r, ORIENT_BOUND) > 0 && orient_sign(p, r, kept, ORIENT_BOUND) > 0) {
       outer[i] = add_triangle(filling, i, j, k, outer[j], outer[i]);
@@ -97,7 +97,7 @@ static inline void cut_corners(const star_around* star, double2 v, star_filling*
 static inline void put_ghosts(const star_around* star, star_filling* filling) {
   const int count = star->count, infinite = star->infinite;
   const int first = infinite + 1 == count ? 0 : infinite + 1;
-  // What is beyond the edge from infinity to i.
+  // The neighbour beyond the edge from infinity to i.
   int before = ~infinite;
   int i = first;
   for (int k = 0; k < count - 2; ++k) {

@@ -45,7 +45,7 @@ static inline placed_vertex place_in_row(const seen_mesh* mesh, placed_vertex of
   of.from = of.to = of.edge = of.found = -1;
   const int ghost = infinite_corner(&mesh->rows[row]);
   if (ghost >= 0) {
-    // Of the hull's edges that it is beyond, the first.
+    // Goes to the first of the hull's edges beyond which the vertex is.
     for (;;) {
       const int before = neighbor_at(mesh, 3 * row + corner_before(infinite_corner(&mesh->rows[row])));
       if (!is_in_circle(mesh, before, p)) break;

@@ -8,8 +8,8 @@ BEGIN_SHARED
 
 // Vertices with more triangles around them, with ghosts, are not removed one by one: on average there are six.
 INTEGER_CONSTANT(MOST_AROUND, 40);
-// A walk that looks at each triangle's sides in turn takes so many steps, and then goes straight ahead: the one is
-// faster, the other ends in any triangulation.
+// A walk tests each triangle's sides in turn for this many steps, which is faster. Then it goes straight ahead,
+// which ends in any triangulation.
 INTEGER_CONSTANT(WALK_STEPS, 100);
 
 END_SHARED

@@ -1,10 +1,10 @@
-// Vertices move, and what is not Delaunay then is mended. Segments: rows.
+// Vertices move, and edges that are not Delaunay then are mended. Segments: rows.
 //
 // swap_points exchanges the places of vertices with others. count_around and list_around_vertices, with a scan between:
 // the rows around vertices. check_rows: which rows have turned over, where the hull is not convex, and which rows have
 // an edge that is not locally Delaunay. mark_turned: the vertices that have moved of rows that have turned over. Flips
-// are made in steps: claim_wrong_edges claims both rows of an edge by atomic minima; find_holding_rows: those that
-// hold both, with no better claim beside them; flip_edges_of_rows flips it.
+// are made in steps: claim_wrong_edges claims both rows of an edge by atomic minima; find_holding_rows: edges
+// that hold both, with no better claim beside them; flip_edges_of_rows flips these.
 
 #define GHOSTS
 
@@ -100,7 +100,7 @@ kernel void check_rows(int n, int all, global const int* restrict list, LIVING_M
         result = ROW_TURNED;
       } else {
         for (int k = 0; k < 3 && result == 0; ++k) {
-          // Of all edges each on one side only.
+          // If all rows are tested, each edge is tested on one side only.
           if ((!all || rows[row].neighbor[k] > row) && is_wrong_edge(&mesh, corner + k)) result = ROW_WRONG;
         }
       }
@@ -237,7 +237,7 @@ kernel void flip_edges_of_rows(int n, int batch, int first_touched, global const
   }
 }
 
-// Of n rows those that have an edge to flip.
+// Lists the rows that have an edge to flip, n of them.
 kernel void append_rows(int n, global const int* restrict positions, int all, global const int* restrict from,
                         global int* restrict list) {
   const int i = get_global_id(0);

@@ -7,8 +7,8 @@
 BEGIN_SHARED
 
 // A vertex that is inserted. corner: where its cavity begins; found: the vertex that is in its place already, or -1.
-// spare: two rows for the new triangles, besides those of the cavity, of which there are `count`. The constraint that
-// it splits, or -1: its ends and its number. rank: the smallest goes first.
+// spare: two rows for the new triangles, besides the `count` rows of the cavity. The constraint that it splits,
+// or -1: its ends and its number. rank: the smallest goes first.
 typedef struct {
   int vertex, corner, found, count, from, to, edge;
   uint rank;
@@ -25,7 +25,7 @@ typedef struct {
 } removed_vertex;
 ASSERT_SIZE(removed_vertex, 20);
 
-// A row that a batch has changed: whether it held a triangle before, and what it holds now.
+// A row that a batch has changed: whether it held a triangle before, and its present contents.
 typedef struct {
   int row, was_triangle, holds, corner[3];
 } row_report;

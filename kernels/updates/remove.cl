@@ -62,8 +62,8 @@ kernel void find_holders(int n, uint first, global const int* restrict list, LIV
 }
 
 // offsets: the scanned sizes. touched: from element first_touched on, per row around a vertex one that this batch has
-// changed first here, or -1. waits: 1 for vertices that wait for the next step. triangles: incremented by what there
-// are more, modulo 2^32.
+// changed first here, or -1. waits: 1 for vertices that wait for the next step. triangles: incremented by the
+// number of additional triangles, modulo 2^32.
 kernel void fill_stars(int n, int batch, int first_touched, global const int* restrict list,
                        global const uint* restrict offsets, global mesh_row* restrict rows,
                        global const double2* restrict points, global volatile int* restrict rows_of,

@@ -1,7 +1,7 @@
 // The mesh that changes: made of triangles and hulls, and read. Segments: rows and hull vertices.
 //
 // number_hull: where vertices are on the hull. load_triangles and load_ghosts, one work-item per triangle and per hull
-// vertex: rows with ghosts. clear_rows: further rows. report_changes: what has become of rows that a batch has
+// vertex: rows with ghosts. clear_rows: further rows. report_changes: the contents of rows that a batch has
 // changed. find_old_triangles: which triangles there were before.
 
 #include "constrained/meanwhile.h"
@@ -72,7 +72,7 @@ kernel void clear_rows(int n, int first, global mesh_row* restrict rows) {
   }
 }
 
-// n elements, of which those less than 0 are no rows.
+// n elements; negative ones are no rows.
 kernel void flag_touched(int n, global const int* restrict touched, global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) flags[i] = touched[i] >= 0;

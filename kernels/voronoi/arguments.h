@@ -12,7 +12,7 @@
   global const int* restrict PREFIX##triangles, global const int* restrict PREFIX##ahead, \
   global const int* restrict PREFIX##hull
 
-// The edges around all points, and what is inside of the polygon.
+// The Voronoi edges around all points, and their parts inside of the polygon.
 #define SLOTS(PREFIX) \
   global const uint* restrict PREFIX##offsets, global const int* restrict PREFIX##slots, \
   global const uint* restrict PREFIX##codes

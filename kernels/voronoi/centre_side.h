@@ -17,7 +17,7 @@ BEGIN_SHARED
 // The rounded value is wrong by less than 11.2 e of the sum of the terms' magnitudes, with e = 2^-53 here
 // (docs/exactness.md): CENTRE_SIDE_BOUND. It is of degree four, as the in-circle test.
 
-// What the test needs of a triangle, whatever the line.
+// The terms of the test that depend on the triangle alone.
 typedef struct {
   double2 a, b, c, b_from_a, c_from_a;
   double cross, cross_magnitude, b_square, c_square;
@@ -62,7 +62,7 @@ OUT_OF_LINE static inline int centre_side_by_expansions(const double2* b, const 
   for (int term = 0; term < 12; ++term) {
     const int first = term & 1, second = term >> 1 & 1;
     const int part = term >> 2;
-    // Of the product of crosses, and of the products of squares and dots.
+    // Factors of the product of crosses, and of the products of squares and dots.
     const double2* const lifted = part == 1 ? c : b;
     const double2* const dotted = part == 1 ? b : c;
     const double2 f0 = part == 0 ? b[first] : lifted[first];
@@ -108,7 +108,7 @@ static inline int centre_side(const centre_terms* of, double2 v, double2 w, filt
 
 // A rounded centre, as circumcentres of voronoi/voronoi.cl computes it, is wrong by less than 2^-36 of its distances in
 // x and y from one vertex, together, and by the rounding of the sum with that. Seen from any vertex of the triangle,
-// this is an upper bound for both coordinates' errors together. No number where the centre is none.
+// this is an upper bound for both coordinates' errors together. NaN if the centre is NaN.
 static inline double centre_slack(double2 centre, double2 vertex) {
   return 0x1p-34 * (fabs(centre.x - vertex.x) + fabs(centre.y - vertex.y)) +
          0x1p-50 * (fabs(vertex.x) + fabs(vertex.y));

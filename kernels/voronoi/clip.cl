@@ -1,25 +1,25 @@
 // The cells of a Voronoi diagram, clipped to a convex polygon.
 //
-// A cell's *slots* are the Voronoi edges around its point, counter-clockwise, those of length zero too; an edge that
-// goes to infinity is one. Slots of all cells follow each other in the order of the points. The passes:
+// A cell's *slots* are the Voronoi edges around its point, counter-clockwise, including edges of length zero;
+// an edge that goes to infinity is one. Slots of all cells follow each other in the order of the points. The
+// passes:
 //
-// - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; of each other one, an
-//   edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero. Both look at
-//   rounded centres first, whose errors are known.
+// - locate_centres, over the triangles: which circumcentres lie strictly inside of the polygon; for each other
+//   one, an edge of the polygon that it lies on or beyond. mark_flat: which Voronoi edges have length zero.
+//   Both look at rounded centres first, whose errors are known.
 // - add_open_slots, over the hull: cells on the hull have one slot more than triangles. The host scans the sizes.
 //   write_slots, over chunks of triangles, and write_line_slots, over the hulls of sets on one line. The former follows
-//   the triangles, since what is near in the plane is near in memory in their order, and decides what is simple.
+//   the triangles, since their order keeps neighbours in the plane close in memory, and decides simple cases.
 // - clip_slots, over the slots: which part of any other Voronoi edge is inside of the polygon.
 // - join_centres, over the points: makes the centres of cocircular triangles the same to the last bit.
-// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell belong to
-// each
-//   slot. The host scans the counts. find_cells, over the points: where clipped cells begin. write_corners, over the
-//   slots: the corners.
+// - count_corners, over the slots, and count_whole, over the points: how many corners of the clipped cell
+//   belong to each slot. The host scans the counts. find_cells, over the points: where clipped cells begin.
+//   write_corners, over the slots: the corners.
 // - measure_clipped, over the points: areas and centroids. move_to_centroids: the latter in the place of points.
 //
-// The polygon has its corners counter-clockwise, and none on the line through its neighbours. What is decided, is
-// decided exactly: the side of a clip edge on which a circumcentre lies, whether four points are cocircular, and to
-// which of two points a clip corner is nearer. Voronoi edges count if they have a part of positive length strictly
+// The polygon has its corners counter-clockwise, and none on the line through its neighbours. All decisions are
+// exact: the side of a clip edge on which a circumcentre lies, whether four points are cocircular, and to which
+// of two points a clip corner is nearer. Voronoi edges count if they have a part of positive length strictly
 // inside of the polygon; see docs/exactness.md. Only coordinates are rounded. Indices that are out of range are
 // skipped.
 
@@ -77,7 +77,8 @@ static inline int witness_of(const centre_terms* of, int clip, global const doub
   return side_of_edge(of, low, clip, corners, bound) <= 0 ? low : STRICTLY_INSIDE;
 }
 
-// Of a rounded centre, from the bounds of its errors. The triangles between corner 0 and the polygon's edges, as above.
+// Whether a rounded centre is certainly inside, with its errors' bounds. Tests triangles from corner 0, as
+// above.
 static inline int is_surely_inside(double2 centre, double slack, int clip, global const double* corners) {
   const double2 apex = corner_of(0, corners);
   if (centre_side_rounded(centre, slack, apex, corner_of(1, corners)) <= 0) return 0;
@@ -182,7 +183,7 @@ static inline uint line_slots(hull_part part, int i) {
   return part.last - part.first == 1 ? 1 : (uint)(i > part.first) + (uint)(i + 1 < part.last);
 }
 
-// n hull vertices. sizes: the numbers of the cells' triangles; become those of their slots.
+// n hull vertices. sizes: the numbers of the cells' triangles; become the numbers of their slots.
 kernel void add_open_slots(int n, int points, int sets, global const int* restrict hull_offsets,
                            global const int* restrict triangle_offsets, global const int* restrict hull,
                            global uint* restrict sizes) {
@@ -212,8 +213,8 @@ kernel void write_line_slots(int n, int points, int sets, int triangle_count, gl
   }
 }
 
-// The Voronoi edge between the cells of p and q, with p on its left, from the centre of triangle tail to that of head;
-// -1 for infinity. q = p: the vertex is alone, or the slot is none.
+// The Voronoi edge between the cells of p and q, with p on its left, from the centre of triangle `tail` to the
+// centre of `head`; -1 for infinity. q = p: the vertex is alone, or the slot is empty.
 typedef struct {
   int p, q, tail, head;
 } voronoi_edge;
@@ -254,9 +255,10 @@ static inline voronoi_edge edge_of(int slot, int points, int triangle_count, int
   return edge;
 }
 
-// What is inside of the polygon, in one number: the polygon's edge through which the Voronoi edge enters and the one
-// through which it leaves, or STRICTLY_INSIDE if it begins or ends inside; whether it begins or ends at a Voronoi
-// vertex, which may be on the polygon's edge; whether a part of it is inside at all; and whether its length is zero.
+// The part of a Voronoi edge inside of the polygon, in one number: the polygon's edge through which the Voronoi
+// edge enters and the one through which it leaves, or STRICTLY_INSIDE if it begins or ends inside; whether it
+// begins or ends at a Voronoi vertex, which may be on the polygon's edge; whether any part is inside; and
+// whether its length is zero.
 #define LEAVES_SHIFT CLIP_BITS
 #define BEGINS_AT_VERTEX (1u << 2 * CLIP_BITS)
 #define ENDS_AT_VERTEX (2u << 2 * CLIP_BITS)
@@ -265,8 +267,8 @@ static inline voronoi_edge edge_of(int slot, int points, int triangle_count, int
 static inline int enters(uint code) { return (int)(code & STRICTLY_INSIDE); }
 static inline int leaves(uint code) { return (int)(code >> LEAVES_SHIFT & STRICTLY_INSIDE); }
 
-// What is decided without predicates of the edge itself, of corner c of triangle t: it has length zero, or it is all
-// inside. 0 for others.
+// The code of the edge at corner c of triangle t if no predicates of the edge are needed: it has length zero,
+// or is all inside. 0 for other edges.
 static inline uint simple_code(int c, int t, int next, global const uchar* flats, global const int* witnesses) {
   if (next < 0) return 0;
   if (is_flat_edge(c, next, flats)) return IS_FLAT;
@@ -275,7 +277,7 @@ static inline uint simple_code(int c, int t, int next, global const uchar* flats
                    : 0;
 }
 
-// n triangles. slots: NO_SLOT throughout; codes: 0 throughout. For the others see write_cells in voronoi.cl.
+// n triangles. slots: NO_SLOT throughout; codes: 0 throughout. Others: see write_cells in voronoi.cl.
 kernel void write_slots(int n, int chunk, global const int* restrict triangles, global const int* restrict neighbors,
                         global const int* restrict ahead, global const uchar* restrict firsts,
                         global const uchar* restrict flats, global const int* restrict witnesses,
@@ -349,7 +351,7 @@ static inline int is_whole(int t, int points, global const int* triangles) {
   return t < 0 || are_points(triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2], points);
 }
 
-// n slots. codes: 0 where write_slots has not decided; get what is inside, and stay 0 where nothing is.
+// n slots. codes: 0 where write_slots has not decided; get the part inside, and stay 0 where nothing is inside.
 kernel void clip_slots(int n, CLIPPED_DIAGRAM(), filter_bound side_bound, filter_bound nearness_bound,
                        global const int* restrict witnesses, global const int* restrict slots,
                        global uint* restrict codes) {
@@ -506,7 +508,8 @@ kernel void count_whole(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound, S
   }
 }
 
-// n points. places: where the corners of each slot begin, and their number. cells: where those of each point's begin.
+// n points. places: where the corners of each slot begin, and their number. cells: where each cell's corners
+// begin.
 kernel void find_cells(int n, global const uint* restrict offsets, global const uint* restrict places,
                        global int* restrict cells) {
   const int p = get_global_id(0);
@@ -523,8 +526,8 @@ static inline double2 clamped_to(double2 at, double2 v, double2 w) {
   return VECTOR(double2, clamped(at.x, min(v.x, w.x), max(v.x, w.x)), clamped(at.y, min(v.y, w.y), max(v.y, w.y)));
 }
 
-// Where a Voronoi edge enters or leaves by an edge of the polygon, of which `end` is the corner where it may be;
-// centre: a triangle if that is the centre of its circle, else -1.
+// Where a Voronoi edge enters or leaves through an edge of the polygon. end: the corner of that edge where it
+// may be. centre: a triangle if the point is the centre of its circle, else -1.
 static inline double2 point_on_edge(int p, int q, int edge, int end, int centre, int clip, filter_bound bound,
                                     global const double* corners, global const double* input,
                                     global const double* centres) {
@@ -579,8 +582,8 @@ kernel void write_corners(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound,
 // Measures
 
 // n points. Areas and centroids, relative to a corner of the cell: since cells are convex, all terms are positive but
-// for their rounding. The first is 0 and the second no number where there is no cell. scale: what makes squares neither
-// overflow nor underflow.
+// for their rounding. Without a cell, the area is 0 and the centroid NaN. scale: the factor with which squares
+// neither overflow nor underflow.
 kernel void measure_clipped(int n, scaling scale, scaling unscale, global const int* restrict cells,
                             global const double* restrict vertices, global double* restrict areas,
                             global double* restrict centroids) {
@@ -602,7 +605,7 @@ kernel void measure_clipped(int n, scaling scale, scaling unscale, global const 
         high = VECTOR(double2, max(high.x, at.x), max(high.y, at.y));
         before = at;
       }
-      // Of slender cells, little may be left but rounding. The box holds the centroid in any case.
+      // In slender cells, little may be left but rounding. The box holds the centroid in any case.
       centroid = twice > 0.0 ? moment / (3.0 * twice) : 0.5 * (low + high);
       centroid = unscaled(origin + clamped_to(centroid, low, high), unscale);
     }
@@ -611,7 +614,7 @@ kernel void measure_clipped(int n, scaling scale, scaling unscale, global const 
   }
 }
 
-// n points. Those that have a cell go to its centroid.
+// n points. Points with a cell go to its centroid.
 kernel void move_to_centroids(int n, global const int* restrict cells, global const double* restrict centroids,
                               global double* restrict points) {
   const int p = get_global_id(0);

@@ -6,7 +6,7 @@
 
 BEGIN_SHARED
 
-// An edge of a clip polygon, in so many bits; all bits: strictly inside of all edges.
+// The bits for an edge of a clip polygon; all bits set: strictly inside of all edges.
 INTEGER_CONSTANT(CLIP_BITS, 14);
 INTEGER_CONSTANT(STRICTLY_INSIDE, (1 << CLIP_BITS) - 1);
 // An edge that stands in no cell's list.

@@ -16,8 +16,8 @@ kernel void mark_doubtful(int n, global const double* restrict input, global con
 
 // n triangles, whose centres are the corners of cells. doubtful: 1 where a Voronoi edge between the centres of this
 // triangle and of one with a larger number may have to be mended, otherwise 0. If all points see all edges around them
-// from their own side, their polygons do not cross themselves. In the order of triangles, what is near is near in
-// memory.
+// from their own side, their polygons do not cross themselves. In the order of triangles, neighbours are close
+// in memory.
 kernel void mark_doubtful_duals(int n, int points, global const double* restrict input,
                                 global const int* restrict triangles, global const int* restrict neighbors,
                                 global const double* restrict centres, global uint* restrict doubtful) {

@@ -1,5 +1,5 @@
-// Whether the rounded polygon of a cell can stay as it is, by floating point with a bound. What is in doubt is mended
-// on the host (src/derived/voronoi/mend.hpp).
+// Whether the rounded polygon of a cell can stay as it is, by floating point with a bound. Doubtful polygons
+// are mended on the host (src/derived/voronoi/mend.hpp).
 #ifndef FLAUNAY_PLAIN_POLYGON_H
 #define FLAUNAY_PLAIN_POLYGON_H
 
@@ -12,7 +12,7 @@ static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double larger_of(double2 p) { return larger(fabs(p.x), fabs(p.y)); }
 
 // Two corners of a cell are one place but for rounding if the larger difference of their coordinates is at most this
-// part of the largest of their coordinates and of those of the cell's point.
+// part of the largest coordinate of the corners and the cell's point.
 #define CORNERS_COINCIDE 0x1p-50
 static inline double corner_scale(double2 a, double2 b, double2 site) {
   return larger(larger_of(site), larger(larger_of(a), larger_of(b)));
@@ -20,7 +20,7 @@ static inline double corner_scale(double2 a, double2 b, double2 site) {
 
 static inline int is_backward(double2 step) { return (step.x < 0) | ((step.x == 0) & (step.y < 0)); }
 
-// Whether corners [first, end) are surely those of a convex polygon, counter-clockwise, without two that coincide.
+// Whether corners [first, end) are certainly a convex polygon, counter-clockwise, without two that coincide.
 static inline int is_plain_polygon(double2 site, int first, int end, GLOBAL const double* corners) {
   if (first == end) return 1;
   if (end - first < 3) return 0;

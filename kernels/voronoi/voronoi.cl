@@ -4,7 +4,7 @@
 // measure_cells finds the triangle in which each cell begins and the size of the cell, by walks around vertices. The
 // host scans the sizes. write_cells writes the cells that begin in each triangle to their places. These two are passes
 // over chunks of triangles, with one work-item per chunk. Triangles that follow each other mostly are near each other,
-// whatever the order of the points is, so walks read what is in the cache. mark_hull marks the cells that are
+// whatever the order of the points is, so walks read from the cache. mark_hull marks the cells that are
 // unbounded. Indices that are out of range are skipped.
 
 #include "arithmetic/coordinates.h"

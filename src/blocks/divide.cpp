@@ -89,7 +89,7 @@ void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest
   const std::size_t in_all = tuning.scratch_per_point * blocks.points;
   const std::size_t affordable = std::max<std::size_t>(1, in_all / capacity);
   const std::size_t workers = std::min({blocks.count, tuning.block_workers, affordable});
-  // Of smaller blocks, more workers can be affordable, and take more together.
+  // If blocks are smaller, more workers can be affordable, and together need more places.
   const std::size_t places = work.runtime.at_most(
       workers * capacity,
       std::min(in_all, std::min(blocks.count, tuning.block_workers) * std::min(blocks.points, most)));
@@ -115,7 +115,7 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .account = rings.device_account});
 }
 
-// Of weighted points, a work-item solves a block.
+// A block of weighted points is solved by one work-item.
 bool are_in_parallel(const Workspace& work) {
   return work.weights == nullptr && tuning_of(work.runtime).blocks_in_parallel != 0;
 }

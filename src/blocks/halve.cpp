@@ -13,11 +13,11 @@ using namespace points;
 
 namespace {
 
-// So many points of a block for each work-item, or more in the largest groups.
+// Points of a block per work-item; more in the largest groups.
 constexpr std::size_t kPointsPerItem = 4;
 
 std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
-  // Not less than a warp, which would be there for less, too.
+  // At least a warp: smaller groups would occupy one, too.
   std::size_t group = std::min(tuning.block_group, tuning.halve_group);
   while (group < tuning.halve_group && group * kPointsPerItem * groups < blocks.points) group *= 2;
   return std::min(group, tuning.halve_group);
@@ -80,7 +80,7 @@ void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlo
                                                       .representatives = representatives});
 }
 
-// Whether so many blocks are tiny that a work-item each is better than a group each.
+// Whether most blocks are tiny, so that one work-item per block is better than a group per block.
 bool are_tiny(const PointBlocks& blocks) {
   return blocks.largest <= kernel::TINY_BLOCK || blocks.points < kernel::LEAF_VERTICES * blocks.count;
 }

@@ -10,7 +10,7 @@
 namespace flaunay::blocks {
 namespace {
 
-// What a call on sets of these sizes takes, whatever their points are.
+// The memory that a call on sets of these sizes needs, whatever their points are.
 WorkspaceBytes counted(const host::Runtime& runtime, const std::shared_ptr<host::Sizes>& sizes,
                        const std::vector<std::size_t>& offsets) {
   host::Runtime counting(runtime, sizes);
@@ -32,10 +32,9 @@ WorkspaceBytes counted(const host::Runtime& runtime, const std::shared_ptr<host:
   return {persistent.peak_bytes(), counting.arena().peak_bytes()};
 }
 
-// Of several sets only the number is known. What they take follows from their points, from the number of
-// leaves and of trees, and from the tables of leaves by chunks. With blocks of half the size there are as
-// many leaves as any sets can have. Sets of one size then have the most trees, and one set has the largest
-// tables.
+// Only the number of sets is known. The memory they need follows from the number of points, of leaves and of
+// trees, and from the tables of leaves by chunks. With blocks of half the size there are as many leaves as
+// any sets can have. Sets of one size then have the most trees, and one set has the largest tables.
 WorkspaceBytes counted_for_any(const host::Runtime& runtime, std::size_t n, std::size_t sets) {
   const auto tuning = std::make_shared<Tuning>(tuning_of(runtime));
   tuning->block_points = (tuning->block_points + 1) / 2;
@@ -54,8 +53,8 @@ WorkspaceBytes workspace_bytes(const host::Runtime& runtime, std::size_t n, std:
   if (sets < 2) return counted(runtime, runtime.sizes().copy(), {0, n});
   constexpr std::size_t kMostCounted = std::size_t{1} << 14;
   if (sets <= kMostCounted) return counted_for_any(runtime, n, sets);
-  // Further sets take at most what each of many takes that have next to no points, with a tree among them. A
-  // few more make up for what arrays are rounded up by.
+  // A further set needs at most as much memory as each of many sets with next to no points and one tree. A
+  // few more sets account for the rounding of arrays' sizes.
   const WorkspaceBytes many = counted_for_any(runtime, n, kMostCounted),
                        few_points =
                            counted_for_any(runtime, tuning_of(runtime).block_points + 1, kMostCounted);

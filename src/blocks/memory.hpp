@@ -1,4 +1,4 @@
-// The device memory that mode blocks needs: that of a run which counts what it allocates, and runs nothing.
+// The device memory that mode blocks needs, found by a run that counts allocations and executes nothing.
 #pragma once
 
 #include <cstddef>

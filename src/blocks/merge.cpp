@@ -16,7 +16,7 @@ using namespace points;
 
 namespace {
 
-// Every so many-th work-item of a launch has a merge.
+// One of this many consecutive work-items of a launch has a merge.
 std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
   return std::clamp<std::size_t>(tuning.merge_items / merges, 1, tuning.block_group);
 }
@@ -30,7 +30,7 @@ bool walks_may_stop(const Workspace& work) {
   return !work.runtime.capabilities().fixed_point && may_stop(work);
 }
 
-// Parts of this height have at least so many vertices.
+// The least number of vertices of a part of this height.
 std::size_t least_vertices(int height) { return std::size_t{2} << height; }
 
 // The cells of that size, in which at most one part of this height begins.
@@ -43,7 +43,7 @@ std::size_t sewing_group_of(const Tuning& tuning, int height) {
   return std::min(tuning.sewing_group, std::max(tuning.block_group, least_vertices(height) / 4));
 }
 
-// What merges from both ends of their seam work on, but for what one height has.
+// The arrays of merges from both ends of their seam that all heights share.
 struct Seams {
   Buffer<cl_int2> crossings{};
   Buffer<kernel::seam_walk> walks{};
@@ -51,7 +51,7 @@ struct Seams {
   Buffer<cl_int> slots{};
 };
 
-// Two walks and the sewing are more work than one merge, but a shorter chain of it, and what diverges is
+// Two walks and the sewing are more work than one merge, but a shorter chain of steps, and lanes diverge
 // less.
 int first_height_of_seams(const Tuning& tuning) {
   int height = 1;
@@ -69,7 +69,7 @@ Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
   return seams;
 }
 
-// What merges of halves work on, but for what one height has.
+// The data of merges of halves that all heights share.
 struct Halves {
   Workspace& work;
   const PointBlocks& blocks;
@@ -80,7 +80,7 @@ struct Halves {
   Seams seams{};
 };
 
-// Spreads the work-items of so many merges over warps.
+// Spreads the work-items of these merges over warps.
 template <typename Kernel>
 void launch_spread(Workspace& work, std::size_t spread, std::size_t merges, const Kernel& kernel) {
   work.runtime.note_spread(spread);

@@ -25,8 +25,8 @@ void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, cons
                                                 .hull = hull});
 }
 
-// Of weighted points it is not known how many are hidden, but how many triangles there are. first_rows: by
-// vertex.
+// For weighted points, the number of hidden points is not known, but the number of triangles is. first_rows:
+// by vertex.
 MeshSizes weighted_mesh_sizes(const Blocks& blocks, const std::vector<cl_int>& walked,
                               const std::vector<cl_uint>& first_rows) {
   MeshSizes sizes;
@@ -45,7 +45,7 @@ MeshSizes weighted_mesh_sizes(const Blocks& blocks, const std::vector<cl_int>& w
 
 }  // namespace
 
-// Euler's formula: d points, of which h are on the hull, have 2d - 2 - h triangles. The hull of points on one
+// Euler's formula: d points with h of them on the hull have 2d - 2 - h triangles. The hull of points on one
 // line is a walk there and back, so h is 2d - 2.
 MeshSizes mesh_sizes(const std::vector<cl_int>& set_blocks, const std::vector<cl_int>& distinct,
                      const std::vector<cl_int>& walked, std::size_t counted) {

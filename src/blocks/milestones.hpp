@@ -18,7 +18,7 @@ class Milestones {
   Milestones(host::Runtime& runtime, const statistics::Phases& phases) : runtime_(runtime), phases_(phases) {}
 
   bool are_wanted() const { return phases_.are_heard(); }
-  /// When what is enqueued so far is complete, this share of the call is done. stage: a literal.
+  /// When the commands enqueued so far are complete, this share of the call is done. stage: a literal.
   void set(const char* stage, double done);
   /// Waits for one milestone after the other, and reports it.
   void report();

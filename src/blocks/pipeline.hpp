@@ -48,11 +48,11 @@ void await_rings(points::Workspace& work, const points::Blocks& blocks, points::
 /// Throws Error(internal) if the account of rings says that a merge has failed.
 void check_account(const cl_uint* account);
 
-/// Blocks of points, of which the host knows how many there are at most.
+/// Blocks of points. The host only knows upper bounds of their sizes.
 struct PointBlocks {
   std::size_t count = 0;   ///< number of blocks; they may be empty
-  std::size_t points = 0;  ///< number of places, of which the blocks have all or the first
-  /// Blocks of more points are left as if all their places were those of duplicates: without vertices.
+  std::size_t points = 0;  ///< number of places; the blocks occupy all or the first of them
+  /// Blocks with more points than this get no vertices, as if all their points were duplicates.
   std::size_t largest = 0;
   host::Buffer<cl_int> offsets{};  ///< count + 1: the first point of each block
   /// As in Blocks.
@@ -68,15 +68,15 @@ struct PointBlocks {
 void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
                        const host::Buffer<cl_int>& representatives, const points::Rings& rings);
 
-/// What the stage `halve` leaves for `merge`, from the scratch arena.
+/// The result of stage `halve` for stage `merge`, from the scratch arena.
 struct HalvedBlocks {
   host::Buffer<cl_int> block_of_place{};
   host::Buffer<cl_uchar> axes{};
 };
 
-/// Sorts each block's points, drops duplicates, and halves what is left down to leaves. Sets the vertices,
-/// the sources, the representatives of duplicates, and in `rings` the numbers of vertices and what empty
-/// blocks have.
+/// Sorts each block's points, drops duplicates, and halves the remaining points down to leaves. Sets the
+/// vertices, the sources, the representatives of duplicates, and in `rings` the numbers of vertices and the
+/// entries of empty blocks.
 HalvedBlocks halve(points::Workspace& work, const PointBlocks& blocks,
                    const host::Buffer<cl_int>& representatives, const points::Rings& rings);
 /// Triangulates halved blocks, from the leaves up.

@@ -20,11 +20,11 @@ using namespace points;
 
 namespace {
 
-// A planar graph has less than 3 edges per vertex, each of which is open at both ends, and a vertex of the
-// hull has the ray to infinity.
+// A planar graph has less than 3 edges per vertex. Each edge is open at both ends, and a vertex of the hull
+// has a ray to infinity.
 constexpr std::size_t kMostOpenEdges = 7;
 
-// What all rounds emit to.
+// The arrays into which all rounds emit.
 struct Emitted {
   Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
   Buffer<cl_int> indices{};     // in the input
@@ -39,7 +39,7 @@ struct SetBoxes {
   Buffer<cl_int> places{};  // by set
 };
 
-// What the host reads of a round's triangulations, with the next wait.
+// Numbers of a round's triangulations that the host reads with its next wait.
 struct Numbers {
   std::vector<cl_int> distinct{};  // by block, of the first round
   std::vector<cl_uint> account = std::vector<cl_uint>(kernel::RINGS_NUMBERS);
@@ -51,7 +51,7 @@ struct Numbers {
     }
     runtime.read_later(rings.device_account, 0, account.size(), account.data());
   }
-  // To be called after that wait, before anything relies on the triangulations.
+  // Must be called after that wait, before anything relies on the triangulations.
   void check() const { check_account(account.data()); }
   std::size_t undecided() const { return account[kernel::RINGS_UNDECIDED]; }
 };
@@ -77,11 +77,11 @@ struct OpenPoints {
   }
 };
 
-// One round: its blocks, their triangulations and what is emitted of them.
+// One round: its blocks, their triangulations, and the states of their edges.
 struct Round {
   bool is_first;
   bool is_merged;          // up the tree
-  const OpenPoints& open;  // what its points are made from; of the first round, the offsets alone
+  const OpenPoints& open;  // the list from which its points are made; in the first round, the offsets alone
   const Blocks& blocks;
   Rings rings;
   Buffer<cl_int> vertices{};  // by place in the blocks
@@ -95,7 +95,7 @@ struct Round {
   bool can_be_merged() const { return !blocks.offsets.empty(); }
 };
 
-// Makes the triangulations of the blocks canonical, or those of the sets if blocks are merged.
+// Makes the triangulations of the blocks canonical; if blocks are merged, the triangulations of the sets.
 void complete(Workspace& work, const Round& round) {
   if (round.is_merged) merge(work, round.blocks, round.rings);
   // Coarse coordinates have no ties: merges break them.
@@ -180,7 +180,7 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
                                                    .unsure = round.unsure});
 }
 
-// Memory for what is said of a round's triangulations, and the names of their vertices.
+// Allocates the arrays that describe a round's triangulations, and names their vertices.
 void begin_emission(Workspace& work, Round& round) {
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
@@ -193,8 +193,7 @@ void begin_emission(Workspace& work, Round& round) {
                                                                .vertices = round.vertices});
 }
 
-// Emits what is final of a round's triangulations. What was emitted of them before is written again, as it
-// is.
+// Emits the final triangles of a round. Triangles emitted by earlier rounds are written again, unchanged.
 void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   host::Runtime& runtime = work.runtime;
   frame(work, round, boxes, emitted);
@@ -207,8 +206,8 @@ void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emit
                                                                .links = emitted.links});
 }
 
-// Whether so many points of a round go on that merging is less work. Rounds in which all of them do would not
-// end.
+// Whether so large a share of a round's points goes on that merging is less work. If all points went on,
+// rounds would never end.
 bool stalls(host::Runtime& runtime, const Round& round, const OpenPoints& next) {
   const std::size_t before = round.open.count();
   return 100 * next.count() > tuning_of(runtime).merge_from_percent * before || next.count() == before;
@@ -246,7 +245,7 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
     next.offsets.push_back(runtime.at_most<std::size_t>(sizes[s].s[0], round.open.offsets[s]));
   }
   if (next.count() == 0) return true;
-  // What is counted are the points of a round that goes on.
+  // When memory is counted, the round is assumed to go on.
   if (runtime.at_most(round.can_be_merged() && stalls(runtime, round, next), false)) return false;
   const std::size_t points = runtime.at_most(next.count(), next.most);
   next.reserve(
@@ -265,7 +264,7 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   return true;
 }
 
-// Rows and hulls from what is emitted.
+// Makes rows and hulls from the emitted triangles.
 class Results {
  public:
   Results(Workspace& work, const Emitted& emitted, const std::vector<std::size_t>& offsets)
@@ -411,7 +410,7 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   double done = kBlocksMade;
   phases.progress("triangulate", done);
   const Emitted emitted = make_emitted(work, first_blocks, exchange.wants_links);
-  // What a round needs is given back when it ends.
+  // Scratch memory of a round is released when it ends.
   Workspace rounds_work{runtime, runtime.arena(), work.bounds};
   SetBoxes boxes;
   // If more went on from the first round, its blocks would be merged.

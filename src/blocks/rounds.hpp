@@ -1,5 +1,5 @@
-// Rounds of blocks instead of merges up the trees: what is final is emitted, and the points around which
-// something is missing are brought to other blocks (kernels/blocks/rounds.cl).
+// Rounds of blocks instead of merges up the trees: final triangles are emitted, and points around which
+// triangles are missing are distributed to new blocks (kernels/blocks/rounds.cl).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace flaunay::blocks {
 
-/// Does what run() does, in rounds, with the same bytes as results.
+/// Does the same as run(), in rounds, with the same bytes as results.
 geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
                                      const std::vector<std::size_t>& offsets, const Exchange& exchange,
                                      statistics::Phases& phases);

@@ -29,7 +29,7 @@ struct Exchange {
   const points::Weights* weights = nullptr;
 };
 
-/// What the host knows about a result when run returns.
+/// Facts about a result that the host knows when run returns.
 struct Outcome {
   MeshSizes sizes;
   std::size_t undecided = 0;      ///< predicates that were evaluated exactly
@@ -42,9 +42,9 @@ struct Outcome {
   void write(std::size_t n, Statistics& statistics) const;
 };
 
-/// Triangulates sets with at least one point; the offsets are those of Triangulator::triangulate. Returns
-/// when the last kernel is enqueued. Allocates from both arenas, in the caller's scopes. Throws Error(input)
-/// for points that are not finite or whose magnitudes differ too much. O(n log n).
+/// Triangulates sets with at least one point; offsets: as in Triangulator::triangulate. Returns when the last
+/// kernel is enqueued. Allocates from both arenas, in the caller's scopes. Throws Error(input) for points
+/// that are not finite or whose magnitudes differ too much. O(n log n).
 geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
                               const std::vector<std::size_t>& offsets, const Exchange& exchange,
                               statistics::Phases& phases);

@@ -35,7 +35,7 @@ struct Scratch {
   std::vector<cl_int> vertex_edge;
   std::vector<kernel::solved_block> solved;
   std::vector<cl_int> distinct;
-  // Of the largest block.
+  // The following have room for the largest block.
   std::vector<cl_double2> points;
   std::vector<cl_int> point_source;
   std::vector<cl_ulong> ranks;
@@ -112,7 +112,7 @@ MeshSizes sort_line(Scratch& s, std::size_t n, Triangulation& result) {
   return sizes;
 }
 
-// Writes what a call has found, but for the arrays.
+// Writes the results of a call other than arrays.
 void write_outcome(Outcome outcome, std::size_t n, const Scratch& s, Triangulation& result) {
   result.statistics.device_bytes_peak = s.bytes();
   outcome.write(n, result.statistics);

@@ -1,4 +1,4 @@
-// What a triangulation with constraints carries of the segments that were given.
+// Carries information of the given segments over to a triangulation with constraints.
 #pragma once
 
 #include <cstddef>

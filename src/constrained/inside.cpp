@@ -15,19 +15,19 @@
 namespace flaunay::constrained {
 namespace {
 
-// A line sweeps over the points from left to right, by their lexicographic order. Between each two segments
-// that it crosses, one right above the other, what is left of it and inside is triangulated, up to a *front*:
-// a path of edges from one segment's left end to the other one's. A point makes triangles with all edges of
-// the front that it sees from the end at which it joins, so that the front stays concave. Each new triangle
-// is made Delaunay at once, by flips around the new point. Edges between two new triangles need none: the
-// front was concave where they begin, so the triangles are no convex quadrilateral.
+// A line sweeps over the points from left to right, by their lexicographic order. Between two neighbouring
+// segments that it crosses, the inside left of it is triangulated, up to a *front*: a path of edges from one
+// segment's left end to the other one's. A point makes triangles with all edges of the front that it sees
+// from the end at which it joins, so that the front stays concave. Each new triangle is made Delaunay at
+// once, by flips around the new point. Edges between two new triangles need none: the front was concave where
+// they begin, so the triangles are no convex quadrilateral.
 //
 // Each point must be strictly between the segments right above and below. As long as none have crossed, these
 // are right. Two that do are neighbours, and as nothing is between them from then on, they stay neighbours
 // until one ends: at a point that is on the wrong side of the other.
 //
 // Vertices have numbers in the order of sets and, within these, in lexicographic order. A half-edge e has its
-// triangle on the left; e ^ 1 is the other one. Those of segment s are 2 s, in its direction, and 2 s + 1.
+// triangle on the left; e ^ 1 is the other one. Segment s has 2 s, in its direction, and 2 s + 1.
 class Inside {
  public:
   bool run(const double* coordinates, const std::vector<std::size_t>& offsets, const Constraints& constraints,
@@ -85,20 +85,19 @@ class Inside {
   struct Corner {
     int edges[2], others[2], count;
   };
-  // The end of a set's vertices, and what predicates of them err by at most.
+  // The end of a set's vertices, and the largest errors of predicates on them.
   struct Set {
     int end;
     kernel::largest_errors errors;
   };
   struct HalfEdge {
-    int to, next;  // next: within the triangle; none if that is not made, or if there is none
+    int to, next;  // next: within the triangle; kNone if the triangle is not made, or outside
   };
-  // A vertex of a front. edge: from this one to the next one below, with what is not triangulated on its
-  // left.
+  // A vertex of a front. edge: from this one to the next one below, with the untriangulated area on its left.
   struct Node {
     int vertex, up, down, edge;
   };
-  // A segment that the line crosses, and what is between it and the one above.
+  // A segment that the line crosses, and the area between it and the segment above.
   struct Crossed {
     int above, below;
     int left, right, edge;  // the ends, and the half-edge from the left one
@@ -124,8 +123,8 @@ class Inside {
                all_crossed, all_nodes, all_edges);
   }
 
-  // The half-edges that leave each point. Returns false if these are not two everywhere, which takes no time
-  // to know beside what follows.
+  // The half-edges that leave each point. Returns false if these are not two everywhere; compared to the
+  // rest, that takes no time.
   bool find_leaving(std::size_t n) {
     if (static_cast<std::size_t>(segment_count_) != n) return false;
     int* const counts = sized(all_places, n);
@@ -234,7 +233,7 @@ class Inside {
     if (above != kNone) crossed_[above].below = below;
   }
 
-  // What is right above a segment, whose half-edge leaves its left end, by what is right below.
+  // The depth right above a segment, from the depth right below. edge: the half-edge from its left end.
   int depth_above(int depth, int edge) const {
     return !is_winding_ ? depth ^ 1 : (edge & 1) == 0 ? depth + 1 : depth - 1;
   }
@@ -511,7 +510,7 @@ class Inside {
 
   // Constraint edges in the order of their lower ends, and then of the others.
   void write_edges(std::size_t n) {
-    // What is written for upper ends is written over, and at last left out.
+    // Entries written for upper ends are overwritten, and the last ones are cut off.
     result_->constraint_edges.resize(2 * vertex_count_ + 2);
     result_->edge_segments.resize(vertex_count_ + 1);
     std::int32_t *const ends = result_->constraint_edges.data(), *const of = result_->edge_segments.data();
@@ -548,9 +547,9 @@ class Inside {
   std::int64_t steps_left_ = 0;
   std::vector<Set> sets_;
   kernel::largest_errors errors_{};  // of the set that is being swept
-  std::vector<int> lower_, upper_;   // what the sweep has of the hull
+  std::vector<int> lower_, upper_;   // the hull of the swept points
 
-  // Arrays, and what they are for this call.
+  // Arrays, which are kept for later calls, and pointers into them for this call.
   std::vector<kernel::double2> all_points, given;
   std::vector<int> all_leaving, all_source, all_leaf, all_vertex_of, given_source, all_open, all_places,
       all_rows;
@@ -581,7 +580,7 @@ bool triangulate_inside(const double* coordinates, const std::vector<std::size_t
                         const Constraints& constraints, const SmallRequest& request,
                         ConstrainedTriangulation& result) {
   const DepthRules& rules = request.rules;
-  // Of nested curves, those whose levels are odd are inside by either rule.
+  // Regions at odd levels of nested curves are inside by either rule.
   const bool is_by_parity = rules.fill == FillRule::even_odd ||
                             (rules.fill == FillRule::nesting && rules.outside == Outside::holes);
   if (rules.outside == Outside::keep || request.labels || request.curves != nullptr ||

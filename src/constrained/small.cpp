@@ -21,7 +21,7 @@ using kernel::NO_EDGE;
 
 constexpr std::int32_t kNoIndex = -1;
 
-// Directed edges are those of mesh/rings.h. Rings are walked clockwise, since `previous` is never
+// Works on the directed edges of mesh/rings.h. Rings are walked clockwise, since `previous` is never
 // complemented.
 class Small {
  public:
@@ -47,9 +47,9 @@ class Small {
   }
 
  private:
-  // What is known of both directions of a constraint edge. weight: the number of its segments, or if
-  // directions count, of those in the direction of the first half less the others. number: its own, and then,
-  // if a region is entered over it, that of the region.
+  // Data that both directions of a constraint edge share. weight: the number of its segments, or if
+  // directions count, of segments in the direction of the first half minus the others. number: its own, later
+  // the region's number if a region is entered over it.
   struct Pair {
     std::int32_t segment = kNoIndex;  // the first one that has it
     std::int32_t weight = 0;
@@ -182,8 +182,8 @@ class Small {
     }
   }
 
-  // The first piece of what is left of a segment: an edge along it, or one that is made. NO_EDGE if it
-  // crosses a constraint, or takes too many steps.
+  // The first piece of the remaining part of a segment: an existing edge along it, or a new one. NO_EDGE if
+  // it crosses a constraint, or takes too many steps.
   int next_piece(int from, int to) {
     const int first = rings_.vertex_edge[from];
     int e = first, at = side(from, to, edges_[e].to);
@@ -233,9 +233,9 @@ class Small {
     return e;
   }
 
-  // Gift-wraps a polygon, whose vertices are left of its base, from the first one to the last one. Of all
-  // circles through the ends of a chord and one of the vertices between, which are nested, it takes the
-  // smallest. Returns false if it takes too many steps.
+  // Gift-wraps a polygon, whose vertices are left of its base, from the first one to the last one. The
+  // circles through the ends of a chord and one of the vertices between are nested; it takes the smallest.
+  // Returns false if it takes too many steps.
   bool fill(kernel::rings& g, const Ids& sides) {
     const auto point = [&](int k) { return rings_.points[k == 0 ? edges_[sides[1]].to : origin(sides[k])]; };
     chords_.assign({{0, static_cast<int>(sides.size()) - 1}});
@@ -353,7 +353,7 @@ class Small {
   }
 
   // Visits the triangles of the last region, from the one left of an edge on. A triangle's row is at its
-  // middle vertex along x; see blocks/mesh.cl. What is read again and again is in registers.
+  // middle vertex along x; see blocks/mesh.cl. Pointers that are read again and again are kept in registers.
   void visit(int first) {
     kernel::ring_edge* const edges = edges_;
     const auto* const points = rings_.points;

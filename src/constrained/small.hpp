@@ -12,7 +12,7 @@
 
 namespace flaunay::constrained {
 
-/// What is asked for of small sets.
+/// The options of a call for small sets.
 struct SmallRequest {
   DepthRules rules{};
   bool has_depths = false;  ///< whether regions have depths, by which they are left or not
@@ -28,12 +28,12 @@ struct SmallRequest {
   const double* with_holes = nullptr;
 };
 
-/// Makes segments edges of the rings, and writes all that is left of the triangulation and the arrays of
-/// constraints, each segment as one piece: the bytes that constrain, find_depths and label_map lead to.
-/// result: what blocks::small_rings has written. Returns false, with the rings and the result half changed,
-/// if segments are wrong, cross, are no closed curves, or take too many steps, or if a hole may be on an edge
-/// or outside. O(n + m) as a rule for m segments; a segment takes O(the smaller of the numbers of edges of
-/// its ends), a hole O(n).
+/// Makes segments edges of the rings, and writes the kept part of the triangulation and the arrays of
+/// constraints, each segment as one piece: the same bytes as constrain, find_depths and label_map. result: as
+/// written by blocks::small_rings. Returns false, with the rings and the result half changed, if segments are
+/// wrong, cross, are no closed curves, or take too many steps, or if a hole may be on an edge or outside. O(n
+/// + m) as a rule for m segments; a segment takes O(the smaller of the numbers of edges of its ends), a hole
+/// O(n).
 bool constrain_small(const points::SmallRings& rings, const std::vector<std::size_t>& offsets,
                      const Constraints& constraints, const SmallRequest& request,
                      ConstrainedTriangulation& result);

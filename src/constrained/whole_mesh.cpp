@@ -43,8 +43,8 @@ void check(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   }
 }
 
-// Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for what its hull
-// encloses, which rounding may have made turn to the right.
+// Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for the inside of its
+// hull. Rounding may have made the hull turn to the right.
 bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   const Ids& hull = mesh.hull;
   std::size_t vertices = 0;
@@ -66,7 +66,7 @@ bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   return !mesh.triangles.empty();
 }
 
-// The edges that must be those of the whole mesh: constraints and the border.
+// The edges that the whole mesh must have: constraints and the border.
 Ids walls(const ConstrainedTriangulation& mesh) {
   Ids segments;
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
@@ -78,8 +78,8 @@ Ids walls(const ConstrainedTriangulation& mesh) {
   return segments;
 }
 
-// Triangles in the order of their first edges, of which each is that of one triangle alone. Triangles have
-// their smallest corner first.
+// Triangles in the order of their first edges; no two have the same. Triangles have their smallest corner
+// first.
 std::vector<geometry::Keyed> by_edge(const Ids& triangles) {
   std::vector<geometry::Keyed> sorted(triangles.size() / 3);
   for (std::size_t t = 0; t < sorted.size(); ++t) {
@@ -91,7 +91,7 @@ std::vector<geometry::Keyed> by_edge(const Ids& triangles) {
   return sorted;
 }
 
-// Brings the triangles of `mesh` to the front of those of `whole`, in their order.
+// Moves the triangles of `mesh` to the front in `whole`, in their order.
 void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
   const std::size_t all = whole.triangles.size() / 3;
   const std::vector<geometry::Keyed> of_whole = by_edge(whole.triangles);

@@ -10,7 +10,7 @@
 
 namespace flaunay::constrained {
 
-/// A mesh up to the convex hull of its points. Its first triangles are those of another one, in their order.
+/// A mesh up to the convex hull of its points. It begins with the triangles of another mesh, in their order.
 struct WholeMesh {
   std::vector<double> coordinates;
   Triangulation mesh;
@@ -21,10 +21,10 @@ struct WholeMesh {
 /// Triangulates points with constraints, of one set. The result has neighbours.
 using Constrain = std::function<Triangulation(const std::vector<double>& coordinates, const Constraints&)>;
 
-/// Fills the holes of a mesh with constraints, of one set of n points and those that it has added, and what
-/// is between its border and the convex hull. Throws Error(usage) for several sets and for arrays of other
-/// lengths, Error(input) for what is no constrained triangulation of these points. If the mesh is convex,
-/// O(n); otherwise its points are triangulated with its edges.
+/// Fills the holes of a mesh with constraints, and the area between its border and the convex hull. The mesh
+/// has one set of n points, and the points that it added. Throws Error(usage) for several sets and for arrays
+/// of wrong lengths, Error(input) if the mesh is no constrained triangulation of these points. If the mesh is
+/// convex, O(n); otherwise its points are triangulated with its edges.
 WholeMesh fill(const double* coordinates, std::size_t n, const ConstrainedTriangulation& mesh,
                const Constrain& constrain);
 

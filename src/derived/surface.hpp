@@ -1,4 +1,4 @@
-// What rasters and contours have in common.
+// Code that rasters and contours share.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 namespace flaunay {
 
-/// Throws the error of a triangle whose indices are not those of a mesh.
+/// Throws the error for a triangle whose indices are outside of the mesh.
 [[noreturn]] inline void refuse_triangle(std::size_t triangle, std::size_t points, std::size_t triangles) {
   throw Error(ErrorKind::usage,
               fmt::format("triangles: triangle {} has a corner that is none of the {} points, or a neighbour "

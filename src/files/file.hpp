@@ -96,7 +96,7 @@ class InputFile {
   /// The size of a regular file, or of a pipe that was loaded; unknown, -1, of other pipes.
   std::int64_t size() const { return size_; }
 
-  /// Reads all of a pipe. What is read of it afterwards is in memory, as if it were a regular file.
+  /// Reads all of a pipe into memory. Later reads behave as with a regular file.
   void load_pipe() {
     if (size_ >= 0) return;
     load();
@@ -104,8 +104,8 @@ class InputFile {
     is_loaded_ = true;
   }
 
-  /// Reads the next bytes after those of earlier calls of this function, without the others. Returns how many
-  /// there are; fewer than `count` at the end.
+  /// Reads the next bytes after the end of this function's last call, independently of the other functions.
+  /// Returns how many there are; fewer than `count` at the end.
   std::size_t read_next(char* to, std::size_t count) {
     if (ended_) return 0;
     const std::size_t got = system::move_bytes(

@@ -23,8 +23,8 @@ class MeshFiles : public PeriodicMeshSink {
  public:
   /// In the order of MeshArray; an empty one means that the array is not wanted.
   using Paths = std::array<std::string, kMeshArrays>;
-  /// partials: the partial files of another process, for those that it has created. offsets: the path for
-  /// those of corners, six columns of int8.
+  /// partials: the partial files that another process has created. offsets: the path for the lattice offsets
+  /// of corners, six columns of int8.
   MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials = {},
             const std::string& offsets = {});
   Paths partial_paths() const;
@@ -34,7 +34,7 @@ class MeshFiles : public PeriodicMeshSink {
   void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override;
   void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override;
 
-  /// Drops what was written beyond so many triangles.
+  /// Keeps this many triangles and drops the ones written after them.
   void keep_triangles(std::uint64_t triangles);
   /// Says how many entries an array has, if other processes write some of them.
   void extend(MeshArray array, std::uint64_t entries);

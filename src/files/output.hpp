@@ -54,7 +54,7 @@ class OutputFile {
   /// Writes at a place of the file, counted in bytes from its beginning, whatever else is written. Only
   /// regular files have places.
   void write_at(std::uint64_t place, const void* data, std::size_t bytes);
-  /// Leaves so many bytes of a regular file.
+  /// Truncates a regular file to this size.
   void cut(std::uint64_t bytes);
   template <typename Value>
   void write_value(const Value& value) {
@@ -84,10 +84,10 @@ class OutputFile {
   fmt::memory_buffer buffer_;
 };
 
-/// The files that one run writes. What was not committed changes nothing.
+/// The files that one run writes. Files that are not committed change nothing.
 class Outputs {
  public:
-  /// inputs: files that no output may overwrite; "-" is none.
+  /// inputs: files that no output may overwrite; "-" is ignored.
   explicit Outputs(std::vector<std::string> inputs = {}) : inputs_(std::move(inputs)) {}
 
   /// Creates a file that may be written later, to find errors before the work begins. Throws Error(input) if

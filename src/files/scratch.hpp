@@ -1,4 +1,4 @@
-// A file for what does not fit memory, which vanishes with the process.
+// A file for data that does not fit memory, which vanishes with the process.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ class ScratchFile {
   /// The most bytes that it had, without those that were given back.
   std::uint64_t largest_bytes() const { return largest_; }
 
-  /// Fails unless the folder has room for this many more bytes. what: what they are for.
+  /// Fails unless the folder has room for this many more bytes. what: the purpose of the bytes.
   void require_room(std::uint64_t bytes, const std::string& what) const;
 
  private:

@@ -24,7 +24,7 @@ void remove_all() {
   Registry& all = registry();
   // Locked until the end of the process, so that no more are made.
   all.mutex.lock();
-  // Backwards, so that a folder comes after what is in it.
+  // Backwards, so that a folder comes after its contents.
   std::for_each(all.paths.rbegin(), all.paths.rend(), system::remove_file);
 }
 

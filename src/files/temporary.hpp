@@ -12,7 +12,7 @@ namespace flaunay::io {
 /// called before there are other threads.
 void clean_up_when_interrupted();
 
-/// While one exists, these signals wait: what is done meanwhile is done completely.
+/// These signals wait while such an object exists, so that its scope runs to the end.
 class Uninterrupted {
  public:
   Uninterrupted();
@@ -25,7 +25,7 @@ class Uninterrupted {
 class Temporary {
  public:
   Temporary() = default;  ///< none
-  /// Takes over what is at path. To be called in the scope of the Uninterrupted in which it was made.
+  /// Takes over the file or folder at path. Must be called in the same scope of Uninterrupted that made it.
   explicit Temporary(std::string path);
   Temporary(Temporary&& other) noexcept : path_(std::exchange(other.path_, {})) {}
   Temporary& operator=(Temporary&& other) noexcept {
@@ -34,7 +34,7 @@ class Temporary {
   }
   ~Temporary();
 
-  /// Empty if there is none.
+  /// Empty if there is no file.
   const std::string& path() const { return path_; }
 
  private:

@@ -1,5 +1,5 @@
-// The checks of what callers pass to public functions of C++ and C. A call makes them before anything else:
-// before it multiplies a count, allocates memory or reads an array.
+// The checks of arguments that callers pass to public functions of C++ and C. A call makes them before
+// anything else: before it multiplies a count, allocates memory or reads an array.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ constexpr std::size_t kMostPointsAtOnce = kMostIndexed / kernel::EDGES_PER_VERTE
 /// The largest number of points of triangulations in chunks. Sums and products with numbers of bytes do not
 /// overflow.
 constexpr std::uint64_t kMostPointsInChunks = std::uint64_t{1} << 56;
-/// The largest number of rows times columns: what an array has in bytes does not overflow.
+/// The largest number of rows times columns, so that the bytes of an array do not overflow.
 constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
 
 /// Throws Error(input) if there are more than `most` elements. name: what they are, as a plural.
@@ -46,11 +46,11 @@ void check_array(const void* array, std::uint64_t count, const char* name, std::
 void check_points(const void* coordinates, std::uint64_t count);
 /// check_array for queries. Kernels use 32-bit indices for their coordinates.
 void check_queries(const void* coordinates, std::uint64_t count);
-/// Checks a number of columns of arrays with so many rows. Returns how many numbers these have.
+/// Checks the numbers of columns and rows of an array. Returns how many entries the array has.
 std::size_t check_columns(std::size_t columns, std::size_t rows);
 
-/// Throws Error(usage) for a number that is no enumerator. They are numbered from 0 to `last`. type: the name
-/// of the enumeration.
+/// Throws Error(usage) for a number that is no enumerator. Enumerators are numbered from 0 to `last`. type:
+/// the name of the enumeration.
 void check_enumerator(int value, int last, const char* type);
 template <typename Enum>
 void check_enumerator(Enum value, Enum last, const char* type) {
@@ -69,7 +69,7 @@ inline bool are_indices(const std::vector<std::int32_t>& ids, std::size_t end, s
   });
 }
 
-/// Whether they cut an array of `size` elements into so many parts. O(parts).
+/// Whether the offsets cut an array of `size` elements into `parts` parts. O(parts).
 inline bool are_offsets(const std::vector<std::size_t>& offsets, std::size_t parts, std::size_t size) {
   return offsets.size() == parts + 1 && offsets.front() == 0 && offsets.back() == size &&
          std::is_sorted(offsets.begin(), offsets.end());

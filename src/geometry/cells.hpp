@@ -29,7 +29,7 @@ class CellFinder {
   /// points: indexed by the triangles of the mesh. Throws Error(internal) if an edge is not Delaunay. O(n).
   CellFinder(const Predicates& predicates, const Point* points, const Mesh& mesh);
 
-  /// Finds the next cell; returns false if there is none. O(size of the cell).
+  /// Finds the next cell; returns false after the last one. O(size of the cell).
   bool next(Cell& cell);
 
  private:

@@ -6,9 +6,9 @@
 
 namespace flaunay::geometry {
 
-/// Throws Error(internal) unless so many triangles and hull vertices can be those of a triangulation of so
-/// many vertices: 2 vertices - 2 - hull triangles, or none if all vertices are on one line. where: the end of
-/// the message's first half, such as " in set 3".
+/// Throws Error(internal) unless a triangulation can have these numbers of triangles, hull vertices and
+/// vertices: triangles = 2 vertices - 2 - hull, or 0 if all vertices are on one line. where: the end of the
+/// message's first half, such as " in set 3".
 void check_euler(std::uint64_t triangles, std::uint64_t hull, std::uint64_t vertices,
                  const std::string& where = {});
 

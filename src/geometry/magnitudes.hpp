@@ -62,7 +62,7 @@ struct NamedCoordinate {
 struct RangeEnds {
   NamedCoordinate largest, finest;
 };
-/// Those of the points [first, last); unchanged defaults if none of them does.
+/// Finds these coordinates among the points [first, last). Ends that none of them reaches keep defaults.
 RangeEnds find_ends(const double* coordinates, std::size_t first, std::size_t last,
                     const Magnitudes& magnitudes);
 
@@ -84,12 +84,12 @@ Scaling scaling_for(const double* coordinates, std::size_t first, std::size_t la
 struct TooWide {
   Magnitudes magnitudes;
 
-  /// What does not fit: "coordinates whose bits ...".
+  /// Describes the input that does not fit: "coordinates whose bits ...".
   std::string reason() const;
 };
 
-/// What a function returns that may compute in fixed point: its result, unless the input does not fit. With
-/// doubles everything fits.
+/// The return type of a function that may compute in fixed point: its result, or the reason why the input
+/// does not fit. With doubles every input fits.
 template <typename T>
 class [[nodiscard]] Fitted {
  public:
@@ -106,14 +106,14 @@ class [[nodiscard]] Fitted {
   std::variant<T, TooWide> outcome_;
 };
 
-/// Of a function that returns nothing else.
+/// The result of a function that returns nothing else.
 struct Done {};
 
 /// Whether finite coordinates fit into fixed point, and are cut as doubles are: their differences are finite.
 bool fits_fixed_point(const Magnitudes& magnitudes);
 /// The power of two by which coordinates that fit are multiplied, so that they have as many bits as can be.
 int fixed_point_shift(const Magnitudes& magnitudes);
-/// The bounds of filters in fixed point, for points of so many bits (bits_of).
+/// The bounds of filters in fixed point, for points of this many bits (bits_of).
 Bounds fixed_point_bounds(int bits);
 
 /// The scaling of several sets of points: the same for all, or if their magnitudes differ too much, one for
@@ -125,8 +125,8 @@ struct SetScalings {
   int shift(std::size_t set) const { return shifts[shifts.size() > 1 ? set : 0]; }
 };
 
-/// Chooses the scalings of sets. by_set: their magnitudes. Throws Error(input) if those of a set are not
-/// accepted; the coordinates are read in that case only.
+/// Chooses the scalings of sets. by_set: their magnitudes. Throws Error(input) if the magnitudes of a set are
+/// not accepted; the coordinates are read in that case only.
 SetScalings set_scalings(const double* coordinates, const std::vector<std::size_t>& offsets,
                          const std::vector<Magnitudes>& by_set);
 

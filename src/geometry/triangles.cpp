@@ -14,7 +14,7 @@ namespace {
 
 using kernel::double2;
 
-// A vector, each coordinate as a double and what rounding has cut off.
+// A vector, each coordinate as a double and the part that rounding has cut off.
 struct Side {
   double2 x, y;
   Side(Point from, Point to) : x(kernel::two_sum(to.x, -from.x)), y(kernel::two_sum(to.y, -from.y)) {}

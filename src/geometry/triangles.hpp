@@ -1,4 +1,4 @@
-// What is exact about single triangles: their turns, angles and circumcircles.
+// Exact tests of single triangles: their turns, angles and circumcircles.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,7 @@ class Joining {
     joined.groups += parts.size();
   }
 
-  // How many rows are before those of each part. first: how many there are already.
+  // The number of rows before the rows of each part. first: the number of rows that exist already.
   template <typename Count>
   std::vector<std::size_t> before(std::size_t first, const Count& count) const {
     std::vector<std::size_t> sums(parts_.size() + 1, first);
@@ -35,7 +35,7 @@ class Joining {
                   [&](const Result& part) { return (part.*array).size() / columns; });
   }
 
-  // change(values, i, k): what becomes of value i of part k.
+  // change(values, i, k): the new value for value i of part k.
   template <typename T, typename Base, typename Change>
   void array(std::vector<T> Base::*array, const Change& change) {
     const std::vector<std::size_t> first = before(array, 1);
@@ -75,7 +75,7 @@ class Joining {
     }
   }
 
-  // Of triangulations; returns how many triangles the parts before have.
+  // Joins the arrays of triangulations. Returns how many triangles precede each part.
   std::vector<std::size_t> triangulation() {
     const std::vector<std::size_t> triangles = before(&Triangulation::triangles, 3);
     std::vector<std::size_t> points, corners;

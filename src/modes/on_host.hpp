@@ -1,4 +1,4 @@
-// What the modes that run on the host do before and after their own work.
+// Steps before and after the algorithm that all modes on the host share.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@ namespace flaunay::points {
 using host::Arena;
 using host::Buffer;
 
-// Launches a kernel with so many work-groups per tile.
+// Launches a kernel with this many work-groups per tile.
 template <typename Kernel>
 void CutTrees::launch_tiles(std::size_t groups_per_tile, const Kernel& kernel) const {
   const std::size_t group = runtime_.sizes().tile_group;

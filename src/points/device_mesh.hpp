@@ -16,8 +16,8 @@ inline std::vector<cl_int> integers(const std::vector<std::size_t>& values) {
   return {values.begin(), values.end()};
 }
 
-/// What mode blocks writes, and from which Voronoi diagrams and locators are made. Arrays that are not wanted
-/// have no memory.
+/// The result of mode blocks, from which Voronoi diagrams and locators are made. Unwanted arrays have no
+/// memory.
 struct DeviceMesh {
   std::vector<std::size_t> point_offsets, triangle_offsets, hull_offsets;  ///< sets + 1
   Buffer<cl_double> coordinates{};  ///< 2 per input point, as the caller gave them; aligned to 8 bytes only

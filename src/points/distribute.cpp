@@ -15,7 +15,7 @@ using namespace geometry;
 
 namespace {
 
-// alone: sets of at most so many points are one block.
+// alone: the largest number of points of a set that is one block.
 int depth_for(std::size_t n, std::size_t block_points, std::size_t alone) {
   int depth = 0;
   if (n <= alone) return 0;

@@ -25,7 +25,7 @@ struct Weights {
   const WeightedSolver* solver = nullptr;  ///< see blocks/weighted.hpp
 };
 
-/// What every stage works with.
+/// The context of every stage.
 struct Workspace {
   host::Runtime& runtime;
   Arena& persistent;  ///< arrays that live as long as the call
@@ -54,7 +54,7 @@ struct Blocks {
   Buffer<cl_int> device_set_blocks{}, device_offsets{};
   Buffer<kernel::block_merge> device_merges{};
   Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
-  kernel::scaling scale{1, 1, 1};           ///< what the nodes' coordinates are multiplied by
+  kernel::scaling scale{1, 1, 1};           ///< the factor of the nodes' coordinates
   /// The scaled points, block by block, and their indices in the input. After blocks are triangulated, the
   /// distinct points of each block come first; these are its vertices.
   Buffer<cl_double2> vertices{};
@@ -74,10 +74,10 @@ enum class Cuts { at_medians, in_gaps };
 /// Whether the host waits for the sizes of blocks.
 enum class BlockSizes { read, guessed };
 
-/// Distributes points that are scaled and checked already to blocks of at most so many points, as a rule.
-/// Their sources are their places in `points`. Sets of up to twice as many are one block, and sizes are
-/// guessed to be at most as large. On devices without groups for tiles, all cuts are at medians and all sizes
-/// are read. O(n log n).
+/// Distributes points that are scaled and checked already to blocks of at most block_points points, as a
+/// rule. Their sources are their places in `points`. A set of up to twice as many points is one block, and
+/// guessed sizes are at most that large. On devices without groups for tiles, all cuts are at medians and all
+/// sizes are read. O(n log n).
 Blocks make_blocks_of(Workspace& work, const Buffer<cl_double2>& points,
                       const std::vector<std::size_t>& offsets, std::size_t block_points, Cuts cuts,
                       BlockSizes sizes);

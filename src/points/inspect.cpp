@@ -16,7 +16,7 @@ using namespace geometry;
 
 namespace {
 
-// What set_scalings and scaling_for read if they throw.
+// The coordinates, which set_scalings and scaling_for read if they throw.
 std::vector<double> to_host(host::Runtime& runtime, const host::Buffer<cl_double>& points, std::size_t n) {
   return download(runtime, points, 2 * n);
 }

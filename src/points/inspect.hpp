@@ -17,8 +17,8 @@ std::vector<geometry::Magnitudes> inspect_sets(host::Runtime& runtime, const hos
 struct UniformPoints {
   host::Buffer<cl_double> coordinates;
   geometry::Scaling scaling;
-  /// What the caller's points were multiplied by, together with the scaling: one power for all, or one per
-  /// set.
+  /// The powers of two by which the caller's points were multiplied, including the scaling: one for all sets,
+  /// or one per set.
   std::vector<int> shifts;
   /// The magnitudes of the caller's points by set, if that took no pass of its own; otherwise empty.
   std::vector<geometry::Magnitudes> by_set;

@@ -19,7 +19,7 @@ struct ChunkPlan {
   std::size_t largest_chunk = 0;
 };
 
-// Divides a set with a tree into chunks, each of which counts its points per block.
+// Divides a set with a tree into chunks. Each chunk counts its points per block.
 void add_chunks(std::size_t first, std::size_t last, const kernel::set_of_blocks& set, std::size_t size,
                 ChunkPlan& plan) {
   const std::size_t blocks = std::size_t{1} << set.depth;

@@ -28,14 +28,14 @@ namespace {
 // Queries that are farther away than points are off the grid, if all are not on it, unless by less than this.
 constexpr int kPlacesBeyondPoints = 1;
 
-// All coordinates of so many bits are exact as floats, and so are differences and products of both filters:
-// as COARSE_QUERY_BITS.
+// Coordinates of this many bits are exact as floats, and so are the differences and products of both filters,
+// as for COARSE_QUERY_BITS.
 constexpr int kCoarseBits = 10;
 
 bool is_in_fixed_point(host::Runtime& runtime) { return runtime.capabilities().fixed_point; }
 
-// The shift of points and queries together. If they do not fit, that of the points, which leaves as many
-// places as can be for queries that are finer.
+// The shift of points and queries together. If they do not fit, the shift of the points, with as many places
+// as possible for finer queries.
 int shift_together(const Magnitudes& points, const Magnitudes& of_queries) {
   constexpr int kLargest = kernel::COORDINATE_BITS - 1;
   const Magnitudes both = joined(points, of_queries);
@@ -118,7 +118,7 @@ Fitted<QueryScaling> query_scaling(host::Runtime& runtime, const PointRange& poi
   for (const Magnitudes& of_set : points.by_set) both = joined(both, of_set);
   if (points.shifts.size() == 1 &&
       bits_of(both) <= (is_fixed ? kernel::COORDINATE_BITS : limits.most_bits())) {
-    // What is on one grid fits it.
+    // Points and queries fit the grid that they share.
     QueryScaling scaling = is_fixed ? *fixed_point_scaling(both, both, points.shifts[0])
                                     : query_scaling(both, points.shifts[0], limits);
     scaling.frames.resize(sets, scaling.frames[0]);

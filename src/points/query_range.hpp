@@ -31,7 +31,8 @@ struct QueryScaling {
   geometry::Magnitudes both{};  ///< of points and queries of all sets
 };
 
-/// What predicates on points and queries need: coordinates are multiples of 2^lowest below 2^(largest + 1).
+/// The range of predicates on points and queries: coordinates are multiples of 2^lowest below 2^(largest +
+/// 1).
 struct QueryLimits {
   int largest, lowest;
 

@@ -26,8 +26,8 @@ struct Rings {
   std::size_t ties_left = 0;                 ///< how many of these left edges as they were
 };
 
-/// Those of small sets in memory of the calling thread, which its next call uses. Vertices of a set follow
-/// each other. An edge with the outside on its left has the complement of the next edge.
+/// The rings of small sets, in memory of the calling thread that its next call reuses. Vertices of a set are
+/// contiguous. An edge with the outside on its left has the complement of the next edge.
 struct SmallRings {
   kernel::filter_bounds bounds;
   std::size_t vertices = 0;         ///< as many as points; those without an edge are duplicates, or alone

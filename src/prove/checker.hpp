@@ -1,4 +1,4 @@
-// What the checks of Delaunay triangulations and of constrained ones have in common.
+// Checks that the proofs of Delaunay triangulations and of constrained ones share.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ class Checker {
     }
   }
 
-  /// Of every group of duplicates at most one index may be used, and the same in all triangles.
+  /// All triangles must use the same index, at most one, of each group of duplicates.
   void check_representatives() {
     used_.assign(n_, 0);
     for (const std::int32_t corner : corners_) used_[corner] = 1;

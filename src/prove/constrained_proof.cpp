@@ -2,18 +2,16 @@
 // and finds the faces between these pieces, from points and segments alone. Each face is to be covered, or
 // not.
 //
-// 0. Depths of faces follow from what lies between them, by the definitions of `FillRule`.
+// 0. Depths of faces follow from the segments between them, by the definitions of `FillRule`.
 // 1. Every triangle is counter-clockwise, and every directed edge occurs at most once. Each side of each
-// piece has
-//    a triangle if and only if the face there is to be covered. Every edge with one triangle is a piece. So
-//    the sum of the triangles' oriented boundaries is that of the covered faces: every point in general
-//    position there is in one triangle, and no other one is in any.
-// 2. Every place in a covered face or on its border is a corner. A triangle around it, or on an edge of which
-// it
-//    is, would cover what the triangles at that corner cover. So the triangles are a triangulation of the
-//    covered faces with all points there, and the segments there are chains of its edges.
+//    piece has a triangle if and only if the face there is to be covered. Every edge with one triangle is a
+//    piece. So the sum of the triangles' oriented boundaries is the boundary of the covered faces: every
+//    point in general position is in one triangle if its face is covered, and in none otherwise.
+// 2. Every place in a covered face or on its border is a corner. A triangle around it, or with it on an edge,
+//    would overlap the triangles at that corner. So the triangles are a triangulation of the covered faces
+//    with all points there, and the segments there are chains of its edges.
 // 3. Every edge that is no constraint is locally Delaunay, which is the definition.
-// 4. Of two triangles on one circle whose edge is no constraint, that edge begins at the lexicographically
+// 4. If two triangles on one circle share an edge that is no constraint, it begins at the lexicographically
 //    smallest of the four corners: the rule of `circle_canonical`, for which docs/constrained.md proves that
 //    every cell is then a fan from its smallest vertex.
 #include "prove/constrained_proof.hpp"
@@ -367,7 +365,7 @@ class ConstrainedChecker : public Checker {
     return beyond;
   }
 
-  /// By face: the least number of constraints that a path from the outside crosses.
+  /// Per face the least number of constraints that a path from the outside crosses.
   std::vector<std::int64_t> nesting_depths() const {
     const std::vector<std::vector<Beyond>> beyond = faces_beyond();
     std::vector<std::int64_t> depths(covered_.size(), -1);
@@ -386,7 +384,7 @@ class ConstrainedChecker : public Checker {
     return depths;
   }
 
-  /// By face: its winding number, or the parity of the number of segments to the outside.
+  /// Per face its winding number, or the parity of the number of segments to the outside.
   std::vector<std::int64_t> winding_depths() const {
     const std::vector<std::int64_t> steps = steps_across();
     std::vector<std::int64_t> depths(covered_.size(), 0);
@@ -398,8 +396,8 @@ class ConstrainedChecker : public Checker {
     return depths;
   }
 
-  /// By piece: how many segments a step from its right to its left crosses; with winding numbers, less those
-  /// that run the other way.
+  /// Per piece the number of segments that a step from its right to its left crosses; with winding numbers,
+  /// minus the segments that run the other way.
   std::vector<std::int64_t> steps_across() const {
     const PiecesByLine pieces(sweep_);
     // A segment counts from its first piece on, up to the one that begins where it ends.
@@ -446,10 +444,10 @@ class ConstrainedChecker : public Checker {
     return moves;
   }
 
-  /// By face: the number of polygons that it is in.
+  /// Per face the number of polygons that contain it.
   std::vector<std::int64_t> polygon_depths() const {
     const std::vector<Move> moves = tour();
-    // Of each piece on the way, its rings, those that run back negated.
+    // The rings of each piece on the tour, negative if they run back.
     std::vector<std::vector<std::int64_t>> rings_at(sweep_.pieces().size());
     std::vector<char> is_on_way(rings_at.size(), 0);
     for (const Move& move : moves) is_on_way[move.piece] = 1;
@@ -621,8 +619,8 @@ class ConstrainedChecker : public Checker {
     }
   }
 
-  /// The constraint from one point to a later one; kNoPiece if there is none, or if another point stands for
-  /// one of them.
+  /// The constraint from one point to a later one; kNoPiece if no constraint joins them, or if another point
+  /// represents one of them.
   std::int32_t piece_between(std::int32_t a, std::int32_t b) const {
     if (!is_representative(a) || !is_representative(b)) return kNoPiece;
     const std::int32_t piece = find_piece(place_of_point_[a], place_of_point_[b]);
@@ -641,7 +639,7 @@ class ConstrainedChecker : public Checker {
       violate("there are {} indices of segments' edges, but there should be {}", ranges.size(),
               segments_.size());
     }
-    // By edge: how many up to it do not go on straight with the next one.
+    // The number of edges before each edge whose next edge does not continue straight.
     const auto count = static_cast<std::int32_t>(edges.size() / 2);
     std::vector<std::int32_t> bends(edges.size() / 2 + 1, 0);
     for (std::int32_t e = 0; e + 1 < count; ++e) {
@@ -778,7 +776,7 @@ class ConstrainedChecker : public Checker {
     return std::atan2(ux * vy - uy * vx, ux * vx + uy * vy) * 180 / std::acos(-1.0);
   }
 
-  /// Of the edges that are constraints or on the border of what is covered.
+  /// The apexes of edges that are constraints or on the border of the covered faces.
   Apexes& apexes() {
     if (apexes_ == nullptr) {
       std::vector<std::int32_t> edges;

@@ -64,7 +64,7 @@ class DelaunayChecker : public Checker {
     }
   }
 
-  /// Of every group of duplicates one index must be used.
+  /// One index of every group of duplicates must be used.
   void check_use_of_points() const {
     std::size_t smallest_unused = n_;
     for (std::size_t begin = 0, end = 0; begin < n_; begin = end) {

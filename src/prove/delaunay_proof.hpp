@@ -8,7 +8,7 @@
 
 namespace flaunay {
 
-/// What verify found. ok is true if and only if problem is empty.
+/// The result of verify. ok is true if and only if problem is empty.
 struct VerifyReport {
   bool ok = true;
   std::string problem;  ///< the first violation, naming the triangle or point and its coordinates

@@ -1,7 +1,7 @@
 // Each set is checked by the proof of constrained triangulations. Segments on which no point was added are
 // given to it as they were; the others bend where points were rounded, so their edges take their place. These
-// lead from one end of the segment to the other. Between its edges nothing else is known of such a segment,
-// but that is what the definition of splitting and refinement says.
+// lead from one end of the segment to the other. Nothing else is known of such a segment between its edges,
+// in accordance with the definition of splitting and refinement.
 #include "prove/domain_proof.hpp"
 
 #include <algorithm>
@@ -153,8 +153,8 @@ class DomainProof {
               "the hull is not the border of the triangles at point {}", hull[k]);
     }
   }
-  /// Andrew's chains (1979), from the lexicographically smallest point on. Of a line, its points in their
-  /// order.
+  /// Andrew's chains (1979), from the lexicographically smallest point on. If all points are collinear, they
+  /// are returned in lexicographic order.
   static Ids hull_of(const Part& part) {
     const auto place = [&](std::int32_t v) { return &part.points[2 * static_cast<std::size_t>(v)]; };
     Ids order;
@@ -245,7 +245,7 @@ class DomainProof {
         .problem;
   }
 
-  /// Of points with the same place, the first represents all; corners represent themselves.
+  /// The first of several equal points must represent them all, and corners themselves.
   class Representatives : RowsProof {
    public:
     Representatives(const std::vector<double>& points, const Ids& representatives, const Ids& triangles)
@@ -347,7 +347,8 @@ class DomainProof {
     if (first < last) part.holes.assign(constraints_.holes + 2 * first, constraints_.holes + 2 * last);
   }
 
-  /// Of polygons whose segments are in the set. positions: those of its segments in the list.
+  /// Lists the rings of polygons with segments in the set. positions: of the set's segments in the part's
+  /// list.
   void list_rings(std::size_t s, const std::vector<std::size_t>& positions, Part& part) const {
     const Rings& all = constraints_.rings;
     const std::vector<std::size_t>& own = segments_of_[s];
@@ -372,8 +373,8 @@ class DomainProof {
     }
   }
 
-  /// What a given mesh covers is what the triangles' own border is around: that is a ring, and all edges of
-  /// segments follow. By area, it is what was given.
+  /// The area of a given mesh is inside of its triangles' own border: the border is a ring, and all edges of
+  /// segments are on it. The total area must be that of the given mesh.
   void use_own_border(std::size_t s, Part& part) const {
     const Ids made = neighbors_of(part.triangles, part.points.size() / 2);
     part.segments.clear();

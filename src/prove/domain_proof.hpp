@@ -10,7 +10,7 @@
 
 namespace flaunay::prove {
 
-/// A result together with what was asked for.
+/// A result together with its input and options.
 struct DomainClaim {
   const double* points;
   const std::vector<std::size_t>& offsets;
@@ -19,7 +19,7 @@ struct DomainClaim {
   const ConstrainedTriangulation& mesh;  ///< its arrays have sizes and indices that fit each other
 };
 
-/// Returns what is wrong, or nothing. O((n + s) log (n + s)) for s segments.
+/// Returns the first error found; empty if all is right. O((n + s) log (n + s)) for s segments.
 std::string find_problem(const DomainClaim& claim);
 
 }  // namespace flaunay::prove

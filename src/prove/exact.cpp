@@ -14,7 +14,7 @@ namespace {
 
 namespace mp = boost::multiprecision;
 using kernel::WideLong;
-// Of fixed size, so without allocation: wide enough for all but wildly mixed magnitudes.
+// Integers of fixed size, without allocation: wide enough for all but wildly mixed magnitudes.
 using Int512 =
     mp::number<mp::cpp_int_backend<512, 512, mp::signed_magnitude, mp::unchecked, void>, mp::et_off>;
 using BigInt = mp::number<mp::cpp_int_backend<>, mp::et_off>;
@@ -57,7 +57,7 @@ struct Scaled {
 
   template <typename Integer>
   Integer coordinate(int i) const {
-    // By way of the magnitude, since shifting a negative number is not defined for every integer type.
+    // Shifts the magnitude: shifting a negative number is not defined for every integer type.
     const Integer magnitude = Integer(std::abs(mantissas[i])) << shifts[i];
     return mantissas[i] < 0 ? Integer(-magnitude) : magnitude;
   }

@@ -67,11 +67,11 @@ class ExactPredicates {
   }
 
   /// For weighted points, whose lifts are x^2 + y^2 - weight, and a, b, c counter-clockwise: +1 if the lift
-  /// of d is below the plane through those of the others, -1 if it is above, 0 if it is on it. Without
+  /// of d is below the plane through the other three lifts, -1 if it is above, 0 if it is on it. Without
   /// weights (null), that is `incircle`. weights: of a, b, c, d.
   ///
   /// The bound: a lift has an error below 5 eps of its magnitude, a minor one of 4 eps, their product adds
-  /// one, and the sum of three two. Of these 12 eps and what underflow adds (as above) we take 16.
+  /// one, and the sum of three two. We take 16 for these 12 eps and the error that underflow adds (as above).
   int power(const double* a, const double* b, const double* c, const double* d, const double* weights) {
     if (weights == nullptr) return incircle(a, b, c, d);
     const double* const from[] = {a, b, c};
@@ -168,7 +168,7 @@ class ExactPredicates {
   /// lengths.
   ///
   /// The product has an error below 4.1 eps of the lengths, so its square one of 9.3 eps of their squares'
-  /// product; what it is compared with has ten roundings. We take 24 eps, and nothing overflows or
+  /// product; the other side of the comparison has ten roundings. We take 24 eps, and nothing overflows or
   /// underflows.
   template <typename Exactly>
   int compare_squares(double value, double u, double v, double square, const Exactly& exactly) {
@@ -196,7 +196,7 @@ class ExactPredicates {
     return exact_side_of_crossing(a0, a1, b0, b1, p, axis);
   }
 
-  /// Twice the area of a triangle, rounded, and what bounds its error.
+  /// Twice the area of a triangle, rounded, and the magnitude that bounds its error.
   struct Area {
     double value, magnitude;
     Area(const double* a, const double* b, const double* c) {
@@ -226,8 +226,8 @@ inline bool comes_before(const double* a, const double* b) {
   return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1];
 }
 
-/// Where triangles on one circle meet at an edge from a to b, with c and d opposite to it: whether that edge
-/// begins or ends at the lexicographically smallest of the four, as those of its fan do.
+/// Two triangles on one circle meet at the edge from a to b, with c and d opposite to it. Returns whether the
+/// edge begins or ends at the lexicographically smallest of the four, as all edges of the canonical fan do.
 inline bool is_of_fan(const double* a, const double* b, const double* c, const double* d) {
   const double* const first = comes_before(a, b) ? a : b;
   return comes_before(first, c) && comes_before(first, d);

@@ -21,8 +21,8 @@ struct HalfEdges {
   Corner origin(Number h) const { return corners[successor(h)]; }
   Corner target(Number h) const { return corners[successor(successor(h))]; }
 
-  /// Finds the twin of each of `count` half-edges, kNone where there is none. Returns the first half-edge
-  /// that repeats one of a triangle before, or `count`. begins, keys: room for vertices + 1 and for `count`
+  /// Finds the twin of each of `count` half-edges, or kNone on the border. Returns the first half-edge that
+  /// repeats one of an earlier triangle, or `count`. begins, keys: room for vertices + 1 and for `count`
   /// values.
   ///
   /// Half-edges are collected by their smaller end (counting sort), and sorted there by the other end,

@@ -1,10 +1,10 @@
 // Why the checks together are complete: triangles are joined at all edges but those on the ends of a
 // cylinder, and are counter-clockwise. So they are a surface that lies on the torus or the cylinder without
 // folds at edges, and covers it as many times as their area says: once. All edges are locally Delaunay, and
-// at ties canonical, so the triangulation is that of its corners; and their number says that no point is
-// missing, since each missing point has two triangles less, or one less on an end. (What `fold` takes out of
-// the plane has such edges, since those of the plane are such, and images of what lies beyond an edge there
-// lie beyond it.)
+// at ties canonical, so this is the triangulation of its corners. The number of triangles shows that no point
+// is missing: each missing point means two triangles less, or one less on an end. (Triangles that `fold`
+// takes out of the plane have such edges: the plane's edges are Delaunay and canonical there, and images of
+// the triangle beyond an edge lie beyond its image.)
 #include "prove/periodic_proof.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class PeriodicProof : RowsProof {
             (wrong - places.begin()) / 2);
   }
 
-  // By a power of two, so that differences of images do not overflow.
+  // Scales by a power of two, so that differences of images do not overflow.
   void scale() {
     places_ = mesh_.places;
     for (const double length : period_) places_.push_back(std::isfinite(length) ? 2 * length : 0);
@@ -71,7 +71,7 @@ class PeriodicProof : RowsProof {
     return {mesh_.triangles[c], {mesh_.offsets[2 * c], mesh_.offsets[2 * c + 1]}};
   }
   // Relative to the origin's image in a direction that has a period. No edge of a Delaunay triangulation is
-  // longer than that, so what is rounded is wrong anyway.
+  // longer than a period, so a mesh with rounded differences is wrong anyway.
   TorusPlace place(const Image& image, const Image& origin) const {
     TorusPlace at;
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -137,7 +137,7 @@ class PeriodicProof : RowsProof {
             "the edge between the triangles {} and {} is not Delaunay, or not canonical", c / 3, other / 3);
   }
 
-  /// By how many periods a triangle is to be moved, so that the edge opposite to its corner d ends at b.
+  /// The number of periods by which a triangle must move so that the edge opposite to its corner d ends at b.
   Pair<int> step_to(const Image& b, std::size_t d) const {
     const Image end = corner(after(after(d)));
     return {b.at[0] - end.at[0], b.at[1] - end.at[1]};
@@ -164,7 +164,7 @@ class PeriodicProof : RowsProof {
 
 std::vector<std::int32_t> neighbors_of(const std::vector<std::int32_t>& triangles,
                                        const std::vector<std::int8_t>& offsets) {
-  // Of each half-edge: its ends, and how many periods lead from one to the other.
+  // The key of a half-edge: its ends, and the number of periods from one to the other.
   using Key = std::array<std::int32_t, 4>;
   const auto key = [&](std::size_t from, std::size_t to) {
     return Key{triangles[from], triangles[to], offsets[2 * to] - offsets[2 * from],

@@ -9,11 +9,11 @@
 
 namespace flaunay::prove {
 
-/// Returns what is wrong, or nothing. The mesh must have been checked by call::check. O(n log n).
+/// Returns the first error found; empty if all is right. call::check must have checked the mesh. O(n log n).
 std::string find_problem(const PeriodicTriangulation& mesh);
 
-/// The triangles beyond the edges opposite to corners, or -1. offsets: those of
-/// PeriodicTriangulation. Where an edge is there twice, it is one of them. O(t log t) for t triangles.
+/// The triangles beyond the edges opposite to corners, or -1. offsets: as in PeriodicTriangulation. If a
+/// half-edge occurs twice, either of its triangles is returned. O(t log t) for t triangles.
 std::vector<std::int32_t> neighbors_of(const std::vector<std::int32_t>& triangles,
                                        const std::vector<std::int8_t>& offsets);
 

@@ -1,7 +1,7 @@
-// Why the checks together are complete: triangles are counter-clockwise and joined at all edges but those of
-// a convex polygon, so they cover it once. By the power test, which has no ties, all edges are convex when
-// they are lifted; so the triangles are the lower hull of their corners, and none of these is hidden. All
-// other points are within triangles, and above them. Without weights, that is the canonical Delaunay
+// Why the checks together are complete: triangles are counter-clockwise and joined at all edges except the
+// edges of a convex polygon, so they cover it once. By the power test, which has no ties, all edges are
+// convex when they are lifted; so the triangles are the lower hull of their corners, and no corner is hidden.
+// All other points are within triangles, and above them. Without weights, that is the canonical Delaunay
 // triangulation: the lower hull of points that all are on the paraboloid.
 #include "prove/planar_proof.hpp"
 
@@ -119,8 +119,8 @@ class PlanarProof : RowsProof {
     }
   }
 
-  /// Lifts are lowered by an infinitesimal part of x^2 + y^2, so that what only lies on a plane of others is
-  /// hidden; and among points on one circle, that of the lexicographically smallest is lowered further.
+  /// Lifts are lowered by an infinitesimal part of x^2 + y^2, so that a point on the plane of others is
+  /// hidden; and among points on one circle, the lift of the lexicographically smallest is lowered further.
   bool is_below(const std::int32_t* t, std::int32_t p) {
     const double *const a = place(t[0]), *const b = place(t[1]), *const c = place(t[2]), *const d = place(p);
     const double weights[] = {weight(t[0]), weight(t[1]), weight(t[2]), weight(p)};

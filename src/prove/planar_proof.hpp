@@ -20,12 +20,12 @@ struct PlanarClaim {
   const std::vector<std::int32_t>& hidden;     ///< ascending; see WeightedTriangulation
 };
 
-/// Finds what is wrong with a Delaunay triangulation, or with weights a regular one, and with all of its
-/// arrays; empty if nothing is. O(n log n), and for h hidden points O(h) steps from one to the next.
+/// Finds an error in a Delaunay triangulation, or with weights a regular one, or in any of its arrays; empty
+/// if all is right. O(n log n), and for h hidden points O(h) steps from one to the next.
 std::string find_problem(const PlanarClaim& claim);
 
-/// Throws Violation for half-edges that do not fit neighbours, and for areas that are not those of triangles;
-/// either may be empty. O(n).
+/// Throws Violation for half-edges that do not fit neighbours, and for wrong areas of triangles; either may
+/// be empty. O(n).
 void check_halfedges_and_areas(const double* points, const Triangulation& mesh,
                                const std::vector<std::int32_t>& neighbors);
 

@@ -1,5 +1,5 @@
-// What the proofs of meshes with neighbours have in common, whatever space their points lie in: sets,
-// representatives, rows, and neighbours that have each other.
+// Checks that proofs of meshes with neighbours share in all spaces: sets, representatives, rows, and mutual
+// neighbours.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class RowsProof {
     end_ = rows_.triangle_offsets[s + 1];
   }
 
-  /// Of points with the same key, the first represents all. O(n log n) for n points of the set.
+  /// The first of all points with the same key must represent them. O(n log n) for n points of the set.
   template <typename Key>
   void check_representatives(const Key& key) const {
     std::vector<std::size_t> order(last_ - first_);
@@ -53,7 +53,7 @@ class RowsProof {
     }
   }
 
-  /// What is a corner or on the hull must be a point of the set that represents itself.
+  /// A corner or hull vertex must be a point of the set that represents itself.
   void check_vertex(std::int32_t v, std::size_t t) const {
     require(index(v) >= first_ && index(v) < last_ && represents_itself(index(v)),
             "triangle {} has a corner {} of another set, or that another point represents", t, v);

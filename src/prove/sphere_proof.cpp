@@ -10,20 +10,20 @@
 // If the pole is a point, all others have it as a corner. Where two triangles of one circle meet, they must
 // not lie on each other; so the edge opposite to the pole is one of the polygon, and each of these has one.
 //
-// Otherwise right triangles cover the polygon once, too. Straight ones that are joined lie on one line, and
-// have the same orientation on their circle; so they have a border. All that is joined to them lies on one
-// side of the line, left ones with their edges in one direction and right ones with theirs in the other. A
-// border sums up to nothing, so edges of right ones are where edges of left ones are: on the polygon. So
-// right ones, too, meet inside along whole edges. Lifted to the paraboloid, these are concave: that is the
-// farthest-point triangulation, which has no corners but the polygon's. Straight ones are left to fill what
-// is between an edge of these and the points on it, as canonical ties say.
+// Otherwise right triangles cover the polygon once, too. Straight triangles that are joined lie on one line,
+// and have the same orientation on their circle; so they have a border. All triangles joined to them lie on
+// one side of the line, left ones with their edges in one direction and right ones with theirs in the other.
+// A border sums up to nothing, so right triangles have edges where left triangles have edges: on the polygon.
+// So right triangles, too, meet inside along whole edges. Lifted to the paraboloid, these edges are concave:
+// right triangles are the farthest-point triangulation, whose corners are the polygon's. Straight triangles
+// fill the gap between an edge of it and the points on that edge, as canonical ties demand.
 //
 // Either way there are 2 c - 4 triangles for c corners, which have different places. So no point is missing,
 // nor does one represent itself although another point has its place.
 //
 // If no triangle turns left, all edges must be flat. So triangles that are joined lie on one circle through
-// the pole, where orientation on that takes the place of turns: left ones are those of one side of the
-// circle's polygon, and the others are the same in reverse.
+// the pole, where orientation on that circle takes the place of turns: left triangles cover one side of the
+// circle's polygon, and the others the same polygon in reverse.
 #include "prove/sphere_proof.hpp"
 
 #include <algorithm>

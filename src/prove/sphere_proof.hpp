@@ -8,8 +8,8 @@
 
 namespace flaunay::prove {
 
-/// Returns what is wrong, or nothing. places: those of the points. The mesh has arrays of fitting sizes, and
-/// indices in their range. O(n log n).
+/// Returns the first error found; empty if all is right. places: of the points. The mesh has arrays of
+/// fitting sizes, and indices in their range. O(n log n).
 std::string find_problem(const std::vector<double>& places, const SphericalTriangulation& mesh);
 
 }  // namespace flaunay::prove

@@ -83,7 +83,8 @@ void Sweep::pass(std::int32_t place) {
   if (next != active_.end()) check_crossing(leaving_.back(), *next);
 }
 
-/// Ends the pieces of all that contain the place, and puts what goes on to leaving_. Returns what is above.
+/// Ends the pieces of all active spans through the place, and moves spans that continue to leaving_. Returns
+/// the span above.
 Sweep::Status::iterator Sweep::end_pieces(std::int32_t place, Status::iterator first) {
   while (first != active_.end() && side(*first, place) == 0) {
     Active rest = *first;
@@ -102,7 +103,7 @@ Sweep::Status::iterator Sweep::end_pieces(std::int32_t place, Status::iterator f
   return first;
 }
 
-/// Sorts what leaves a place by its direction, and makes one of those with the same.
+/// Sorts the spans that leave a place by direction, and merges spans with the same direction.
 void Sweep::merge_leaving(std::int32_t place) {
   std::sort(leaving_.begin(), leaving_.end(),
             [this, place](const Active& a, const Active& b) { return orient(place, a.to(), b.to()) > 0; });
@@ -114,8 +115,8 @@ void Sweep::merge_leaving(std::int32_t place) {
   leaving_.resize(count);
 }
 
-/// Of those with one direction: up to their furthest ends, on the line of what ended at the place, or a new
-/// one. Of segments that end at one place, the one with the smallest number counts.
+/// Merges spans with one direction. The result extends to their furthest ends and keeps the line of a span
+/// that came through the place, otherwise it gets a new line. The smallest segment that ends there counts.
 Sweep::Active Sweep::merged(std::size_t first, std::size_t last) {
   Active all = leaving_[first];
   for (std::size_t i = first; i < last; ++i) {
@@ -135,7 +136,7 @@ Sweep::Active Sweep::merged(std::size_t first, std::size_t last) {
   return all;
 }
 
-/// Of neighbours, of which one begins or has become the other's neighbour.
+/// Checks two spans that have just become neighbours.
 void Sweep::check_crossing(const Active& lower, const Active& upper) {
   const bool crosses = lower.to() < upper.to()   ? orient(upper.from, upper.to(), lower.to()) > 0
                        : upper.to() < lower.to() ? orient(lower.from, lower.to(), upper.to()) < 0

@@ -16,7 +16,7 @@ struct Place {
   bool is_point = true;  ///< whether it cuts spans; otherwise only its face is asked for
 };
 
-/// What is to be cut: from a place to a later one.
+/// A segment or hull edge to be cut, from a place to a later one.
 struct Span {
   std::int32_t from, to;
   std::int32_t segment;  ///< its number, or kHull
@@ -26,7 +26,7 @@ constexpr std::int32_t kHull = -1;
 /// Between places that follow each other on a span.
 struct Piece {
   std::int32_t from, to;
-  std::int32_t segment;       ///< one that it is a part of, or kHull if it is none's
+  std::int32_t segment;       ///< a segment of which it is a part; kHull if no segment covers it
   std::int32_t below, above;  ///< the faces on its right and on its left
   std::int32_t line;          ///< pieces of one span are on one line
 };
@@ -46,22 +46,22 @@ class Sweep {
   /// Ends at the first crossing that it finds.
   Crossing run(const std::vector<Span>& spans);
 
-  /// By `from`, then by `to`.
+  /// Sorted by `from`, then by `to`.
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// By segment: the line of its pieces; kNoLine if there was no such span.
+  /// The line of each segment's pieces; kNoLine if no span had this segment.
   const std::vector<std::int32_t>& line_of_segment() const { return line_of_segment_; }
   static constexpr std::int32_t kNoLine = -1;
   std::size_t line_count() const { return line_count_; }
-  /// By place: the face that it is inside of, or on whose border it is on the hull; kNoFace if it is on a
-  /// segment.
+  /// The face of each place: the face that contains it, or for a place on the hull the face next to it;
+  /// kNoFace if the place is on a segment.
   const std::vector<std::int32_t>& face_of_place() const { return face_of_place_; }
   static constexpr std::int32_t kNoFace = -1;
   /// Faces are numbered from 0, which is outside of everything.
   std::size_t face_count() const { return face_count_; }
 
  private:
-  // Spans on one line, from a place of theirs to the furthest end of those that are segments, and of those
-  // that are not; 0 if there are none.
+  // Overlapping spans on one line, from a common place to the furthest end of segments, and of hull edges; 0
+  // if the line has none.
   struct Active {
     std::int32_t from;
     std::int32_t segment, segment_to, hull_to;
@@ -118,7 +118,7 @@ class Sweep {
   struct OnHull {
     std::int32_t place, below, above;
   };
-  std::vector<OnHull> on_hull_;  // places on no segment, and the faces beside what they are on
+  std::vector<OnHull> on_hull_;  // places on no segment, and the faces beside the hull edge that they are on
   std::size_t face_count_ = 1;
 };
 

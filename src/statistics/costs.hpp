@@ -1,5 +1,5 @@
-// Costs of operations by the rules of docs/counting.md: those of predicates, from kernels/operations/costs.h,
-// and steps in the scan model.
+// Costs of operations by the rules of docs/counting.md: the costs of predicates, from
+// kernels/operations/costs.h, and steps in the scan model.
 #pragma once
 
 #include <cstddef>

@@ -60,7 +60,7 @@ inline void add_beside(OperationCounts& level, const OperationCounts& region) {
   level.critical_path = dearest;
 }
 
-/// Adds what was done for a part of a level's regions to the level; of rounds, it has the most.
+/// Adds the work for a part of a level's regions to the level. The level's rounds are the most of any part.
 inline void add_part(LevelStatistics& level, const LevelStatistics& part) {
   level.regions += part.regions;
   level.internal_points += part.internal_points;

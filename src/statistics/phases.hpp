@@ -16,7 +16,7 @@ constexpr double kTriangulated = 0.8;
 
 class Phases {
  public:
-  /// Seconds on a clock that may stand still meanwhile, for what belongs to no phase.
+  /// Seconds on a clock that may stand still during work that belongs to no phase.
   using Clock = std::function<double()>;
 
   explicit Phases(const Options& options, Clock clock = wall_clock)

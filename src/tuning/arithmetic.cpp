@@ -19,18 +19,18 @@
 namespace flaunay::tuning {
 namespace {
 
-// Beside this, what a launch itself takes is little, and what clocks cannot tell.
+// Compared to this, the time of the launch itself and the resolution of clocks are small.
 constexpr double kLeastSeconds = 2e-4;
 // The longest chain of a device that is faster than any, or of a clock that stands still.
 constexpr std::size_t kFirstSteps = 64, kMostSteps = kFirstSteps << 16, kMoreSteps = 4;
 // Both precisions take turns, since clocks of GPUs rise when there is work.
 constexpr int kRuns = 4;
-// What no device is beyond.
+// No device is slower than this.
 constexpr double kMostSlowness = 1e6;
 
 constexpr Precision kBoth[] = {Precision::float32, Precision::float64};
 
-// Chains of one precision: how long they are, and the least time that one took, less that of a launch.
+// Chains of one precision: their length, and the shortest time that one took, with its launch.
 struct Chains {
   std::size_t steps = kFirstSteps;
   double seconds = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ double slowness_of_fp64(const RunSteps& run_steps) {
   }
   double per_step[2];
   for (int k = 0; k < 2; ++k) {
-    // On a busy device, the launches of one step may have taken longer than those of many.
+    // On a busy device, launches of one step may have taken longer than launches of many steps.
     const double computing = std::max(chains[k].seconds - launch[k], chains[k].seconds / 2);
     per_step[k] = computing / static_cast<double>(chains[k].steps);
   }
@@ -115,7 +115,7 @@ void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& sl
   try {
     found = slowness();
   } catch (const std::exception&) {
-    return;  // what is wrong with the device, the self-test says
+    return;  // the self-test reports faults of the device
   }
   if (!(found >= static_cast<double>(tuning.fixed_point_from))) return;
   host::Capabilities capabilities = runtime.capabilities();
@@ -125,7 +125,7 @@ void choose_arithmetic(host::Runtime& runtime, const std::function<double()>& sl
 
 void choose_arithmetic([[maybe_unused]] host::Runtime& runtime) {
 #ifndef FLAUNAY_WITHOUT_OPENCL
-  // Of CPUs it is known, and what pretends to be one and a GPU is a simulator, whose times mean nothing.
+  // For CPUs the result is known. A device that claims to be both is a simulator, whose times mean nothing.
   if (runtime.is_native() || (runtime.device().type() & CL_DEVICE_TYPE_CPU) != 0) return;
   choose_arithmetic(runtime, [&] {
     // A changed measurement is another one.

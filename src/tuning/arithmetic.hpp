@@ -18,9 +18,9 @@ namespace flaunay::tuning {
 /// fails.
 void choose_arithmetic(host::Runtime& runtime);
 
-// ---- What it consists of, for tests
+// ---- Its parts, for tests
 
-/// Runs a chain of so many steps on every lane, and returns the seconds that it took.
+/// Runs a chain of `steps` steps on every lane, and returns the seconds that it took.
 using RunSteps = std::function<double(Precision, std::size_t steps)>;
 
 /// How many times as long double precision takes as single precision.
@@ -29,7 +29,7 @@ double slowness_of_fp64(const RunSteps& run_steps);
 /// How many times as long it takes on a device, which must have fp64. Measuring takes some milliseconds.
 double measured_slowness_of_fp64(host::Runtime& runtime);
 
-/// What is remembered under a key, or else what `measure` returns, which is remembered from then on.
+/// The value remembered under a key. If there is no such value, calls `measure` and remembers its result.
 double remembered_slowness(const host::ProgramCache& cache, const std::string& key,
                            const std::function<double()>& measure);
 

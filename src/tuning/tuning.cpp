@@ -471,7 +471,7 @@ constexpr std::size_t kPointsOfASmallBlock = 6;
                   given, kLargestGroup));
 }
 
-// What the table asks about a device.
+// The facts about a device on which the table depends.
 struct Target {
   std::string name;
   bool is_cpu;
@@ -536,7 +536,7 @@ bool override_value(KindOfDevice& kind, const std::string& part) {
   const auto capability = std::find_if(std::begin(kCapabilities), std::end(kCapabilities), is_named);
   if (capability == std::end(kCapabilities)) return false;
   kind.capabilities.*capability->member = *number != 0;
-  // What is chosen by hand needs no measurement.
+  // A choice by hand needs no measurement.
   if (capability->member == &host::Capabilities::fixed_point) kind.tuning.fixed_point_from = 0;
   return true;
 }
@@ -551,7 +551,7 @@ std::vector<std::string> parts_of(const std::string& list) {
   return parts;
 }
 
-// given: as FLAUNAY_TUNING has it; what it leaves open is as in `kind`.
+// given: in the form of FLAUNAY_TUNING; values that it does not set are as in `kind`.
 KindOfDevice overridden(KindOfDevice kind, const std::string& given, const Target& target) {
   if (given.empty()) return kind;
   bool is_first = true;
@@ -567,7 +567,7 @@ KindOfDevice overridden(KindOfDevice kind, const std::string& given, const Targe
   return kind;
 }
 
-// What is said of the target by its name; empty if nothing is.
+// The tuning values for the target's name; empty if its name is not listed.
 std::string tuning_by_name(const Target& target) {
   for (const NamedDevice& named : kNamedDevices) {
     if (target.name.find(named.name) != std::string::npos) return named.tuning;
@@ -581,7 +581,7 @@ KindOfDevice kind_of_target(const Target& target, const std::string& given) {
   return overridden(own, given, target);
 }
 
-// Reduces sizes to what kernels have local memory for.
+// Reduces sizes so that kernels have enough local memory.
 void fit_tiles(Tuning& tuning) {
   const auto fit = [](std::size_t& size, std::size_t most) { size = std::clamp<std::size_t>(size, 1, most); };
   const std::size_t samples = tuning.local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE;
@@ -630,8 +630,8 @@ host::Settings settings_for(const boost::compute::device& device, const std::str
 std::shared_ptr<const Tuning> native_tuning(const std::string& given) {
   const Target host{host::kHostName, true, host::native_threads()};
   auto tuning = std::make_shared<Tuning>(kind_of_target(host, given).tuning);
-  // What kernels are compiled for cannot be changed any more, and native kernels always work in host memory,
-  // on whole blocks.
+  // Sizes for which native kernels were compiled cannot be changed. Native kernels always work in host
+  // memory, on whole blocks.
   const Tuning compiled = values_of(kCpu, host).tuning;
   tuning->sort_bits = compiled.sort_bits;
   tuning->sort_group = compiled.sort_group;

@@ -15,7 +15,7 @@ class ConstraintEdges {
  public:
   /// No edges.
   ConstraintEdges() = default;
-  /// The edges of a triangulation whose points have so many numbers.
+  /// The edges of a triangulation whose points have numbers below `numbers`.
   ConstraintEdges(const ConstrainedTriangulation& mesh, std::size_t numbers);
 
   bool empty() const { return edges_.empty(); }
@@ -25,8 +25,8 @@ class ConstraintEdges {
   LivingConstraints listed(const std::vector<double>& coordinates) const;
   /// Per corner of a triangulation with these edges the segment of the edge opposite, or -1. O(t).
   std::vector<std::int32_t> segments_of_corners(const ConstrainedTriangulation& mesh) const;
-  /// Replaces the edges that were split by their parts, of which some may have been split, too. numbers: of
-  /// points. If it throws, nothing has changed.
+  /// Replaces the edges that were split by their parts. Parts may have been split, too. numbers: of points.
+  /// If it throws, nothing has changed.
   void split(const std::vector<SplitEdge>& splits, std::size_t numbers);
 
  private:

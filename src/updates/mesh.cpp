@@ -252,7 +252,7 @@ Ids Mesh::old_triangles() {
   return old;
 }
 
-// What is near in the plane comes near in the list. Of those in one place the smallest stays.
+// Sorts vertices so that neighbours in the plane are close in the list. The smallest of equals stays.
 Ids Mesh::in_order_of_place(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<Found>& doubled) const {
   if (vertices.size() < 2) return vertices;
@@ -447,7 +447,7 @@ bool Mesh::remove(const Ids& vertices) {
     if (triangles_ == 0) return false;
     runtime_.map(left, kernels::append_rows{.positions = at, .all = 0, .from = list, .list = next});
     std::swap(list, next);
-    // Those that are too large have left the list, too.
+    // Vertices with too many triangles have left the list, too.
     if (left == waiting) throw_stuck("points to be removed");
     waiting = left;
   }
@@ -486,7 +486,7 @@ Mesh::RowList Mesh::rows_around(const Buffer<cl_int>& vertices, std::size_t coun
 
 std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinates, bool are_many) {
   Arena& arena = runtime_.arena();
-  // Flips take longer than triangulating anew if one row in so many is wrong, unless there are few.
+  // Flips take longer than triangulating anew if one row in kRowsPerFlip is wrong, unless there are few rows.
   constexpr std::size_t kRowsPerFlip = 100, kFewRows = 5000;
   Ids out;
   while (!vertices.empty()) {
@@ -499,7 +499,7 @@ std::optional<Ids> Mesh::move(Ids vertices, const std::vector<double>& coordinat
     const auto others = runtime_.upload(arena, scaled(vertices, coordinates)).as<cl_double2>();
     bool is_turned = false;
     if (!are_many) {
-      // The hull stays what it is, so that triangles that have not turned over are apart.
+      // The hull stays unchanged, so that triangles that have not turned over do not overlap.
       runtime_.map(count,
                    kernels::find_hull_vertices{
                        .vertices = moved, .living_mesh = mesh, .rows_of = rows_of_, .on_hull = turned});

@@ -41,7 +41,7 @@ class Mesh {
 
   /// Begins to account for changes.
   void begin_batch();
-  /// Tells what has changed since.
+  /// Reports the changes since then.
   void end_batch(Changes& changes);
   /// The rows that held triangles when the batch began, also if it has ended by an error.
   Ids old_triangles();
@@ -58,8 +58,9 @@ class Mesh {
   struct Found {
     std::int32_t vertex, other;
   };
-  /// Puts vertices in. coordinates: per number. Returns those in whose place there is one already, and then
-  /// those for which another one of these is tried, the smallest; adds to `splits` those of constraints.
+  /// Inserts vertices. coordinates: per number. Returns the vertices whose place another vertex has already,
+  /// a vertex of the mesh or, after these, the smallest of several new ones. Adds split constraint edges to
+  /// `splits`.
   std::vector<Found> insert(Ids vertices, const std::vector<double>& coordinates,
                             std::vector<SplitEdge>& splits);
   /// Takes vertices out. Returns whether it could: not if one has too many triangles around it, or if no
@@ -79,7 +80,7 @@ class Mesh {
     Buffer<cl_int> vertices{};
     std::size_t slabs = 0, points = 0;  // points: those that there were when they were made
   };
-  // A list of rows: all up to a number, or those of a list.
+  // Rows of the mesh: all below a count, or the rows in a list.
   struct RowList {
     bool all = false;
     Buffer<cl_int> list{};
@@ -101,7 +102,7 @@ class Mesh {
   RowList rows_around(const Buffer<cl_int>& vertices, std::size_t count);
   void flip(RowList wrong);
 
-  // Of so many vertices one is where walks may begin; then these are some 3 triangles long.
+  // One of this many vertices is a place where walks may begin; walks are then some 3 triangles long.
   static constexpr std::size_t kVerticesPerHint = 16;
   // Stamps of rows are twice as large.
   static constexpr std::int32_t kMostBatches = (1 << 30) - 2;

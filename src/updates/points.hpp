@@ -45,7 +45,7 @@ class Points {
   /// they differ too much in magnitude from all others. numbers: of the points, which must be marked; null
   /// for further ones.
   void check_coordinates(const double* coordinates, const std::int32_t* numbers, std::size_t m);
-  /// Returns the first of m entries that is no living point, or the same as one before; m if there is none.
+  /// Returns the first of m entries that is no living point or repeats an earlier one; m if all are valid.
   std::size_t mark(const std::int32_t* numbers, std::size_t m);
   /// Whether the last batch marked has this point.
   bool is_marked(std::int32_t v) const { return marks_[static_cast<std::size_t>(v)] == batch_; }

@@ -1,4 +1,4 @@
-// Triangles from the rows of a mesh that changes, of which some are ghosts and some are free.
+// Triangles from the rows of a mesh that changes, where some rows are ghosts and some are free.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace flaunay::updates {
 
-/// The triangles at their rows; -1 stands for what is none. O(t).
+/// The triangles at their rows; -1 in rows that are ghosts or free. O(t).
 TriangleRows rows_of(const std::vector<kernel::mesh_row>& rows);
 
 /// The triangles, their neighbours and the hull, from its lexicographically smallest vertex on. O(t).

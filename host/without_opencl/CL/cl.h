@@ -1,6 +1,5 @@
-// In the place of OpenCL's header, in a build without OpenCL (FLAUNAY_OPENCL=OFF): of its types, constants
-// and functions those that code outside host/opencl uses. This folder comes first among those of headers
-// then.
+// Replaces OpenCL's header in a build without OpenCL (FLAUNAY_OPENCL=OFF). It has the types, constants and
+// functions that code outside host/opencl uses. In such a build, this folder is the first include folder.
 #pragma once
 
 #include <cstddef>
@@ -65,7 +64,7 @@ constexpr cl_uint CL_FALSE = 0, CL_MEM_OBJECT_BUFFER = 0x10F0,
     CL_MEM_USE_HOST_PTR = 1 << 3, CL_MEM_HOST_WRITE_ONLY = 1 << 7, CL_MEM_HOST_READ_ONLY = 1 << 8,
     CL_MEM_HOST_NO_ACCESS = 1 << 9,
     CL_DEVICE_TYPE_CPU = 1 << 1, CL_DEVICE_TYPE_GPU = 1 << 2, CL_QUEUE_PROFILING_ENABLE = 1 << 1;
-// What functions are asked for, which do not look at it.
+// Arguments of functions that ignore them.
 enum {
   CL_BUFFER_CREATE_TYPE_REGION, CL_CONTEXT_DEVICES, CL_DEVICE_DOUBLE_FP_CONFIG, CL_DEVICE_HOST_UNIFIED_MEMORY,
   CL_DEVICE_LOCAL_MEM_SIZE, CL_DEVICE_MAX_WORK_ITEM_SIZES, CL_DEVICE_MEM_BASE_ADDR_ALIGN,

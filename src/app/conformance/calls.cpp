@@ -23,7 +23,7 @@ namespace {
 using Coordinates = std::vector<double>;
 using Offsets = std::vector<std::size_t>;
 
-// Of io::generate, and "all-magnitudes", which no fixed point holds together.
+// The points of io::generate, or "all-magnitudes": together these do not fit fixed point.
 Coordinates points_of(const std::string& input, std::size_t n) {
   if (input != "all-magnitudes") return io::generate(input, n, 1).coordinates;
   Coordinates points = points_of("uniform", n);
@@ -101,7 +101,7 @@ void add(Arrays& results, const std::string& name, const ClippedVoronoi& cells) 
   results.add(name + " centroids", cells.centroids);
 }
 
-// Of a torus or a sphere.
+// Adds a mesh on a torus or a sphere.
 template <typename Mesh>
 void add_unfolded(Arrays& results, const std::string& name, const Mesh& mesh) {
   results.add(name + " places", mesh.places);

@@ -1,4 +1,4 @@
-// Calls of the library, on small inputs that have every kind of degeneracy: what a device is tested with.
+// Calls of the library with which devices are tested, on small inputs that have every kind of degeneracy.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace flaunay::conformance {
 
 struct Call {
   std::string name;
-  /// Makes the call on the triangulator's device, and adds its results. n: about so many points.
+  /// Makes the call on the triangulator's device, and adds its results. n: the approximate number of points.
   std::function<void(Triangulator& triangulator, std::size_t n, Arrays& results)> make;
 };
 

@@ -47,7 +47,7 @@ namespace {
 
 using cli::Json;
 
-// What has been found out of one device, as a file that is written after every call.
+// The results for one device, in a file that is written after every call.
 class Record {
  public:
   Record(std::string path, const Json& device) : path_(std::move(path)) {

@@ -10,7 +10,7 @@ namespace flaunay::conformance {
 struct Request {
   std::string device;         ///< as for Triangulator, not the host; empty: the first one
   std::string only;           ///< a call's name; empty: all of them
-  std::string record;         ///< a file for the record; what it has of this device already is not run again
+  std::string record;         ///< a file for the record; calls of this device in it are not run again
   std::size_t points = 1000;  ///< of an input, about
 };
 

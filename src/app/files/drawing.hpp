@@ -40,7 +40,7 @@ class Drawing {
   const Position& position(std::int32_t point) const { return positions_[static_cast<std::size_t>(point)]; }
   bool contains(const Position& p) const { return p.x >= 0 && p.x <= width_ && p.y >= 0 && p.y <= height_; }
 
-  /// Paths have whole numbers, so many per pixel. To be set before the document begins.
+  /// Paths have integer coordinates: `units` per pixel. Call it before the document begins.
   void set_units(double units) { units_ = units; }
   std::int64_t unit(double pixels) const { return std::llround(pixels * units_); }
   /// Whether both are one position in paths.
@@ -61,7 +61,7 @@ class Drawing {
   void end_path() { file_.print("\"/>\n"); }
   void move_to(const Position& p) { step({unit(p.x), unit(p.y)}, true); }
   void line_to(const Position& p) { step({unit(p.x), unit(p.y)}, false); }
-  /// The part of a polygon in the view, enlarged by `room` on each side; what has no area only if
+  /// The part of a polygon in the view, enlarged by `room` on each side. Parts without area only if
   /// `with_flat`.
   void polygon(std::vector<Position>& corners, double room, bool with_flat);
   /// The part of an edge in the view, unless it is too short to show.

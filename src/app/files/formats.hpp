@@ -1,4 +1,4 @@
-// The formats of files: what is read and written, by the ending of the path. Each format is defined in the
+// File formats, chosen by the ending of the path: how each is read and written. Each format is defined in the
 // file that reads and writes it.
 #pragma once
 
@@ -17,14 +17,14 @@
 
 namespace flaunay::io {
 
-/// What is null is not in the format.
+/// A file format. Null members are not supported by it.
 struct Format {
   std::string_view ending;        ///< in lower case
   std::string_view content = "";  ///< of files with points, for messages
 
   // Points are read in one of three ways: as records of a binary file, as text in pieces, or with a whole
   // map.
-  /// Finds the records. Throws Error(input) that names the file if it is none of the format, or not complete.
+  /// Finds the records. Throws Error(input) that names the file if it has another format or is incomplete.
   PointRecords (*records)(const std::string& path, InputFile& file) = nullptr;
   std::unique_ptr<PointText> (*text)(const std::string& path, const Columns& columns) = nullptr;
   Map (*map)(const std::string& path) = nullptr;
@@ -35,9 +35,9 @@ struct Format {
   std::vector<std::int32_t> (*triangles)(const std::string& path) = nullptr;
 
   // Points are written in pieces.
-  /// What comes before n points.
+  /// Writes the header of a file with n points.
   void (*begin_points)(OutputFile& file, std::uint64_t n, bool has_markers) = nullptr;
-  /// The next points, of which the first has this index. markers: null if there are none.
+  /// Writes the next points. first: the index of the first of them. markers: may be null.
   void (*write_points)(OutputFile& file, const double* coordinates, const std::int32_t* markers,
                        std::uint64_t first, std::size_t count) = nullptr;
   std::size_t least_bytes = 0;  ///< of a point
@@ -59,7 +59,7 @@ extern const Format kNpy, kNode, kXy, kXyz, kTxt, kCsv, kBin, kLas, kLaz, kPoly,
 /// Format::text of the formats that have columns.
 std::unique_ptr<PointText> column_text_of_points(const std::string& path, const Columns& columns);
 
-/// What a file may be for.
+/// Uses of a file.
 struct Use {
   using Test = bool (*)(const Format& format);
   static bool read_points(const Format& format) {
@@ -71,15 +71,15 @@ struct Use {
   static bool read_triangles(const Format& format) { return format.triangles != nullptr; }
   static bool write_points(const Format& format) { return format.write_points != nullptr; }
   static bool write_mesh(const Format& format) { return format.write_mesh != nullptr; }
-  /// Of a terrain, for which .geojson has contours.
+  /// Whether it is written for a terrain. .geojson is for contours there.
   static bool write_surface(const Format& format) { return has_heights(format) && !read_map(format); }
   static bool has_heights(const Format& format) { return write_mesh(format) && format.is_spatial; }
 };
 
-/// The format of a path. Throws Error(usage) that lists the endings if there is none for this use. "-" is
-/// text.
+/// The format of a path. Throws Error(usage) that lists the endings if no format with this ending has this
+/// use. "-" is text.
 const Format& format_of(const std::string& path, Use::Test use);
-/// The format of a path, if there is one for this use; null otherwise.
+/// The format of a path; null if no format with its ending has this use.
 const Format* find_format(const std::string& path, Use::Test use);
 /// ".npy, .node, ..."
 std::string endings_for(Use::Test use);

@@ -14,7 +14,7 @@ namespace {
 
 // The points are the same, byte for byte, on every machine. So this file uses only + - * / and sqrt, which
 // IEEE 754 fixes to the last bit, and the raw output of mt19937_64, which the standard fixes. It has its own
-// logarithm, sine and cosine, because those of the C library differ between versions and processors.
+// logarithm, sine and cosine, because the C library's differ between versions and processors.
 
 double portable_log(double x) {
   constexpr double kLog2 = 0x1.62e42fefa39efp-1, kHalfRoot = 0x1.6a09e667f3bcdp-1;
@@ -228,7 +228,7 @@ MakePoints columns(std::size_t, Random& random) {
   });
 }
 
-/// Of n points with integers below this, most are there several times.
+/// Most of n points with integer coordinates below this occur several times.
 std::uint64_t small_bound(std::size_t n) {
   return static_cast<std::uint64_t>(std::sqrt(static_cast<double>(n)) / 2) + 2;
 }

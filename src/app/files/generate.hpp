@@ -24,7 +24,7 @@ struct Distribution {
   MakePoints (*maker)(std::size_t n, Random& random);
 };
 
-/// The known distributions, each with a line of description; the first four are those of the paper.
+/// The known distributions, each with a line of description; the first four are from the paper.
 const std::vector<Distribution>& distributions();
 
 /// Makes n points of the named distribution. Throws Error(usage) with the known names if there is no such

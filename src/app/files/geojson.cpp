@@ -233,7 +233,7 @@ class GeoJsonReader {
     for (std::size_t i = first; i + 1 < end; ++i) add_segment(map_.lines, i, i + 1);
   }
 
-  /// Of a polygon: the first one is its border, and the others are holes.
+  /// Reads the rings of a polygon: first its border, then its holes.
   void read_rings(const Json& value, const Place& at) {
     for_each(value, at, [this](const Json& ring, const Place& place) { read_ring(ring, place); });
     map_.part_offsets.push_back(map_.ring_offsets.size() - 1);

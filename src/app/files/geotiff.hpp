@@ -39,7 +39,7 @@ void write_geotiff(const std::string& path, const std::string& name, const GeoRa
 
 /// The bytes of a .png file. bands: grey and then alpha, row by row. name: for messages, as of the next one.
 std::string png_of(const std::string& name, const std::uint8_t* bands, std::size_t rows, std::size_t columns);
-/// The bytes of a .gpkg file of lines with their heights, of which `heights` has the values.
+/// The bytes of a .gpkg file of contour lines. heights: the heights of contours.
 std::string geopackage_of(const std::string& name, const Contours& contours,
                           const std::vector<double>& heights, const std::string& crs);
 

@@ -1,5 +1,5 @@
-// By GDAL's interface in C. The library is opened when it is first needed: it brings a hundred others, which
-// would take longer to load than small inputs take in all.
+// Uses GDAL's C interface. The library is opened when it is first needed: it brings a hundred others, which
+// take longer to load than small inputs take in all.
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
@@ -97,7 +97,7 @@ const Gdal& gdal() {
   return opened;
 }
 
-// GDAL's messages become those of errors.
+// Turns GDAL's messages into messages of errors.
 class Quiet {
  public:
   Quiet() {
@@ -255,7 +255,7 @@ std::string png_of(const std::string& name, const std::uint8_t* bands, std::size
                    std::size_t columns) {
   const Quiet quiet;
   const GDALDriverH png = driver("PNG", name);
-  // GDAL takes what it only reads as it takes what it writes.
+  // GDAL takes a pointer to mutable data even if it only reads.
   const Dataset source = dataset_of(const_cast<std::uint8_t*>(bands), GDT_Byte, 1, 2, rows, columns);
   const MemoryFile file(".png");
   Dataset written(

@@ -65,7 +65,7 @@ std::vector<GlobeRing> cut_at_date_line(const GlobeRing& corners) {
     const double west = -kDateLine + turn * kTurn;
     GlobeRing part = clipped(clipped(ring, west, 1), west + kTurn, -1);
     const auto is_on = [&](const OnGlobe& p) { return p[0] == part.front()[0]; };
-    // What only touches the line has no area.
+    // A part that only touches the line has no area.
     if (part.size() < 3 || std::all_of(part.begin(), part.end(), is_on)) continue;
     for (OnGlobe& p : part) p[0] -= turn * kTurn;
     parts.push_back(part);

@@ -1,7 +1,7 @@
 // Points of LAS files.
 //
 // The format: American Society for Photogrammetry and Remote Sensing, "LAS Specification 1.4 - R15", 2019,
-// and those of versions 1.0 (2003) to 1.3 (2010), whose headers are the beginning of this one.
+// and versions 1.0 (2003) to 1.3 (2010), whose headers are the beginning of this one.
 #include "app/files/las.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace flaunay::io {
 namespace {
 
-// Where the header of the specification has what is read here.
+// Offsets in the header of the fields read here.
 constexpr std::size_t kVersionMajor = 24, kVersionMinor = 25, kHeaderSize = 94, kDataBegin = 96,
                       kFormat = 104, kRecordBytes = 105, kLegacyCount = 107, kScale = 131, kOffset = 155,
                       kBox = 179, kCount = 247, kVariableCount = 100;
@@ -72,7 +72,7 @@ void check_format(const std::string& path, int format, std::size_t record_bytes)
 }
 
 void check_size(const std::string& path, const LasHeader& points, std::uint64_t bytes) {
-  // What follows the points, such as further records of variable length, is not read.
+  // Data after the points, such as further records of variable length, is not read.
   if (points.begin > bytes || points.size > (bytes - points.begin) / points.record_bytes) {
     fail(path, "is truncated: {} points of {} bytes from byte {} on, but the file has {} bytes", points.size,
          points.record_bytes, points.begin, bytes);

@@ -37,7 +37,7 @@ class LasAxis {
   double whole_ = 0, first_ = 0;  // 1 / scale and offset / scale if these are whole numbers, or else 0
 };
 
-/// What the header of a file says.
+/// The contents of a file's header.
 struct LasHeader {
   std::uint64_t size = 0;   ///< of point records
   std::uint64_t begin = 0;  ///< of the first one, in bytes

@@ -22,7 +22,7 @@ struct Map {
   Points points;
   /// 2 points per segment, in the order of the file: of rings, if there are polygons.
   std::vector<std::int32_t> segments;
-  /// Further segments: those of lines beside polygons, which bound nothing.
+  /// Further segments, of lines beside polygons. They bound nothing.
   std::vector<std::int32_t> lines;
   std::vector<double> holes;                  ///< x and y per hole: a place inside of it
   std::vector<std::int32_t> segment_markers;  ///< of a .poly file that has some
@@ -31,12 +31,12 @@ struct Map {
   /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
   /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
   std::vector<std::size_t> ring_offsets = {0}, part_offsets = {0}, polygon_offsets = {0};
-  /// Of GeoJSON, per polygon: the properties of its feature, as the members of a JSON object without its
-  /// braces; empty if there are none.
+  /// Per polygon of GeoJSON the properties of its feature: the members of a JSON object without its braces,
+  /// or empty.
   std::vector<std::string> properties = {};
   std::string crs = {};            ///< of GeoJSON that names one: "EPSG:n", or else the name
   bool has_others = false;         ///< lines or points besides polygons
-  std::vector<std::string> notes;  ///< what was left out or mended, a sentence each
+  std::vector<std::string> notes;  ///< a sentence for each thing that was left out or mended
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
 };
@@ -46,8 +46,8 @@ bool is_map(const std::string& path);
 
 /// Reads a map from path, by its ending (any case):
 ///   .poly            Triangle's format: comments, attributes, boundary markers, first index 0 or 1; without
-///                    vertices, those of the .node file beside it
-///   .geojson .json   GeoJSON (RFC 7946): any object; the third coordinate is a height, those after it are
+///                    vertices, the vertices of the .node file beside it
+///   .geojson .json   GeoJSON (RFC 7946): any object; the third coordinate is a height, later ones are
 ///                    ignored, and rings that are not closed are read as closed
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.

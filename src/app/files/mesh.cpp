@@ -168,8 +168,8 @@ void write_vtu(OutputFile& file, const MeshContents& contents) {
   file.print("\n</AppendedData>\n</VTKFile>\n");
 }
 
-/// What a triangle belongs to, as a number from 1 on: its attribute if these are numbers of things, or else
-/// its polygon, or else its region.
+/// The group of each triangle, as a number from 1 on: its attribute if all attributes are integers,
+/// otherwise its polygon or its region.
 std::vector<std::int64_t> physical_numbers(const MeshContents& contents) {
   const ConstrainedTriangulation& mesh = contents.constraints();
   const auto is_number = [](double attribute) {
@@ -236,8 +236,8 @@ class NumberedLines {
   std::size_t header_fields = 0;
   long long base = 0;  // the number of the first line
 
-  /// Goes to the next line, behind its number; false at the end. columns: what a line has besides, so many
-  /// fields.
+  /// Goes to the next line, behind its number; false at the end. fields: how many fields follow the number;
+  /// columns: their names.
   bool next(std::size_t fields, const std::string& columns) {
     if (!lines.next()) {
       if (read_ == count_) return false;
@@ -521,7 +521,7 @@ std::vector<double> read_triangle_attributes(const std::string& path) {
 std::vector<double> read_areas(const std::string& path) {
   NumberedLines rows(path, "Triangle's .area format", "triangles");
   std::vector<double> areas;
-  // As for Triangle, negative areas are none.
+  // As in Triangle, a negative area means no limit.
   while (rows.next(1, "area")) areas.push_back(std::max(finite_number(rows.lines, "an area"), 0.0));
   return areas;
 }

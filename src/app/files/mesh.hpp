@@ -19,8 +19,8 @@ struct MeshContents {
   const Triangulation& mesh;
   const ConstrainedTriangulation* constrained = nullptr;  ///< the mesh, if it has constraints
   const Map* map = nullptr;                               ///< then the map of the constraints
-  FillRule fill_rule = FillRule::nesting;                 ///< what depths mean
-  bool is_on_globe = false;  ///< points are longitudes and latitudes, and triangles are those of the sphere
+  FillRule fill_rule = FillRule::nesting;                 ///< the meaning of depths
+  bool is_on_globe = false;  ///< points are longitudes and latitudes, and triangles lie on the sphere
 
   std::size_t triangle_count() const { return mesh.triangles.size() / 3; }
   double height(std::size_t point) const { return points.heights.empty() ? 0 : points.heights[point]; }
@@ -32,11 +32,11 @@ struct MeshContents {
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
 /// (binary little-endian), .vtu, .obj, .msh (Gmsh 2.2), .npy (int32, m x 3), .geojson (a polygon per
-/// triangle), .svg (a picture). Points that splitting added follow those of the input. Heights, which must be
-/// known of all points, are in .off, .ply, .vtu, .obj, .msh and .geojson. Constraints are written as far as
+/// triangle), .svg (a picture). Points that splitting added follow the input's points. Heights, which must be
+/// known for all points, are in .off, .ply, .vtu, .obj, .msh and .geojson. Constraints are written as far as
 /// the format can have them:
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
-///                    edges, whose markers are those of their segments or, if these have none, the numbers of
+///                    edges, whose markers are their segments' markers or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions
 ///   .obj .ply        the constraint edges, as lines, and as comments of the header
 ///   .msh             the constraint edges, and markers, attributes or polygons, and regions as its groups
@@ -72,8 +72,7 @@ std::vector<double> read_areas(const std::string& path);
 /// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
 std::vector<std::int32_t> read_neighbors(const std::string& path);
 
-/// Reads PeriodicTriangulation::offsets: .npy (int8, int32 or int64, m x 6). Errors as those of
-/// read_neighbors.
+/// Reads PeriodicTriangulation::offsets: .npy (int8, int32 or int64, m x 6). Errors as for read_neighbors.
 std::vector<std::int8_t> read_corner_offsets(const std::string& path);
 
 }  // namespace flaunay::io

@@ -142,7 +142,7 @@ Header read_header(const std::string& path, InputFile& file) {
   return header;
 }
 
-/// What a reader accepts: an array of shape (rows, columns) with one of these dtypes.
+/// The arrays that a reader accepts: shape (rows, columns) with one of these dtypes.
 struct Layout {
   const char* rows_name;
   std::size_t columns;
@@ -207,7 +207,7 @@ class Array {
 
   template <typename Value>
   std::vector<Value> values() {
-    // Before there is memory for what the header promises.
+    // Before memory for the header's shape is allocated.
     check_size();
     std::vector<Value> all;
     all.reserve(promised_ / sizeof(Value));
@@ -252,7 +252,7 @@ std::vector<std::int32_t> read_npy_rows(const std::string& path, std::int32_t lo
 class NpyRows : public RowSource {
  public:
   explicit NpyRows(const std::string& path) : path_(path), file_(path, kThreeColumns) {
-    file_.first(1);  // an error if there is none
+    file_.first(1);  // throws if the file cannot be read
     if (file_.size() < 0)
       fail(path, "is no regular file; expected one, because its rows are not read in order");
     const Array array(path_, file_, kRows);

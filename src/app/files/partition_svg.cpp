@@ -31,8 +31,8 @@ std::string region_color(std::size_t r, double saturation, double lightness) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel(0), channel(8), channel(4));
 }
 
-/// A border as closed walks. Where it passes a point several times, any walk on is right: what lies inside is
-/// what the edges wind around once, whatever their order.
+/// A border as closed walks. Where it passes a point several times, any walk on is right: the edges wind
+/// around the inside once, whatever their order.
 std::vector<std::vector<std::int32_t>> closed_walks(const std::vector<std::int32_t>& border) {
   std::multiset<std::array<std::int32_t, 2>> edges;
   for (std::size_t k = 0; k + 1 < border.size(); k += 2) edges.insert({border[k], border[k + 1]});

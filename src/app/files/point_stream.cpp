@@ -21,7 +21,7 @@ constexpr std::size_t kPair = 2 * sizeof(double);
 class RecordFile : public PointSource {
  public:
   RecordFile(const std::string& path, const Format& format) : file_(path, format.content) {
-    file_.first(1);  // an error if there is none
+    file_.first(1);  // throws if the file cannot be read
     if (file_.size() < 0) {
       fail(path, "is no regular file; expected one, because points in chunks are not read in order");
     }

@@ -33,7 +33,7 @@ Points read_text(const std::string& path, const Format& format, const Columns& c
 
 Points read_records(const std::string& path, const Format& format, bool with_heights) {
   InputFile file(path, format.content);
-  file.first(1);  // an error if there is none
+  file.first(1);  // throws if the file cannot be read
   const PointRecords records = format.records(path, file);
   Points points;
   points.coordinates.reserve(2 * records.size);

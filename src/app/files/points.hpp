@@ -30,7 +30,7 @@ struct PointRecords {
   std::size_t bytes = 2 * sizeof(double);
   using Decode = std::function<void(const char* records, std::size_t count, double* numbers)>;
   Decode decode = nullptr;          ///< to coordinates; empty if they are x and y as doubles
-  Decode decode_heights = nullptr;  ///< empty if there are none
+  Decode decode_heights = nullptr;  ///< empty without heights
   /// How many records are marked as not to be used; empty if none can be.
   std::function<std::size_t(const char* records, std::size_t count)> count_withheld = nullptr;
 
@@ -95,7 +95,7 @@ std::uint64_t least_bytes(const std::string& path, std::uint64_t n);
 void write_points(Outputs& outputs, const std::string& path, const Points& points);
 
 struct Format;
-/// Writes what write_points writes, in pieces.
+/// Writes the same files as write_points, in pieces.
 class PointWriter {
  public:
   /// n: how many points will be written.

@@ -68,7 +68,7 @@ class PolyReader {
     return {size, lines_.number()};
   }
 
-  /// Goes to the next line of a section, of which `read` were read.
+  /// Goes to the next line of a section. read: the lines read so far.
   void next_row(const Section& section, long long read, std::string_view what) {
     if (!lines_.next()) {
       fail(path_, "line {}: {} {} expected, but the file ends after {}", section.header_line, section.size,

@@ -24,7 +24,7 @@ struct StoredRegion {
   research::Region region;
 };
 
-/// Reads what write_region writes, of this many points and border edges. Throws Error(input) that names the
+/// Reads the files of write_region, for this many points and border edges. Throws Error(input) that names the
 /// file and the line.
 StoredRegion read_region(const std::string& stem, std::size_t points, std::size_t border_edges);
 

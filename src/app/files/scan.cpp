@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kTriple = 3 * sizeof(double);
 // Records that are read at once.
 constexpr std::size_t kPiece = std::size_t{1} << 15;
-// Chosen points are counted by blocks of so many records, so that any of them is found.
+// Chosen points are counted by blocks of this many records, so that any chosen point can be found.
 constexpr std::size_t kCountedBlock = std::size_t{1} << 12;
 
 constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz or .csv";
@@ -53,7 +53,7 @@ class Scan::Part {
       read_text(scratch, columns, third);
     } else if (ending_ == ".las") {
       InputFile file(path_, "an uncompressed LAS file");
-      file.first(1);  // an error if there is none
+      file.first(1);  // throws if the file cannot be read
       las_ = read_las_header(path_, file);
       size_ = las_->size;
       record_bytes_ = las_->record_bytes;
@@ -157,7 +157,7 @@ class Scan::Part {
     record_bytes_ = kTriple;
   }
 
-  // Appends those of some records that are chosen.
+  // Appends the chosen points among some records.
   void append(std::uint64_t first, std::size_t count, const ScanChoice& choice,
               std::vector<double>& triples) {
     for (std::size_t done = 0; done < count; done += kPiece) {

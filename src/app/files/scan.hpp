@@ -34,21 +34,20 @@ struct LeftOut {
 /// Least x and y, largest x and y.
 using Box = std::array<double, 4>;
 
-/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv
-/// (x, y and z, and what follows them is ignored, or the columns that are named). Files are opened as they
-/// are read, one at a time.
+/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv (x,
+/// y and z, without later columns, or the named columns). Files are opened as they are read, one at a time.
 class Scan : public ValuedPoints {
  public:
   /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
   /// file without a name in `scratch`. Throws Error(usage) for other endings, and for a choice if there is a
-  /// file that is no .las file; Error(input) for files that cannot be read or are truncated.
-  /// third: what text has beside x and y. Throws Error(usage) for columns if there is a file that is no text.
+  /// file that is no .las file; Error(input) for files that cannot be read or are truncated. third: the name
+  /// of the column beside x and y in text. Throws Error(usage) for columns if a file is no text.
   Scan(const std::vector<std::string>& paths, const ScanChoice& choice, const std::string& scratch,
        const Columns& columns = {}, std::string_view third = "height");
   ~Scan() override;
 
-  /// What the headers of .las files say, and for other files what is known. Low is above high if there is
-  /// nothing.
+  /// The box that headers of .las files announce, and points known from other files. Low is above high if
+  /// nothing is known.
   Box announced_box() const;
   /// The coordinate systems that files have, each once, with the first file that has it.
   struct System {
@@ -56,7 +55,7 @@ class Scan : public ValuedPoints {
   };
   std::vector<System> systems() const;
 
-  /// Reads all points once, to find which are chosen: before this, there are none to read. Returns the box
+  /// Reads all points once, to find which are chosen: before this, no points can be read. Returns the box
   /// around them. Throws Error(input) for numbers that are not finite. progress: called with the share that
   /// is done.
   Box survey(const std::function<void(double done)>& progress);

@@ -20,7 +20,7 @@ namespace {
 constexpr int kShades = 24;
 constexpr int kOutsideShade = kShades;
 constexpr std::size_t kDotsUpTo = 1000;  // points of larger sets are not drawn, because edges show them
-/// Of triangles and edges that are measured, where all would take long.
+/// The number of triangles and edges that are measured if measuring all would take long.
 constexpr std::size_t kSample = 100'000;
 /// Trails per path element: viewers draw several short paths faster than a long one.
 constexpr std::size_t kTrailsPerPath = 500;
@@ -226,7 +226,7 @@ class Picture {
     drawing_.end_path();
   }
 
-  /// The hull of each set. Those of collinear points are closed too: they go back along the same line.
+  /// The hull of each set. Hulls of collinear points are closed, too: they return along the same line.
   void write_hull() {
     if (mesh_.hull.empty()) return;
     begin_stroke("hull", "#24405f", std::clamp(2.5 * line_width_, 1.0, 2.6));

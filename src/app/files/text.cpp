@@ -37,9 +37,9 @@ bool is_control(char32_t c) {
   return (c <= kLastAscii && !is_plain(static_cast<unsigned char>(c))) || (c >= 0x80 && c < 0xa0);
 }
 
-/// Whether the byte is an ASCII letter or begins one of another script. Those that stand where a number
-/// should begin no letter: 0xc2 (Latin-1's symbols), 0xe2 (dashes, currencies, the minus sign), 0xef (full
-/// width).
+/// Whether the byte is an ASCII letter or begins a letter of another script. Bytes that can begin something
+/// like a number do not count: 0xc2 (Latin-1's symbols), 0xe2 (dashes, currencies, the minus sign), 0xef
+/// (full width).
 bool begins_letter(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (byte >= 0xc3 && byte != 0xe2 && byte != 0xef);

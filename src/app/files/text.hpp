@@ -30,7 +30,7 @@ inline std::string quoted(std::string_view field) {
   return fmt::format("'{}{}'", field.substr(0, kLongest), field.size() > kLongest ? "..." : "");
 }
 
-/// A field that is no number for messages. What is beyond ASCII can look like a digit or a minus sign.
+/// For messages, a field that is no number. Characters beyond ASCII can look like digits or a minus sign.
 inline std::string quoted_number(std::string_view field) {
   if (field.empty()) return "nothing";
   const auto other = std::find_if(field.begin(), field.end(), [](unsigned char c) { return c >= 0x80; });
@@ -118,8 +118,7 @@ class Lines {
     fields_taken_ = 0;
   }
 
-  /// The next field of the line; false if there is none. Two commas in a row have an empty field between
-  /// them.
+  /// The next field of the line; false at its end. Two commas in a row have an empty field between them.
   bool field(std::string_view& result) {
     const bool is_after_separator = separator_ != ' ' && fields_taken_ > 0 && cursor_ != line_end_;
     if (is_after_separator) ++cursor_;
@@ -136,7 +135,7 @@ class Lines {
     result = trimmed(begin, cursor_);
     return true;
   }
-  /// What separates the fields of this line: ' ' for white space, ',' or ';'.
+  /// The separator of this line's fields: ' ' for white space, ',' or ';'.
   char separator() const { return separator_; }
   std::size_t fields_taken() const { return fields_taken_; }
   /// The number of fields of the whole line. Goes back to the first one.
@@ -220,7 +219,7 @@ class Lines {
   }
   /// The separator of the line at hand. Defined in text.cpp, as are the next ones.
   char find_separator() const;
-  /// A number with a decimal comma or a decimal point, of which a text has either.
+  /// A number with a decimal comma or a decimal point. A text uses only one of the two.
   ParsedNumber parse_decimal(std::string_view text, double& value);
 
   static std::string_view trimmed(const char* begin, const char* end) {
@@ -228,8 +227,8 @@ class Lines {
     while (begin != end && is_blank(end[-1])) --end;
     return std::string_view(begin, static_cast<std::size_t>(end - begin));
   }
-  /// Takes a field in double quotes, in which "" stands for a quote, as in CSV. False if there is none here;
-  /// a quote without its end is an ordinary character.
+  /// Takes a field in double quotes, in which "" stands for a quote, as in CSV. False if the field has no
+  /// quotes; a quote without its end is an ordinary character.
   bool quoted_field(std::string_view& result) {
     if (!any_ || cursor_ == line_end_ || *cursor_ != '"') return false;
     const char* const begin = cursor_ + 1;

@@ -27,7 +27,7 @@ struct Candidate {
   std::uint64_t unused;  // 1 or 0
 };
 
-/// By coordinates; of equal points those that are used first.
+/// Orders by coordinates; among equal points, used ones come first.
 struct ByPlace {
   bool operator()(const Candidate& a, const Candidate& b) const {
     if (!is_same_place(a.vertex, b.vertex)) return is_before(a.vertex, b.vertex);

@@ -24,11 +24,11 @@ struct VerifySizes {
   int threads = 0;
 };
 
-/// The sizes for so many bytes. Throws Error(usage) if that is too little.
+/// The sizes for this much memory. Throws Error(usage) if it is too little.
 VerifySizes verify_sizes(std::uint64_t memory_bytes, std::uint64_t points, std::uint64_t rows, int threads);
 
 struct VerifyChunksOptions {
-  std::string scratch;  ///< the folder for what does not fit; empty: TMPDIR, or /tmp
+  std::string scratch;  ///< the folder for data that does not fit memory; empty: TMPDIR, or /tmp
   /// If not empty, called from time to time, from one thread at a time: a stage, and its finished share.
   std::function<void(const std::string& stage, double done)> progress;
 };
@@ -39,9 +39,9 @@ struct VerifyChunksReport : VerifyReport {
   std::uint64_t scratch_bytes = 0;  ///< written to the folder
 };
 
-/// Checks what verify() checks, reading everything in pieces. neighbors may be null. Throws Error(input) if a
-/// point is not finite, naming it, or if a source or the scratch folder fails. One of several violations is
-/// reported: that of the first window, not always that with the smallest index.
+/// Makes the checks of verify(), reading everything in pieces. neighbors may be null. Throws Error(input) if
+/// a point is not finite, naming it, or if a source or the scratch folder fails. One of several violations is
+/// reported: one of the first window, not always the one with the smallest index.
 ///
 /// Rows are taken in windows. The distinct vertices of each window get their coordinates from the points,
 /// which are read range after range. A window then checks its triangles, and the edges that two of them
@@ -60,7 +60,7 @@ struct VerifyChunksReport : VerifyReport {
 ///    sum of the triangles' oriented boundaries. So each point in general position is covered as often as the
 ///    polygon winds around it: once inside, never outside. The triangles tile a convex polygon.
 /// 2. The tiling has no two vertices at one place: the triangles around an inner vertex close, and so cover
-///    its surroundings once, with no room for those of another; those around a vertex of the boundary cover
+///    its surroundings once, with no room for another vertex's; triangles around a boundary vertex cover
 ///    the polygon's angle there, and the vertices of the polygon are at different places. For the same
 ///    reason no directed edge occurs twice, although a repeated one need not meet its double in a window; so
 ///    pairs are the right ones, and neighbours that agree with them are right.

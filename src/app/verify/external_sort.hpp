@@ -49,7 +49,7 @@ class ExternalSorter {
   std::uint64_t scratch_bytes() const { return written_ * sizeof(Record); }
 
  private:
-  /// Records [next, end) of the scratch file are still to be read, after those of the buffer.
+  /// Records [next, end) of the scratch file must still be read, after the buffered ones.
   struct Run {
     std::uint64_t next, end;
     Record *buffer, *at, *last;

@@ -13,7 +13,7 @@ namespace flaunay::prove {
 /// Half-edge 3 t + k is the side of triangle t opposite to its corner k: from corner k + 1 to corner k + 2.
 struct OpenEdge {
   std::uint64_t half_edge;
-  std::int64_t neighbor;  ///< the triangle that `neighbors` has there; of no meaning if there are none
+  std::int64_t neighbor;  ///< the triangle that `neighbors` has there; unused without `neighbors`
   Vertex origin, target;
   Vertex apex;  ///< corner k
 
@@ -44,10 +44,10 @@ struct ByTurn {
 using OpenEdges = ExternalSorter<OpenEdge, ByEnds>;
 using Boundary = ExternalSorter<OpenEdge, ByTurn>;
 
-/// What check_across counts.
+/// The counts of check_across.
 struct AcrossCounts {
   std::uint64_t matched = 0;     ///< edges with two triangles
-  std::uint64_t cocircular = 0;  ///< those whose triangles share a circle
+  std::uint64_t cocircular = 0;  ///< edges whose triangles share a circle
   std::uint64_t boundary = 0;    ///< half-edges without twin
 };
 

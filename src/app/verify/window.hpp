@@ -57,7 +57,7 @@ class Window {
   HalfEdges<std::uint32_t, std::uint32_t> half_edges_{corners.data()};
   Buffer<std::uint32_t> begins_;  // see HalfEdges::match
   Buffer<std::uint64_t> keys_;
-  Buffer<std::uint32_t> twins_;   // of each half-edge; kNone if there is none in the window
+  Buffer<std::uint32_t> twins_;   // of each half-edge; kNone without a twin in the window
   Buffer<std::int64_t> claimed_;  // a piece of the neighbours
   std::size_t piece_rows_;
   std::uint64_t cocircular_ = 0, matched_ = 0;

@@ -91,8 +91,8 @@ struct Double2 {
   double error;
 };
 
-// Sums and products of pairs are wrong by less than 2^-100 of the magnitudes of what is added or multiplied,
-// and a quotient by less than 2^-99 of itself. Bounds are rounded, too, for which the rest is left.
+// Sums and products of pairs have errors below 2^-100 of the magnitudes of their operands, and a quotient
+// below 2^-99 of itself. The rest of the bound covers the rounding of bounds.
 constexpr double kPairError = 0x1p-97;
 
 double2 pair_product(double2 a, double2 b) {

@@ -22,9 +22,9 @@ bool cross(const geometry::Predicates& predicates, const Line& p, const Line& q)
 int compare_crossing(const Line& first, const Line& second, bool vertical, kernel::double2 value);
 
 /// The place where two segments cross, rounded to the nearest point whose coordinates are doubles and
-/// multiples of a power of two, the unit. Of two that are equally near, the one with the even last bit is
-/// taken. So the place is a function of both lines alone. Coordinates must be multiples of the unit, which is
-/// at least 2^-255, and below 2^250.
+/// multiples of a power of two, the unit. If two points are equally near, the one with the even last bit is
+/// taken. So the place depends on both lines alone. Coordinates must be multiples of the unit, which is at
+/// least 2^-255, and below 2^250.
 geometry::Point round_crossing(const Line& first, const Line& second, double unit);
 
 /// A rectangle.

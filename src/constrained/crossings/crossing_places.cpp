@@ -27,7 +27,7 @@ std::uint64_t hash(Point p) {
   std::uint64_t x, y;
   std::memcpy(&x, &p.x, sizeof x);
   std::memcpy(&y, &p.y, sizeof y);
-  // By large odd numbers; the upper bits of a product depend on all bits.
+  // Multiplies by large odd numbers; the upper bits of a product depend on all bits.
   return (x * 0x9e3779b97f4a7c15 + y * 0xc2b2ae3d27d4eb4f) >> 32;
 }
 

@@ -25,13 +25,12 @@ struct Vertices {
   }
   bool is_added(std::int32_t v) const { return static_cast<std::size_t>(v) >= given; }
 
-  /// Returns the vertices at these distinct places, in lexicographic order, which are added where there are
-  /// none.
+  /// Returns the vertices at these distinct places, in lexicographic order. Adds vertices where none exist.
   Ids find_or_add(const std::vector<geometry::Point>& places);
 
   std::vector<geometry::Point> points;
   Ids sorted;             ///< all, in lexicographic order
-  std::size_t given = 0;  ///< so many points are the caller's
+  std::size_t given = 0;  ///< the number of the caller's points, which come first
   int shift = 0;
   double unit = 0;
 };
@@ -45,7 +44,7 @@ static_assert(kernel::LARGEST_EXPONENT == 249);
 /// Crossings of edges, merged where they are rounded to one place.
 class CrossingPlaces {
  public:
-  /// patience: hubs may have so many times as many pairs.
+  /// patience: a factor for the number of pairs that hubs may have.
   CrossingPlaces(const Vertices& vertices, const geometry::Predicates& predicates,
                  const std::vector<Piece>& edges, SplitLimits& limits, std::size_t patience)
       : vertices_(vertices), predicates_(predicates), edges_(edges), limits_(limits), patience_(patience) {}
@@ -64,7 +63,7 @@ class CrossingPlaces {
   Chains chains(Vertices& vertices, bool& are_apart);
 
  private:
-  // So many pairs of edges make a place a hub, if they cross there exactly and come soon after each other.
+  // A place is a hub if this many pairs of edges cross there exactly and come soon after each other.
   static constexpr std::uint32_t kPairsOfHub = 64;
   static constexpr std::size_t kRecent = 256;
   // Edges are cut at hubs, and searched again, if hubs have more pairs than these, edges and places together.

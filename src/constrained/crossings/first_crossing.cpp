@@ -17,12 +17,12 @@ namespace flaunay::constrained {
 using namespace geometry;
 namespace {
 
-// The first segments are compared with each other in so many pairs per segment of all.
+// Pairs of the first segments that are compared, per segment of the whole list.
 constexpr double kPairsPerSegment = 1;
 
 constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
 
-// Two segments that cross, the one with the larger index first. So of several, the error names the least.
+// Two segments that cross, the one with the larger index first. So the error names the least pair.
 using Crossing = std::pair<std::int32_t, std::int32_t>;
 
 Crossing crossing_of(std::int32_t a, std::int32_t b) { return {std::max(a, b), std::min(a, b)}; }
@@ -72,7 +72,7 @@ Point crossing_place(const Line& first, const Line& second) {
       crossing.second, crossing.first);
 }
 
-// The segments of one set, cut into edges that have no vertex inside: what crosses then does so at no point.
+// The segments of one set, cut into edges without inner vertices: edges that cross then do so at no point.
 class CutSegments {
  public:
   explicit CutSegments(const SegmentSet& set)
@@ -112,7 +112,7 @@ class CutSegments {
     return later;
   }
 
-  // Of edges, the first segment that has them is compared.
+  // Compares edges; each stands for the first segment that has it.
   template <typename Found>
   void visit_crossings(std::int32_t last, const Found& found) const {
     std::vector<Piece> edges;

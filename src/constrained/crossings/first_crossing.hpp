@@ -11,7 +11,7 @@
 
 namespace flaunay::constrained {
 
-/// Says which segments these are, so that a caller can name what they are a part of.
+/// Says which segments these are, so that a caller can name the objects to which they belong.
 class CrossingError : public Error {
  public:
   CrossingError(const std::string& message, std::int32_t first, std::int32_t second)

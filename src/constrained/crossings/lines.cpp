@@ -10,17 +10,17 @@ using namespace geometry;
 
 namespace {
 
-// 1 if the direction of q is counter-clockwise of that of p, -1 if it is clockwise, 0 if they are parallel.
-// All directions are those of pieces, in half a plane.
+// 1 if q's direction is counter-clockwise of p's, -1 if it is clockwise, 0 if they are parallel. The
+// directions of pieces lie in a half-plane.
 int compare_slopes(const Point* points, Piece p, Piece q) {
   return kernel::cross_sign(points[p.from], points[p.to], points[q.from], points[q.to]);
 }
 
-// So many doubles may be between the rounded slopes of parallel pieces, and some more.
+// At most this many doubles, with a margin, lie between the rounded slopes of parallel pieces.
 constexpr std::uint64_t kSlopeErrors = 16;
 
-// Pieces that overlap are together one line. Sorted by slope, across and along lines, those of one line
-// follow each other.
+// Overlapping pieces form one line. Sorted by slope, across and along lines, the pieces of a line are
+// consecutive.
 class LineFinder {
  public:
   LineFinder(const Predicates& predicates, const Point* points, const std::vector<Piece>& pieces)

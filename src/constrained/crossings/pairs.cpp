@@ -1,15 +1,14 @@
 // Divides the plane into vertical slabs between coordinates of ends, as Balaban does (1995).
 //
-// Of the pieces that span a slab, a chain is taken whose pieces do not cross in it, so that they are in one
-// order from its left to its right. All other pieces look for the pieces of the chain that they cross by
-// binary search, at both of their ends or where they leave the slab, and then go on to the two halves of the
-// slab. A piece that spans the slab, but is not in the chain, crosses the one because of which it is not, so
-// going on is paid for by that pair. All others end inside of the slab; so a piece is on O(log n) levels of
-// these, at most twice on each.
+// The pieces that span a slab include a chain of pieces that do not cross in it, and so have one order from
+// its left to its right. All other pieces find the pieces of the chain that they cross by binary search, at
+// both of their ends or where they leave the slab, and then go on to the two halves of the slab. A piece that
+// spans the slab, but is not in the chain, crosses a piece of the chain, and that pair pays for its way down.
+// All other pieces end inside of the slab; so a piece is on O(log n) levels of slabs, at most twice on each.
 //
-// Before that, wherever a horizontal or vertical line separates pieces but for a few, the pieces on its sides
-// are looked at separately: then short pieces do not meet the chains of those that are far above and below. A
-// crossing is on one of the sides, with both of its pieces.
+// Before that, wherever a horizontal or vertical line separates pieces but for a few, the two sides are
+// searched separately: then short pieces do not meet the chains of pieces far above and below. A crossing is
+// on one of the sides, with both of its pieces.
 #include "constrained/crossings/pairs.hpp"
 
 #include <algorithm>
@@ -26,13 +25,13 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// So few pieces are all held against each other.
+// Up to this many pieces are all compared with each other.
 constexpr std::size_t kFew = 32;
-// A line separates pieces if it crosses at most one in so many.
+// A line separates pieces if it crosses at most one in this many.
 constexpr std::size_t kSeparated = 16;
-// If it crosses at most one in so many, no better one is looked for.
+// If it crosses at most one in this many, no better line is searched.
 constexpr std::size_t kWellSeparated = 64;
-// The middle of pieces is looked for among so many of them.
+// The middle of pieces is the median of this many samples.
 constexpr std::size_t kSamples = 7;
 
 // Where a piece is at some x: between two numbers; exactly there if they are equal.
@@ -57,7 +56,7 @@ class Search {
     std::iota(pieces.begin(), pieces.end(), 0);
     run(std::move(pieces), {});
   }
-  // Of pieces that are not vertical.
+  // Finds the vertices inside of pieces that are not vertical.
   void find_vertices(const Ids& vertices) {
     Ids pieces;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
@@ -88,7 +87,7 @@ class Search {
     return from(piece).x <= slab.begin && slab.end <= to(piece).x;
   }
 
-  // Numbers what is given by place, so that what is near in the plane is near in memory.
+  // Numbers pieces and vertices by place, so that neighbours in the plane are close in memory.
   void run(Ids pieces, const Ids& unsorted_vertices) {
     if (pieces.empty()) return;
     Ids vertices = unsorted_vertices;
@@ -145,7 +144,7 @@ class Search {
     return true;
   }
 
-  // Items that may meet on the lower side, and on the upper side of a line. What is on it is below.
+  // Items that may meet on the lower side, and on the upper side of a line. The lower side includes the line.
   bool is_low(std::int32_t piece, Axis axis, double middle) const {
     const Point a = from(piece), b = to(piece);
     return axis == Axis::x ? a.x < middle || b.x == middle : std::min(a.y, b.y) <= middle;
@@ -239,7 +238,7 @@ class Search {
     piece_stack_.resize(kept);
   }
 
-  // Takes a chain away from the items, and finds what all others have to do with it in the slab.
+  // Takes a chain away from the items, and finds its crossings with all others in the slab.
   void take_chain(Slab slab, Items items) {
     take_spanning(slab, items);
     if (chain_.empty()) return;
@@ -271,8 +270,8 @@ class Search {
     }
   }
 
-  // Of a slab that has no end inside: what spans it crosses if it is in another order at its end. Everything
-  // else is at its end.
+  // For a slab that has no end of a piece inside: spanning pieces cross if their order differs at its end.
+  // All other items are at its end.
   void finish_slab(Slab slab, Items items) {
     take_spanning(slab, items);
     std::sort(chain_.begin(), chain_.end(), [this, slab](const Spanning& p, const Spanning& q) {
@@ -348,8 +347,8 @@ class Search {
             static_cast<std::size_t>(not_above - chain_.begin())};
   }
 
-  // Of a piece that is not vertical. From the nearer end, each of five operations is wrong by 2^-53 of the
-  // way, and the sum by 2^-53 of itself.
+  // The height of a piece that is not vertical. From the nearer end, each of five operations has an error of
+  // 2^-53 of the difference `way`, and the sum of 2^-53 of itself.
   Height height(std::int32_t piece, double x) const {
     const Point a = from(piece), b = to(piece);
     if (x == a.x || a.y == b.y) return {a.y, a.y};
@@ -375,7 +374,7 @@ class Search {
     const Point pa = from(p), pb = to(p), qa = from(q), qb = to(q);
     if (of_p.known()) return predicates_.orient(qa, qb, {x, of_p.low});
     if (of_q.known()) return -predicates_.orient(pa, pb, {x, of_q.low});
-    // Neither ends here; so if they do not cross, what is not below at both ends is above.
+    // Neither ends here; so if they do not cross, a piece that is not below at both ends is above.
     const int side_qa = predicates_.orient(pa, pb, qa), side_qb = predicates_.orient(pa, pb, qb);
     if (side_qa * side_qb >= 0) return -(side_qa + side_qb > 0) + (side_qa + side_qb < 0);
     const int side_pa = predicates_.orient(qa, qb, pa), side_pb = predicates_.orient(qa, qb, pb);
@@ -407,7 +406,7 @@ class Search {
   std::vector<Spanning> chain_;
 };
 
-// Vertical pieces have what is between their ends in lexicographic order.
+// The vertices inside of a vertical piece lie between its ends in lexicographic order.
 void add_inner_vertices_of_vertical(const Point* points, const std::vector<Piece>& pieces,
                                     const Ids& vertices, Pairs& pairs) {
   const auto before = [points](std::int32_t u, std::int32_t v) {

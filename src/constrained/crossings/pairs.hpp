@@ -29,7 +29,7 @@ using FoundPair = std::function<bool(std::int32_t first, std::int32_t second)>;
 
 /// Calls `found` with all pairs of pieces that cross: have exactly one common point, which is inside of both.
 /// The smaller number is first. Pairs come in any order, and some of them several times. No vertex may be
-/// inside of a piece. O((n + k) log n) for k pairs, but for what is said in pairs.cpp, and O(n) memory.
+/// inside of a piece. O((n + k) log n) for k pairs, with the exceptions in pairs.cpp, and O(n) memory.
 void find_crossings(const geometry::Predicates& predicates, const geometry::Point* points,
                     const std::vector<Piece>& pieces, const FoundPair& found);
 

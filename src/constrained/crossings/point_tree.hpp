@@ -42,7 +42,7 @@ class PointTree {
   struct Node {
     Box box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
     std::int32_t begin, end;  // its points
-    std::int32_t second;      // child; 0 if there are none
+    std::int32_t second;      // child; 0 in a leaf
   };
 
   // Cells of the curve are halved, and points that are all at one place of it by their number.

@@ -11,15 +11,15 @@ using namespace geometry;
 
 namespace {
 
-// So few segments are in one cell.
+// Up to this many segments share a single cell.
 constexpr std::size_t kInOneCell = 96;
-// If there are no more pairs than so many for each segment in a cell, all are compared.
+// All pairs are compared if their number is at most this times the number of entries, the segments in cells.
 constexpr std::size_t kPairsPerEntry = 24;
-// Otherwise they are compared as long as one in so many crosses, but for so many for each segment in a cell.
+// Otherwise kFirstPairsPerEntry pairs per entry, and as long as one in kPairsPerCrossing crosses.
 constexpr std::size_t kPairsPerCrossing = 32;
 constexpr std::size_t kFirstPairsPerEntry = 4;
 
-// Whether what is between two x and two y has no common point with what is between others.
+// Whether the bounding boxes of two lines have no common point.
 bool are_boxes_apart(const Line& p, const Line& q) {
   return p.a.x > q.b.x || q.a.x > p.b.x || std::min(p.a.y, p.b.y) > std::max(q.a.y, q.b.y) ||
          std::min(q.a.y, q.b.y) > std::max(p.a.y, p.b.y);
@@ -71,7 +71,7 @@ SegmentGrid::SegmentGrid(const std::vector<Line>& lines) : lines_(lines) {
   offsets_.pop_back();
 }
 
-// Column by column: what a segment has of one, padded.
+// Visits the cells that a segment has in each column, padded.
 template <typename Visit>
 void SegmentGrid::visit_cells(const Line& line, const Visit& visit) const {
   const auto [a, b] = line;

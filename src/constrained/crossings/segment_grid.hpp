@@ -1,5 +1,5 @@
-// A grid of cells that list the segments in them, which finds what is near to each other if segments are
-// spread evenly, or if most of them cross.
+// A grid of cells that list the segments in them, which finds nearby segments fast if segments are spread
+// evenly, or if most of them cross.
 #pragma once
 
 #include <cstddef>

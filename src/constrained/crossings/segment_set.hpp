@@ -1,4 +1,4 @@
-// The segments of sets of points: their checks, and those of one set as pieces between its vertices.
+// The segments of sets of points: checks, and the segments of one set as pieces between its vertices.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,14 @@ void check_segments(const std::vector<std::size_t>& offsets, const Ids& segments
 /// The set of a point.
 std::size_t set_of(const std::vector<std::size_t>& offsets, std::int32_t point);
 
-/// The numbers of segments by their sets; those of length zero are left out.
+/// The numbers of each set's segments, without segments of length zero.
 std::vector<Ids> segments_of_sets(const double* coordinates, const std::vector<std::size_t>& offsets,
                                   const Ids& segments);
 
 /// Segments of one set.
 struct SegmentSet {
-  /// numbers: those of the segments, which are not of length zero. Throws what Triangulator::triangulate
-  /// throws for the points.
+  /// numbers: of the segments, none of length zero. Throws the errors of Triangulator::triangulate for the
+  /// points.
   SegmentSet(const double* coordinates, const std::vector<std::size_t>& offsets, std::size_t set,
              const Ids& segments, const Ids& numbers);
 

@@ -19,7 +19,7 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// What is rounded to a number: an interval, which has its ends if the number is even.
+// The interval of values that are rounded to a number. It includes its ends if the number is even.
 struct Interval {
   double below, above;  // distances of the ends from the number
   bool is_closed;
@@ -118,7 +118,7 @@ class Snapping {
     return is_left && is_right;
   }
 
-  // Sorts what lies ahead in the direction of an edge, which is ascending in x.
+  // Orders vertices along the direction of an edge, which is ascending in x.
   bool is_ahead(bool descends, std::int32_t u, std::int32_t v) const {
     const Point p = points_[u], q = points_[v];
     return p.x != q.x ? p.x < q.x : descends ? p.y > q.y : p.y < q.y;
@@ -143,8 +143,8 @@ class Snapping {
     }
   }
 
-  // Adds the vertices around which the shortest way between two vertices goes: of those on the wrong side of
-  // it the farthest, and what is around it on both of its sides.
+  // Adds the vertices around which the shortest path between two vertices bends: the farthest vertex on the
+  // wrong side of the chord, and recursively the vertices around which the two parts bend.
   void add_around(Piece edge, std::int32_t from, std::int32_t to,
                   std::pair<Ids::iterator, Ids::iterator> beside, Ids& chain) {
     struct Part {
@@ -165,8 +165,8 @@ class Snapping {
     }
   }
 
-  // Of vertices that are not on the same side of a chord as of the edge, the farthest from the chord on one
-  // side. As no cell of these meets the edge, all places that were rounded to such a vertex are on its side.
+  // The farthest from a chord, on one side, of the vertices that lie on different sides of chord and edge.
+  // Their cells do not meet the edge, so all places rounded to such a vertex are on the vertex's side.
   Ids::iterator find_farthest(const Line& edge, const Line& chord, Ids::iterator begin,
                               Ids::iterator end) const {
     auto farthest = end;

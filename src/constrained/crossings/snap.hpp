@@ -11,14 +11,14 @@
 
 namespace flaunay::constrained {
 
-/// What splitting may take.
+/// Limits of splitting.
 struct SplitLimits {
   std::size_t pieces = 1'000'000'000;  ///< of all segments; at most 2^30 - 1
-  /// Called once there are more pieces, for how many there may be; null: no more.
+  /// Called once, when the limit is exceeded; returns a higher one. null: the limit is final.
   std::function<std::size_t()> more = nullptr;
 };
 
-/// Throws Error(input) for more pieces than there may be.
+/// Throws Error(input) if the limit of pieces is exceeded.
 void check_pieces(std::size_t pieces, SplitLimits& limits);
 
 /// The vertices between the ends of edges, along each.
@@ -27,8 +27,9 @@ struct Chains {
   std::vector<std::int32_t> vertices;  ///< without the ends of the edge
 };
 
-/// Leads each edge through all vertices whose cells it meets, where the cell of a vertex is what would be
-/// rounded to it; and around vertices that it would otherwise pass on the wrong side, on the shortest way.
+/// Leads each edge through all vertices whose cells it meets, where the cell of a vertex has the places that
+/// would be rounded to it; and around vertices that it would otherwise pass on the wrong side, on the
+/// shortest way.
 ///
 /// points: all are vertices, and multiples of the unit, as for round_crossing. edges: the lexicographically
 /// smaller end first; all places where they cross, rounded, must be vertices.

@@ -70,7 +70,7 @@ class SetSplitter {
     return is_one_edge;
   }
 
-  // Adds the pieces of a segment, two vertices each. What lies between the edges that others cross is one.
+  // Adds the pieces of a segment, two vertices each. Consecutive edges that no segment crosses are one piece.
   void list_pieces(std::size_t segment, Ids& ends) const {
     const std::int32_t p = piece_of_[segment];
     std::int32_t from = pieces_[p].from;
@@ -161,8 +161,8 @@ class SetSplitter {
   }
 
   bool find_near_by_tree(const std::vector<Line>& all, double distance, const FoundPair& found) const {
-    // A long edge meets O(sqrt(n)) boxes. Where boxes do not tell points apart, it takes less to look for
-    // what crosses.
+    // A long edge meets O(sqrt(n)) boxes. Where boxes do not separate points, searching for crossings takes
+    // less time.
     const double most = 64.0 * (edges_.edges.size() + vertices_.points.size()) +
                         16.0 * edges_.edges.size() * std::sqrt(vertices_.points.size());
     Ids ids(vertices_.points.size());
@@ -184,7 +184,7 @@ class SetSplitter {
   void lead_through(CrossingPlaces& crossings, SplitLimits& limits) {
     bool are_apart = false;
     chains_ = crossings.chains(vertices_, are_apart);
-    // Both look at what rounding moves by kHalfSpacing at most. Subnormal numbers are farther apart.
+    // Both assume that rounding moves places by at most kHalfSpacing. Subnormal numbers are farther apart.
     const bool is_moved_little = vertices_.unit <= 2 * kHalfSpacing;
     if ((is_moved_little && are_apart && points_are_apart()) || !parts_cross()) return;
     is_snapped_ = true;
@@ -292,7 +292,7 @@ Split split(const double* coordinates, const std::vector<std::size_t>& offsets, 
       splitter.run(limits);
       result.is_snapped |= splitter.is_snapped();
 
-      // The index of each vertex; those of added ones are in lexicographic order.
+      // The index of each vertex; added vertices are numbered in lexicographic order.
       std::size_t next = offsets.back() + result.added_points.size() / 2;
       const std::size_t all = next + vertices.points.size() - vertices.given;
       if (all > kMostIndices) throw_too_many_points(all);

@@ -15,7 +15,7 @@ struct Split {
   /// As in ConstrainedTriangulation.
   std::vector<double> added_points;
   std::vector<std::size_t> added_offsets;
-  /// Pieces that do not cross: 2 points per piece. Those of a segment follow each other from its
+  /// Pieces that do not cross: 2 points per piece. The pieces of a segment are consecutive, from its
   /// lexicographically smaller end to the other one; each has the direction of its segment. Added point k has
   /// the index n + k. Pieces can overlap, and go through points.
   std::vector<std::int32_t> pieces;

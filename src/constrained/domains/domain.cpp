@@ -27,8 +27,8 @@ static_assert(static_cast<int>(Outside::holes) == kernel::OUTSIDE_HOLES);
 
 namespace {
 
-// After so many times Tuning::depth_rounds levels the host goes on: a pass over all borders for each of very
-// many levels would take longer.
+// After this many times Tuning::depth_rounds levels the host takes over: one pass over all borders per level
+// would take longer if there are very many levels.
 constexpr std::size_t kMostBatches = 4;
 
 constexpr cl_int kNone = std::numeric_limits<cl_int>::max();
@@ -40,7 +40,7 @@ Buffer<T> filled(host::Runtime& runtime, std::size_t count, T value) {
   return buffer;
 }
 
-// What is crossed at each constraint edge.
+// The segments that are crossed at each constraint edge.
 struct Weights {
   cl_int mask = 0;  ///< of the slots
   Buffer<cl_uint> needed{}, sums{};
@@ -138,10 +138,10 @@ Borders find_borders(host::Runtime& runtime, const DomainMesh& mesh, const Depth
   return borders;
 }
 
-// Computes the levels of regions, and their potentials: the sums of what is crossed from outside. between:
-// two regions per border, of which the first may be -1, the outside. steps: what is crossed from the first
-// one to the second one. levels: those of regions that are known are right, and there are none beyond the
-// largest of them that are not known; others are UNREACHED. O(regions + borders).
+// Computes the levels of regions, and their potentials: the sums of steps from the outside. between: two
+// regions per border; the first may be -1, the outside. steps: from the first to the second region. levels:
+// known levels are correct, all regions up to the largest known level are known, and other regions are
+// UNREACHED. O(regions + borders).
 void walk_borders(const std::vector<std::int32_t>& between, const std::vector<std::int32_t>& steps,
                   std::vector<std::int32_t>& levels, std::vector<std::int32_t>& potentials) {
   const auto outside = static_cast<std::int32_t>(levels.size());
@@ -176,7 +176,7 @@ void walk_borders(const std::vector<std::int32_t>& between, const std::vector<st
   potentials.pop_back();
 }
 
-// Reaches what is deep, on the host.
+// Reaches deep regions on the host.
 void reach_on_host(host::Runtime& runtime, FillRule rule, const Borders& borders, std::size_t regions) {
   std::vector<cl_int> between(2 * borders.count), steps(borders.count), levels(regions), potentials(regions);
   runtime.read_later(borders.regions, 0, between.size(), between.data());
@@ -240,7 +240,7 @@ struct Seeds {
   std::vector<kernel::query_frame> frames;  // how sets are scaled
   float bound = 0;                          // of orientations
   std::vector<cl_double2> places;           // in each set by ascending x, scaled
-  std::vector<std::int32_t> numbers;        // those of the caller
+  std::vector<std::int32_t> numbers;        // the caller's numbers of the places
 };
 
 Seeds make_seeds(const Places& places, const double* coordinates, const std::vector<std::size_t>& offsets,

@@ -1,5 +1,5 @@
-// Regions of a triangulation with constraints, their depths, and what is left without the outside and the
-// holes. docs/constrained.md defines them.
+// Regions of a triangulation with constraints, their depths, and the triangles kept: without the outside and
+// without holes. docs/constrained.md defines them.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ namespace flaunay::constrained {
 using host::Arena;
 using host::Buffer;
 
-/// Triangulations of sets with constraints, in device memory. The arrays are those of
-/// ConstrainedTriangulation. What concerns segments is read only for fill rules that need it.
+/// Triangulations of sets with constraints, in device memory. The arrays are as in ConstrainedTriangulation.
+/// Arrays of segments are read only for fill rules that need them.
 struct DomainMesh {
   std::vector<std::size_t> triangle_offsets;  ///< sets + 1
-  std::size_t points = 0;                     ///< of the input, without those that splitting added
+  std::size_t points = 0;                     ///< of the input, without points that splitting added
   std::size_t segments = 0, edges = 0;
   Buffer<cl_double> coordinates{};  ///< of all points; aligned to 8 bytes only
   Buffer<cl_int> triangles{}, neighbors{};
@@ -37,19 +37,19 @@ struct Regions {
   Buffer<cl_uchar> left{};                       ///< by region: 1 if it is left
 };
 
-/// Finds the regions. All are left. Waits once. O(n log n), but mostly O(n).
+/// Finds the regions. All regions are kept. Waits once. O(n log n), but mostly O(n).
 Regions find_regions(host::Runtime& runtime, const DomainMesh& mesh);
 
-/// Which depths there are, and what is left.
+/// The rules that define depths, and which regions are kept.
 struct DepthRules {
   FillRule fill = FillRule::nesting;
   Outside outside = Outside::keep;
   bool are_closed = false;  ///< whether segments are known to be closed curves
 };
 
-/// Computes the depths of regions, and which of them are left. Throws Error(input), which names a point, if
-/// segments are no closed curves and the rule needs such. Waits 2 times, or once more for each
-/// Tuning::depth_rounds levels; what is deeper than a few times as many is done on the host.
+/// Computes the depths of regions, and which regions are kept. Throws Error(input), which names a point, if
+/// segments are no closed curves and the rule needs closed ones. Waits 2 times, or once more for each
+/// Tuning::depth_rounds levels; regions deeper than a few times as many levels are reached on the host.
 void find_depths(host::Runtime& runtime, const DomainMesh& mesh, const DepthRules& rules, Regions& regions);
 
 /// Places in regions, as the caller has them: holes or seeds of attributes.
@@ -59,17 +59,17 @@ struct Places {
   std::size_t count;
   std::vector<std::size_t> offsets;  ///< of sets
 };
-/// Throws Error(usage) if their offsets do not fit so many sets.
+/// Throw Error(usage) if the offsets do not fit this many sets.
 Places holes_of(const Constraints& constraints, std::size_t sets);
 Places seeds_of(const Constraints& constraints, std::size_t sets);
 
-/// In place of the triangle of a place.
+/// Values instead of a triangle for a place that is in none.
 constexpr std::int32_t kNowhere = -1, kOnConstraint = -2;
-/// By number of the caller the triangle of each place, or what is in place of it. Reads the coordinates, the
-/// triangles and the constrained edges of the mesh, with doubles, which the runtime must have. coordinates,
-/// offsets: of the points in host memory; those that splitting added come after all others, set by set.
-/// Throws Error(input), which names a place, if one is not finite, too fine or too far away. Waits once. O(n
-/// log m) for m places, if not many have an x coordinate in the range of one triangle.
+/// Returns the triangle of each place, in the caller's order, or one of the values above. Reads the
+/// coordinates, the triangles and the constrained edges of the mesh, with doubles, which the runtime must
+/// have. coordinates, offsets: of the points in host memory; points that splitting added come after all
+/// others, set by set. Throws Error(input), which names a place, if one is not finite, too fine or too far
+/// away. Waits once. O(n log m) for m places, if not many have an x coordinate in the range of one triangle.
 std::vector<std::int32_t> find_places(host::Runtime& runtime, const DomainMesh& mesh, const Places& places,
                                       const double* coordinates, const std::vector<std::size_t>& offsets,
                                       const std::vector<std::size_t>& added_offsets);
@@ -78,7 +78,7 @@ void check_found(const Places& places, const std::vector<std::int32_t>& found);
 /// Leaves out the regions of triangles. Does not wait.
 void drop_holes(host::Runtime& runtime, const std::vector<std::int32_t>& triangles, Regions& regions);
 
-/// Where the triangles and regions that are left go.
+/// Where the kept triangles and regions go.
 struct LeftPlaces {
   std::vector<std::size_t> triangle_offsets;
   std::size_t regions = 0;
@@ -86,13 +86,13 @@ struct LeftPlaces {
 };
 LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regions& regions);
 
-/// The arrays of ConstrainedTriangulation for what is left.
+/// The arrays of ConstrainedTriangulation for the kept triangles.
 struct LeftBuffers {
   Buffer<cl_int> triangles{}, neighbors{};
   Buffer<cl_uchar> constrained{};
   Buffer<cl_int> regions{};
 };
-/// Writes what is left, and numbers the labels by regions that are left. Does not wait. O(n).
+/// Writes the kept triangles, and numbers labels by kept regions. Does not wait. O(n).
 void write_left(host::Runtime& runtime, const DomainMesh& mesh, const LeftPlaces& places,
                 const LeftBuffers& left, Regions& regions);
 

@@ -21,7 +21,7 @@ using Ids = std::vector<std::int32_t>;
 // left of its direction here.
 struct Entry {
   std::int32_t from;        // -1: the outside
-  std::int32_t tail, head;  // of the edge; equal if there is none
+  std::int32_t tail, head;  // of the edge; equal if no edge is known
 };
 
 // A tree of regions, whose root is the outside: per region how it is entered. order: each region comes after

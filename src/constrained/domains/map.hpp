@@ -16,10 +16,10 @@ struct MapLabels {
   std::vector<std::int32_t> depths;    ///< the number of polygons that it is in
 };
 
-/// Closed curves, and what they bound: a part of a polygon is what is inside of one of its borders and of
-/// none of its holes.
+/// Closed curves and the parts that they bound: a part of a polygon is the area inside of one of its borders
+/// and outside of all its holes.
 struct Curves {
-  std::vector<std::int32_t> of_segments;  ///< by segment; those after the last one bound nothing
+  std::vector<std::int32_t> of_segments;  ///< by segment; segments after the last one bound nothing
   std::vector<std::int32_t> parts;        ///< by curve: the part that it bounds
   std::vector<char> are_holes;            ///< by curve
   std::vector<std::int32_t> polygons;     ///< by part
@@ -28,12 +28,12 @@ struct Curves {
 void check_rings(const Rings& rings, std::size_t segments, FillRule rule);
 /// A curve for each ring.
 Curves curves_of(const Rings& rings);
-/// Those of the segments [first, end), if curves follow each other as segments do.
+/// The curves of the segments [first, end). Curves must be in the order of their segments.
 Curves part_of(const Curves& curves, std::size_t first, std::size_t end);
-/// For each polygon one curve that has all of its segments. offsets: those of polygons.
+/// For each polygon one curve that has all of its segments. offsets: of polygons.
 Curves curves_of_polygons(const std::vector<std::size_t>& offsets);
 
-/// How many times segments of a curve are crossed from right to left, less those the other way.
+/// How often segments of a curve are crossed from right to left, minus crossings from left to right.
 struct Step {
   std::int32_t curve, amount;
 };

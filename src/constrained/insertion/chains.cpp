@@ -15,7 +15,7 @@ namespace {
 using host::Arena;
 using host::Runtime;
 
-// What kernels/constrained/chains.h needs for chains with so many vertices.
+// Scratch memory that kernels/constrained/chains.h needs for chains with `count` vertices.
 struct Scratch {
   Buffer<cl_double2> places;
   Buffer<kernel::chain_vertex> vertices;
@@ -112,7 +112,7 @@ class LongChains {
                                                  .vertices = scratch_.vertices,
                                                  .list = lists_[0],
                                                  .owners = owners_[0]});
-    // Hubs and what is left beside them are few.
+    // Hubs and the vertices left beside them are few.
     const int without_hubs = thinning_rounds_, all = has_hubs ? 2 * without_hubs : without_hubs;
     for (int k = 0; k < all; ++k) {
       runtime_.map(vertices_, kernels::thin_chains{.round = k,

@@ -24,10 +24,10 @@ struct DeviceChains {
 };
 
 /// Writes the triangles of chain c, which are three positions in the chain each, to the rows of `triangles`
-/// from offsets[c] - 2 * c on. They are what PolygonTriangulator returns, in its order. So the child of row
-/// r = (i, j, k) at the chord (i, j) is row r + 1, if j - i > 1, and the child at (j, k) is row r + j - i, if
-/// k - j > 1. Chains may be followed by empty ones, which are only counted. Temporary memory: 56 bytes per
-/// vertex, and 87 more per vertex of a long chain. Waits only if chains may be long for a work-item.
+/// from offsets[c] - 2 * c on. They are PolygonTriangulator's, in its order. So the child of row r = (i, j,
+/// k) at the chord (i, j) is row r + 1, if j - i > 1, and the child at (j, k) is row r + j - i, if k - j > 1.
+/// Chains may be followed by empty ones, which are only counted. Temporary memory: 56 bytes per vertex, and
+/// 87 more per vertex of a long chain. Waits only if chains may be long for a work-item.
 void triangulate_chains(host::Runtime& runtime, const DeviceChains& chains, const Buffer<cl_int>& triangles);
 
 }  // namespace flaunay::constrained

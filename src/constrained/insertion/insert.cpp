@@ -33,7 +33,7 @@ using points::download;
 
 constexpr std::size_t kMostPieces = std::size_t{1} << 30, kMostRows = 0xffffffff;
 
-// Of segments that are inserted in stages, each stage has so many times as many as those before it together.
+// If segments are inserted in stages, each has kStageGrowth times as many as all stages before it together.
 constexpr std::size_t kStageGrowth = 2, kSmallestStage = 16;
 
 // Points as predicates need them.
@@ -56,7 +56,7 @@ struct UniquePairs {
   std::size_t count = 0;
 };
 
-// What walk_segments writes.
+// The results of walk_segments.
 struct Walks {
   Buffer<kernel::constraint_walk> walks{};
   Buffer<cl_int> ends{};
@@ -110,7 +110,7 @@ class Insertion {
     std::size_t count = 0;
   };
 
-  // Of all segments together.
+  // Limits for all segments together.
   struct Limits {
     std::size_t pieces = kMostPieces, rows = kMostRows;
   };
@@ -217,7 +217,7 @@ class Insertion {
     clear_status();
     runtime_.fill(claims_, rows_, cl_uint{UNCLAIMED});
   }
-  // For other segments, in the triangulation as it is now.
+  // Starts again for other segments, in the present triangulation.
   void start_again() {
     clear_status();
     clear_vertices(true);
@@ -358,7 +358,7 @@ class Insertion {
   // -------------------------------------------------------------------------------------------------------
   // Rounds
 
-  // The constraints that are left in a round, and what became of them.
+  // The constraints that are left in a round, and their outcomes.
   struct Waiting {
     Buffer<cl_int> list{};
     Buffer<cl_uint> offsets{};
@@ -445,8 +445,8 @@ class Insertion {
     }
   }
 
-  // Whether a device would have more cavities than lanes with the registers of exact predicates, of which
-  // most cavities need none.
+  // Whether a device has more cavities than lanes that have enough registers for exact predicates. Most
+  // cavities need no exact predicates.
   bool pays_to_filter(const Waiting& waiting) const {
     return !runtime_.is_native() && waiting.count > tuning_of(runtime_).merge_items &&
            tuning_of(runtime_).merge_items > 0 && points_.bounds.coarse == 0 && points_.bounds.circle != 0;

@@ -59,7 +59,7 @@ Ids JoinedSegments::segment_edges(const Ids& edges, const Ids& ranges) const {
     by_line.push_back({static_cast<std::uint64_t>(joined_of_[s]), static_cast<std::int32_t>(s)});
   }
   sort_by_key(by_line);
-  // Of the vertices on a line: the edge that begins there, or after the last one.
+  // Per vertex on a line the edge that begins there, or after the last vertex one more.
   Ids edge_from(coordinates_.size() / 2), result(ends_.size(), 0);
   for (std::size_t i = 0; i < by_line.size(); ++i) {
     const std::uint64_t line = by_line[i].key;

@@ -18,7 +18,7 @@ class JoinedSegments {
   /// The ends of the joined segments, two each.
   const std::vector<std::int32_t>& joined() const { return joined_; }
   /// The edges of each segment, as in ConstrainedTriangulation::piece_edges. edges: all constraint edges.
-  /// ranges: those of the joined segments.
+  /// ranges: of the joined segments.
   std::vector<std::int32_t> segment_edges(const std::vector<std::int32_t>& edges,
                                           const std::vector<std::int32_t>& ranges) const;
 

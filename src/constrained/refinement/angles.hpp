@@ -29,10 +29,10 @@ struct Shape {
   std::array<std::array<double, 2>, 3> sides;  ///< opposite to the corners
 };
 
-/// Of triangles that are added one after the other. All are 0 if there are none.
+/// The angles of triangles that are added one after the other. All values are 0 without triangles.
 class Angles {
  public:
-  /// The mean takes as long as all else together.
+  /// The mean takes as long as all other values together.
   explicit Angles(bool with_mean) : with_mean_(with_mean) {}
 
   void add(const double* coordinates, const std::int32_t* corners) {
@@ -48,7 +48,7 @@ class Angles {
     if (with_mean_) sum_ += degrees(most);
     ++count_;
   }
-  /// All that were added to others.
+  /// Adds all triangles of another object.
   void add(const Angles& others) {
     most_ = std::max(most_, others.most_);
     least_ = std::min(least_, others.least_);
@@ -57,7 +57,7 @@ class Angles {
   }
   double smallest() const { return count_ > 0 ? degrees(most_) : 0; }
   double largest() const { return count_ > 0 ? degrees(least_) : 0; }
-  /// Of the smallest angle of each triangle; 0 unless it was asked for.
+  /// The mean of the triangles' smallest angles; 0 unless it was requested.
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
 
  private:

@@ -32,7 +32,7 @@ Pair quotient(Pair a, double b) {
   return kernel::fast_two_sum(high, (((a.x - back.x) - back.y) + a.y) / b);
 }
 
-/// By the Taylor series of the sine, to the nearest multiple of 2^-56 or of a unit in the last place.
+/// Sums the Taylor series of the sine, rounded to a multiple of 2^-56 or to a unit in the last place.
 double squared_sine_of(double degrees) {
   if (degrees == 0) return 0;
   const Pair degree{0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};

@@ -1,4 +1,4 @@
-// What a refinement is asked for, as the numbers that kernels decide by.
+// The bounds of a refinement, as numbers that kernels compare.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct QualityBounds {
 /// Throws Error(usage) unless the angle is from 0 to 34 degrees.
 QualityBounds quality_bounds(double min_angle);
 
-/// Throws Error(usage) unless all areas that triangles may have are 0, for any, or more. what: whose they
-/// are, in the singular.
+/// Throws Error(usage) unless all largest areas are 0, for any, or more. what: the things that have them, in
+/// the singular.
 void check_areas(const double* areas, std::size_t count, const char* what);
 
 }  // namespace flaunay::constrained

@@ -14,7 +14,7 @@ constexpr double kLowQuantile = 0.3, kHighQuantile = 0.7;
 // Places that are nearly the same have no leaf each.
 constexpr int kMostDepth = 60;
 
-// Many places are cut so often before threads share what is left.
+// At least kManyPlaces places are cut this many times before threads share the parts.
 constexpr std::size_t kManyPlaces = 4096;
 constexpr int kLevelsBefore = 4;
 
@@ -76,7 +76,7 @@ class Cutting {
     return {along(*middle, axis), axis, 0};
   }
 
-  // A gap is what some consecutive places span, about half of the square root of all.
+  // A gap is the interval that some consecutive places span: about half of the square root of their number.
   block_cut gap(std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin,
                       width = std::max<std::size_t>(

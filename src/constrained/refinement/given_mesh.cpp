@@ -220,7 +220,7 @@ std::int32_t GivenMesh::triangle_with(Point place, std::int32_t vertex) const {
   return -1;
 }
 
-// Of the triangle with the centroid of another one.
+// The area given for the triangle that contains the centroid of another one.
 double GivenMesh::area_for(const double* coordinates, const std::int32_t* corners) const {
   std::array<std::pair<Point, std::int32_t>, 3> ordered;
   for (std::size_t k = 0; k < 3; ++k) ordered[k] = {point(coordinates, corners[k]), corners[k]};

@@ -1,4 +1,4 @@
-// Meshes that are refined further: their borders as segments, and what is left of a triangulation with these.
+// Meshes that are refined further: their borders as segments, and the triangles inside of these.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace flaunay::constrained {
 /// The triangles of Refinement::mesh, and the segments of a call with those that they need.
 class GivenMesh {
  public:
-  /// For n points. Throws Error(usage) for triangles of other points, and for what cannot be asked for of a
-  /// mesh; Error(input), which names triangles, for those that are flat or lie on each other.
+  /// For n points. Throws Error(usage) for triangles of other points, and for options that a given mesh does
+  /// not allow; Error(input), which names triangles, if triangles are flat or overlap.
   GivenMesh(const double* coordinates, std::size_t n, const Constraints& constraints,
             const ConstrainedOptions& options);
   // The arrays of the constraints are its own.

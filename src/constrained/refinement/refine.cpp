@@ -45,33 +45,33 @@ using kernel::double2;
 using kernel::edge_place;
 using kernel::mesh_row;
 
-// A block inserts at most so many points per bad triangle in a phase, which is a part of the result.
+// A block inserts at most this many points per bad triangle in a phase. The result depends on this.
 constexpr std::size_t kMostPerTriangle = 16;
 // A phase that adds fewer points than this part of its bad triangles makes the blocks of the next one larger.
 constexpr double kLeastProgress = 0.1;
-// Without areas, a mesh with bad triangles for so many blocks is one: it makes fewer points, and takes one
-// thread less time.
+// Without areas, a mesh with bad triangles for at most this many blocks is a single block: that makes fewer
+// points, and takes one thread less time.
 constexpr std::size_t kBlocksAlone = 8;
-// One bad triangle in so many decides where the plane is cut: in the first phase, which cuts in medians, and
-// later.
+// One bad triangle in this many is a sample for cutting the plane: in the first phase, which cuts at medians,
+// and later.
 constexpr std::size_t kFirstSample = 8, kLaterSample = 4;
-// Areas go down in levels, each so many times smaller than the one before; the next one begins when this part
-// of a level is left.
+// Areas decrease in levels. Each level's area is smaller by the factor kLevelStep; the next level begins when
+// the share kLevelRest of a level is left.
 constexpr int kLevelPlaces = 4;
 constexpr double kLevelStep = 1 << kLevelPlaces, kLevelRest = 0.1;
 // Triangles with a circumradius above this part of the size of their block are cut before.
 constexpr double kScaffold = 0.5;
-// Blocks at once, on devices; natively, as many as threads. The lists of each have so many places at first.
+// Blocks at once, on devices; natively, as many as threads. A block's lists have kLeastRoom places at first.
 constexpr std::size_t kBlocksAtOnce = 256, kLeastRoom = 2048;
-// A launch has room for so many chunks of rows and of vertices, or for one per block.
+// A launch has room for this many chunks of rows and of vertices, or for one per block.
 constexpr std::size_t kLeastChunks = 4;
-// From so many rows on, there is less spare room for them.
+// From this many rows on, less spare room is reserved.
 constexpr std::size_t kManyRows = std::size_t{1} << 20;
-// A thread takes at least so many rows.
+// A thread takes at least this many rows.
 constexpr std::size_t kFewRows = std::size_t{1} << 14;
 // 2 to the power of this many vertices, and the rows around them, fit a core's cache.
 constexpr int kBucketBits = 13;
-// Where loops of a work-item must be short, a launch takes so many steps of each block.
+// If loops of a work-item must be short, a launch takes this many steps of each block.
 constexpr int kFewSteps = 500;
 // Smoothing makes no smaller angles, whatever is asked for.
 constexpr double kSmoothedAngle = 20;
@@ -79,7 +79,7 @@ constexpr double kSmoothedAngle = 20;
 // largest coordinate if that is more, which is at least 16 units in the last place of any coordinate. With
 // 2^-45 of the largest coordinate, rounding moves points by less than 2 % of the smallest edge.
 constexpr int kMinEdgeOfExtent = -40, kMinEdgeOfLargest = -48, kFineOfLargest = -45;
-// New coordinates have no binary places below that of the largest coordinate by so many.
+// Added points have multiples of 2^(e - kBinaryPlaces), with 2^e the largest coordinate's power of two.
 constexpr int kBinaryPlaces = 200;
 // Their corners are counted by ints.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 29;
@@ -103,7 +103,7 @@ struct Lists {
   Buffer<kernel::first_task> firsts{};
 };
 
-// Of places.
+// The bounding box of places.
 struct Box {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
 
@@ -122,7 +122,7 @@ T* address_in(const Buffer<T>& array) {
   return reinterpret_cast<T*>(host::address_of(array.memory()));
 }
 
-// What an array holds: where it is, if kernels run natively, or else a copy.
+// The elements of an array: in place if kernels run natively, otherwise a copy.
 template <typename T>
 class Here {
  public:
@@ -193,7 +193,7 @@ class Refining {
   // binary places than there are below 1 decides first.
   void scale() {
     const geometry::Magnitudes magnitudes = geometry::inspect(mesh_.coordinates, 0, mesh_.points);
-    geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes);  // throws if there is none
+    geometry::scaling_for(mesh_.coordinates, 0, mesh_.points, magnitudes);  // throws if no scaling fits
     if (geometry::bits_of(magnitudes) > 0)
       shift_ = std::max(-1 - magnitudes.largest, kernel::LOWEST_EXPONENT - magnitudes.lowest);
     // The last binary place that new coordinates have, scaled: exact in predicates, and a double when scaled
@@ -231,8 +231,8 @@ class Refining {
     return area > 0 ? std::max(scaled, std::numeric_limits<double>::min()) : scaled;
   }
 
-  // Vertices are numbered as triangles need them, which are in the order of places in the plane, more or
-  // less: then what is used together is together in memory.
+  // Numbers vertices in the order of triangles, which follow their places in the plane more or less: vertices
+  // used together are close in memory.
   void order_vertices() {
     place_of_.assign(mesh_.points, -1);
     std::int32_t next = 0;
@@ -264,7 +264,7 @@ class Refining {
     rules_.area_kind = wanted_.areas_at               ? kernel::AREAS_BY_ROW
                        : !mesh_.largest_areas.empty() ? kernel::AREAS_BY_PARENT
                                                       : kernel::AREAS_NONE;
-    // Squares of lengths are below 2 extent^2, by 2^100 classes of which the shortest sides are told apart.
+    // Squares of lengths are below 2 extent^2. The classes distinguish shortest sides down to 2^-100 of that.
     rules_.least_class =
         8 * (2 * (extent_ > 0 ? std::ilogb(extent_) : 0) + 1023 + 3) - kernel::TASK_CLASSES / 2;
     rules_.vertices = static_cast<int>(mesh_.points);
@@ -281,8 +281,8 @@ class Refining {
     return ends;
   }
 
-  // The other ends of edges at apexes. Of several apexes that a vertex has, the first one counts, by
-  // coordinates. ends: 2 per edge.
+  // The other ends of edges at apexes. If a vertex has several apexes, the lexicographically first one
+  // counts. ends: 2 per edge.
   void add_far_ends(const std::vector<std::int32_t>& ends, std::vector<edge_place>& places) const {
     const auto is_apex = [&](std::int32_t v) { return places[v].apex == v; };
     for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -335,7 +335,7 @@ class Refining {
     }
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
-    // With what the first phase takes.
+    // With lists of the first phase's size.
     is_starting_ = runtime_.is_native();
     if (is_starting_ && rows_ <= kFewRows) reserve_lists(1, kLeastRoom, false);
     reserve(rows_ + kLeastChunks * kernel::ROWS_PER_CHUNK,
@@ -382,7 +382,7 @@ class Refining {
     return false;
   }
 
-  // A new array. Those that a small mesh begins with are the arena's, which takes less time.
+  // A new array. First arrays of a small mesh come from the arena, which takes less time.
   template <typename T>
   Buffer<T> make(std::size_t size) {
     if (is_starting_) return arena_.allocate<T>(size);
@@ -394,8 +394,8 @@ class Refining {
     runtime_.copy(array, 0, larger, 0, std::min(used, array.size()));
     array = larger;
   }
-  // With what is likely to be needed later. Natively, memory that is not used costs nothing, but there must
-  // be so much; most polygons take less than six times as many rows as at first.
+  // Adds room that is likely to be needed later. Natively, unused memory costs nothing, but must be
+  // available; most polygons take less than six times as many rows as at first.
   std::size_t with_spare(std::size_t count) const {
     if (!runtime_.is_native()) return count + count / 2;
     return (is_starting_ && count < kManyRows ? 6 : 3) * count;
@@ -436,7 +436,7 @@ class Refining {
   // -------------------------------------------------------------------------------------------------------
   // Tests
 
-  // Tests all rows: what constraints are encroached, or what is bad.
+  // Tests all rows for encroached constraints, or also for bad triangles.
   void test(bool segments_only) {
     runtime_.map_in_small_groups(rows_, kernels::test_rows{.segments_only = segments_only ? 1 : 0,
                                                            .rules = rules_,
@@ -444,7 +444,7 @@ class Refining {
                                                            .states = arrays_.states});
   }
 
-  // In so many parts rows are shared natively.
+  // The number of parts in which threads share rows natively.
   std::size_t parts_of_rows() const { return 1 + std::min(4 * (runtime_.threads() - 1), rows_ / kFewRows); }
 
   // Rows whose states have a bit of a mask.
@@ -475,7 +475,7 @@ class Refining {
     return {list, to[parts]};
   }
 
-  // Finds the areas of rows that were made: those of parents, and what the caller's function says.
+  // Finds the largest areas of new rows: their parents' areas, and the results of the caller's function.
   void find_areas() {
     if (given_.size() == 0 && !wanted_.areas_at) return;
     Arena::Scope scope(arena_);
@@ -514,7 +514,7 @@ class Refining {
   // -------------------------------------------------------------------------------------------------------
   // Phases
 
-  // Rows in which something is to be done, and what is known of them.
+  // Rows with pending work, and their properties.
   struct Pending {
     std::size_t count = 0;
     Buffer<cl_int> list{};
@@ -523,7 +523,7 @@ class Refining {
     Buffer<cl_uchar> is_sampled{};
   };
 
-  // sample: one in so many, a power of two.
+  // sample: one row in this many is sampled; a power of two.
   Pending describe(const Buffer<cl_int>& list, std::size_t count, std::size_t sample) {
     Pending all{count, list, arena_.allocate<cl_double2>(count), arena_.allocate<cl_double>(count),
                 arena_.allocate<cl_uchar>(count)};
@@ -683,7 +683,7 @@ class Refining {
       if (!is_whole && (!made || count != all_count))
         made = cut(list, count, block, is_first ? Cuts::medians : Cuts::gaps);
       Blocks blocks = is_whole ? whole_plane(list, count) : make_blocks(*made);
-      // Each has a part of what is left.
+      // Each block may insert a part of the remaining points.
       if (!is_whole && (blocks.count == 1 || left < blocks.count)) {
         is_whole = true;
         blocks = whole_plane(list, count);
@@ -738,7 +738,7 @@ class Refining {
     return true;
   }
 
-  // What work-items begin with.
+  // Resets the states of work-items.
   void start_blocks() {
     kernel::block_state none{};
     none.block = none.retry = -1;
@@ -755,7 +755,7 @@ class Refining {
     inserted_by_.clear();
   }
 
-  // Makes lists of at least so many places for each work-item. keeps_tasks: whether they have some.
+  // Makes lists with at least `room` places for each work-item. keeps_tasks: whether their tasks are kept.
   void reserve_lists(std::size_t at_once, std::size_t room, bool keeps_tasks) {
     const std::size_t before = room_ + kernel::SPARE_ROOM, size = room + kernel::SPARE_ROOM;
     if (at_once * size > lists_.tasks.size()) {
@@ -848,7 +848,7 @@ class Refining {
   // -------------------------------------------------------------------------------------------------------
   // Order
 
-  // Vertices and rows by what made them, whichever thread that was.
+  // The order of vertices and rows by the blocks that made them, independent of threads.
   struct Order {
     std::size_t rows, made;  // numbers of all rows, and of vertices that were made
     Buffer<cl_ulong> order{};
@@ -907,8 +907,8 @@ class Refining {
     return found;
   }
 
-  // What the passes above do with rows, natively: threads put the rows that were made into buckets of
-  // vertices, and sort each bucket by counting.
+  // The native version of the passes above over rows: threads put new rows into buckets of vertices, and sort
+  // each bucket by counting.
   void order_here(Order& found) {
     const mesh_row* const rows = address_in(arrays_.rows);
     const cl_int* const numbers = address_in(found.numbers);

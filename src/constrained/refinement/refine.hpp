@@ -13,9 +13,9 @@
 
 namespace flaunay::constrained {
 
-/// A canonical constrained Delaunay triangulation, of one or more sets, that is to be refined. Only triangles
-/// that are to be refined are in it: what is outside or in holes is left out. All its borders, such as the
-/// convex hull where that is no constraint, are edges in `edge_ends`.
+/// A canonical constrained Delaunay triangulation, of one or more sets, to be refined. It contains only
+/// triangles to be refined, none outside or in holes. All its borders, such as the convex hull where that is
+/// no constraint, are edges in `edge_ends`.
 struct MeshToRefine {
   const double* coordinates = nullptr;  ///< x and y per point
   std::size_t points = 0;               ///< number of points
@@ -39,7 +39,7 @@ struct RefinedMesh {
   std::vector<std::int32_t> edges;      ///< as in MeshToRefine: of pieces of an edge, that edge
   std::vector<std::int32_t> parents;    ///< one per triangle: a triangle of MeshToRefine in the same region;
                                         ///< if areas differ in it, the one with the centroid
-  RefinementReport report;              ///< without angles; triangles in it are those of this mesh
+  RefinementReport report;              ///< without angles; its triangles are rows of this mesh
   Angles before_smoothing{true};        ///< of the triangles that smoothing began with
 };
 

@@ -127,8 +127,8 @@ std::vector<std::uint8_t> kept_edges(const Refinement& wanted, const FixedEdges&
   return kept;
 }
 
-// Of the areas that all triangles, those of a region, and each may have, the smallest one. Empty if there is
-// none.
+// The largest area of each triangle: the smallest of the limits for all triangles, for its region and for
+// itself. Empty without limits.
 std::vector<double> largest_areas(const Refinement& wanted, const Ids& seeds,
                                   const std::vector<double>& areas, std::size_t triangles) {
   const bool has_seeds = wanted.seed_areas != nullptr && !seeds.empty();
@@ -177,7 +177,7 @@ class EdgeChains {
       offsets_.push_back(vertices_.size());
     }
   }
-  // Calls add(v) for those of an edge; of edge -1 there are none.
+  // Calls add(v) for each point of an edge; edge -1 has none.
   template <typename Add>
   void visit(std::int32_t edge, bool is_turned, const Add& add) const {
     if (edge < 0) return;
@@ -227,8 +227,8 @@ void split_hull(const FixedEdges& edges, const EdgeChains& chains, Triangulation
   result.hull_offsets = std::move(offsets);
 }
 
-// Numbers the points that were added, of which there are n others. A set's points keep their order, so
-// triangles begin with the same corners.
+// Renumbers the added points, after the n other points. A set's points keep their order, so triangles begin
+// with the same corners.
 void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation& result) {
   const auto first = static_cast<std::int32_t>(n);
   for (Ids* vertices : {&result.triangles, &result.hull, &result.constraint_edges, &result.representatives}) {
@@ -240,7 +240,7 @@ void renumber_points(std::size_t n, const Ids& numbers, ConstrainedTriangulation
   std::copy(added.begin(), added.end(), result.representatives.begin() + first);
 }
 
-// Makes the added points of each set follow each other: those of splitting first.
+// Makes the added points of each set consecutive: points that splitting added come first.
 void sort_by_sets(std::size_t n, const RefinedOffsets& sets, ConstrainedTriangulation& result) {
   const std::size_t set_count = sets.added.size() - 1;
   std::vector<std::size_t> splits = result.added_offsets;

@@ -1,5 +1,5 @@
 // Between the result of a call and the mesh that is refined: the arrays of triangles move there and back,
-// edges that must stay are numbered, and what was split carries what the whole had.
+// edges that must stay are numbered, and parts of split edges get the properties of the whole.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +19,20 @@ struct FixedEdges {
   std::vector<std::int32_t> of_hull;  ///< per hull vertex: the number of the edge to the next one, or -1
 };
 
-/// Of each set where what refinement made begins, and the end.
+/// Where the triangles and added points of each set begin after refinement, and the end.
 struct RefinedOffsets {
   std::vector<std::size_t> triangles{0}, added{0};
 };
 
-/// Takes the triangles of a result, which must have neighbours. coordinates: of so many points, those that
-/// splitting added too; seeds: for each triangle that of its region, or -1, or empty; areas: for each
-/// triangle the area that it may have, 0 for any, or empty. edges: gets those of the mesh. O(t).
+/// Takes the triangles of a result, which must have neighbours. coordinates: of this many points, including
+/// points that splitting added; seeds: per triangle the seed of its region, or -1, or empty; areas: per
+/// triangle its largest area, 0 for any, or empty. edges: set to the edges of the mesh. O(t).
 MeshToRefine take_mesh(host::Runtime& threads, const double* coordinates, std::size_t points,
                        const Refinement& wanted, const std::vector<std::int32_t>& seeds,
                        const std::vector<double>& areas, ConstrainedTriangulation& result, FixedEdges& edges);
 
-/// About how many points some triangles will have. Only what is far more than there are changes where the
-/// work is done.
+/// Estimates how many points some triangles will have after refinement. The estimate only decides where the
+/// work is done, and only matters if it is far larger than the present number.
 std::size_t expected_points(const MeshToRefine& mesh, std::size_t first, std::size_t end);
 
 /// Writes the refined mesh to the result from which its mesh was taken: all arrays but half-edges, areas and

@@ -14,7 +14,7 @@ std::vector<T> part_of(const std::vector<T>& all, std::size_t first, std::size_t
   return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
-// Writes the result of set s to that of all sets, of which there were so many points before.
+// Writes the result of set s into the result of all sets. points: the number of points before refinement.
 void write_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points, const RefinedOffsets& sets,
                std::size_t s, RefinedMesh& all) {
   const std::size_t first_triangle = sets.triangles[s];
@@ -37,7 +37,7 @@ void write_set(const RefinedMesh& own, const SetNumbers& set, std::size_t points
             all.added.begin() + static_cast<std::ptrdiff_t>(2 * sets.added[s]));
 }
 
-// Adds the report of a set to that of all sets, which have so many triangles before.
+// Adds the report of a set to the report of all sets. first_triangle: of the set.
 void add_report(const RefinedMesh& own, std::size_t first_triangle, RefinedMesh& all) {
   for (const std::int32_t t : own.report.bad_triangles)
     all.report.bad_triangles.push_back(t + static_cast<std::int32_t>(first_triangle));

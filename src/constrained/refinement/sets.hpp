@@ -21,8 +21,8 @@ struct SetNumbers {
     const auto i = static_cast<std::size_t>(v);
     return static_cast<std::int32_t>(i >= first_split ? i - first_split + points : i - first_point);
   }
-  /// How much larger the numbers among all sets are: of its points, of what splitting added, and of what was
-  /// added then, the first of which is `first_added` there.
+  /// By how much numbers among all sets exceed the set's own: for its points, for points that splitting
+  /// added, and for points that refinement added. These begin with number `first_added` among all sets.
   std::array<std::int32_t, 3> shifts(std::size_t first_added) const {
     return {static_cast<std::int32_t>(first_point), static_cast<std::int32_t>(first_split - points),
             static_cast<std::int32_t>(first_added - points - splits)};
@@ -33,14 +33,14 @@ struct SetNumbers {
 std::vector<SetNumbers> numbers_of_sets(const MeshToRefine& mesh, const std::vector<std::size_t>& offsets,
                                         const ConstrainedTriangulation& result);
 
-/// The mesh of one set, by numbers of its own. coordinates: where those of its points go.
+/// The mesh of one set, by numbers of its own. coordinates: set to the coordinates of its points.
 MeshToRefine mesh_of_set(const MeshToRefine& all, const SetNumbers& set, std::vector<double>& coordinates);
 
 /// Calls work(k) for each number below count, perhaps on several threads.
 using ShareSets = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
-/// Joins the refined meshes of all sets, of which there were so many points before. Takes their memory.
-/// offsets: gets where those of each set begin.
+/// Joins the refined meshes of all sets and takes their memory. points: the number of points before
+/// refinement. offsets: set to where each set begins.
 RefinedMesh join_sets(host::Runtime& threads, const std::vector<SetNumbers>& sets,
                       std::vector<RefinedMesh>& parts, std::size_t points, const ShareSets& share,
                       RefinedOffsets& offsets);

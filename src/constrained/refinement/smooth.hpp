@@ -11,7 +11,7 @@ namespace flaunay::constrained {
 /// The mesh, in the arrays of its phases.
 struct MeshToSmooth {
   std::size_t rows, vertices;
-  kernel::refinement_rules rules;  ///< what triangles must stay better than
+  kernel::refinement_rules rules;  ///< triangles must stay better than these
   kernels::refined_mesh mesh;
   host::Buffer<kernel::mesh_row> triangles;
   host::Buffer<cl_double2> points;

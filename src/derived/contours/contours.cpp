@@ -19,7 +19,7 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// Triangles are shared among threads in runs of so many.
+// Triangles are shared among threads in runs of this many.
 constexpr std::size_t kRun = 1 << 16;
 
 // Closed lines that are cut off are left out if twice their area is at most this, times their length and the
@@ -33,7 +33,7 @@ bool append(Line& line, const Place& place) {
   return is_another;
 }
 
-// Products below this may have lost digits, and those of larger coordinates may overflow.
+// Products below kTiny may have lost digits, and products of coordinates above kLargest may overflow.
 constexpr double kTiny = 0x1p-960, kLargest = 0x1p500;
 
 // Whether three places certainly turn left.
@@ -86,7 +86,7 @@ class Surface {
     const kernel::double2 places[] = {{a.x, a.y}, {b.x, b.y}, {c.x, c.y}};
     return kernel::has_longer_edge(places, longest_) == 0;
   }
-  /// Throws Error(usage) unless all indices are those of points and triangles.
+  /// Throws Error(usage) unless all indices are in the range of points and triangles.
   void check(std::size_t first, std::size_t last) const {
     for (std::size_t c = 3 * first; c < 3 * last; ++c) {
       const std::int32_t v = mesh_.triangles[c], u = mesh_.neighbors[c];
@@ -107,8 +107,8 @@ class Surface {
     const double part = (height / 2 - values_[v] / 2) / (values_[w] / 2 - values_[v] / 2);
     return {{between(a.x, b.x, part), between(a.y, b.y, part)}, std::min(part, 1 - part)};
   }
-  /// Whether rounding of two crossings, on the sides from corner s to a and b, is too little for any change
-  /// of the order of what is in the triangle.
+  /// Whether two crossings, on the sides from corner s to a and b, are so far apart that rounding cannot
+  /// change the order of the lines in the triangle.
   bool is_wide(Place s, Place a, Place b, double parts) const {
     const double ax = a.x - s.x, ay = a.y - s.y, bx = b.x - s.x, by = b.y - s.y;
     return (ax * by - ay * bx) * parts >
@@ -149,7 +149,7 @@ class Tracer {
   enum class State : std::uint8_t { not_crossed, crossed, traced };
 
   State& state(std::int32_t t) { return states_[static_cast<std::size_t>(t)]; }
-  // The triangle on the other side of one that the line crosses, or -1 if there is none that has lines.
+  // The triangle beyond the side opposite to this corner, or -1 if no line crosses a triangle there.
   std::int32_t beyond(std::int32_t t, int corner) {
     const std::int32_t u = surface_.neighbor(t, corner);
     return u >= 0 && u != t && state(u) != State::not_crossed ? u : -1;
@@ -167,7 +167,7 @@ class Tracer {
   }
   bool is_at_height(std::int32_t v) const { return surface_.value(v) == height_; }
 
-  // Whether rounding leaves the parts in order into which the line divides a triangle: what it cuts off at
+  // Whether rounding keeps the order of the parts into which the line divides a triangle: the part cut off at
   // one corner, and two triangles between the line and the other corners, unless it goes through these.
   bool is_in_order(std::int32_t t, int exit, const Crossing& from, const Crossing& to,
                    bool is_at_border) const {
@@ -223,7 +223,8 @@ class Tracer {
   std::vector<State> states_;
 };
 
-// Of a closed line, which may have its smallest point more than once.
+// Rotates a closed line so that it begins at its smallest point. If it visits that point more than once, the
+// lexicographically smallest rotation is taken.
 void begin_at_smallest(Line& line) {
   line.pop_back();
   const Place smallest = *std::min_element(line.begin(), line.end());
@@ -267,8 +268,8 @@ Line repeated(Line places) {
   return twice;
 }
 
-// Adds the parts of a line that goes through places again: what it has done in between is a closed line. None
-// goes through a place twice.
+// Adds the parts of a line that goes through places again: the part in between is a closed line. No part goes
+// through a place twice.
 void add_parts(const Line& line, const Line& twice, std::vector<Line>& lines) {
   std::vector<std::size_t> last(twice.size(), line.size());
   Line path;

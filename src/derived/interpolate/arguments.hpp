@@ -10,7 +10,7 @@ inline kernels::faces faces_of(const locate::Locator& locator) {
   return {.points = locator.points, .source = locator.source, .faces = locator.faces};
 }
 
-/// In a mesh with constraints, without what is beyond them.
+/// Without the faces beyond constraints, in a mesh that has them.
 inline kernels::faces visible_faces_of(const locate::Locator& locator) {
   return {.points = locator.points,
           .source = locator.source,

@@ -19,7 +19,7 @@ constexpr double kRadius = 0.5;
 const double kRate = 2 - std::sqrt(3.0);
 constexpr double kSafety = 16;
 
-// Rounding errors hide what later iterations gain.
+// Rounding errors exceed the gain of later iterations.
 constexpr double kLeastTolerance = 0x1p-53;
 
 // The edges by vertex; see gradients.cl.

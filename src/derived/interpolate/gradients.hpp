@@ -11,8 +11,8 @@ namespace flaunay::interpolate {
 Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, const Table& table,
                             const Gradients& wanted);
 
-/// Powers of two between the caller's units and those of the locator's points, by set. sign: 1 for slopes in
-/// the caller's units, -1 for the other way, 0 for ones.
+/// Powers of two, per set, between the caller's units and the units of the locator's points. sign: 1 for
+/// slopes in the caller's units, -1 for the other way, 0 for ones.
 Buffer<kernel::scaling> slope_scales(host::Runtime& runtime, const Locator& locator, int sign);
 
 /// The number of iterations that reach a tolerance.

@@ -11,11 +11,11 @@ namespace flaunay::interpolate {
 using host::Buffer;
 using locate::Locator;
 
-/// What is interpolated: rows of `columns` numbers, one per input point.
+/// The values to interpolate: a row of `columns` numbers per input point.
 struct Table {
   Buffer<cl_double> values;
   std::size_t columns;
-  double outside;  ///< the result where there is none
+  double outside;  ///< the result outside of the triangulation
 };
 
 /// The gradients of the columns at the points: given, as rows of x and y per column, or estimated.
@@ -26,8 +26,8 @@ struct Gradients {
   std::size_t iterations = 0;  ///< at most
 };
 
-// Queries are m points in the sets of the locator, and results m rows. See derived/locate/locator.hpp for
-// what is checked, how often the calls wait, and temporary memory.
+// Queries are m points in the sets of the locator, and results m rows. derived/locate/locator.hpp says which
+// checks are made, how often calls wait, and how much temporary memory they need.
 
 /// Interpolates linearly between the corners of the triangle that the query lies in.
 void linear(host::Runtime& runtime, const Locator& locator, const Table& table,

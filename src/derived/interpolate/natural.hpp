@@ -22,14 +22,14 @@ void natural(host::Runtime& runtime, const Locator& locator, NaturalWeights meth
 /// The natural neighbours of queries and their weights, which are written in a second pass.
 class NaturalLists {
  public:
-  /// Counts them. Waits once. The arguments are those of natural(); they must exist until the end of the
-  /// call.
+  /// Counts the neighbours. Waits once. The arguments are as in natural(); they must exist until the end of
+  /// the call.
   NaturalLists(host::Runtime& runtime, const Locator& locator, NaturalWeights method,
                const Buffer<cl_double>& queries, std::size_t m,
                const std::vector<std::size_t>& query_offsets);
   /// Query i has the rows [offsets()[i], offsets()[i + 1]); those outside have none.
   const std::vector<std::size_t>& offsets() const { return offsets_; }
-  /// Enqueues what writes them.
+  /// Enqueues the kernels that write them.
   void write(const Buffer<cl_int>& neighbors, const Buffer<cl_double>& weights) const;
 
  private:

@@ -26,7 +26,7 @@ Stars make_stars(host::Runtime& runtime, Arena& own, const Locator& of, std::siz
   auto fans = runtime.arena().allocate<kernel::fan_part>(triangles);
   const auto changed = runtime.arena().allocate<cl_int>(1);
   runtime.map(triangles, kernels::link_fans{.faces = of.faces, .points = of.points, .fans = fans});
-  // After so many passes links lead past every triangle, even if the mesh is none.
+  // After these passes links lead past every triangle, even if the mesh is not valid.
   for (std::size_t reach = 1; reach < 2 * std::max<std::size_t>(1, triangles); reach *= 4) {
     runtime.fill(changed, 1, cl_int{0});
     runtime.map(triangles,

@@ -14,12 +14,12 @@ namespace flaunay::locate {
 
 struct Locator;
 
-/// Triangulates sets of points. The mesh is in `results`; `persistent` has what is needed meanwhile.
+/// Triangulates sets of points. The mesh is in `results`; `persistent` holds arrays of the call.
 using Triangulate = points::DeviceMesh (*)(host::Runtime& runtime, host::Arena& persistent,
                                            const std::vector<std::size_t>& offsets,
                                            const host::Buffer<cl_double>& coordinates, host::Arena& results);
 
-/// What begins the stars of a triangulation's vertices, and the fans in it.
+/// The triangles with which the stars of vertices begin, and the fans of the triangulation.
 struct Stars {
   host::Buffer<cl_int> starts{};
   host::Buffer<kernel::fan_part> fans{};
@@ -37,8 +37,8 @@ struct Levels {
   host::Buffer<kernel::vertex_box> boxes{};
 };
 
-/// The sizes of the samples: those of set s on level l are [offsets[l * sets + s], offsets[l * sets + s +
-/// 1]).
+/// The sizes of the samples: set s has the samples [offsets[l * sets + s], offsets[l * sets + s + 1]) on
+/// level l.
 struct SampleSizes {
   std::size_t levels = 0, sets = 0;
   std::vector<std::size_t> offsets{0};

@@ -161,7 +161,7 @@ void fill_hull(host::Runtime& runtime, const DeviceMesh& mesh, const UniformPoin
                                                             .bad = faults});
 }
 
-// What all kernels on one call's queries share. Without trees, the first kernel places the queries.
+// Arguments that all kernels on one call's queries share. Without trees, the first kernel places the queries.
 struct Pass : LocatedQueries {
   float nearness_bound;
   bool is_off_grid;       // whether some queries are not on the grid: see QueryScaling
@@ -184,7 +184,7 @@ kernels::searched_mesh searched_mesh(const Locator& locator, const Stars& stars)
 
 // How far queries walk in large sets before they give up.
 struct WalkLimits {
-  std::size_t long_from, most;  // in sets with so many triangles; so many steps
+  std::size_t long_from, most;  // the least number of triangles of a large set; the most steps
 };
 constexpr WalkLimits kNoLimits{std::numeric_limits<cl_int>::max(), 0};
 
@@ -291,7 +291,7 @@ void find_in_constrained(host::Runtime& runtime, const Locator& locator, const P
              .answers = answers != nullptr ? *answers : found});
 }
 
-// Goes on from triangles, by place, to those of queries off the grid. answers: by query.
+// Walks from triangles of the grid, by place in `found`, to those of queries off the grid. answers: by query.
 void locate_off_grid(host::Runtime& runtime, const Locator& locator, const Pass& pass,
                      const Buffer<cl_double>& queries, std::size_t m, const Buffer<cl_int>& found,
                      const Buffer<cl_int>& answers) {

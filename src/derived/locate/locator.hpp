@@ -34,13 +34,13 @@ struct Locator {
   host::Buffer<cl_int> first_vertices{};     ///< the first vertex of each set, and the number of all
   std::size_t most_triangles = 0;            ///< of one set
   bool has_clearances = false;               ///< measured only when queries for nearest points come
-  /// Of a mesh with constraints, which has one set: the triangles before `kept` are its own, and the others
-  /// fill it up to the convex hull. visible: faces of its own without neighbours beyond constraints and its
+  /// For a mesh with constraints, which has one set: the triangles before `kept` are its own, and the others
+  /// fill it up to the convex hull. visible: its own faces, without neighbours beyond constraints and its
   /// border.
   bool is_constrained = false;
   std::size_t kept = 0;
   host::Buffer<kernel::face> visible{};
-  /// For the search of nearest points. There are none until a query needs them.
+  /// For the search for nearest points. Levels are made when a query first needs them.
   Levels levels{};
   Triangulate triangulate = nullptr;         ///< makes the levels of samples
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
@@ -51,8 +51,8 @@ struct Locator {
 };
 
 /// Makes a locator. Its buffers come from `own`, which must exist as long as the locator. Throws Error(input)
-/// for indices that are not those of a triangulation with neighbours, and for points that are not accepted
-/// for triangulation. Waits about 6 times, and once more for several sets. O(n log n).
+/// if the indices are not a triangulation with neighbours, and for points that are not accepted for
+/// triangulation. Waits about 6 times, and once more for several sets. O(n log n).
 geometry::Fitted<Locator> make_locator(host::Runtime& runtime, host::Arena& own,
                                        const points::DeviceMesh& mesh, Triangulate triangulate);
 
@@ -107,7 +107,7 @@ struct LocatedQueries {
 };
 
 /// Finds the triangle of each query with doubles, for kernels that continue from there. The result is
-/// allocated in the runtime's arena, in the caller's scope. limits: what these kernels' predicates need.
+/// allocated in the runtime's arena, in the caller's scope. limits: of these kernels' predicates.
 LocatedQueries locate_by_place(host::Runtime& runtime, const Locator& locator,
                                const host::Buffer<cl_double>& queries, std::size_t m,
                                const std::vector<std::size_t>& query_offsets,

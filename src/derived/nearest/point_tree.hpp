@@ -24,7 +24,7 @@ class PointTree {
 
  private:
   friend class Search;
-  /// A point as it is scaled, and its index.
+  /// A scaled point, and its index.
   struct Entry {
     double x, y;
     std::int32_t point;

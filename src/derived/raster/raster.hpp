@@ -46,8 +46,8 @@ struct SidePixel {
   double value;
 };
 /// Appends the pixels on sides, without their ends, that would belong to a triangle on the other side. They
-/// belong to this one if there is none, or none that has pixels. sides: 3 t + k, opposite to corner k of
-/// triangle t.
+/// belong to this triangle if no triangle is there, or the one there has no pixels. sides: 3 t + k, opposite
+/// to corner k of triangle t.
 void append_side_pixels(host::Runtime& runtime, const Surface& surface, const Buffer<cl_int>& sides,
                         std::size_t count, const RasterGrid& grid, const RasterOptions& options,
                         std::vector<SidePixel>& pixels);

@@ -53,7 +53,7 @@ struct Slots {
   std::size_t most = 0;       ///< no fewer than there are
   Buffer<cl_uint> offsets{};  ///< n + 1
   Buffer<cl_int> slots{};
-  Buffer<cl_uint> codes{};  ///< what is inside of the polygon, if write_slots decided it, otherwise 0
+  Buffer<cl_uint> codes{};  ///< the part inside of the polygon, if write_slots decided it, otherwise 0
   Buffer<cl_int> ahead{};
 
   operator kernels::slots() const { return {.offsets = offsets, .slots = slots, .codes = codes}; }

@@ -15,21 +15,21 @@ struct ClippedBuffers {
   host::Buffer<cl_double> centroids{};  ///< 2 n
 };
 
-/// Provides memory for 2 coordinates of each of so many vertices.
+/// Provides memory for this many vertices, 2 coordinates each.
 using ProvideVertices = std::function<host::Buffer<cl_double>(std::size_t vertices)>;
 
 /// Enqueues the computation of clipped cells. Waits twice: for the magnitudes of the points, and for the
 /// number of vertices. Throws Error(input) if points and polygon are too different in magnitude. If the mesh
 /// is not valid, the results are unspecified, but no memory outside of the arrays is accessed. Temporary
 /// memory: 82 bytes per triangle, and 16 per point if coordinates are scaled. A cell of d triangles takes O(d
-/// log d) steps, of which one work-item does O(d); a polygon of m corners takes O(log m) per triangle and
-/// O(m) per Voronoi edge that crosses it or may do so.
+/// log d) steps, O(d) of them by one work-item; a polygon of m corners takes O(log m) per triangle and O(m)
+/// per Voronoi edge that crosses it or may do so.
 void compute_clipped(host::Runtime& runtime, const points::DeviceMesh& mesh, const ClipPolygon& polygon,
                      const ClippedBuffers& result, const ProvideVertices& provide);
 
-/// Mends the polygons of cells (derived/voronoi/mend.hpp), which have so many vertices: offsets and vertices
-/// are written again if some had to be, on the host. Returns how many vertices are left. Waits once, or until
-/// all is mended.
+/// Mends the polygons of cells (derived/voronoi/mend.hpp). If any polygon must be mended, that is done on the
+/// host, and offsets and vertices are written again. count: the number of vertices. Returns how many vertices
+/// are left. Waits once, or until all is mended.
 std::size_t mend_clipped(host::Runtime& runtime, const points::DeviceMesh& mesh, const ClipPolygon& polygon,
                          const host::Buffer<cl_int>& offsets, const host::Buffer<cl_double>& vertices,
                          std::size_t count);

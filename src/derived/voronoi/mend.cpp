@@ -21,9 +21,9 @@ using geometry::operator==;
 using kernel::comes_before;
 using kernel::fetch;
 
-// An edge is no matter of rounding if it is longer than these parts of its distance from the cell's point and
-// of the largest coordinate, unless both ends are so many times as far away as all points lie apart; and what
-// is nearer is small, not rounded.
+// An edge stays if it is longer than kLong times its distance from the cell's point, longer than kLongAtAll
+// times the largest coordinate, and no farther away than kRemote times the extent of all points: rounding
+// cannot have made it. Edges longer than kTiny times their distance are not removed as coincident corners.
 constexpr double kLong = 0x1p-10, kLongAtAll = 0x1p-46, kRemote = 0x1p30, kTiny = 0x1p-12;
 
 struct Earlier {
@@ -69,7 +69,7 @@ std::vector<Point> in_range(std::vector<Point> polygon) {
   return polygon;
 }
 
-// Edges of a polygon: so many from the one that leaves corner `first`.
+// Consecutive edges of a polygon: `count` edges from the one that leaves corner `first`.
 struct Loop {
   std::size_t first, count;
 };
@@ -136,8 +136,8 @@ void find_crossings(const std::vector<Point>& at, std::vector<Loop>& loops) {
   }
 }
 
-// Where a polygon, of which no two corners in a row are equal, touches itself or is not counter-clockwise:
-// nowhere if it is simple.
+// Finds where a polygon touches itself or is not counter-clockwise; empty if it is simple. Consecutive
+// corners must not be equal.
 std::vector<Loop> find_faults(const std::vector<Point>& given) {
   const std::vector<Point> at = in_range(given);
   const std::size_t n = at.size();
@@ -164,13 +164,13 @@ std::vector<Loop> find_faults(const std::vector<Point>& given) {
 // ---------------------------------------------------------------------------------------------------------------------
 // All cells of a set
 
-// Of a polygon: where it is, and which of the set's places that is. On a torus, images are one place.
+// A corner of a polygon: its coordinates, and the number of its place. On a torus, images are one place.
 struct Corner {
   Point at;
   std::int32_t place;
 };
 
-// Leaves out corners that equal the one before, and what is gone along and back.
+// Removes corners that equal the one before, and paths that are traversed forth and back.
 void tighten(std::vector<Corner>& polygon) {
   std::size_t size = 0;
   const auto is_at = [&](std::size_t i, Point p) { return polygon[i].at == p; };
@@ -212,7 +212,7 @@ class Mender {
     std::sort(fixed_.begin(), fixed_.end(), Earlier());
   }
 
-  // Mends the cells [first, last), those of a set, whose result depends on nothing else.
+  // Mends the cells [first, last) of a set. The result depends on these cells alone.
   void run(std::size_t first, std::size_t last) {
     first_ = first;
     last_ = last;
@@ -260,7 +260,7 @@ class Mender {
 
   struct Place {
     Point at;
-    std::uint64_t around;  // hashes of next corners without those of corners before: 0 if cells close
+    std::uint64_t around;  // hashes of next corners minus hashes of corners before: 0 if cells close
     std::int32_t root;     // another place if the corners here have moved there
     std::int32_t first, last, count;  // uses_ that are of this place
     bool is_fixed;
@@ -270,7 +270,7 @@ class Mender {
   };
 
   static constexpr std::size_t kLeastTable = 64;
-  // So many times the cells at some places are looked for; afterwards, those at all places.
+  // This many times, only the cells at known places are opened; after that, all cells are.
   static constexpr int kPasses = 3;
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
@@ -455,7 +455,7 @@ class Mender {
     return a.first != b.first ? is_earlier(a.first, b.first) : is_earlier(a.second, b.second);
   }
 
-  // What look_at needs for a cell.
+  // Temporary arrays of look_at for one cell.
   struct Scratch {
     std::vector<Corner> polygon;
     std::vector<Point> at;
@@ -464,7 +464,7 @@ class Mender {
     Ids thin;
   };
 
-  // Lists the edges that have to go, and the cells that have none but should.
+  // Lists the edges to remove, and the faulty cells that have no removable edge.
   void look_at(const Ids& cells) {
     std::vector<Scratch> scratch(geometry::runs_of(cells.size()));
     for_each_run(runtime_, cells.size(), [&](std::size_t run, std::size_t begin, std::size_t end) {
@@ -492,7 +492,7 @@ class Mender {
       const std::int32_t a = polygon[k].place, b = polygon[k + 1 < n ? k + 1 : 0].place;
       return is_earlier(b, a) ? Edge{b, a} : Edge{a, b};
     };
-    // Relative to what rounding depends on; infinite if the edge stays.
+    // Lengths relative to the scale of rounding; infinite if the edge stays.
     std::vector<double>& lengths = scratch.lengths;
     lengths.clear();
     const std::size_t listed = scratch.edges.size();
@@ -542,8 +542,8 @@ class Mender {
       return !places_[index(edge.first)].is_fixed && !places_[index(edge.second)].is_fixed;
     });
     std::sort(fixed, edges_.end(), [&](const Edge& a, const Edge& b) { return is_earlier(a, b); });
-    // Of one place those remain that are fixed, then those on the border, around which cells do not close,
-    // then those of many cells.
+    // If places become one, fixed places remain before others, then border places, around which cells do not
+    // close, then places of many cells.
     const auto is_better = [&](std::int32_t a, std::int32_t b) {
       const Place &p = places_[index(a)], &q = places_[index(b)];
       if (p.is_fixed != q.is_fixed) return p.is_fixed;
@@ -596,7 +596,7 @@ class Mender {
     }
   }
 
-  // Makes thin cells, of which no edge can go, parts of those at their longest edges.
+  // Makes thin cells without removable edges parts of the cells across their longest edges.
   Ids join() {
     if (thin_.empty() || !can_join_) return {};
     while (complete_ < places_.size()) complete();
@@ -676,17 +676,17 @@ class Mender {
   std::array<double, 2> period_;
   bool can_join_;
   Cells& cells_;
-  // Of all sets. A cell has corners in cells_.vertices, and in ring_ their places if it is open.
+  // For all sets. A cell has corners in cells_.vertices, and in ring_ their places if it is open.
   std::vector<std::size_t> begins_;
   Ids sizes_, ring_;
   std::vector<std::uint8_t> is_open_, is_changed_;
-  // Of the set at hand.
+  // For the current set.
   std::size_t first_ = 0, last_ = 0;
   double reach_ = 0;
   Ids table_;
   std::vector<Place> places_;
   std::vector<Use> uses_;
-  std::size_t complete_ = 0;  // of so many places all cells are open
+  std::size_t complete_ = 0;  // all cells at the places before this one are open
   std::size_t open_ = 0;      // cells
   int passes_ = 0;
   std::vector<Edge> edges_;

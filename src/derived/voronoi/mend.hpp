@@ -29,10 +29,10 @@ constexpr std::array<double, 2> kNoPeriod = {HUGE_VAL, HUGE_VAL};
 /// longest edge. docs/exactness.md says how far corners move. Polygons with corners that are not finite are
 /// left alone. The result of a set depends on nothing else, nor on the order of its cells. runtime: its
 /// threads are used if it is native. sets: set s has the cells sets[s] up to sets[s + 1]. sites: the cells'
-/// points, 2 coordinates each. fixed: places that stay, such as the corners of what cells are clipped to.
-/// period: how far the images of a corner are apart, which must be exact; infinite without. O(n) if few cells
-/// are in doubt. A polygon of d corners that is not convex takes O(d log d) and its crossings, each time it
-/// changes.
+/// points, 2 coordinates each. fixed: places that stay, such as the corners of the polygon to which cells are
+/// clipped. period: how far the images of a corner are apart, which must be exact; infinite without. O(n) if
+/// few cells are in doubt. A polygon of d corners that is not convex takes O(d log d) and its crossings, each
+/// time it changes.
 void mend(host::Runtime& runtime, const std::vector<std::size_t>& sets, const double* sites,
           const std::vector<double>& fixed, const std::array<double, 2>& period, Cells& cells);
 

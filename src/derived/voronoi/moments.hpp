@@ -16,7 +16,7 @@ struct Moments {
   Point centroid{NAN, NAN};
 };
 
-/// Of a convex polygon, by triangles from its first corner. Without an area if rounding has left none.
+/// The moments of a convex polygon, by triangles from its first corner; 0 and NaN if rounding leaves no area.
 inline Moments moments_of(const std::vector<Point>& polygon) {
   double twice = 0, x = 0, y = 0;
   for (std::size_t k = 2; k < polygon.size(); ++k) {

@@ -16,8 +16,8 @@ struct Buffers {
 
 /// Enqueues the computation of the dual. Waits once, or until circumcentres are mended (mend.hpp). If the
 /// mesh is not valid, the results are unspecified, but no memory outside of the arrays is accessed. Temporary
-/// memory: 13 bytes per triangle. A cell of d triangles takes O(d log d) steps, of which one work-item does
-/// O(d).
+/// memory: 13 bytes per triangle. A cell of d triangles takes O(d log d) steps, O(d) of them by one
+/// work-item.
 void compute(host::Runtime& runtime, const points::DeviceMesh& mesh, const Buffers& result);
 
 /// Computes the circumcentres of all triangles: 2 per triangle.

@@ -28,14 +28,14 @@ class Stars {
  public:
   Stars(std::size_t n, const WeightedTriangulation& mesh) : mesh_(mesh), triangle_at_(n, -1) {
     for (std::size_t c = 0; c < mesh.triangles.size(); ++c) add(mesh.triangles[c], c / 3);
-    // Of a set without triangles, vertices are on a line in this order.
+    // In a set without triangles, `hull` has the vertices in their order on a line.
     for (std::size_t k = 0; mesh.triangles.empty() && k < mesh.hull.size(); ++k) add(mesh.hull[k], k);
   }
 
   /// The vertices, near ones one after the other.
   const Ids& vertices() const { return vertices_; }
 
-  /// A neighbour, and the triangle between it and the next one, counter-clockwise; -1 if there is none.
+  /// A neighbour, and the triangle between it and the next neighbour, counter-clockwise; -1 on the border.
   struct Spoke {
     std::int32_t neighbor, triangle;
   };
@@ -92,14 +92,14 @@ class Stars {
   Ids triangle_at_, vertices_;
 };
 
-// A convex polygon, seen from a cell's point. sides: what is right of the side from each corner to the next
-// one, the place of a neighbour in the ring, or ~k for an edge of the polygon that cells are clipped to.
+// A convex polygon, seen from a cell's point. sides: per side, from a corner to the next one, the object
+// beyond it: the place of a neighbour in the ring, or ~k for edge k of the clipping polygon.
 struct Polygon {
   std::vector<Point> corners;
   std::vector<int> sides;
 };
 
-// Cuts from a polygon what is right of a line: the places p at which constant < 2 d p.
+// Cuts off the part of a polygon right of a line: the places p with constant < 2 d p.
 void clip(Polygon& polygon, Point d, double constant, int side, Polygon& spare) {
   const auto inside = [&](Point p) { return constant - 2 * (d.x * p.x + d.y * p.y); };
   const std::size_t size = polygon.corners.size();
@@ -346,7 +346,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const do
     for (std::size_t v = begin; v < end; ++v) {
       const auto i = static_cast<std::size_t>(vertices[v]);
       const Point p = {points[2 * i], points[2 * i + 1]};
-      // As seen from the point, so that what is far away from the origin has as many digits.
+      // Relative to the point, so that cells far away from the origin have as many digits.
       polygon.corners.clear();
       polygon.sides.clear();
       for (std::size_t k = 0; k < corners.size(); k += 2) {

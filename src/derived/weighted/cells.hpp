@@ -1,4 +1,4 @@
-// What is derived from regular triangulations: power cells, and the points that are not hidden.
+// Arrays derived from regular triangulations: power cells, and the points that are not hidden.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
-// Threads take so many triangles at once.
+// Triangles that a thread takes at once.
 constexpr std::size_t kTrianglesAtOnce = 1 << 16;
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
@@ -42,7 +42,7 @@ bool crosses(const geometry::Predicates& predicates, geometry::Point p, geometry
 // Sides of triangles, each with its triangle on the left.
 using Sides = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
-// Those of which no triangle has the other direction.
+// The sides whose reverse is not a side of any triangle.
 Sides border_of(const Ids& triangles) {
   Sides sides;
   for (std::size_t c = 0; c < triangles.size(); ++c) sides.push_back(mesh::edge_opposite(triangles, c));
@@ -138,7 +138,7 @@ CrossedTriangles::CrossedTriangles(const Breaklines& lines) : lines_(lines) {
     high = std::max(high, boxes_.back().high_y);
     heights += boxes_.back().high_y - boxes_.back().low_y;
   }
-  // So many bands that a segment is in about four of them.
+  // The number of bands is chosen so that a segment is in about four.
   constexpr double kBands = 4;
   const auto count = static_cast<double>(boxes_.size());
   bands_.resize(
@@ -225,7 +225,7 @@ ChunkSurface CrossedTriangles::triangulated(
   surface.values.insert(surface.values.end(), values_.begin(), values_.end());
   const std::size_t n = surface.values.size();
   expect(n <= std::numeric_limits<std::int32_t>::max() / 2, "breaklines cross too many triangles");
-  // The border is between representatives of corners, of which each triangle has some of its own.
+  // The border joins representatives of corners, since each triangle has corners of its own.
   const Ids representatives = constrain(surface.coordinates, {}).representatives;
   const Ids corners(representatives.begin() + static_cast<std::ptrdiff_t>(lines_.points),
                     representatives.end());

@@ -1,5 +1,5 @@
 // Breaklines in triangulations in chunks: a triangle that no line crosses is one of the constrained
-// triangulation, too; the others are kept, and what they cover is triangulated again in the end.
+// triangulation, too; the others are kept, and the area that they cover is triangulated again in the end.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ class CrossedTriangles {
 
   /// Moves the triangles of a chunk that lines cross here.
   void take_from(host::Runtime& runtime, ChunkSurface& surface);
-  /// What these cover, with lines as edges. constrain: triangulates points with constraints, with neighbours.
+  /// Triangulates their area with lines as edges. constrain: triangulates with constraints and neighbours.
   ChunkSurface triangulated(
       const std::function<ConstrainedTriangulation(const std::vector<double>&, const Constraints&)>&
           constrain) const;
@@ -53,7 +53,7 @@ class CrossedTriangles {
   double low_ = 0, bands_by_ = 0;
   std::vector<std::vector<std::uint32_t>> bands_;
   geometry::Magnitudes magnitudes_;
-  // Of the triangles that were taken, three times x and y, and three values each.
+  // For each triangle taken, x and y and the value of each of its three corners.
   std::vector<double> coordinates_, values_;
 };
 

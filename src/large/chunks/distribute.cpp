@@ -28,8 +28,7 @@ constexpr std::size_t kPart = std::size_t{1} << 14;
 constexpr std::uint64_t kSamplesPerChunk = 512;
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
 
-// Samples are drawn from runs of points, each of which is read at once: from a disk a run takes as long as a
-// point.
+// Samples are drawn from runs of points. A run is read at once, which takes a disk no longer than a point.
 constexpr std::uint64_t kRun = 64;
 constexpr std::uint64_t kSamplesPerRun = 8;
 constexpr std::uint64_t kRunsPerReport = 1024;
@@ -63,7 +62,7 @@ struct Piece {
   std::size_t size() const { return coordinates.size() / 2; }
 };
 
-// What holds for all points so far.
+// Properties of all points so far.
 class Account {
  public:
   void add(host::Threads& threads, const Piece& piece) {
@@ -196,7 +195,7 @@ class Splitter {
     return writers.take();
   }
 
-  // Of points that are all equal.
+  // Keeps the first of points that are all equal.
   StoredChunk keep_first(const StoredChunk& chunk) {
     ChunkWriters writers(file_, 1, plan_.buffer_bytes, chunk.has_values);
     std::optional<std::int64_t> first;

@@ -1,4 +1,4 @@
-// Brings points to chunks: from the source in the first round, from what chunks handed on in later ones.
+// Brings points to chunks: from the source in the first round, from handed-on points in later ones.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ namespace flaunay::chunks {
 
 /// Sizes that follow from the memory of a call.
 struct Plan {
-  std::size_t chunk_points = 0;      ///< chunks are made to have at most so many
+  std::size_t chunk_points = 0;      ///< chunks have at most this many points, as a rule
   std::size_t largest_chunk = 0;     ///< points that the memory permits at once
-  std::string limit = "the memory";  ///< what does not permit more, for messages
+  std::string limit = "the memory";  ///< the limit that permits no more, for messages
   std::size_t buffer_bytes = 0;      ///< of all buffers to the scratch file
   /// If more than this share of a round's points is handed on, they all go to one last chunk.
   int most_handed_on_percent = 70;
@@ -34,13 +34,13 @@ struct Chunk {
   kernel::vertex_box rectangle;
 };
 
-/// The chunks of so many points.
+/// The number of chunks for this many points.
 std::size_t chunks_for(std::uint64_t points, const Plan& plan);
 
 /// Called with the share of a step that is done.
 using Progress = std::function<void(const char* step, double done)>;
 
-/// The chunks of the first round, and what holds for all points.
+/// The chunks of the first round, and properties of all points.
 struct FirstRound {
   std::vector<Chunk> chunks;
   geometry::Scaling scaling;
@@ -49,8 +49,8 @@ struct FirstRound {
 };
 
 /// Reads all points twice: some for a sample, then all. Writes that each is its own representative, and the
-/// representatives of duplicates that it leaves out because a chunk would have nothing else. values: those of
-/// the points, or null. Throws Error(input) for points and values that are not finite, and for points whose
+/// representatives of duplicates that it leaves out because a chunk would have nothing else. values: of the
+/// points, or null. Throws Error(input) for points and values that are not finite, and for points whose
 /// magnitudes differ too much.
 FirstRound distribute(PointSource& source, const Values* values, MeshSink& sink, ScratchFile& file,
                       const Plan& plan, host::Threads& threads, const Progress& progress);
@@ -63,7 +63,7 @@ class HandedOn {
   std::uint64_t points() const { return points_; }
   /// All of them at once, released.
   ChunkPoints read_all();
-  /// Chunks of them, cut in gaps. What is handed on is released.
+  /// Distributes the points to chunks, cut in gaps, and releases the list.
   std::vector<Chunk> distribute(const Plan& plan);
 
  private:

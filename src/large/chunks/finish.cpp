@@ -148,8 +148,8 @@ std::int64_t FinishedChunk::row_beyond(const Border& border) const {
   return waiting < 0 ? -1 : waiting / 3;
 }
 
-// The edges that are open after this chunk, by point: those of its border, and those before that it did not
-// close.
+// The edges that are open after this chunk, by point: edges of its border, and earlier open edges that it did
+// not close.
 std::vector<FinishedChunk::OpenAt> FinishedChunk::open_edges(std::uint64_t first_row) const {
   std::vector<OpenAt> open;
   std::vector<char> is_closed(points_.edges.size(), 0);
@@ -197,8 +197,8 @@ std::vector<char> FinishedChunk::unfinished() const {
   return unfinished;
 }
 
-// A point goes on if it has an open edge, or if nothing around it is final. Of one with both final triangles
-// and others, an edge between them is open.
+// A point goes on if it has an open edge, or if nothing around it is final. If some of its triangles are
+// final and others are not, an edge between them is open.
 ChunkPoints FinishedChunk::handed_on(std::uint64_t first_row) const {
   const std::vector<OpenAt> open = open_edges(first_row);
   const std::vector<char> goes_on = unfinished();

@@ -1,4 +1,4 @@
-// What is final in a chunk's triangulation, and what is handed on: a round of blocks
+// Finds the final triangles of a chunk and the points to hand on: a round of blocks
 // (kernels/blocks/rounds.cl) with chunks in the place of blocks. Both decide by blocks/certify.h and
 // blocks/open_sectors.h. Unlike there, the outside is no triangle here: the vertices of the hull go on to the
 // last round, which has the hull.
@@ -30,7 +30,7 @@ struct Place {
 class FinishedChunk {
  public:
   /// mesh: the triangulation of the chunk's points, with neighbours, and with areas if these are wanted.
-  /// scaling: that of all points. folding: says which triangles get rows; null: all. O(points), and in later
+  /// scaling: of all points. folding: says which triangles get rows; null: all. O(points), and in later
   /// rounds O(points log points).
   FinishedChunk(host::Threads& threads, ChunkPoints points, Triangulation mesh, const Place& place,
                 const geometry::Scaling& scaling, const Folding* folding = nullptr);
@@ -41,15 +41,15 @@ class FinishedChunk {
   const ChunkPoints& points() const { return points_; }
   const Triangulation& mesh() const { return mesh_; }
 
-  /// Gives representatives the common values of the points that they are equal to, but for those of the first
-  /// `fixed` points of the input. In the first round, before anything is handed on.
+  /// Gives each representative the common value of its duplicates, unless it is one of the first `fixed`
+  /// points of the input. Call it in the first round, before points are handed on.
   void merge_values(Duplicates duplicates, std::uint64_t fixed);
-  /// The points around which something is missing.
+  /// The points around which triangles are missing.
   ChunkPoints handed_on(std::uint64_t first_row) const;
   /// The edges between triangles with and without rows, and, if this is the only chunk of the last round,
   /// those on the hull.
   std::vector<Fold> folds(std::uint64_t first_row, bool is_last) const;
-  /// Writes the triangles that are final, their areas, and their neighbours, also those of rounds before.
+  /// Writes the final triangles, their areas, and neighbours, including missing ones of earlier rounds.
   void write(MeshSink& sink, std::uint64_t first_row) const;
   /// The final triangles with the values of their corners. Nothing else may be called after it.
   ChunkSurface take_surface() &&;

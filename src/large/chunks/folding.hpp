@@ -1,4 +1,4 @@
-// Points some of which are images of others, on a torus or a cylinder: of all images of a triangle one gets a
+// Points on a torus or a cylinder, some of which are images of others: only one of a triangle's images gets a
 // row.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace flaunay::chunks {
 
-/// An edge of a final triangle that has a row. The triangle beyond is final and has none, or there is none.
+/// An edge of a final triangle that has a row. The triangle beyond, if there is one, is final and has no row.
 struct Fold {
   std::int64_t from, to;     ///< the ends, counter-clockwise
   kernel::double2 a, b;      ///< where they lie

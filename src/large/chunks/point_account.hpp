@@ -1,4 +1,4 @@
-// What has to be known of all points before the first of them is triangulated.
+// Properties of all points that must be known before the first of them is triangulated.
 #pragma once
 
 #include <cstddef>
@@ -21,11 +21,11 @@ struct PointAccount {
   kernel::vertex_box box = no_box();
 };
 
-/// That of n points, by several threads. If a point is not finite, `magnitudes.bad` says so, and the rest may
-/// lack points.
+/// The account of n points, computed by several threads. If a point is not finite, `magnitudes.bad` is set,
+/// and the rest may lack points.
 PointAccount account_of(host::Threads& threads, const double* coordinates, std::size_t n);
 
-/// That of two sets of points together.
+/// The account of two sets of points together.
 PointAccount joined(const PointAccount& a, const PointAccount& b);
 
 }  // namespace flaunay::chunks

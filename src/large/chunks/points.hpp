@@ -1,4 +1,4 @@
-// The points of a chunk, and what is handed on with them.
+// The points of a chunk, and the open edges that are handed on with them.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace flaunay::chunks {
 
-/// kernel::open_edge beyond one device: an edge out of a chunk's point of which the triangles on one side are
-/// written and those on the other are missing. Its other end may be in another chunk.
+/// kernel::open_edge beyond one device: an edge out of a chunk's point. The triangle on one side is written,
+/// the one on the other side is missing. Its other end may be in another chunk.
 struct OpenEdge {
   std::int64_t to;        ///< the other end's number in the input
   double x, y;            ///< its coordinates
@@ -19,14 +19,14 @@ struct OpenEdge {
   std::int64_t opposite;  ///< the number of the written triangle's third corner
 };
 
-/// Points in ascending order of their numbers in the input. In the first round there are duplicates and no
-/// open edges, later there are none and some.
+/// Points in ascending order of their numbers in the input. The first round has duplicates and no open edges;
+/// later rounds have open edges and no duplicates.
 struct ChunkPoints {
   std::vector<double> coordinates;        ///< x0 y0 x1 y1 ...
   std::vector<std::int64_t> ids;          ///< their numbers in the input
   std::vector<double> values = {};        ///< one per point, or none
   std::vector<std::size_t> edge_offsets;  ///< size() + 1; empty in the first round
-  std::vector<OpenEdge> edges;            ///< those of point i are [edge_offsets[i], edge_offsets[i + 1])
+  std::vector<OpenEdge> edges;            ///< point i has [edge_offsets[i], edge_offsets[i + 1])
 
   std::size_t size() const { return ids.size(); }
   bool is_first_round() const { return edge_offsets.empty(); }

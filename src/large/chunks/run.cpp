@@ -69,7 +69,7 @@ class SharedSink : public MeshSink {
   std::exception_ptr failure_;
 };
 
-// What all rounds share.
+// Data that all rounds share.
 struct Call {
   SharedSink& sink;
   const Values* values;
@@ -83,8 +83,8 @@ struct Call {
 };
 
 // The chunks of a round, which solvers take from one queue. Each has a thread of its own. A chunk's rows
-// follow those of the chunk before, so a solver that is done with one waits until the numbers of all before
-// are known; it writes while it solves the next one.
+// follow the rows of the chunk before, so a solver that has finished a chunk waits until the sizes of all
+// earlier chunks are known. It writes the chunk while it solves the next one.
 class Round {
  public:
   Round(Call& call, std::vector<Chunk> chunks, bool is_first, HandedOn& next, ChunkStatistics& statistics)
@@ -180,7 +180,7 @@ class Round {
     return error_ ? std::nullopt : take_new(solver, 1);
   }
 
-  // The next chunk of a solver that has none: first what a lost solver gave back. Waits until there is one,
+  // The next chunk of an idle solver: first a chunk that a lost solver gave back. Waits until there is one,
   // or all are done.
   std::optional<std::size_t> await_chunk(std::size_t solver) {
     std::unique_lock lock(mutex_);
@@ -201,8 +201,8 @@ class Round {
 
   std::size_t take_returned() { return returned_.extract(returned_.begin()).value(); }
 
-  // Whether the other solvers would triangulate all chunks that are left before this one is done with one
-  // more. Of the fastest one that has none this is never so, so that no chunk is left to nobody.
+  // Whether the other solvers would triangulate all remaining chunks before this one finishes one more. This
+  // is never true of the fastest idle solver, so some solver takes every chunk.
   bool is_faster_without(std::size_t solver, std::size_t held) const {
     double others = 0, fastest = 0;
     for (std::size_t s = 0; s < paces_.size(); ++s) {
@@ -234,7 +234,7 @@ class Round {
     return take_returned();
   }
 
-  // A solver's thread, and what it writes meanwhile.
+  // A solver's thread, and the chunk that it writes meanwhile.
   struct Worker {
     const Solver& solver;
     std::size_t number;

@@ -1,5 +1,5 @@
-// Rounds of chunks: each chunk is triangulated by one of several solvers, what is final is written, and the
-// rest is handed on.
+// Rounds of chunks: each chunk is triangulated by one of several solvers, final triangles are written, and
+// the other points are handed on.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace flaunay::chunks {
 
-/// What triangulates chunks, on a device. It is called by one thread at a time.
+/// Triangulates chunks on a device. It is called by one thread at a time.
 struct Solver {
   std::string name;
   /// Triangulates n points, x0 y0 x1 y1 ..., with neighbours, and areas if they are wanted. If it throws
@@ -23,8 +23,7 @@ struct Solver {
 };
 
 /// Triangulates the points of a source of one point or more; see triangulate_chunks. options: progress and
-/// scratch alone. values: those of the same points, or null. folding: if some points are images; otherwise
-/// null.
+/// scratch alone. values: of the same points, or null. folding: if some points are images; otherwise null.
 ChunkStatistics run(PointSource& source, const Values* values, MeshSink& sink, const Plan& plan,
                     const std::vector<Solver>& solvers, const ChunkOptions& options,
                     Folding* folding = nullptr);

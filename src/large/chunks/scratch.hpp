@@ -42,14 +42,14 @@ class ChunkWriters {
   /// buffer_bytes: of all chunks together.
   ChunkWriters(ScratchFile& file, std::size_t chunks, std::size_t buffer_bytes, bool has_values);
 
-  /// Of the first round. value: ignored if points have none.
+  /// Adds a point in the first round. value: ignored if points have no values.
   void add(std::size_t chunk, kernel::double2 p, std::int64_t id, double value) {
     push(writers_[chunk], p, id, value);
     count(writers_[chunk]);
   }
-  /// Of later rounds: point i of a list, with its open edges.
+  /// Adds point i of a list, with its open edges, in later rounds.
   void add(std::size_t chunk, const ChunkPoints& from, std::size_t i);
-  /// Writes what is in the buffers.
+  /// Writes the contents of the buffers.
   std::vector<StoredChunk> take();
 
  private:

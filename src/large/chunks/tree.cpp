@@ -68,7 +68,7 @@ cut_node cut_at_quantile(Sample begin, Sample end, const LowShare& share) {
   const double2 pivot = *quantile;
   if (std::any_of(begin, end, [&](double2 p) { return order(p, pivot); }))
     return kernel::node_of(axis, pivot);
-  // Of many equal samples that come first, the cut comes behind them.
+  // If many equal samples come first, the cut comes after them.
   std::optional<double2> next;
   std::for_each(begin, end, [&](double2 p) {
     if (order(pivot, p) && (!next || order(p, *next))) next = p;
@@ -76,9 +76,9 @@ cut_node cut_at_quantile(Sample begin, Sample end, const LowShare& share) {
   return next ? kernel::node_of(axis, *next) : behind(pivot);
 }
 
-// Of all stretches of some sqrt(m) consecutive samples of m the longest is cut in its middle. A cut shall
-// leave each side this part of its share of the samples, and no side more than this many times what it would
-// have if all leaves were equal.
+// The longest stretch of some sqrt(m) consecutive samples, of m, is cut in its middle. A cut shall leave each
+// side at least kLeastOfShare of its share of the samples, and at most kMostOfEqual times as many samples as
+// it would have if all leaves were equal.
 constexpr double kLeastOfShare = 0.6;
 constexpr double kMostOfEqual = 1.4;
 
@@ -192,7 +192,7 @@ void ChunkTree::find_leaves(const double* coordinates, std::size_t count, std::s
 }
 
 kernel::vertex_box ChunkTree::rectangle(std::size_t leaf, kernel::vertex_box whole) const {
-  // Of several leaves of the heap, the first has all points.
+  // If several leaves of the heap are one leaf, the first of them has all points.
   const std::size_t place =
       numbers_.empty() ? leaf
                        : static_cast<std::size_t>(std::lower_bound(numbers_.begin(), numbers_.end(), leaf) -

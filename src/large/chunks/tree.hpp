@@ -33,7 +33,7 @@ class ChunkTree {
   const std::vector<kernel::cut_node>& nodes() const { return nodes_; }
   /// The leaf of each of `count` points. O(count * depth).
   void find_leaves(const double* coordinates, std::size_t count, std::size_t* leaves) const;
-  /// What is left of a rectangle at a leaf. The cuts are the rectangle's sides, so points may lie on them.
+  /// The part of a rectangle that belongs to a leaf. Its sides are cuts, so points may lie on them.
   kernel::vertex_box rectangle(std::size_t leaf, kernel::vertex_box whole) const;
 
  private:

@@ -19,16 +19,16 @@ struct ChunkSurface {
   std::vector<std::int32_t> open;
 };
 
-/// Where values come from, and what takes them.
+/// The source of values, and their receiver.
 struct Values {
   ValuedPoints& points;
   Duplicates duplicates;
-  std::uint64_t fixed = 0;  ///< so many points come first, whose values count before those of others
+  std::uint64_t fixed = 0;  ///< the first points of the input, this many, whose values take precedence
   /// Several threads may call it.
   std::function<void(ChunkSurface&&)> take;
 };
 
-/// The common value of equal points, whatever their order. Sorts the values, of which there is one or more.
+/// The common value of equal points, whatever their order. Sorts the values, at least one.
 inline double common_value(std::vector<double>& values, Duplicates duplicates) {
   std::sort(values.begin(), values.end());
   if (duplicates == Duplicates::lowest) return values.front();

@@ -17,8 +17,8 @@ using chunks::OpenEdge;
 using kernel::cut_node;
 using kernel::double2;
 
-// Samples of a rank: with 4,096 its points are within some 5 % of what was meant. They are not more than this
-// part of the points, since they are sent, too, unless that is too few for any balance.
+// Samples of a rank: with 4,096, its number of points is within some 5 % of the intended one. Samples are
+// sent, too, so they are at most this part of the points, unless that is too few for any balance.
 constexpr std::int64_t kMostSamplesPerRank = 4096, kLeastSamplesPerRank = 512;
 constexpr std::int64_t kPointsPerSample = 128;
 constexpr std::int64_t kMostSamples = std::int64_t{1} << 22;
@@ -86,7 +86,7 @@ std::vector<std::int32_t> find_ranks(host::Threads& threads, const GivenPoints& 
   return found;
 }
 
-// What a rank sends in the first round, in the order of the ranks to which it goes.
+// The data that a rank sends in the first round, in the order of receiving ranks.
 struct Outgoing {
   std::vector<double2> points;
   std::vector<int> counts;

@@ -33,9 +33,9 @@ struct Workers {
   }
 };
 
-/// A tree with a leaf for each of so many ranks, made from a sample of the points. points: this rank's, x0 y0
-/// x1 y1 ...; first: how many all ranks before have, of `total`. The tree is the same however points are
-/// spread. Called by all ranks.
+/// A tree with `leaves` leaves, one per rank, made from a sample of the points. points: this rank's, x0 y0 x1
+/// y1 ...; first: the number of points, of `total`, on all ranks before. The tree is the same however points
+/// are spread. Called by all ranks.
 chunks::ChunkTree make_tree(Ranks& ranks, const double* points, std::size_t count, std::int64_t first,
                             std::int64_t total, int leaves, chunks::Cuts cuts);
 
@@ -51,7 +51,7 @@ chunks::ChunkPoints move_given(Ranks& ranks, host::Threads& threads, const Given
 chunks::ChunkPoints move_open(Ranks& ranks, chunks::ChunkPoints points, const chunks::ChunkTree& tree,
                               const Workers& workers, const CheckCount& check_count);
 
-/// Sorts records by the rank that they go to, sends them, and returns what came in.
+/// Sorts records by the rank that they go to, sends them, and returns the records received.
 template <typename Record, typename RankOf>
 std::vector<Record> send_to_owners(Ranks& ranks, std::vector<Record> records, const RankOf& rank_of) {
   std::vector<int> counts;

@@ -46,7 +46,7 @@ void join_values(std::vector<Value>& values, MPI_Datatype type, Ranks::Join how,
   await(request);
 }
 
-// Records of so many bytes. Counts of records fit MPI's int where counts of bytes would not.
+// Records of `bytes` bytes. Counts of records fit MPI's int where counts of bytes would not.
 class RecordType {
  public:
   explicit RecordType(std::size_t bytes) {
@@ -114,7 +114,7 @@ Communicators* make_communicators(MPI_Comm communicator) {
   return made.release();
 }
 
-// What a rank tells others of its error.
+// The description of a rank's error for the other ranks.
 struct Failure {
   int kind = 0, code = 0;
   std::string message;
@@ -227,7 +227,7 @@ void Ranks::broadcast_bytes(std::size_t count, std::size_t bytes, int from, cons
   });
   const RecordType type(bytes);
   check(MPI_Bcast(records, size, type, from, communicator_), "MPI_Bcast");
-  // In a tree of ranks, each of which passes them on.
+  // Records travel along a tree of ranks: each but the last sends them on.
   if (rank_ != (from + size_ - 1) % size_) bytes_sent_ += total * bytes;
 }
 

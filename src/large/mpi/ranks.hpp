@@ -62,13 +62,13 @@ class Ranks {
       return records.data();
     });
   }
-  /// What other ranks sent to this one, in the order of ranks.
+  /// Records that other ranks sent to this one, in the order of ranks.
   template <typename Record>
   struct Received {
     std::vector<Record> records;
     std::vector<int> counts;
   };
-  /// Sends counts[r] records to each rank r: first those to rank 0, then those to rank 1, and so on.
+  /// Sends counts[r] records to each rank r. records: for rank 0 first, then for rank 1, and so on.
   template <typename Record>
   Received<Record> exchange(const std::vector<Record>& records, const std::vector<int>& counts) {
     static_assert(std::is_trivially_copyable_v<Record>);
@@ -88,7 +88,7 @@ class Ranks {
   int rank_here() const { return rank_here_; }
 
  private:
-  /// Makes room for so many records, and returns where.
+  /// Makes room for this many records, and returns its address.
   using Room = std::function<void*(std::size_t count)>;
 
   std::int64_t joined(std::int64_t value, Join how) const;

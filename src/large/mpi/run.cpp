@@ -36,8 +36,8 @@ using Join = Ranks::Join;
 
 // If a round hands on more than this share of its points, all go to one rank.
 constexpr std::int64_t kMostHandedOnPercent = 70;
-// While few ranks triangulate what is left, the others wait. So later rounds have this part of a rank's
-// points of the first one; but with fewer than so many, another round costs more than it saves.
+// While few ranks triangulate the remaining points, the others wait. So in later rounds a rank has this part
+// of its points of the first round. With fewer than kLeastRoundPoints, a round costs more than it saves.
 constexpr std::size_t kRoundPart = 16;
 constexpr std::size_t kLeastRoundPoints = std::size_t{1} << 16;
 
@@ -57,7 +57,7 @@ geometry::NamedCoordinate share_coordinate(Ranks& ranks, const geometry::NamedCo
   return named.front();
 }
 
-// What holds for the points of all ranks.
+// Properties of the points of all ranks.
 struct Frame {
   geometry::Scaling scaling;
   vertex_box all;
@@ -148,7 +148,7 @@ class Run {
     last_time_ = now;
   }
 
-  // Throws Error(input) on all ranks if a rank cannot take what it would get.
+  // Throws Error(input) on all ranks if a rank cannot take its points.
   void check_capacity(std::size_t points) const {
     ranks_.together([&] {
       if (points <= solver_.capacity) return;
@@ -269,7 +269,7 @@ class Run {
   Workers workers_{1, 1};
   ChunkTree tree_;
   std::size_t round_points_ = 0;
-  std::string reason_;  // why one rank has so many points, for messages
+  std::string reason_;  // why one rank has that many points, for messages
   Triangulation result_;
   double last_time_ = 0;
 };

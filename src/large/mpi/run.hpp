@@ -1,4 +1,5 @@
-// Rounds over ranks: each triangulates its points, keeps what is final, and hands on the rest to fewer ranks.
+// Rounds over ranks: each triangulates its points, keeps final triangles, and hands on the rest to fewer
+// ranks.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +10,11 @@
 
 namespace flaunay::mpi {
 
-/// What triangulates a rank's points.
+/// Triangulates a rank's points.
 struct Solver {
   std::string name;
   std::size_t capacity = 0;  ///< points that it can take at once
-  /// Whether what it takes comes from the memory of the machine, which other ranks on it use as well.
+  /// Whether it uses the memory of the machine, which other ranks on it use as well.
   bool shares_memory = true;
   /// With neighbours, and with areas if they are wanted.
   std::function<flaunay::Triangulation(const double* coordinates, std::size_t n)> triangulate;

@@ -28,7 +28,7 @@ struct KeptCorners {
   }
 };
 
-// What prune kept of a level's elements. The numbers stay on the device.
+// The elements of a level that prune kept. Their counts stay on the device.
 struct Kept {
   Buffer<cl_int> positions{};
   Buffer<cl_int2> before{};  // regions + 1: of internal points and of corners, in the regions before
@@ -253,7 +253,7 @@ Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, 
                   LevelStatistics& statistics) {
   host::Runtime& runtime = work.runtime;
   Arena& scratch = work.scratch();
-  // Until the next level is made, its arena holds what is needed no longer than this.
+  // Until the next level is made, its arena holds temporary arrays of this one.
   Arena& waiting = *work.children;
   Arena::Scope waiting_scope(waiting);
   std::vector<Level> lists{level};

@@ -28,7 +28,7 @@ class Counting {
   /// Adds a sort of sets of points by one coordinate, counted as comparisons_to_sort.
   void add_sort(const std::vector<std::size_t>& offsets);
 
-  /// Adds what was counted since the last call to a level; level -1 is the work before the first cut. If the
+  /// Adds the counts since the last call to a level; level -1 is the work before the first cut. If the
   /// regions of a level are cut one by one, its critical path is the longest of theirs. Waits once.
   void end_step(int level);
 

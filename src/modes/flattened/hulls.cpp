@@ -30,7 +30,7 @@ Paths chord_paths(Workspace& work, const PointTable& table, const Level& level, 
   return strict(work, table, level, paths);
 }
 
-// Prunes by chord paths and continues with quickhull below them. flags: what prune decided about all points
+// Prunes by chord paths and continues with quickhull below them. flags: prune's decisions about all points
 // and corners. The points for quickhull are stored where the next level will be, so that all memory of prune
 // is released before quickhull begins. rounds: the number of rounds of quickhull.
 Paths pruned_hull(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,

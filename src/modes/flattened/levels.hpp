@@ -30,7 +30,7 @@ class Recursion {
   /// Cuts all regions of a level at once, until no region has internal points or `levels` levels are done.
   void flattened(int levels = kMostLevels);
 
-  /// The number of levels after which no region has more than so many internal points.
+  /// The number of levels after which no region has more internal points than this.
   int levels_to(std::size_t internal_points) const;
 
   /// Cuts one region at a time with the same kernels, depth first.
@@ -76,8 +76,8 @@ class Recursion {
 geometry::PointSets to_host(Workspace& work, const PointTable& table,
                             const std::vector<std::int32_t>& representatives);
 
-/// Converts regions from ids to indices of input points. In Region::points, internal points precede those of
-/// the border.
+/// Converts regions from ids to indices of input points. In Region::points, internal points precede border
+/// points.
 std::vector<research::Region> to_input(Workspace& work, const PointTable& table,
                                        const geometry::RegionArrays& regions);
 

@@ -79,7 +79,7 @@ Buffer<cl_int> find_borders(Workspace& work, const PointTable& table, const Leve
   return border_edge;
 }
 
-// Marks what lies outside of the borders. The arena of the level has room, after its largest levels. Returns
+// Marks triangles outside of the borders. The arena of the level has room, after its largest levels. Returns
 // where the rows of each vertex begin, closed by their number.
 Buffer<cl_uint> cut_out(Workspace& work, const PointTable& table, const Level& level,
                         const RegionBlocks& made, const points::Rings& rings) {

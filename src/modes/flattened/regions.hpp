@@ -8,7 +8,7 @@
 
 namespace flaunay::flattened {
 
-/// What solve_regions found.
+/// The result of solve_regions.
 struct SolvedRegions {
   std::size_t triangles = 0;
   std::size_t undecided = 0;  ///< predicates that were evaluated exactly

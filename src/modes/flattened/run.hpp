@@ -29,8 +29,8 @@ using SolveRegions = std::function<std::vector<std::int32_t>(const geometry::Poi
 
 /// How blocks of points are triangulated.
 struct BlockSolver {
-  /// Triangulates blocks, which are independent of each other: blocks.merges is empty. Of equal points the
-  /// first represents the others. Waits once.
+  /// Triangulates blocks, which are independent of each other: blocks.merges is empty. The first of several
+  /// equal points represents the others. Waits once.
   std::function<points::Rings(points::Workspace& work, const points::Blocks& blocks,
                               const host::Buffer<cl_int>& representatives)>
       solve;
@@ -43,16 +43,16 @@ struct BlockSolver {
       write_rows;
 };
 
-/// Solves what the levels leave.
+/// Solvers of the regions that the levels leave.
 struct Solvers {
-  int partition_levels = 0;   ///< mode partition stops after so many levels
+  int partition_levels = 0;   ///< mode partition stops after this many levels
   SolveRegions regions = {};  ///< mode partition
   BlockSolver blocks = {};    ///< mode flattened with Finish::blocks
 };
 
 /// Triangulates sets with at least one point, whose offsets were checked, in one of the modes flattened,
-/// recursive_device and partition. The offsets in `result` must have their sizes. Throws what
-/// research::triangulate throws. O(n log n) work.
+/// recursive_device and partition. The offsets in `result` must have their sizes. Throws the errors of
+/// research::triangulate. O(n log n) work.
 void run(host::Runtime& runtime, const Memory& memory, const double* coordinates,
          const std::vector<std::size_t>& offsets, const research::Options& options, const Solvers& solvers,
          research::Triangulation& result);

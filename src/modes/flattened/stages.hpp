@@ -120,12 +120,12 @@ struct Paths {
     return {.new_path = vertices, .new_projections = projections, .new_region = regions};
   }
 };
-/// Memory for so many vertices, without offsets.
+/// Allocates paths of `size` vertices in all, without offsets.
 Paths allocate_paths(Arena& arena, std::size_t size);
 /// Copies the vertices, without offsets.
 void copy_paths(Workspace& work, const Paths& from, const Paths& to);
 
-/// The convex hulls of all sets, and what the host must know about them.
+/// The convex hulls of all sets, and the numbers that the host needs about them.
 struct Borders {
   std::size_t size = 0;
   Buffer<cl_int> hull{};  ///< ids, set by set
@@ -168,8 +168,8 @@ HullPoints gather(Workspace& work, const PointTable& table, const Level& level, 
 /// Makes a level that has these points as its internal points, and no corners.
 Level level_of(Workspace& work, const Level& level, const HullPoints& points);
 
-/// What prune found about elements, which are the internal points and behind them the corners. Flag 0: not on
-/// the hull; 1: perhaps on the hull; FLAG_ON_PATH: a vertex of the path.
+/// The results of prune per element. Elements are the internal points, followed by the corners. Flag 0: not
+/// on the hull; 1: perhaps on the hull; FLAG_ON_PATH: a vertex of the path.
 struct Pruned {
   std::size_t elements = 0;
   Buffer<cl_uchar> flags{};
@@ -183,12 +183,12 @@ Pruned allocate_pruned(Workspace& work, const Level& level, const Buffer<cl_ucha
 void prune(Workspace& work, const PointTable& table, const Level& level, const Paths& paths, bool keep_on,
            const Pruned& pruned);
 
-/// Flags those of a level's elements that may be on the hulls, among them all below the paths: 0 or 1, or
-/// FLAG_ON_PATH. band: of the paths' chords.
+/// Flags the elements of a level that may be on the hulls, including all elements below the paths: 0 or 1, or
+/// FLAG_ON_PATH. band: the bands of the paths' chords.
 void prune_roughly(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
                    const Buffer<cl_double>& band, const Buffer<cl_uchar>& flags);
 
-/// Points of each region in the order of u; of one u in any order, and points may stand several times.
+/// Points of each region in the order of u. Points with equal u are in any order, and points may be repeated.
 struct Sequences {
   std::size_t room = 0;     ///< no more points than that
   Buffer<cl_int> begins{};  ///< regions + 1
@@ -200,7 +200,7 @@ Sequences allocate_sequences(Arena& arena, std::size_t regions, std::size_t room
 /// hulls.
 void chain_hulls(Workspace& work, const PointTable& table, const Level& level, const Sequences& sequences,
                  std::size_t group, const Buffer<cl_uint>& sizes);
-/// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: what prune decided
+/// Computes the strict hulls of a level's regions without rounds; see chains.cl. flags: prune's decisions
 /// about all points and corners. Waits once.
 Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                   statistics::LevelStatistics& statistics);
@@ -210,7 +210,7 @@ Paths chain_paths(Workspace& work, const PointTable& table, const Level& level, 
 Paths lone_paths(Workspace& work, const PointTable& table, const Level& level, const Buffer<cl_uchar>& flags,
                  statistics::LevelStatistics& statistics);
 
-/// Decides exactly those of `count` elements whose flag is FLAG_UNDECIDED. Element i is point ids[i], which
+/// Decides exactly the elements, of `count`, whose flag is FLAG_UNDECIDED. Element i is point ids[i], which
 /// is compared with the chord that begins at path vertex chord[i]. keep_on: also keeps points on the chord.
 void decide_depths(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
                    const Buffer<cl_int>& ids, const Buffer<cl_int>& chord, std::size_t count, bool keep_on,
@@ -237,14 +237,14 @@ struct HullPoints {
     return {.new_ids = ids, .new_segment = segments, .new_projections = projections};
   }
 };
-/// Memory for so many points, without depths, and for paths of so many vertices.
+/// Allocates memory for `size` points, without depths, and for paths of `vertices` vertices in all.
 HullPoints allocate_hull_points(Arena& arena, std::size_t size, std::size_t vertices);
 /// Collects the elements that prune kept, and copies the paths, for quickhull; into `arena`. Waits once.
 HullPoints gather_below(Workspace& work, const PointTable& table, const Level& level, const Paths& paths,
                         const Pruned& pruned, Arena& arena);
 Paths quickhull(Workspace& work, const PointTable& table, const Level& level, const HullPoints& points,
                 int& rounds);
-/// Removes vertices that are not strictly below the segment between their neighbours, until there are none.
+/// Removes vertices that are not strictly below the segment between their neighbours, until all are below it.
 Paths strict(Workspace& work, const PointTable& table, const Level& level, Paths paths);
 
 /// Merges paths with borders and splits the points. Computes the regions of the next level, and those that
@@ -265,8 +265,8 @@ struct Children {
             .retired = retired.corner_ids};
   }
 };
-/// Prefix sums of what regions give to their children: internal points per region, corners that come from
-/// corners, and corners that come from path vertices that were internal points.
+/// Prefix sums of the elements that regions give to their children: internal points per region, corners that
+/// come from corners, and corners that come from path vertices that were internal points.
 struct ChildCounts {
   Buffer<cl_uint2> points_before, corner_sides;
   Buffer<cl_uint> internal;
@@ -324,8 +324,8 @@ void canonicalize(Workspace& work, const PointTable& table, const Buffer<cl_int>
 std::vector<std::size_t> order_by_sets(Workspace& work, const PointTable& table,
                                        const Buffer<cl_int>& triangles, const Buffer<cl_int>& twins,
                                        std::size_t count);
-/// Memory for what becomes an array of the result. On a device that works in host memory it is that array,
-/// otherwise it comes from the arena.
+/// Memory for an array of the result. On a device that works in host memory it is that array, otherwise it
+/// comes from the arena.
 Buffer<cl_int> result_memory(Workspace& work, Arena& arena, std::vector<std::int32_t>& values,
                              std::size_t size);
 /// Copies triangles and, if the options ask for them, neighbours and half-edges to the result; or changes
@@ -336,8 +336,8 @@ void read_rows(Workspace& work, const PointTable& table, const Buffer<cl_int>& t
 std::vector<std::int32_t> read_indices(Workspace& work, const PointTable& table, const Buffer<cl_int>& ids,
                                        std::size_t count);
 
-/// The size of work-groups that take a region of about so many elements each. One work-item on devices where
-/// a work-item walks a chunk.
+/// The size of work-groups that take one region of about this many elements each. 1 on devices where a
+/// work-item walks a chunk.
 std::size_t region_group(const Workspace& work, std::size_t elements);
 
 /// Lists the elements with FLAG_UNDECIDED. The length of the list stays on the device, and is added to

@@ -18,13 +18,13 @@ using BorderEdge = std::pair<std::int32_t, std::int32_t>;
 
 /// Returns the triangles inside a border: 3 positions in points each, counter-clockwise.
 ///
-/// mesh: any Delaunay triangulation of the region's points, internal ones and those of the border. Border
-/// edges are Delaunay edges of the whole set. So if the mesh lacks a border edge, the edge is a chord of a
-/// polygon of cocircular points; such polygons are triangulated again with their chords as edges. A border
-/// may pass a point several times and run along an edge in both directions. Throws Error(input) if the border
-/// is not valid: if it has an edge that no Delaunay triangulation of the points has, an edge without a left
-/// side, an edge twice, or sides that contradict each other. O(n log n), unless many border edges meet many
-/// cocircular polygons at one point.
+/// mesh: any Delaunay triangulation of the region's points, internal ones and border points. Border edges are
+/// Delaunay edges of the whole set. So if the mesh lacks a border edge, the edge is a chord of a polygon of
+/// cocircular points; such polygons are triangulated again with their chords as edges. A border may pass a
+/// point several times and run along an edge in both directions. Throws Error(input) if the border is not
+/// valid: if it has an edge that no Delaunay triangulation of the points has, an edge without a left side, an
+/// edge twice, or sides that contradict each other. O(n log n), unless many border edges meet many cocircular
+/// polygons at one point.
 std::vector<std::int32_t> region_triangles(const geometry::Predicates& predicates,
                                            const geometry::Point* points, std::size_t n,
                                            const std::vector<BorderEdge>& border, geometry::Mesh mesh);

@@ -26,9 +26,9 @@ class PathVertex {
         counter_(counter) {}
 
   // The position of the border edge to p. A point off the path lies on the same side of the path as of the
-  // line, and so does an edge to it, which cannot cross the path. Points whose u is between those of the
-  // path's neighbours are off the path, unless they are these neighbours. For other points an orientation
-  // must decide.
+  // line, and so does an edge to it, which cannot cross the path. Points with a u between the u of the path's
+  // neighbours are off the path, unless they are these neighbours. For other points an orientation must
+  // decide.
   Position position_of(const HullPoint& p) {
     if (next_ && p.id == next_->id) return Position::next;
     if (previous_ && p.id == previous_->id) return Position::previous;

@@ -10,7 +10,7 @@
 
 namespace flaunay::recursive {
 
-/// What prune found about a point.
+/// The result of prune for a point.
 enum class Kept : std::uint8_t {
   no,       ///< it is not on the hull
   yes,      ///< it is below the path, or with keep_on on the path
@@ -70,7 +70,7 @@ struct LowerHull {
 LowerHull pruned_hull(const geometry::Predicates& predicates, const HullPoints& points,
                       statistics::Counter& counter, statistics::LevelStatistics& statistics);
 
-/// The last vertex whose u is not greater than the given one; the first vertex if there is none. Takes
+/// The last vertex whose u is not greater than the given one; the first vertex if all are greater. Takes
 /// search_comparisons(path.size()) comparisons, which the caller counts.
 std::size_t search_path(const Path& path, double u);
 

@@ -39,7 +39,7 @@ class Quickhull {
   Path go_on(const Path& path, BelowChords below, int& rounds);
 
   /// Removes vertices on or above the segment between their neighbours, and the higher one of two neighbours
-  /// of equal u, until there are none.
+  /// of equal u, until no such vertex is left.
   void strict(Path& path);
 
  private:

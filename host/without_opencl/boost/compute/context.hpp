@@ -7,7 +7,7 @@
 
 namespace boost::compute {
 
-/// There is none but the null context.
+/// Only the null context exists.
 class context {
  public:
   context() = default;

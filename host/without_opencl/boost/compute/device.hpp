@@ -8,7 +8,7 @@
 
 namespace boost::compute {
 
-/// There is none but the null device.
+/// Only the null device exists.
 class device {
  public:
   device() = default;
