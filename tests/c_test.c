@@ -1424,7 +1424,9 @@ static void test_periodic(void) {
   CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 && found[1] == -2);
   OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, NULL, &value));
   CHECK(fabs(value - 2) < 1e-12);
-  flaunay_interpolation_options how = {FLAUNAY_INTERPOLATION_SIBSON, 1};
+  flaunay_interpolation_options how = {0};
+  how.method = FLAUNAY_INTERPOLATION_SIBSON;
+  how.columns = 1;
   OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, &how, &value));
   CHECK(fabs(value - 2) < 1e-12);
   how.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER;

@@ -121,8 +121,8 @@ std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::s
 std::vector<double> PeriodicLocator::interpolate(const double* values, const double* queries, std::size_t m,
                                                  const InterpolationOptions& options) {
   const Implementation& self = *implementation_;
-  const std::size_t results = check_columns(options.columns, m);
   const std::vector<double> places = implementation_->to_places(queries, m);
+  const std::size_t results = check_columns(options.columns, m);
   with_errors([&] { self.check(options); });
   if (!self.locator) return std::vector<double>(results, options.fill);
   check_array(values, check_columns(options.columns, self.plane->points()), "values", kMostCountable);

@@ -572,7 +572,7 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
       {"queries", [&](std::size_t m) { on_sphere.interpolate(kPoints, 1, points(m), counted(m), degrees); }},
       {"queries", [&](std::size_t m) { on_torus.locate(points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { on_torus.nearest(points(m), counted(m)); }},
-      {"queries", [&](std::size_t m) { on_torus.interpolate(kPoints, 1, points(m), counted(m)); }},
+      {"queries", [&](std::size_t m) { on_torus.interpolate(kPoints, points(m), counted(m)); }},
   });
   for (const std::size_t count : kHuge) {
     for (const std::size_t queries : {std::size_t{0}, kCount}) {
@@ -580,7 +580,9 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
         testing::expect_error(ErrorKind::input, {"columns", "too many"}, call);
       };
       refused([&] { on_sphere.interpolate(kPoints, count, kPoints, queries, degrees); });
-      refused([&] { on_torus.interpolate(kPoints, count, kPoints, queries); });
+      InterpolationOptions options;
+      options.columns = count;
+      refused([&] { on_torus.interpolate(kPoints, kPoints, queries, options); });
       refused([&] { locator.gradients(kPoints, count); });
     }
   }
