@@ -277,9 +277,10 @@ export default class Delaunator {
     call((given) => {
       const {coords} = this, n = pointCount(coords);
       const handle = create(wasm.triangulate, triangulator, given.array('float64', coords), n, 0, 0, c.PART.halfedges);
-      // Read by number, since this takes a good part of the time for a hundred points.
-      const mesh = wasm.flaunay_triangulation_mesh(handle) >>> 2;
-      const [triangleCount, hullCount, triangles, , halfedges, hull] = views().uint32.subarray(mesh + 2, mesh + 8);
+      // Read where they are, since this takes a good part of the time for a hundred points.
+      const {words, at} = c.Mesh, mesh = arrayAt('uint32', wasm.flaunay_triangulation_mesh(handle), words);
+      const triangleCount = mesh[at.triangleCount], hullCount = mesh[at.hullCount];
+      const triangles = mesh[at.triangles], halfedges = mesh[at.halfedges], hull = mesh[at.hull];
       wasm.turn_clockwise(triangles, halfedges, triangleCount, hull, hullCount);
       this.trianglesLen = 3 * triangleCount;
       this.triangles = arrayAt('uint32', triangles, this.trianglesLen).slice();

@@ -224,13 +224,13 @@ def _call_with_mesh(function: Any, *arguments: Any) -> None:
 
 def _struct(kind: Callable[..., Any], **members: Any) -> Any:
     """A struct of C with the addresses of arrays and of other structs, which it keeps."""
-
-    def word_of(value: Any) -> Any:
+    words = dict(members)
+    for name, value in members.items():
         if isinstance(value, _ARRAY):
-            return _address_or_none(value)
-        return ctypes.pointer(value) if isinstance(value, ctypes.Structure) else value
-
-    made = kind(**{name: word_of(value) for name, value in members.items()})
+            words[name] = _address_or_none(value)
+        elif isinstance(value, ctypes.Structure):
+            words[name] = ctypes.pointer(value)
+    made = kind(**words)
     made._refers_to = members
     return made
 
@@ -630,7 +630,7 @@ def _make_constrained(
     options = _options_for("blocks", _parts_of(wanted) | PART["triangles"])
     refining = _Refinement(refinement)
     struct = _struct(kind, **members, refinement=refining.struct)
-    refining.call(triangulator, function, triangulator, *given, struct, options, result.place)
+    refining.call(triangulator, function, triangulator.pointer, *given, struct, options, result.place)
     reports = names_of(labels=bool(members["labels"]), refinement=bool(refinement))
     return result.made(wanted | asked | reports)
 
@@ -1546,7 +1546,7 @@ class _Surface(_Result):
         return self.views(*self._offsets, **self._counts)
 
     def _check(self, function: Any, *given: Any) -> None:
-        check(function(self, *_as_arguments(given)))
+        check(function(self.pointer, *_as_arguments(given)))
 
 
 class Spherical(_Surface):

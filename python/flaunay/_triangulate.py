@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
+_ON_REQUEST = [name for name, (*_, asked) in TRIANGULATION.items() if asked == "on_request"]
 
 
 class _Constraining(TypedDict, total=False):
@@ -266,7 +267,7 @@ def triangulate(
     <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
     """
     arguments = locals()
-    wanted = {name for name in TRIANGULATION if arguments.get(name)}
+    wanted = {name for name in _ON_REQUEST if arguments[name]}
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)
