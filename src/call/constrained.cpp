@@ -29,10 +29,10 @@ using Ids = std::vector<std::int32_t>;
 
 void check(const Constraints& constraints, const ConstrainedOptions& options) {
   const Refinement& refinement = options.refinement;
-  check_enumerator(options.crossings, Crossings::split, "Crossings");
-  check_enumerator(options.outside, Outside::holes, "Outside");
-  check_enumerator(options.fill_rule, FillRule::winding, "FillRule");
-  check_enumerator(refinement.kept, KeptEdges::all, "KeptEdges");
+  check_enumerator(options.crossings);
+  check_enumerator(options.outside);
+  check_enumerator(options.fill_rule);
+  check_enumerator(refinement.kept);
   check_array(constraints.segments, constraints.segment_count, "segments", kMostIndexed / 2);
   check_array(constraints.holes, constraints.hole_count, "holes", kMostIndexed / 2);
   check_array(constraints.seeds, constraints.seed_count, "seeds", kMostIndexed / 2);

@@ -152,7 +152,7 @@ std::vector<std::size_t> checked_offsets(host::Runtime& runtime, const DevicePoi
 }
 
 void check_device_points(host::Runtime& runtime, const DevicePoints& points, const char* what) {
-  check_enumerator(points.precision, Precision::float32, "Precision");
+  check_enumerator(points.precision);
   check_count(points.count, what);
   check_count(points.first, fmt::format("{} before the first one", what).c_str(), kMostCountable);
   check_count(points.sets, "sets");

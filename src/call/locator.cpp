@@ -399,7 +399,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
                                          const std::vector<std::size_t>& offsets,
                                          const InterpolationOptions& options) {
   check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
-  check_enumerator(options.method, Interpolation::laplace, "Interpolation");
+  check_enumerator(options.method);
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
   return implementation_->take_turn([&] {
     Implementation& self = implementation_->for_method(options.method);
@@ -410,7 +410,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
-  check_enumerator(options.method, Interpolation::laplace, "Interpolation");
+  check_enumerator(options.method);
   implementation_->take_turn(enqueue, [&] {
     Implementation& self = implementation_->for_method(options.method);
     const auto work = self.interpolation(options, values, options.device_gradients);
@@ -428,7 +428,7 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_queries(queries, m);
-    check_enumerator(method, Interpolation::laplace, "Interpolation");
+    check_enumerator(method);
     const auto weighed = Implementation::natural_weights(method);
     NaturalWeights result;
     call::Frame call(by.place.engine);

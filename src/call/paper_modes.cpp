@@ -14,10 +14,10 @@ namespace {
 
 // The table of modes checks the options of modes.
 void check_enumerators(const Options& options) {
-  check_enumerator(options.cut, Cut::alternate, "Cut");
-  check_enumerator(options.hull, Hull::monotone_chain, "Hull");
-  check_enumerator(options.finish, Finish::levels, "Finish");
-  check_enumerator(options.record, Record::steps, "Record");
+  check_enumerator(options.cut);
+  check_enumerator(options.hull);
+  check_enumerator(options.finish);
+  check_enumerator(options.record);
 }
 
 void check_options(const Options& options) {

@@ -72,7 +72,7 @@ struct PeriodicLocator::Implementation {
   /// corners of triangles whose circles contain it, and no circle without points is wider than the gap. So if
   /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus.
   void check(const InterpolationOptions& options) const {
-    check_enumerator(options.method, Interpolation::laplace, "Interpolation");
+    check_enumerator(options.method);
     call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr &&
                      options.device_gradients == nullptr,
                  "values on a torus or a cylinder are interpolated without gradients");

@@ -25,7 +25,7 @@ void check(const Polygons& polygons, const PolygonOptions& options) {
   call::expect(polygons.polygon_offsets.back() == polygons.ring_offsets.size() - 1,
                "the offsets of polygons do not end with the number of rings");
   check_points(polygons.coordinates, polygons.ring_offsets.back());
-  check_enumerator(options.overlaps, Overlaps::error, "Overlaps");
+  check_enumerator(options.overlaps);
   call::expect(!options.map || options.fill_rule != FillRule::nesting,
                "the polygons of a map need the fill rule even-odd or winding");
 }

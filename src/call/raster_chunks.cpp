@@ -100,7 +100,7 @@ ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, co
                                  const Breaklines& breaklines, const ChunkOptions& chunks) {
   return with_errors([&] {
     const std::size_t count = raster::checked_pixels(grid, options);
-    check_enumerator(duplicates, Duplicates::mean, "Duplicates");
+    check_enumerator(duplicates);
     check_array(pixels, count, "pixels", kMostCountable);
     contours::check(heights, options.max_edge);
     Scanner scanner(grid, options, pixels, heights, breaklines);

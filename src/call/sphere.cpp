@@ -29,7 +29,7 @@ using sphere::Point;
 
 std::vector<double> places_of(call::Implementation& self, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what) {
-  check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
+  check_enumerator(coordinates);
   return call::take_turn(
       self, [&] { return sphere::to_places(self.native().runtime, points, n, coordinates, what); });
 }
@@ -160,7 +160,7 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
 
 std::vector<double> places_on_sphere(const double* points, std::size_t n, SphereCoordinates coordinates) {
   check_points(points, n);
-  check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
+  check_enumerator(coordinates);
   return sphere::to_places(call::Engine::of_thread().runtime, points, n, coordinates, "point");
 }
 

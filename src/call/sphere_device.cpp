@@ -185,7 +185,7 @@ void triangulate_sphere(Triangulator& triangulator, const DevicePoints& points, 
   rest.wait_for.clear();
   std::vector<double> for_host;
   call::take_turn(self, enqueue, [&] {
-    check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
+    check_enumerator(coordinates);
     call::Frame call(self, call::with_doubles(self, self.on_device()), first);
     call.check(points, "points");
     check_count(n, "points", kMostPointsAtOnce);

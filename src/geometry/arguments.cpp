@@ -31,8 +31,8 @@ std::size_t check_columns(std::size_t columns, std::size_t rows) {
   return columns * rows;
 }
 
-void check_enumerator(int value, int last, const char* type) {
-  expect(value >= 0 && value <= last, [&] { return fmt::format("{} is no {}", value, type); });
+void check_enumerator(int value, int end, std::string_view type) {
+  expect(value >= 0 && value < end, [&] { return fmt::format("{} is no {}", value, type); });
 }
 
 void check_offsets(const std::vector<std::size_t>& offsets) {

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
 #include "flaunay/neighbors.hpp"
+#include "geometry/enumerators.hpp"
 #include "mesh/limits.h"
 
 namespace flaunay {
@@ -49,12 +51,12 @@ void check_queries(const void* coordinates, std::uint64_t count);
 /// Checks the numbers of columns and rows of an array. Returns how many entries the array has.
 std::size_t check_columns(std::size_t columns, std::size_t rows);
 
-/// Throws Error(usage) for a number that is no enumerator. Enumerators are numbered from 0 to `last`. type:
+/// Throws Error(usage) for a number that is no enumerator. Enumerators are numbered from 0 to end - 1. type:
 /// the name of the enumeration.
-void check_enumerator(int value, int last, const char* type);
+void check_enumerator(int value, int end, std::string_view type);
 template <typename Enum>
-void check_enumerator(Enum value, Enum last, const char* type) {
-  check_enumerator(static_cast<int>(value), static_cast<int>(last), type);
+void check_enumerator(Enum value) {
+  check_enumerator(static_cast<int>(value), end_of_enumerators<Enum>(), name_of_enumeration<Enum>());
 }
 
 /// Throws Error(usage) unless offsets of sets begin with 0 and do not decrease.
