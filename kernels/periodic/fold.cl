@@ -8,7 +8,7 @@
 // beyond. write_folded, over triangles: those that are kept.
 
 #include "mesh/halfedges.h"
-#include "operations/search.h"
+#include "operations/segment_near.h"
 #include "periodic/records.h"
 #include "periodic/torus.h"
 
@@ -27,7 +27,7 @@ kernel void fold_representatives(int n, int sets, global const int* restrict off
                                  global int* restrict representatives, global volatile uint* restrict missing) {
   const int i = get_global_id(0);
   if (i < n) {
-    const int k = segment_of(i, sets, offsets);
+    const int k = segment_near(i, sets, offsets);
     const int at = i + (int)counts[offsets[k]];
     const int back = at - planar[at], point = all[k].first + i - offsets[k];
     representatives[point] = point - back;
@@ -117,7 +117,7 @@ kernel void write_folded(int n, int first, int begin, int sets, global const int
                          global int* folded_neighbors) {
   const int t = first + get_global_id(0);
   if (t < first + n && is_kept(t, ranks)) {
-    const int shift = shifts[segment_of(t, sets, offsets)];
+    const int shift = shifts[segment_near(t, sets, offsets)];
     if (shift == NOT_WRITTEN) return;
     const int row = (int)ranks[t] + shift, to = row - begin;
     const int corner[3] = {triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]};

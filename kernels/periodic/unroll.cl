@@ -4,7 +4,7 @@
 // highest of these, for boxes of cylinders. Then, for some of the sets: count_images, over their points; the host scans
 // the counts. write_images, over the points: in the plane each set has its points, and behind them their images.
 
-#include "operations/search.h"
+#include "operations/segment_near.h"
 #include "periodic/records.h"
 #include "periodic/torus.h"
 
@@ -49,7 +49,7 @@ kernel void count_images(int n, int sets, global const int* restrict offsets, gl
                          global const double* restrict places, global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) {
-    const int k = segment_of(i, sets, offsets);
+    const int k = segment_near(i, sets, offsets);
     const double2 p = vload2(all[k].first + i - offsets[k], places);
     counts[i] = 0;
     if (is_far_inside(p, &all[k].box)) return;
@@ -73,7 +73,7 @@ kernel void write_images(int n, int sets, int own, global const int* restrict of
                          global uint* restrict images) {
   const int i = get_global_id(0);
   if (i < n) {
-    const int k = segment_of(i, sets, offsets);
+    const int k = segment_near(i, sets, offsets);
     const int point = all[k].first + i - offsets[k], at = i + (int)counts[offsets[k]];
     const double2 p = vload2(point, places);
     vstore2(p, at, coordinates);

@@ -1,28 +1,34 @@
 // What closes the gap around the south pole in a triangulation of sets of places. Few triangles do; they are made on
 // the host, which learns the hull from gather_hull, after open_edges has found the edges there: one work-item per hull
-// vertex, and one per corner of a triangle. place_sphere_rows then puts those of each set behind its triangles of the
-// plane, with one work-item per row, and link_cap joins both, with one per edge between them. One pass each.
+// vertex, and one per triangle. place_sphere_rows then puts those of each set behind its triangles of the plane, with
+// one work-item per row, and link_cap joins both, with one per edge between them. One pass each.
 
 #include "arithmetic/language.h"
-#include "operations/search.h"
+#include "operations/segment_near.h"
+#include "sphere/records.h"
 
-// The triangle's corner, of all n, opposite to the edge without a triangle beyond that begins at a vertex.
+// n triangles. edge_from: per vertex the corner opposite to the edge without a triangle beyond that begins there.
 kernel void open_edges(int n, global const int* restrict triangles, global const int* restrict neighbors,
                        global int* restrict edge_from) {
-  const int c = get_global_id(0);
-  if (c < n && neighbors[c] < 0) edge_from[triangles[c % 3 == 2 ? c - 2 : c + 1]] = c;
+  const int t = get_global_id(0);
+  if (t < n && (neighbors[3 * t] | neighbors[3 * t + 1] | neighbors[3 * t + 2]) < 0) {
+    for (int k = 0; k < 3; ++k) {
+      if (neighbors[3 * t + k] < 0) edge_from[triangles[k == 2 ? 3 * t : 3 * t + k + 1]] = 3 * t + k;
+    }
+  }
 }
 
 #ifndef FIXED_POINT
 
-// Of sets without triangles, edges have no meaning.
 kernel void gather_hull(int n, global const int* restrict hull, global const double2* restrict places,
-                        global const int* restrict edge_from, global double2* restrict hull_places,
-                        global int* restrict edges) {
+                        global const int* restrict edge_from, global hull_vertex* restrict vertices) {
   const int i = get_global_id(0);
   if (i < n) {
-    hull_places[i] = places[hull[i]];
-    edges[i] = edge_from[hull[i]];
+    const int point = hull[i];
+    vertices[i].x = places[point].x;
+    vertices[i].y = places[point].y;
+    vertices[i].point = point;
+    vertices[i].edge = edge_from[point];
   }
 }
 
@@ -36,7 +42,7 @@ kernel void place_sphere_rows(int n, int sets, global const int* restrict sums, 
                               global int* restrict triangles, global int* restrict neighbors) {
   const int row = get_global_id(0);
   if (row < n) {
-    const int s = segment_of(row, sets, sums);
+    const int s = segment_near(row, sets, sums);
     const int planar = plane_sums[s + 1] - plane_sums[s], place = row - sums[s];
     const int is_planar = place < planar;
     // Rows of the cap have their final numbers.

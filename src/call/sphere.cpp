@@ -8,94 +8,227 @@
 #include <optional>
 #include <utility>
 
-#include "call/frame.hpp"
+#include "call/triangulate.hpp"
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/plane.hpp"
 #include "derived/sphere/walk.hpp"
+#include "flaunay/device_memory.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
+#include "launchers/sphere/cap.cl.hpp"
 #include "mesh/corners.hpp"
 #include "prove/sphere_proof.hpp"
 #include "sphere/places.h"
+#include "sphere/records.h"
 
 namespace flaunay {
 namespace {
 
+using host::Buffer;
 using Ids = std::vector<std::int32_t>;
+using Offsets = std::vector<std::size_t>;
 using sphere::Plane;
 using sphere::Point;
 
-std::vector<double> places_of(call::Implementation& self, const double* points, std::size_t n,
-                              SphereCoordinates coordinates, const char* what) {
-  check_enumerator(coordinates);
-  return call::take_turn(
-      self, [&] { return sphere::to_places(self.native().runtime, points, n, coordinates, what); });
+using HullVertices = std::vector<kernel::hull_vertex>;
+
+// The hulls of all sets.
+template <typename Planar>
+HullVertices read_hulls(call::Frame& call, const Planar& planar, const Buffer<cl_double>& places,
+                        const Buffer<cl_int>& triangles, const Buffer<cl_int>& neighbors) {
+  host::Runtime& runtime = call.runtime;
+  HullVertices hulls(planar.hull_offsets.back());
+  const auto edge_from = runtime.arena().allocate<cl_int>(places.size() / 2);
+  const auto vertices = runtime.arena().allocate<kernel::hull_vertex>(hulls.size());
+  runtime.map(planar.triangle_offsets.back(),
+              kernels::open_edges{.triangles = triangles, .neighbors = neighbors, .edge_from = edge_from});
+  runtime.map(hulls.size(),
+              kernels::gather_hull{.hull = call.template in<cl_int>(planar.hull, hulls.size(), "hull"),
+                                   .places = places.as<cl_double2>(),
+                                   .edge_from = edge_from,
+                                   .vertices = vertices});
+  runtime.read(vertices, 0, hulls.size(), hulls.data());
+  return hulls;
 }
 
-// Appends the triangles of one set in the plane.
-void append(const Triangulation& planar, std::size_t set, SphericalTriangulation& mesh) {
-  const std::size_t begin = planar.triangle_offsets[set], first = mesh.triangles.size() / 3;
-  const auto shift = static_cast<std::int32_t>(first) - static_cast<std::int32_t>(begin);
-  for (std::size_t c = 3 * begin; c < 3 * planar.triangle_offsets[set + 1]; ++c) {
-    mesh.triangles.push_back(planar.triangles[c]);
-    mesh.neighbors.push_back(planar.neighbors[c] < 0 ? -1 : planar.neighbors[c] + shift);
-  }
-}
+// The caps of all sets.
+struct Caps {
+  Ids triangles, neighbors;    // neighbours are numbered as in the result
+  std::vector<cl_int2> links;  // of a corner in the plane's triangles, as numbered in the result
+  Offsets triangle_offsets;    // of all triangles of the sets
+};
 
-// The edges of triangles, from `first` on, without a triangle beyond, numbered from there.
-std::vector<sphere::OpenEdge> open_edges(const SphericalTriangulation& mesh, std::size_t first) {
-  std::vector<sphere::OpenEdge> open;
-  const auto add = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      if (mesh.neighbors[c] >= 0) continue;
-      const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
-      open.push_back({from, to, static_cast<std::int32_t>(c - 3 * first)});
+template <typename Planar>
+Caps make_caps(const HullVertices& hulls, const Planar& planar, const Plane& plane) {
+  Caps caps;
+  caps.triangles.reserve(3 * hulls.size());
+  caps.neighbors.reserve(3 * hulls.size());
+  caps.links.reserve(hulls.size());
+  caps.triangle_offsets.reserve(planar.hull_offsets.size());
+  caps.triangle_offsets.push_back(0);
+  for (std::size_t s = 0; s + 1 < planar.hull_offsets.size(); ++s) {
+    const std::size_t first = planar.hull_offsets[s], end = planar.hull_offsets[s + 1];
+    const std::size_t triangles = planar.triangle_offsets[s + 1] - planar.triangle_offsets[s];
+    const auto corner = static_cast<cl_int>(3 * planar.triangle_offsets[s]);
+    sphere::PlanarSet set{{}, {}, plane.poles[s].empty() ? -1 : plane.poles[s].front()};
+    std::vector<sphere::OpenEdge> open;
+    set.hull.reserve(end - first);
+    set.places.reserve(end - first);
+    if (triangles > 0) open.reserve(4 * (end - first));  // with those of the cap
+    for (std::size_t i = first; i < end; ++i) {
+      const kernel::hull_vertex& vertex = hulls[i];
+      set.hull.push_back(vertex.point);
+      set.places.push_back({vertex.x, vertex.y});
+      const std::int32_t next = hulls[i + 1 == end ? first : i + 1].point;
+      if (triangles > 0) open.push_back({vertex.point, next, vertex.edge - corner});
     }
-  };
-  // They are few: most runs have none, and only these have no number below 0.
-  constexpr std::size_t kCorners = 192;
-  for (std::size_t begin = 3 * first; begin < mesh.neighbors.size(); begin += kCorners) {
-    const std::size_t end = std::min(begin + kCorners, mesh.neighbors.size());
-    std::int32_t signs = 0;
-    for (std::size_t c = begin; c < end; ++c) signs |= mesh.neighbors[c];
-    if (signs < 0) add(begin, end);
-  }
-  return open;
-}
-
-SphericalTriangulation close_all(const Plane& plane, Triangulation planar, SphericalTriangulation mesh) {
-  mesh.triangle_offsets = {0};
-  const std::size_t sets = plane.poles.size(), most = 3 * mesh.places.size();  // corners
-  if (sets == 1) {
-    mesh.triangles = std::move(planar.triangles);
-    mesh.neighbors = std::move(planar.neighbors);
-  }
-  mesh.triangles.reserve(most);
-  mesh.neighbors.reserve(most);
-  for (std::size_t s = 0; s < sets; ++s) {
-    const std::size_t first = mesh.triangle_offsets.back();
-    if (sets > 1) append(planar, s, mesh);
-    sphere::PlanarSet set{{planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s]),
-                           planar.hull.begin() + static_cast<std::ptrdiff_t>(planar.hull_offsets[s + 1])},
-                          {},
-                          plane.poles[s].empty() ? -1 : plane.poles[s].front()};
-    for (const std::int32_t v : set.hull)
-      set.places.push_back(sphere::place_at(mesh.places, static_cast<std::size_t>(v)));
-    const sphere::Cap cap = sphere::close(set, open_edges(mesh, first), mesh.triangles.size() / 3 - first);
+    const sphere::Cap cap = sphere::close(set, std::move(open), triangles);
+    const auto begin = static_cast<cl_int>(caps.triangle_offsets.back());
+    const std::size_t before = caps.neighbors.size();
     for (const auto& corners : cap.triangles)
-      mesh.triangles.insert(mesh.triangles.end(), corners.begin(), corners.end());
-    mesh.neighbors.resize(mesh.triangles.size(), -1);
-    for (const sphere::Cap::Link& link : cap.links) {
-      mesh.neighbors[3 * first + static_cast<std::size_t>(link.at)] =
-          static_cast<std::int32_t>(first) + link.beyond;
+      caps.triangles.insert(caps.triangles.end(), corners.begin(), corners.end());
+    caps.neighbors.resize(caps.triangles.size());
+    for (const auto& [at, beyond] : cap.links) {
+      const auto place = static_cast<std::size_t>(at);
+      if (place < 3 * triangles) {
+        caps.links.push_back({{3 * begin + at, begin + beyond}});
+      } else {
+        caps.neighbors[before + place - 3 * triangles] = begin + beyond;
+      }
     }
-    mesh.triangle_offsets.push_back(mesh.triangles.size() / 3);
+    caps.triangle_offsets.push_back(caps.triangle_offsets.back() + triangles + cap.triangles.size());
   }
-  mesh.representatives = std::move(planar.representatives);
-  mesh.statistics = std::move(planar.statistics);
-  return mesh;
+  return caps;
+}
+
+// The rows of a single set in host memory stay where they are. Returns whether it is one.
+bool append(const Caps& caps, Triangulation& planar, SphericalTriangulation& result) {
+  if (result.point_offsets.size() != 2) return false;
+  result.triangles = std::move(planar.triangles);
+  result.neighbors = std::move(planar.neighbors);
+  for (Ids* const rows : {&result.triangles, &result.neighbors}) rows->reserve(6 * result.point_offsets[1]);
+  result.triangles.insert(result.triangles.end(), caps.triangles.begin(), caps.triangles.end());
+  result.neighbors.insert(result.neighbors.end(), caps.neighbors.begin(), caps.neighbors.end());
+  for (const cl_int2& link : caps.links) result.neighbors[static_cast<std::size_t>(link.s[0])] = link.s[1];
+  return true;
+}
+bool append(const Caps&, const DeviceTriangulation&, DeviceSphericalTriangulation&) { return false; }
+
+Ids narrow(const Offsets& offsets) { return {offsets.begin(), offsets.end()}; }
+
+// planar: its arrays are numbered by the points of the sphere.
+template <typename Planar, typename Result>
+void write_triangles(call::Frame& call, const Plane& plane, Planar& planar, Result& result) {
+  const std::size_t n = result.point_offsets.back(), planar_corners = 3 * planar.triangle_offsets.back();
+  const auto places = call.template in<cl_double>(result.places, 2 * n, "places");
+  const auto from = call.template in<cl_int>(planar.triangles, planar_corners, "triangles in the plane");
+  const auto beyond = call.template in<cl_int>(planar.neighbors, planar_corners, "neighbors in the plane");
+  Caps caps = make_caps(read_hulls(call, planar, places, from, beyond), planar, plane);
+  const Offsets& sums = result.triangle_offsets = std::move(caps.triangle_offsets);
+  if (append(caps, planar, result)) return;
+  const std::size_t rows = sums.back(), links = caps.links.size();
+  const auto triangles = call.template output<cl_int>(result.triangles, 6 * n, "triangles").buffer(3 * rows);
+  const auto neighbors = call.template output<cl_int>(result.neighbors, 6 * n, "neighbors").buffer(3 * rows);
+  call.check_distinct();
+  host::Runtime& runtime = call.runtime;
+  host::Arena& arena = runtime.arena();
+  runtime.map(rows,
+              kernels::place_sphere_rows{.sets = static_cast<cl_int>(sums.size() - 1),
+                                         .sums = runtime.upload(arena, narrow(sums)),
+                                         .plane_sums = runtime.upload(arena, narrow(planar.triangle_offsets)),
+                                         .plane_triangles = from,
+                                         .plane_neighbors = beyond,
+                                         .cap_triangles = runtime.upload(arena, std::move(caps.triangles)),
+                                         .cap_neighbors = runtime.upload(arena, std::move(caps.neighbors)),
+                                         .triangles = triangles,
+                                         .neighbors = neighbors});
+  runtime.map(links, kernels::link_cap{.links = runtime.upload(arena, std::move(caps.links)),
+                                       .neighbors = neighbors});
+}
+
+// It is the triangulator's turn.
+SphericalTriangulation triangulate_in_turn(call::Implementation& self, const double* points,
+                                           const Offsets& offsets, SphereCoordinates coordinates) {
+  const std::size_t n = offsets.back();
+  SphericalTriangulation result;
+  result.point_offsets = offsets;
+  Triangulation planar;
+  const bool is_small = n <= self.host_tuning().host_points;
+  call::Frame call(is_small ? call::Engine::of_thread() : self.native());
+  const bool has_pole =
+      sphere::find_places(call.runtime, call.in<cl_double>(points, n * sphere::width_of(coordinates)), 0, n,
+                          coordinates, call.out<cl_double>(result.places, 2 * n), "point");
+  const Plane plane = sphere::make_plane(result.places, offsets, has_pole);
+  planar = call::triangulate(self, {plane.places().data(), nullptr, plane.offsets.back()}, plane.offsets, {});
+  sphere::number_by_points(plane, n, planar);
+  write_triangles(call, plane, planar, result);
+  call.end();
+  result.representatives = std::move(planar.representatives);
+  result.statistics = std::move(planar.statistics);
+  return result;
+}
+
+// Computes places. If one is the south pole, returns the points for the host.
+template <typename T>
+std::vector<double> write_places(call::Frame& call, const DevicePoints& points, SphereCoordinates coordinates,
+                                 const Buffer<cl_double>& places) {
+  const std::size_t n = points.count, width = sphere::width_of(coordinates), first = points.first * width;
+  const auto given = call.in<T>(points.memory, first + n * width, "points");
+  if (!sphere::find_places(call.runtime, given, first, n, coordinates, places, "point")) return {};
+  std::vector<T> values(n * width);
+  call.runtime.read(given, first, values.size(), values.data());
+  return {values.begin(), values.end()};
+}
+
+std::vector<double> write_places(call::Implementation& self, const DevicePoints& points,
+                                 SphereCoordinates coordinates, DeviceSphericalTriangulation& result,
+                                 const Enqueue& enqueue) {
+  call::Frame call(self, call::with_doubles(self, self.on_device()), enqueue);
+  call.check(points, "points");
+  check_count(points.count, "points", kMostPointsAtOnce);
+  call.begin();
+  result.point_offsets = call.offsets(points);
+  result.triangle_offsets.assign(result.point_offsets.size(), 0);
+  result.statistics = {};
+  if (points.count == 0) return {};
+  const auto places = call.out<cl_double>(result.places, 2 * points.count, "places");
+  call.check_distinct();
+  std::vector<double> for_host = points.precision == Precision::float64
+                                     ? write_places<cl_double>(call, points, coordinates, places)
+                                     : write_places<cl_float>(call, points, coordinates, places);
+  call.end();
+  return for_host;
+}
+
+void triangulate_plane(call::Implementation& self, std::size_t n, DeviceSphericalTriangulation& result,
+                       Enqueue enqueue) {
+  enqueue.event = nullptr;
+  DevicePoints in_plane;
+  in_plane.memory = result.places.memory();
+  in_plane.count = n;
+  in_plane.offsets = result.point_offsets;
+  Parts parts;
+  parts.neighbors = parts.hull = parts.representatives = true;
+  result.planar.representatives = result.representatives;
+  call::triangulate(self, in_plane, result.planar, parts, enqueue);
+  result.representatives = result.planar.representatives;
+  result.statistics = result.planar.statistics;
+}
+
+template <typename T>
+void write(call::Frame& call, DeviceBuffer& to, std::size_t most, const char* what, std::vector<T> values) {
+  call::write_result(call.runtime, call.output<T>(to, most, what).buffer(values.size()), std::move(values));
+}
+
+void write_all(call::Frame& call, SphericalTriangulation mesh, DeviceSphericalTriangulation& result) {
+  const std::size_t n = mesh.representatives.size();
+  write<cl_int>(call, result.triangles, 6 * n, "triangles", std::move(mesh.triangles));
+  write<cl_int>(call, result.neighbors, 6 * n, "neighbors", std::move(mesh.neighbors));
+  write<cl_int>(call, result.representatives, n, "representatives", std::move(mesh.representatives));
+  result.triangle_offsets = std::move(mesh.triangle_offsets);
+  result.statistics = std::move(mesh.statistics);
 }
 
 void check_arrays(const SphericalTriangulation& mesh) {
@@ -138,16 +271,44 @@ SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const doub
 SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
                                           const std::vector<std::size_t>& offsets,
                                           SphereCoordinates coordinates) {
-  check_offsets(offsets);
-  check_points(points, offsets.back());
-  SphericalTriangulation mesh;
-  mesh.places = places_of(TriangulatorAccess::implementation(triangulator), points, offsets.back(),
-                          coordinates, "point");
-  mesh.point_offsets = offsets;
-  const Plane plane = sphere::make_plane(mesh.places, offsets);
-  Triangulation planar = triangulator.triangulate(plane.places().data(), plane.offsets);
-  sphere::number_by_points(plane, offsets.back(), planar);
-  return close_all(plane, std::move(planar), std::move(mesh));
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  return call::take_turn(self, [&] {
+    check_offsets(offsets);
+    check_points(points, offsets.back());
+    check_enumerator(coordinates);
+    return triangulate_in_turn(self, points, offsets, coordinates);
+  });
+}
+
+void triangulate_sphere(Triangulator& triangulator, const DevicePoints& points, SphereCoordinates coordinates,
+                        DeviceSphericalTriangulation& result, const Enqueue& enqueue) {
+  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
+  call::take_turn(self, enqueue, [&] {
+    check_enumerator(coordinates);
+    Enqueue first = enqueue, rest = enqueue;
+    first.event = nullptr;
+    rest.wait_for.clear();
+    const std::vector<double> for_host = write_places(self, points, coordinates, result, first);
+    if (!for_host.empty()) {
+      SphericalTriangulation mesh =
+          triangulate_in_turn(self, for_host.data(), result.point_offsets, coordinates);
+      // Copies alone need no doubles.
+      call::Engine& device = self.on_device();
+      call::Frame call(self, call::Place{device, &device}, rest);
+      call.begin();
+      write_all(call, std::move(mesh), result);
+      return call.end();
+    }
+    if (points.count > 0) triangulate_plane(self, points.count, result, rest);
+    call::Frame call(self, call::with_doubles(self, self.on_device()), rest);
+    call.begin();
+    if (points.count > 0) {
+      Plane plane;
+      plane.poles.resize(result.point_offsets.size() - 1);
+      write_triangles(call, plane, result.planar, result);
+    }
+    call.end();
+  });
 }
 
 std::string verify(const double* points, const std::vector<std::size_t>& offsets,
@@ -185,15 +346,19 @@ SphericalVoronoi voronoi_on_sphere(Triangulator& triangulator, const SphericalTr
 struct SphereLocator::Implementation {
   Implementation(Triangulator& used, const SphericalTriangulation& triangulation)
       : owner(TriangulatorAccess::shared(used)), mesh(triangulation) {
-    check(mesh);
-    call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
-    walker.emplace(mesh);
-    plane = sphere::make_plane(mesh.places, mesh.point_offsets);
-    if (plane.places().empty()) return;
-    const std::size_t n = plane.places().size() / 2;
-    Triangulation planar = sphere::planar_part(plane, mesh);
-    if (planar.triangles.empty()) planar = used.triangulate(plane.places().data(), n);
-    locator.emplace(used, plane.places().data(), n, planar);
+    call::take_turn(*owner, [&] {
+      check(mesh);
+      call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
+      walker.emplace(mesh);
+      plane = sphere::make_plane(mesh.places, mesh.point_offsets);
+      if (plane.places().empty()) return;
+      const double* const places = plane.places().data();
+      const std::size_t n = plane.places().size() / 2;
+      Triangulation planar = sphere::planar_part(plane, mesh);
+      if (planar.triangles.empty()) planar = call::triangulate(*owner, {places, nullptr, n}, {0, n}, {});
+      const call::WithinTurn within(*owner);
+      locator.emplace(used, places, n, planar);
+    });
   }
 
   /// Of each query a vertex near it, in the order given; -1 if there are no points.
@@ -206,6 +371,7 @@ struct SphereLocator::Implementation {
       const Point p = sphere::place_at(places, static_cast<std::size_t>(i));
       in_plane.insert(in_plane.end(), {sphere::is_pole(p) ? 0 : p.x, sphere::is_pole(p) ? 0 : p.y});
     }
+    const call::WithinTurn within(*owner);
     Ids result = locator->nearest(in_plane.data(), order.size());
     if (!plane.points.empty()) {
       for (std::int32_t& v : result) v = plane.points[static_cast<std::size_t>(v)];
@@ -218,19 +384,19 @@ struct SphereLocator::Implementation {
   template <typename T, typename Work>
   std::vector<T> answer(const double* queries, std::size_t m, SphereCoordinates coordinates,
                         std::size_t columns, T none, const Work& work) {
-    check_queries(queries, m);
-    std::vector<T> result(check_columns(columns, m), none);
-    const std::vector<double> places = places_of(*owner, queries, m, coordinates, "query");
-    const Ids order =
-        call::take_turn(*owner, [&] { return sphere::order_along_curve(owner->native().runtime, places); });
-    const Ids start = starts(places, order);
-    call::take_turn(*owner, [&] {
-      sphere::for_each(owner->native().runtime, m, [&](std::size_t k) {
+    return call::take_turn(*owner, [&] {
+      check_queries(queries, m);
+      std::vector<T> result(check_columns(columns, m), none);
+      check_enumerator(coordinates);
+      host::Runtime& runtime = owner->native().runtime;
+      const std::vector<double> places = sphere::to_places(runtime, queries, m, coordinates, "query");
+      const Ids order = sphere::order_along_curve(runtime, places), start = starts(places, order);
+      sphere::for_each(runtime, m, [&](std::size_t k) {
         const auto i = static_cast<std::size_t>(order[k]);
         if (start[k] >= 0) work(sphere::place_at(places, i), start[k], &result[columns * i]);
       });
+      return result;
     });
-    return result;
   }
 
   // A set without triangles has one or two points.

@@ -209,6 +209,7 @@ void append(const std::vector<Corners>& triangles, std::vector<OpenEdge>& open, 
   std::sort(open.begin(), open.end(),
             [&](const OpenEdge& a, const OpenEdge& b) { return ends(a) < ends(b); });
   std::vector<OpenEdge> rest;
+  cap.links.reserve(cap.links.size() + open.size());
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (i + 1 == open.size() || ends(open[i]) != ends(open[i + 1])) {
       rest.push_back(open[i]);

@@ -6,15 +6,19 @@
 #include <numeric>
 
 #include "geometry/sort.hpp"
-#include "sphere/places.h"
+#include "launchers/sphere/places.cl.hpp"
 
 namespace flaunay::sphere {
 namespace {
 
-bool is_wrong(const double* p, SphereCoordinates coordinates) {
-  return coordinates == SphereCoordinates::degrees ? kernel::are_no_degrees(p[0], p[1])
-                                                   : kernel::is_no_direction(p[0], p[1], p[2]);
-}
+template <typename T>
+struct KernelOf {
+  using Places = kernels::places_of_doubles;
+};
+template <>
+struct KernelOf<cl_float> {
+  using Places = kernels::places_of_floats;
+};
 
 }  // namespace
 
@@ -35,20 +39,43 @@ void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const
   throw Error(ErrorKind::input, fmt::format("{} {} is the vector 0, which has no direction", what, i));
 }
 
+template <typename T>
+bool find_places(host::Runtime& runtime, const host::Buffer<T>& points, std::size_t first, std::size_t n,
+                 SphereCoordinates coordinates, const host::Buffer<cl_double>& places, const char* what) {
+  host::Arena::Scope scope(runtime.arena());
+  const std::size_t width = width_of(coordinates);
+  const auto none = static_cast<cl_int>(n);
+  const auto firsts = runtime.arena().allocate<cl_int>(2);
+  runtime.fill(firsts, 2, none);
+  runtime.map(n, typename KernelOf<T>::Places{.width = static_cast<cl_int>(width),
+                                              .first = first,
+                                              .points = points,
+                                              .places = places.template as<cl_double2>(),
+                                              .found = firsts});
+  cl_int found[2] = {};
+  runtime.read(firsts, 0, 2, found);
+  if (found[0] < none) {
+    const auto wrong = static_cast<std::size_t>(found[0]);
+    T numbers[3] = {};
+    runtime.read(points, first + wrong * width, width, numbers);
+    const double wide[3] = {numbers[0], numbers[1], numbers[2]};
+    refuse(wide, wrong, coordinates, what);
+  }
+  return found[1] < none;
+}
+template bool find_places(host::Runtime&, const host::Buffer<cl_double>&, std::size_t, std::size_t,
+                          SphereCoordinates, const host::Buffer<cl_double>&, const char*);
+template bool find_places(host::Runtime&, const host::Buffer<cl_float>&, std::size_t, std::size_t,
+                          SphereCoordinates, const host::Buffer<cl_double>&, const char*);
+
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what) {
+  host::Arena::Scope scope(runtime.arena());
   std::vector<double> places;
   runtime.resize(places, 2 * n);
-  const std::size_t width = width_of(coordinates);
-  for_each(runtime, n, [&](std::size_t i) {
-    const double* const p = points + width * i;
-    if (is_wrong(p, coordinates)) refuse(p, i, coordinates, what);
-    const Point place = coordinates == SphereCoordinates::directions
-                            ? kernel::place_of_direction(p[0], p[1], p[2])
-                            : kernel::place_of_degrees(p[0], p[1]);
-    places[2 * i] = place.x;
-    places[2 * i + 1] = place.y;
-  });
+  const auto output = runtime.output(places);
+  find_places(runtime, runtime.view(points, n * width_of(coordinates)), 0, n, coordinates, output, what);
+  runtime.fetch_later(output, places);
   return places;
 }
 

@@ -50,7 +50,13 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
 /// Throws Error(input) for what is no point. what: its name.
 [[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what);
 
-/// Returns x and y per point, as sphere/places.h says. Throws Error(input) for those that are none.
+/// Computes x and y per point, as sphere/places.h says, of n points from the number `first` of the array on.
+/// Returns whether the south pole is among them. Throws Error(input) for those that are none. Waits once.
+/// O(n).
+template <typename T>
+bool find_places(host::Runtime& runtime, const host::Buffer<T>& points, std::size_t first, std::size_t n,
+                 SphereCoordinates coordinates, const host::Buffer<cl_double>& places, const char* what);
+/// Of points in host memory, natively.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
 

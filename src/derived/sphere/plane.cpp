@@ -43,10 +43,10 @@ Ids border_of(const std::vector<double>& places, const Triangulation& planar) {
 
 }  // namespace
 
-Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets) {
+Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets, bool has_pole) {
   Plane plane;
   plane.poles.resize(offsets.size() - 1);
-  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+  for (std::size_t s = 0; has_pole && s + 1 < offsets.size(); ++s) {
     for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
       if (is_pole(place_at(places, i))) plane.poles[s].push_back(static_cast<std::int32_t>(i));
     }

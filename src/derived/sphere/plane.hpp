@@ -19,8 +19,9 @@ struct Plane {
   const std::vector<double>& places() const { return all != nullptr ? *all : some; }
 };
 
-/// Finds the points at the pole; the others are those of the plane.
-Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets);
+/// Finds the points at the pole, if there are some; the others are those of the plane.
+Plane make_plane(const std::vector<double>& places, const std::vector<std::size_t>& offsets,
+                 bool has_pole = true);
 
 /// Numbers the arrays of a triangulation of the plane by the n points of the sphere.
 void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar);

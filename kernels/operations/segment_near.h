@@ -1,0 +1,35 @@
+// A search for segments that are about equally long.
+#ifndef FLAUNAY_SEGMENT_NEAR_H
+#define FLAUNAY_SEGMENT_NEAR_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
+
+// What segment_of finds (operations/search.h), for i below offsets[count]: from where it would be if all were equally
+// long, by steps that double, and then by halves.
+static inline int segment_near(int i, int count, GLOBAL const int* RESTRICT offsets) {
+  if (count == 1) return 0;
+  int low = min(count - 1, (int)((float)i / (float)offsets[count] * (float)count)), high = low + 1;
+  for (int step = 1; offsets[low] > i; step *= 2) {
+    high = low;
+    low = max(0, low - step);
+  }
+  for (int step = 1; high < count && offsets[high] <= i; step *= 2) {
+    low = high;
+    high = min(count, high + step);
+  }
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    if (offsets[middle] <= i) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+END_SHARED
+
+#endif
