@@ -10,6 +10,8 @@ using call::Engine;
 
 namespace {
 
+thread_local const call::Implementation* within_turn_of = nullptr;
+
 // Whether the device that nobody has named passes the self-test, as one without fp64 may not. The host does
 // as well.
 [[maybe_unused]] bool can_be_used(call::Implementation& self) {
@@ -97,8 +99,11 @@ void Triangulator::Implementation::note_held_bytes() {
   }
 }
 
-call::Turn::Turn(Implementation& self) : self_(self) {
-  if (self.is_busy.exchange(true, std::memory_order_acquire)) {
+call::WithinTurn::WithinTurn(const Implementation& self) { within_turn_of = &self; }
+call::WithinTurn::~WithinTurn() { within_turn_of = nullptr; }
+
+call::Turn::Turn(Implementation& self) : self_(self), is_part_(within_turn_of == &self) {
+  if (!is_part_ && self.is_busy.exchange(true, std::memory_order_acquire)) {
     throw Error(ErrorKind::usage,
                 "the triangulator is in use by another call, on another thread or around this one (from a "
                 "progress callback): it and its locators do one call at a time; make a triangulator for each "
@@ -107,6 +112,7 @@ call::Turn::Turn(Implementation& self) : self_(self) {
 }
 
 call::Turn::~Turn() {
+  if (is_part_) return;
   self_.note_held_bytes();
   self_.is_busy.store(false, std::memory_order_release);
 }

@@ -73,6 +73,16 @@ namespace call {
 
 using Implementation = TriangulatorAccess::Implementation;
 
+/// As long as this lives, public calls of this thread on the triangulator are parts of the call whose turn it
+/// is.
+class WithinTurn {
+ public:
+  explicit WithinTurn(const Implementation& self);
+  ~WithinTurn();
+  WithinTurn(const WithinTurn&) = delete;
+  WithinTurn& operator=(const WithinTurn&) = delete;
+};
+
 /// Marks a triangulator as busy for the length of a call. Throws Error(usage) if it is busy already, since
 /// two calls at once would overwrite each other's memory and kernel arguments.
 class Turn {
@@ -84,6 +94,7 @@ class Turn {
 
  private:
   Implementation& self_;
+  bool is_part_;  // of a call whose turn it is; see WithinTurn
 };
 
 /// Runs a public call that uses the triangulator's memory or queue; see Turn and with_errors.

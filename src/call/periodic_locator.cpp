@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "call/frame.hpp"
 #include "call/periodic.hpp"
+#include "call/triangulate.hpp"
 #include "derived/periodic/fold.hpp"
 
 namespace flaunay {
@@ -15,6 +15,10 @@ namespace flaunay {
 struct PeriodicLocator::Implementation {
   Implementation(Triangulator& used, const PeriodicTriangulation& mesh)
       : owner(TriangulatorAccess::shared(used)), period{mesh.period.x, mesh.period.y} {
+    call::take_turn(*owner, [&] { make(used, mesh); });
+  }
+
+  void make(Triangulator& used, const PeriodicTriangulation& mesh) {
     call::check_with_places(mesh);
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
@@ -25,7 +29,7 @@ struct PeriodicLocator::Implementation {
     // direction that has one.
     const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
     box.margin = is_torus ? periodic::first_margin(box, n) : kWhole;
-    for (; !make(used, mesh, box); box.margin *= periodic::kWider) {
+    for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
       if (periodic::is_whole(plane->box))
         throw Error(ErrorKind::usage,
                     "the triangles are not those of a triangulation on a torus or a cylinder");
@@ -34,23 +38,32 @@ struct PeriodicLocator::Implementation {
 
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest point of what is in the box is near enough.
-  bool make(Triangulator& used, const PeriodicTriangulation& mesh, const periodic::Box& box) {
-    call::take_turn(*owner, [&] { plane = periodic::plane_of(owner->native().runtime, mesh.places, box); });
-    const std::vector<double>& places = plane->coordinates;
-    const Triangulation planar = used.triangulate(places.data(), places.size() / 2);
+  bool make_within(const periodic::Box& box, Triangulator& used, const PeriodicTriangulation& mesh) {
+    host::Runtime& runtime = owner->native().runtime;
+    plane = periodic::plane_of(runtime, mesh.places, box);
+    const double* const places = plane->coordinates.data();
+    const std::size_t n = plane->coordinates.size() / 2;
+    const Triangulation planar = call::triangulate(*owner, {places, nullptr, n}, {0, n}, {});
     if (!periodic::is_whole(plane->box) && !periodic::is_box_inside(*plane, planar.hull)) return false;
-    call::take_turn(*owner, [&] {
-      numbers = periodic::originals(owner->native().runtime, *plane, planar.triangles, mesh);
-    });
+    numbers = periodic::originals(runtime, *plane, planar.triangles, mesh);
     if (numbers.empty() && !planar.triangles.empty()) return false;
-    locator.emplace(used, places.data(), places.size() / 2, planar);
+    const call::WithinTurn within(*owner);
+    locator.emplace(used, places, n, planar);
     return true;
   }
 
-  std::vector<double> to_places(const double* queries, std::size_t m) {
-    check_queries(queries, m);
-    return call::take_turn(
-        *owner, [&] { return periodic::to_places(owner->native().runtime, queries, m, period, "query"); });
+  /// Returns what work(places) does, or if there are no points, so many numbers of this value per query.
+  template <typename T, typename Work>
+  std::vector<T> answer(const double* queries, std::size_t m, std::size_t columns, T none, const Work& work) {
+    return call::take_turn(*owner, [&] {
+      check_queries(queries, m);
+      const std::size_t results = check_columns(columns, m);
+      const std::vector<double> places =
+          periodic::to_places(owner->native().runtime, queries, m, period, "query");
+      if (!locator) return std::vector<T>(results, none);
+      const call::WithinTurn within(*owner);
+      return work(places.data());
+    });
   }
 
   std::shared_ptr<call::Implementation> owner;
@@ -67,40 +80,39 @@ PeriodicLocator::PeriodicLocator(PeriodicLocator&&) noexcept = default;
 PeriodicLocator& PeriodicLocator::operator=(PeriodicLocator&&) noexcept = default;
 
 std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::size_t m) {
-  const std::vector<double> places = implementation_->to_places(queries, m);
-  if (!implementation_->locator) return std::vector<std::int32_t>(m, -1);
-  std::vector<std::int32_t> found = implementation_->locator->locate(places.data(), m);
-  for (std::int32_t& t : found) {
-    if (t >= 0) t = implementation_->numbers[static_cast<std::size_t>(t)];
-  }
-  return found;
+  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
+    std::vector<std::int32_t> found = implementation_->locator->locate(places, m);
+    for (std::int32_t& t : found) {
+      if (t >= 0) t = implementation_->numbers[static_cast<std::size_t>(t)];
+    }
+    return found;
+  });
 }
 
 std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::size_t m) {
-  const std::vector<double> places = implementation_->to_places(queries, m);
-  if (!implementation_->locator) return std::vector<std::int32_t>(m, -1);
-  std::vector<std::int32_t> found = implementation_->locator->nearest(places.data(), m);
-  for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
-  return found;
+  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
+    std::vector<std::int32_t> found = implementation_->locator->nearest(places, m);
+    for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
+    return found;
+  });
 }
 
 std::vector<double> PeriodicLocator::interpolate(const double* values, std::size_t columns,
                                                  const double* queries, std::size_t m) {
-  const std::vector<double> places = implementation_->to_places(queries, m);
-  const std::size_t results = check_columns(columns, m);
-  if (!implementation_->locator)
-    return std::vector<double>(results, std::numeric_limits<double>::quiet_NaN());
-  check_array(values, check_columns(columns, implementation_->plane->points()), "values", kMostCountable);
-  const periodic::Plane& plane = *implementation_->plane;
-  std::vector<double> of_images(values, values + columns * plane.points());
-  of_images.reserve(columns * (plane.points() + plane.images.size()));
-  for (const periodic::Image& image : plane.images) {
-    const double* const row = values + columns * static_cast<std::size_t>(image.point);
-    of_images.insert(of_images.end(), row, row + columns);
-  }
-  InterpolationOptions options;
-  options.columns = columns;
-  return implementation_->locator->interpolate(of_images.data(), places.data(), m, options);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return implementation_->answer(queries, m, columns, kNone, [&](const double* places) {
+    const periodic::Plane& plane = *implementation_->plane;
+    check_array(values, check_columns(columns, plane.points()), "values", kMostCountable);
+    std::vector<double> of_images(values, values + columns * plane.points());
+    of_images.reserve(columns * (plane.points() + plane.images.size()));
+    for (const periodic::Image& image : plane.images) {
+      const double* const row = values + columns * static_cast<std::size_t>(image.point);
+      of_images.insert(of_images.end(), row, row + columns);
+    }
+    InterpolationOptions options;
+    options.columns = columns;
+    return implementation_->locator->interpolate(of_images.data(), places, m, options);
+  });
 }
 
 }  // namespace flaunay

@@ -347,15 +347,19 @@ SphericalVoronoi voronoi_on_sphere(Triangulator& triangulator, const SphericalTr
 struct SphereLocator::Implementation {
   Implementation(Triangulator& used, const SphericalTriangulation& triangulation)
       : owner(TriangulatorAccess::shared(used)), mesh(triangulation) {
-    check(mesh);
-    call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
-    walker.emplace(mesh);
-    plane = sphere::make_plane(mesh.places, mesh.point_offsets);
-    if (plane.places().empty()) return;
-    const std::size_t n = plane.places().size() / 2;
-    Triangulation planar = sphere::planar_part(plane, mesh);
-    if (planar.triangles.empty()) planar = used.triangulate(plane.places().data(), n);
-    locator.emplace(used, plane.places().data(), n, planar);
+    call::take_turn(*owner, [&] {
+      check(mesh);
+      call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
+      walker.emplace(mesh);
+      plane = sphere::make_plane(mesh.places, mesh.point_offsets);
+      if (plane.places().empty()) return;
+      const double* const places = plane.places().data();
+      const std::size_t n = plane.places().size() / 2;
+      Triangulation planar = sphere::planar_part(plane, mesh);
+      if (planar.triangles.empty()) planar = call::triangulate(*owner, {places, nullptr, n}, {0, n}, {});
+      const call::WithinTurn within(*owner);
+      locator.emplace(used, places, n, planar);
+    });
   }
 
   /// Of each query a vertex near it, in the order given; -1 if there are no points.
@@ -368,6 +372,7 @@ struct SphereLocator::Implementation {
       const Point p = sphere::place_at(places, static_cast<std::size_t>(i));
       in_plane.insert(in_plane.end(), {sphere::is_pole(p) ? 0 : p.x, sphere::is_pole(p) ? 0 : p.y});
     }
+    const call::WithinTurn within(*owner);
     Ids result = locator->nearest(in_plane.data(), order.size());
     if (!plane.points.empty()) {
       for (std::int32_t& v : result) v = plane.points[static_cast<std::size_t>(v)];
@@ -380,23 +385,19 @@ struct SphereLocator::Implementation {
   template <typename T, typename Work>
   std::vector<T> answer(const double* queries, std::size_t m, SphereCoordinates coordinates,
                         std::size_t columns, T none, const Work& work) {
-    check_queries(queries, m);
-    std::vector<T> result(check_columns(columns, m), none);
-    std::vector<double> places;
-    const Ids order = call::take_turn(*owner, [&] {
+    return call::take_turn(*owner, [&] {
+      check_queries(queries, m);
+      std::vector<T> result(check_columns(columns, m), none);
       check_enumerator(coordinates, SphereCoordinates::degrees, "SphereCoordinates");
       host::Runtime& runtime = owner->native().runtime;
-      places = sphere::to_places(runtime, queries, m, coordinates, "query");
-      return sphere::order_along_curve(runtime, places);
-    });
-    const Ids start = starts(places, order);
-    call::take_turn(*owner, [&] {
-      sphere::for_each(owner->native().runtime, m, [&](std::size_t k) {
+      const std::vector<double> places = sphere::to_places(runtime, queries, m, coordinates, "query");
+      const Ids order = sphere::order_along_curve(runtime, places), start = starts(places, order);
+      sphere::for_each(runtime, m, [&](std::size_t k) {
         const auto i = static_cast<std::size_t>(order[k]);
         if (start[k] >= 0) work(sphere::place_at(places, i), start[k], &result[columns * i]);
       });
+      return result;
     });
-    return result;
   }
 
   // A set without triangles has one or two points.
