@@ -9,6 +9,7 @@ BEGIN_SHARED
 // What segment_of finds (operations/search.h), for i below offsets[count]: from where it would be if all were equally
 // long, by steps that double, and then by halves.
 static inline int segment_near(int i, int count, GLOBAL const int* RESTRICT offsets) {
+  if (count == 1) return 0;
   int low = min(count - 1, (int)((float)i / (float)offsets[count] * (float)count)), high = low + 1;
   for (int step = 1; offsets[low] > i; step *= 2) {
     high = low;

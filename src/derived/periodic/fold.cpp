@@ -256,17 +256,23 @@ void FoldedSets::write(const std::vector<std::size_t>& first_rows, const Buffer<
   const std::size_t count = mesh_.triangle_count();
   if (triangles.memory() != mesh_.triangles.memory() || runtime_.threads() == 1)
     return write_rows(0, count, 0, triangles, neighbors);
-  // Several threads write one slice after the other, and not to where others still read.
-  constexpr std::size_t kSlice = std::size_t{1} << 17;
+  // Several threads write one slice after the other, and not to where others still read: as many triangles as
+  // there were rows that are not kept, or else by way of other memory.
+  constexpr std::size_t kLeast = std::size_t{1} << 15, kSlice = std::size_t{1} << 17;
   const std::size_t most = 3 * std::min(kSlice, count);
   const auto slice = runtime_.arena().allocate<cl_int>(most),
              beyond = runtime_.arena().allocate<cl_int>(most);
-  for (std::size_t first = 0; first < count; first += kSlice) {
-    const std::size_t n = std::min(kSlice, count - first);
-    const std::size_t begin = runtime_.read_one(ranks_, first), end = runtime_.read_one(ranks_, first + n);
+  for (std::size_t first = 0, n = 0; first < count; first += n) {
+    const std::size_t begin = runtime_.read_one(ranks_, first), free = first - begin;
+    n = std::min(free < kLeast ? kSlice : free, count - first);
+    if (free >= kLeast) {
+      write_rows(first, n, 0, triangles, neighbors);
+      continue;
+    }
     write_rows(first, n, begin, slice, beyond);
-    runtime_.copy(slice, 0, triangles, 3 * begin, 3 * (end - begin));
-    runtime_.copy(beyond, 0, neighbors, 3 * begin, 3 * (end - begin));
+    const std::size_t rows = runtime_.read_one(ranks_, first + n) - begin;
+    runtime_.copy(slice, 0, triangles, 3 * begin, 3 * rows);
+    runtime_.copy(beyond, 0, neighbors, 3 * begin, 3 * rows);
   }
 }
 
