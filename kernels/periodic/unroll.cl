@@ -67,16 +67,16 @@ kernel void read_totals(int n, global const int* restrict offsets, global const 
 }
 
 // counts: scanned. images: what is at each place of the plane. own: how many of the first points need none.
-kernel void write_images(int n, int sets, int own, global const int* restrict offsets,
-                         global const unrolled_set* restrict all, global const double* restrict places,
-                         global const uint* restrict counts, global double* restrict coordinates,
-                         global uint* restrict images) {
+// are_there: whether coordinates are the places, behind which images go.
+kernel void write_images(int n, int sets, int own, int are_there, global const int* restrict offsets,
+                         global const unrolled_set* restrict all, global const double* places,
+                         global const uint* restrict counts, global double* coordinates, global uint* restrict images) {
   const int i = get_global_id(0);
-  if (i < n) {
+  if (i < n && !(are_there && counts[i + 1] == counts[i])) {
     const int k = segment_near(i, sets, offsets);
     const int point = all[k].first + i - offsets[k], at = i + (int)counts[offsets[k]];
     const double2 p = vload2(point, places);
-    vstore2(p, at, coordinates);
+    if (!are_there) vstore2(p, at, coordinates);
     if (i >= own) images[at] = image_of(point, 0, 0);
     if (counts[i + 1] == counts[i]) return;
     const periodic_box box = all[k].box;

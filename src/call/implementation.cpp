@@ -86,6 +86,10 @@ Engine& Triangulator::Implementation::for_points(std::size_t points, bool profil
   return stays_here(points, profile) ? Engine::of_thread() : for_host_memory();
 }
 
+Engine& Triangulator::Implementation::native_for(std::size_t points) {
+  return points <= host_tuning_->host_points ? Engine::of_thread() : native();
+}
+
 Engine& Triangulator::Implementation::with_doubles(Engine& engine) {
   const std::lock_guard lock(making_);
   // Without OpenCL, the first is known to the compiler, which leaves out the rest.

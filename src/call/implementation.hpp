@@ -33,6 +33,8 @@ struct Triangulator::Implementation {
   /// The engine for work on this number of points in host memory: the calling thread's own, or
   /// for_host_memory().
   call::Engine& for_points(std::size_t points, bool profile = false);
+  /// The engine for native work on this number of points: the calling thread's own, or native().
+  call::Engine& native_for(std::size_t points);
   /// The engine that runs kernels natively, made when it is first needed.
   call::Engine& native();
   /// The engine that has doubles in place of this one, which is on_device() or for_host_memory(): itself, or

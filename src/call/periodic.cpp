@@ -121,7 +121,17 @@ class Rounds {
   // Whether the rows of a set in host memory stay in the arrays that they have in the plane.
   bool is_in_place() const { return std::is_same_v<Result, PeriodicTriangulation> && boxes_.size() == 1; }
 
-  periodic::UnrolledSets unroll(const std::vector<std::size_t>& sets) const {
+  // Of a set in host memory, images go behind the places.
+  periodic::UnrolledSets::MakeRoom make_room(PeriodicTriangulation& result) {
+    if (!is_in_place()) return nullptr;
+    return [&](std::size_t count) {
+      call_.runtime.resize(result.places, 2 * count);
+      return places_ = call_.in(result.places);
+    };
+  }
+  static periodic::UnrolledSets::MakeRoom make_room(DevicePeriodicTriangulation&) { return nullptr; }
+
+  periodic::UnrolledSets unroll(const std::vector<std::size_t>& sets) {
     std::vector<std::size_t> first, last;
     std::vector<periodic::Box> boxes;
     for (const std::size_t s : sets) {
@@ -129,7 +139,7 @@ class Rounds {
       last.push_back(offsets_[s + 1]);
       boxes.push_back(boxes_[s]);
     }
-    return {call_.runtime, engine_.even, places_, first, last, std::move(boxes)};
+    return {call_.runtime, engine_.even, places_, first, last, std::move(boxes), make_room(result_)};
   }
 
   points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DevicePeriodicTriangulation&) const {
@@ -155,6 +165,7 @@ class Rounds {
   void take_rows(PeriodicTriangulation& result) {
     result.triangles = std::move(planar_.triangles);
     result.neighbors = std::move(planar_.neighbors);
+    result.places.resize(2 * offsets_.back());
     for (auto* const rows : {&result.triangles, &result.neighbors})
       rows->resize(3 * result.triangle_offsets.back());
   }
@@ -200,7 +211,8 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
   result.triangle_offsets.assign(offsets.size(), 0);
   result.images = 0;
   result.statistics = {};
-  const auto places = call.template out<cl_double>(result.places, 2 * n, "places");
+  const std::size_t room = std::is_same_v<Result, PeriodicTriangulation> ? n / 4 : 0;  // for images
+  const auto places = call.template output<cl_double>(result.places, 2 * (n + room), "places").buffer(2 * n);
   const auto triangles = call.template output<cl_int>(result.triangles, 3 * most, "triangles");
   const auto periods = call.template output<cl_char>(result.offsets, 6 * most, "offsets");
   const auto neighbors = call.template output<cl_int>(result.neighbors, 3 * most, "neighbors");
@@ -231,8 +243,7 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
     call::check(period);
     check_points(points, offsets.back());
     PeriodicTriangulation result;
-    const bool is_small = offsets.back() <= self.host_tuning().host_points;
-    call::Frame call(is_small ? call::Engine::of_thread() : self.native());
+    call::Frame call(self.native_for(offsets.back()));
     compute(self, call, call::HostPoints{points, nullptr, offsets.back()}, offsets, period, result);
     return result;
   });

@@ -56,11 +56,13 @@ struct PeriodicLocator::Implementation {
     return true;
   }
 
-  /// Returns what work(places) does, or if there are no points, so many results of this value.
+  /// Returns the result of work(places), or if there are no points, `columns` numbers of this value per
+  /// query.
   template <typename T, typename Work>
-  std::vector<T> answer(const double* queries, std::size_t m, std::size_t results, T none, const Work& work) {
+  std::vector<T> answer(const double* queries, std::size_t m, std::size_t columns, T none, const Work& work) {
     return call::take_turn(*owner, [&] {
       check_queries(queries, m);
+      const std::size_t results = check_columns(columns, m);
       const std::vector<double> places =
           periodic::to_places(owner->native().runtime, queries, m, period, "query");
       if (!locator) return std::vector<T>(results, none);
@@ -113,7 +115,7 @@ PeriodicLocator::PeriodicLocator(PeriodicLocator&&) noexcept = default;
 PeriodicLocator& PeriodicLocator::operator=(PeriodicLocator&&) noexcept = default;
 
 std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::size_t m) {
-  return implementation_->answer(queries, m, m, std::int32_t{-1}, [&](const double* places) {
+  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
     std::vector<std::int32_t> found = implementation_->locator->locate(places, m);
     for (std::int32_t& t : found) {
       if (t >= 0) t = implementation_->numbers[static_cast<std::size_t>(t)];
@@ -123,7 +125,7 @@ std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::si
 }
 
 std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::size_t m) {
-  return implementation_->answer(queries, m, m, std::int32_t{-1}, [&](const double* places) {
+  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
     std::vector<std::int32_t> found = implementation_->locator->nearest(places, m);
     for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
     return found;
@@ -133,10 +135,8 @@ std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::s
 std::vector<double> PeriodicLocator::interpolate(const double* values, const double* queries, std::size_t m,
                                                  const InterpolationOptions& options) {
   Implementation& self = *implementation_;
-  check_queries(queries, m);
-  const std::size_t results = check_columns(options.columns, m);
   self.check(options);
-  return self.answer(queries, m, results, options.fill, [&](const double* places) {
+  return self.answer(queries, m, options.columns, options.fill, [&](const double* places) {
     check_array(values, check_columns(options.columns, self.plane->points()), "values", kMostCountable);
     return self.locator->interpolate(self.with_images(values, options.columns).data(), places, m, options);
   });

@@ -155,8 +155,7 @@ SphericalTriangulation triangulate_in_turn(call::Implementation& self, const dou
   SphericalTriangulation result;
   result.point_offsets = offsets;
   Triangulation planar;
-  const bool is_small = n <= self.host_tuning().host_points;
-  call::Frame call(is_small ? call::Engine::of_thread() : self.native());
+  call::Frame call(self.native_for(n));
   const bool has_pole =
       sphere::find_places(call.runtime, call.in<cl_double>(points, n * sphere::width_of(coordinates)), 0, n,
                           coordinates, call.out<cl_double>(result.places, 2 * n), "point");

@@ -86,7 +86,7 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
 
 UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
                            const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
-                           std::vector<Box> boxes)
+                           std::vector<Box> boxes, const MakeRoom& make_room)
     : boxes_(std::move(boxes)), first_(first.front()) {
   std::vector<kernel::unrolled_set> records;
   std::vector<std::size_t> point_offsets{0};
@@ -118,13 +118,15 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
     if (k > 0) images_.push_back(images_before[k] - images_before[k - 1]);
   }
   check_size(offsets_.back());
-  coordinates_ = arena.allocate<cl_double>(2 * offsets_.back());
+  const std::size_t count = offsets_.back();
+  coordinates_ = make_room ? make_room(count) : arena.allocate<cl_double>(2 * count);
   at_ = arena.allocate<cl_uint>(offsets_.back());
   runtime.map(points_, kernels::write_images{.sets = sets(),
                                              .own = own(),
+                                             .are_there = static_cast<bool>(make_room),
                                              .offsets = point_offsets_,
                                              .all = records_,
-                                             .places = places,
+                                             .places = make_room ? coordinates_ : places,
                                              .counts = image_counts_,
                                              .coordinates = coordinates_,
                                              .images = at_});

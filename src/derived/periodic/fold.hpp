@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "derived/periodic/torus.hpp"
@@ -26,11 +27,15 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
 /// then their images in ascending order.
 class UnrolledSets {
  public:
+  /// Makes room for this many points and images in the array of places, which has those of the set alone.
+  using MakeRoom = std::function<Buffer<cl_double>(std::size_t)>;
+
   /// first, last: per set its points, at least one. arena: where results come from; that of the runtime must
-  /// be another one. Waits once. O(n).
+  /// be another one. make_room: null, or natively for a set that is alone, whose coordinates are then the
+  /// places themselves. Waits once. O(n).
   UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
                const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
-               std::vector<Box> boxes);
+               std::vector<Box> boxes, const MakeRoom& make_room = nullptr);
 
   /// Where sets begin among points and images; sets + 1.
   const std::vector<std::size_t>& offsets() const { return offsets_; }
