@@ -118,23 +118,26 @@ class _Result(Handle):
 
         counts: how many there are of what has rows, unless a function says so.
         """
-        arrays = {}
-        for name, function, of, more, columns, dtype in _readers(self._name, offsets):
+        arrays, pointer = {}, self.pointer
+        for name, function, of, count_of, more, columns, dtype in _readers(self._name, offsets):
             if of not in counts:
-                counts[of] = self.read(f"{of}_count")
-            shape = _shape(counts[of] + more, columns)
-            arrays[name] = _view(self, function(self.pointer), shape, dtype)
+                counts[of] = count_of(pointer)
+            rows = counts[of] + more
+            shape = (rows,) if columns == 1 else (rows, columns)
+            arrays[name] = _view(self, function(pointer), shape, dtype)
         return arrays
 
 
 @functools.cache
 def _readers(result: str, offsets: tuple[str, ...]) -> list[tuple[Any, ...]]:
-    """For each array what reads it, of what it has rows, how many more, elements per row, and its type."""
+    """For each array what reads it, of what it has rows, what counts these, how many more, and a row's shape."""
     readers, table = [], _TABLES[result] | dict.fromkeys(offsets, _OFFSETS)
     for name, (dtype, row, columns, _) in table.items():
         of, offset, _ = row.partition("_offset")
-        function = getattr(library, f"{result}_{name}")
-        readers.append((name, function, of, int(bool(offset)), columns, dtype))
+        function, count_of = (
+            getattr(library, f"{result}_{member}", None) for member in (name, f"{of}_count")
+        )
+        readers.append((name, function, of, count_of, int(bool(offset)), columns, dtype))
     return readers
 
 
@@ -226,6 +229,9 @@ def _struct(kind: Callable[..., Any], **members: Any) -> Any:
     """A struct of C with the addresses of arrays and of other structs, which it keeps."""
     words = dict(members)
     for name, value in members.items():
+        # Mostly numbers, which are told apart at once.
+        if value is None or type(value) is int:
+            continue
         if isinstance(value, _ARRAY):
             words[name] = _address_or_none(value)
         elif isinstance(value, ctypes.Structure):
