@@ -227,17 +227,17 @@ def _call_with_mesh(function: Any, *arguments: Any) -> None:
 
 def _struct(kind: Callable[..., Any], **members: Any) -> Any:
     """A struct of C with the addresses of arrays and of other structs, which it keeps."""
-    words = dict(members)
+    kept = []
     for name, value in members.items():
-        # Mostly numbers, which are told apart at once.
         if value is None or type(value) is int:
             continue
+        kept.append(value)
         if isinstance(value, _ARRAY):
-            words[name] = _address_or_none(value)
+            members[name] = _address_or_none(value)
         elif isinstance(value, ctypes.Structure):
-            words[name] = ctypes.pointer(value)
-    made = kind(**words)
-    made._refers_to = members
+            members[name] = ctypes.pointer(value)
+    made = kind(**members)
+    made._refers_to = kept
     return made
 
 
@@ -1545,7 +1545,9 @@ class _Surface(_Result):
         super().__init__(name)
         n, create = len(given[0]), getattr(library, f"{name}_create")
         starts, sets = _as_offsets(offsets, n)
-        triangulator.make(self, create, *map(_as_doubles, given), n, starts, sets, *others)
+        arguments = _as_arguments((*map(_as_doubles, given), n, starts, sets, *others))
+        with triangulator.turn:
+            check(create(triangulator.pointer, *arguments, self.place))
         self._counts = {"point": n, "set": 1 if starts is None else sets}
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:

@@ -14,6 +14,10 @@ from flaunay._arrays import as_count, as_floats, as_int32, as_integers, frozen
 from flaunay._declarations import EXCUSE, KEPT_EDGES, Refinement
 from flaunay._errors import UsageError
 
+# Members of flaunay_refinement: those that need not be there, numbers and counts.
+_OPTIONAL = [name[len("has_") :] for name, *_ in Refinement._fields_ if name.startswith("has_")]
+_NUMBERS = {name for name, kind, *_ in Refinement._fields_ if kind is ctypes.c_double}
+_COUNTS = {name for name, kind, *_ in Refinement._fields_ if kind is ctypes.c_size_t}
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
@@ -149,13 +153,12 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     wanted["kept"] = KEPT_EDGES[kept]
     wanted["conforming"] = int(bool(wanted.get("conforming", False)))
     wanted["mesh"] = _mesh(wanted)
-    for name, kind, *_ in Refinement._fields_:
-        if name.startswith("has_"):
-            wanted[name] = int(name[len("has_") :] in wanted)
-        elif name in wanted and kind is ctypes.c_double:
-            wanted[name] = _number(wanted[name], name)
-        elif name in wanted and kind is ctypes.c_size_t:
-            wanted[name] = as_count(wanted[name], name)
+    for name in _OPTIONAL:
+        wanted[f"has_{name}"] = int(name in wanted)
+    for name in _NUMBERS.intersection(wanted):
+        wanted[name] = _number(wanted[name], name)
+    for name in _COUNTS.intersection(wanted):
+        wanted[name] = as_count(wanted[name], name)
     if "seed_areas" in wanted:
         wanted["seed_areas"] = _row(wanted["seed_areas"], "seed_areas", seeds, np.float64)
     if "kept_segments" in wanted:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union, overload
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out
+from flaunay._arrays import ArrayLike, as_offsets, as_points, check_out, names_of
 from flaunay._calls import TRIANGULATION
 from flaunay._constrained import (
     ConstrainedTriangulation,
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
-_ON_REQUEST = [name for name, (*_, asked) in TRIANGULATION.items() if asked == "on_request"]
 
 
 class _Constraining(TypedDict, total=False):
@@ -266,8 +265,7 @@ def triangulate(
     >>> flaunay.triangulate(frame, segments=rings, outside="holes")
     <flaunay.ConstrainedTriangulation: 8 points, 8 triangles, 8 constraint edges>
     """
-    arguments = locals()
-    wanted = {name for name in _ON_REQUEST if arguments[name]}
+    wanted = names_of(neighbors=neighbors, halfedges=halfedges, areas=areas)
     places = None if out is None else _arrays_of(out, wanted)
     sets = None if offsets is None else as_offsets(offsets)
     rules = rules_of(crossings, outside, fill_rule, labels)
