@@ -116,7 +116,9 @@ call::WithinTurn::WithinTurn(const Implementation& self) { within_turn_of = &sel
 call::WithinTurn::~WithinTurn() { within_turn_of = nullptr; }
 
 call::Turn::Turn(Implementation& self) : self_(self), is_part_(within_turn_of == &self) {
-  if (!is_part_ && self.is_busy.exchange(true, std::memory_order_acquire)) {
+  if (is_part_) return;
+  std::uint64_t turns = self.turns.load(std::memory_order_relaxed);
+  if (turns % 2 != 0 || !self.turns.compare_exchange_strong(turns, turns + 1, std::memory_order_acquire)) {
     throw Error(ErrorKind::usage,
                 "the triangulator is in use by another call, on another thread or around this one (from a "
                 "progress callback): it and its locators do one call at a time; make a triangulator for each "
@@ -127,7 +129,7 @@ call::Turn::Turn(Implementation& self) : self_(self), is_part_(within_turn_of ==
 call::Turn::~Turn() {
   if (is_part_) return;
   self_.note_held_bytes();
-  self_.is_busy.store(false, std::memory_order_release);
+  self_.turns.fetch_add(1, std::memory_order_release);
 }
 
 }  // namespace flaunay

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -49,7 +50,7 @@ struct Triangulator::Implementation {
   /// To be called at the end of a call: notes how much memory the engines hold.
   void note_held_bytes();
 
-  std::atomic<bool> is_busy{false};  ///< whether a call is running; see Turn
+  std::atomic<std::uint64_t> turns{0};  ///< twice the turns that there were, and 1 more during one; see Turn
 
  private:
   bool uses_device_for_host_memory();
