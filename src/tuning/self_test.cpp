@@ -1,5 +1,7 @@
 #include "tuning/self_test.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "launchers/call/self_test.cl.hpp"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "refinement/codes.h"
 #include "updates/codes.h"
 
 namespace flaunay::updates {

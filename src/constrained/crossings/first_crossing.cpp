@@ -12,6 +12,7 @@
 #include "constrained/crossings/segment_grid.hpp"
 #include "constrained/crossings/segment_set.hpp"
 #include "geometry/magnitudes.hpp"
+#include "predicates/area.h"
 
 namespace flaunay::constrained {
 using namespace geometry;
