@@ -180,6 +180,8 @@ bool Seams::match(std::uint64_t triangles) {
 double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
   // Bounds of all roundings: images and differences of coordinates have one each.
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
+  // With periods near 1, the squares of lengths are doubles.
+  const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.period.x, mesh.period.y)));
   const std::size_t count = mesh.triangles.size() / 3;
   std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
   runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
@@ -188,13 +190,13 @@ double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
       std::array<Point, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
-        p[k] = {mesh.places[v] + mesh.offsets[2 * c] * mesh.period.x,
-                mesh.places[v + 1] + mesh.offsets[2 * c + 1] * mesh.period.y};
+        p[k] = {scale * (mesh.places[v] + mesh.offsets[2 * c] * mesh.period.x),
+                scale * (mesh.places[v + 1] + mesh.offsets[2 * c + 1] * mesh.period.y)};
       }
       std::array<double, 3> opposite;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Point &from = p[(k + 1) % 3], &to = p[(k + 2) % 3];
-        opposite[k] = std::hypot(to.x - from.x, to.y - from.y);
+        const double x = p[(k + 2) % 3].x - p[(k + 1) % 3].x, y = p[(k + 2) % 3].y - p[(k + 1) % 3].y;
+        opposite[k] = std::sqrt(x * x + y * y);
       }
       // The cross product of the two shorter sides has the smallest error.
       const auto k =
@@ -205,7 +207,7 @@ double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
       widest = std::max(widest, area > 0 ? kSpare * opposite[k] * (sides / area) : HUGE_VAL);
     }
   });
-  return *std::max_element(parts.begin(), parts.end());
+  return *std::max_element(parts.begin(), parts.end()) / scale;
 }
 
 bool is_box_inside(const Plane& plane, const Ids& hull) {
