@@ -7,10 +7,9 @@
 
 BEGIN_SHARED
 
-// The last of `count` segments that begins at i or before; offsets ascend and offsets[0] <= i. If several
+// The last of the segments low..high - 1 that begins at i or before; offsets ascend and offsets[low] <= i. If several
 // segments begin at the same place, it is the last one, which is not empty.
-static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offsets) {
-  int low = 0, high = count;
+static inline int segment_between(int i, int low, int high, GLOBAL const int* RESTRICT offsets) {
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
     if (offsets[middle] <= i) {
@@ -20,6 +19,10 @@ static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offset
     }
   }
   return low;
+}
+// The same of `count` segments.
+static inline int segment_of(int i, int count, GLOBAL const int* RESTRICT offsets) {
+  return segment_between(i, 0, count, offsets);
 }
 
 // How many of the ascending positions are below i.

@@ -3,10 +3,11 @@
 #define FLAUNAY_SEGMENT_NEAR_H
 
 #include "arithmetic/language.h"
+#include "operations/search.h"
 
 BEGIN_SHARED
 
-// What segment_of finds (operations/search.h), for i below offsets[count]: from where it would be if all were equally
+// The same segment as segment_of finds, for i below offsets[count]: from where it would be if all were equally
 // long, by steps that double, and then by halves.
 static inline int segment_near(int i, int count, GLOBAL const int* RESTRICT offsets) {
   if (count == 1) return 0;
@@ -19,15 +20,7 @@ static inline int segment_near(int i, int count, GLOBAL const int* RESTRICT offs
     low = high;
     high = min(count, high + step);
   }
-  while (high - low > 1) {
-    const int middle = low + (high - low) / 2;
-    if (offsets[middle] <= i) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
+  return segment_between(i, low, high, offsets);
 }
 
 END_SHARED

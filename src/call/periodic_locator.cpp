@@ -29,7 +29,7 @@ struct PeriodicLocator::Implementation {
     // direction that has one.
     const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
     gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
-    box.margin = is_torus ? periodic::first_margin(box, n) : kWhole;
+    box.margin = std::max(periodic::first_margin(box, n), gap);
     for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
       if (periodic::is_whole(plane->box))
         throw Error(ErrorKind::usage,
@@ -38,17 +38,14 @@ struct PeriodicLocator::Implementation {
   }
 
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
-  /// the mesh, the nearest points of places in the box are near enough, and on a torus their natural
-  /// neighbors, too.
+  /// the mesh, and the nearest points of places in the box are near enough.
   bool make_within(const periodic::Box& box, Triangulator& used, const PeriodicTriangulation& mesh) {
     host::Runtime& runtime = owner->native().runtime;
     plane = periodic::plane_of(runtime, mesh.places, box);
     const double* const places = plane->coordinates.data();
     const std::size_t n = plane->coordinates.size() / 2;
     const Triangulation planar = call::triangulate(*owner, {places, nullptr, n}, {0, n}, {});
-    if (!periodic::is_whole(plane->box) &&
-        (plane->box.margin < gap || !periodic::is_box_inside(*plane, planar.hull)))
-      return false;
+    if (!periodic::is_whole(plane->box) && !periodic::is_box_inside(*plane, planar.hull)) return false;
     numbers = periodic::originals(runtime, *plane, planar.triangles, mesh);
     if (numbers.empty() && !planar.triangles.empty()) return false;
     const call::WithinTurn within(*owner);
