@@ -27,7 +27,7 @@ int main(void) {
   check(flaunay_triangulator_create(NULL, &triangulator));
   check(flaunay_triangulate(triangulator, xy, SIDE * SIDE, NULL, 1, NULL, &mesh));
   printf("flaunay %s: %d points, %zu triangles, %zu on the hull\n", flaunay_version(), SIDE * SIDE,
-         flaunay_triangulation_triangle_count(mesh), flaunay_triangulation_hull_count(mesh));
+         flaunay_triangulation_mesh(mesh)->triangle_count, flaunay_triangulation_mesh(mesh)->hull_count);
 
   const double queries[2 * QUERIES] = {0.25, 0.125, 7, 7, -1, 3};
   int32_t triangles[QUERIES], nearest[QUERIES];

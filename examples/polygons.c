@@ -15,18 +15,18 @@ int main(void) {
                                   .polygon_offsets = polygons,
                                   .polygon_count = 2};
   flaunay_triangulator* triangulator = NULL;
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   if (flaunay_triangulator_create("host", &triangulator) != FLAUNAY_SUCCESS ||
       flaunay_triangulate_polygons(triangulator, &given, NULL, &result) != FLAUNAY_SUCCESS) {
     fprintf(stderr, "%s\n", flaunay_last_error());
     return 1;
   }
-  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   for (size_t p = 0; p < mesh->set_count; ++p) {
     const size_t first = mesh->triangle_offsets[p], last = mesh->triangle_offsets[p + 1];
     printf("polygon %zu has triangles %zu to %zu\n", p, first, last - 1);
   }
-  flaunay_constrained_destroy(result);
+  flaunay_triangulation_destroy(result);
   flaunay_triangulator_destroy(triangulator);
   return 0;
 }

@@ -388,7 +388,7 @@ export class Triangulation extends Mesh {
 
   /** The Voronoi diagram, whose cells may be unbounded. */
   voronoi() {
-    return new Voronoi(create(wasm.flaunay_voronoi_compute, triangulator, this.#coords.pointer, this.pointCount,
+    return new Voronoi(create(wasm.voronoi, triangulator, this.#coords.pointer, this.pointCount,
       this.handle));
   }
 
@@ -396,7 +396,7 @@ export class Triangulation extends Mesh {
   clippedVoronoi(bounds) {
     const [xmin, ymin, xmax, ymax] = bounds;
     const corners = bounds.length === 4 ? [xmin, ymin, xmax, ymin, xmax, ymax, xmin, ymax] : bounds;
-    return call((given) => new ClippedVoronoi(create(wasm.flaunay_voronoi_clip, triangulator, this.#coords.pointer,
+    return call((given) => new ClippedVoronoi(create(wasm.clipped_voronoi, triangulator, this.#coords.pointer,
       this.pointCount, this.handle, given.array('float64', corners), corners.length >> 1)));
   }
 
@@ -405,7 +405,7 @@ export class Triangulation extends Mesh {
     void this.handle;
     return call((given) => {
       const passed = pointsOf(given, queries, offsets);
-      this.#locator ??= new Handle(create(wasm.flaunay_locator_create, triangulator,
+      this.#locator ??= new Handle(create(wasm.locator, triangulator,
         ...pointsOf(given, this.coords, this.#offsets), this.handle), 'flaunay_locator_destroy');
       const count = passed[1] * columns;
       const results = given.room(Math.max(count << SHIFTS[type], 1));
@@ -567,8 +567,8 @@ export class ConstrainedTriangulation extends Mesh {
     const handle = typeof coords === 'number' ? coords : call((passed) => create(
       wasm.flaunay_triangulate_constrained, triangulator, ...pointsOf(passed, coords, given.offsets),
       constraintsOf(passed, given), optionsOf(passed, partsOf(given))));
-    super(new Handle(handle, 'flaunay_constrained_destroy'), wasm.flaunay_constrained_mesh(handle));
-    this.#arrays = membersAt(wasm.flaunay_constrained_get_arrays(handle), c.ConstrainedArrays);
+    super(new Handle(handle, 'flaunay_triangulation_destroy'), wasm.flaunay_triangulation_mesh(handle));
+    this.#arrays = membersAt(wasm.flaunay_triangulation_constraints(handle), c.ConstrainedArrays);
   }
 }
 

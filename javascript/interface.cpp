@@ -31,6 +31,30 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const double* coo
   });
 }
 
+// The functions of these names for the plane alone, for the same reason.
+flaunay_status voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
+                       const flaunay_triangulation* mesh, flaunay_voronoi** result) {
+  return flaunay::c::create(result, [&] {
+    return std::make_unique<flaunay_voronoi>(triangulator->cpp.voronoi(coordinates, n, mesh->plain()));
+  });
+}
+flaunay_status clipped_voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
+                               const flaunay_triangulation* mesh, const double* corners,
+                               std::size_t corner_count, flaunay_clipped_voronoi** result) {
+  return flaunay::c::create(result, [&] {
+    return std::make_unique<flaunay_clipped_voronoi>(flaunay_clipped_voronoi{
+        triangulator->cpp.clipped_voronoi(coordinates, n, mesh->plain(), corners, corner_count)});
+  });
+}
+flaunay_status locator(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
+                       const std::size_t* offsets, std::size_t sets, const flaunay_triangulation* mesh,
+                       flaunay_locator** result) {
+  return flaunay::c::create(result, [&] {
+    return std::make_unique<flaunay_locator>(flaunay_locator{flaunay::Locator(
+        triangulator->cpp, coordinates, flaunay::c::to_offsets(offsets, sets, n), mesh->plain())});
+  });
+}
+
 // Makes triangles and the hull clockwise, each with the same first vertex as before. Delaunator calls that
 // counter-clockwise, because y goes down on its screens. The hull of points on one line keeps its order.
 void turn_clockwise(std::int32_t* triangles, std::int32_t* halfedges, std::size_t t, std::int32_t* hull,
@@ -54,6 +78,6 @@ flaunay_status interpolate(flaunay_locator* locator, const double* values, const
   options.columns = columns;
   options.has_fill = 1;
   options.fill = fill;
-  return flaunay_locator_interpolate_with(locator, values, queries, m, offsets, sets, &options, results);
+  return flaunay_locator_interpolate(locator, values, queries, m, offsets, sets, &options, results);
 }
 }

@@ -68,7 +68,7 @@ static cl_mem buffers[32];
 static void* blocks[32];
 static size_t buffer_count, block_count;
 static flaunay_triangulation* meshes[16];
-static flaunay_constrained* constrained_meshes[16];
+static flaunay_triangulation* constrained_meshes[16];
 static flaunay_device_triangulation* device_meshes[16];
 static size_t mesh_count, constrained_count, device_mesh_count;
 
@@ -81,7 +81,7 @@ static void* allocate(size_t bytes) {
 
 static void release_all(void) {
   while (mesh_count > 0) flaunay_triangulation_destroy(meshes[--mesh_count]);
-  while (constrained_count > 0) flaunay_constrained_destroy(constrained_meshes[--constrained_count]);
+  while (constrained_count > 0) flaunay_triangulation_destroy(constrained_meshes[--constrained_count]);
   while (device_mesh_count > 0) flaunay_device_triangulation_destroy(device_meshes[--device_mesh_count]);
   while (buffer_count > 0) clReleaseMemObject(buffers[--buffer_count]);
   while (block_count > 0) free(blocks[--block_count]);
@@ -209,17 +209,17 @@ static void test_devices_that_are_none(void) {
 
 static void test_square(void) {
   flaunay_triangulation* mesh = on_host(kSquare, 4, NULL, 0, 0);
-  CHECK(flaunay_triangulation_point_count(mesh) == 4);
-  CHECK(flaunay_triangulation_set_count(mesh) == 1);
-  CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
-  CHECK(flaunay_triangulation_hull_count(mesh) == 4);
-  CHECK(same(flaunay_triangulation_hull(mesh), (const int32_t[]){0, 1, 2, 3}, 4));
-  CHECK(same(flaunay_triangulation_representatives(mesh), (const int32_t[]){0, 1, 2, 3}, 4));
-  CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2}, 2));
-  CHECK(same_sizes(flaunay_triangulation_hull_offsets(mesh), (const size_t[]){0, 4}, 2));
-  CHECK(flaunay_triangulation_neighbors(mesh) != NULL);
-  CHECK(flaunay_triangulation_halfedges(mesh) == NULL);
-  const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+  CHECK(flaunay_triangulation_mesh(mesh)->point_count == 4);
+  CHECK(flaunay_triangulation_mesh(mesh)->set_count == 1);
+  CHECK(flaunay_triangulation_mesh(mesh)->triangle_count == 2);
+  CHECK(flaunay_triangulation_mesh(mesh)->hull_count == 4);
+  CHECK(same(flaunay_triangulation_mesh(mesh)->hull, (const int32_t[]){0, 1, 2, 3}, 4));
+  CHECK(same(flaunay_triangulation_mesh(mesh)->representatives, (const int32_t[]){0, 1, 2, 3}, 4));
+  CHECK(same_sizes(flaunay_triangulation_mesh(mesh)->triangle_offsets, (const size_t[]){0, 2}, 2));
+  CHECK(same_sizes(flaunay_triangulation_mesh(mesh)->hull_offsets, (const size_t[]){0, 4}, 2));
+  CHECK(flaunay_triangulation_mesh(mesh)->neighbors != NULL);
+  CHECK(flaunay_triangulation_mesh(mesh)->halfedges == NULL);
+  const flaunay_statistics* statistics = flaunay_triangulation_mesh(mesh)->statistics;
   CHECK(statistics->points == 4 && statistics->triangles == 2 && statistics->hull_vertices == 4);
   CHECK(statistics->kernel_launches > 0 && statistics->host_waits > 0 && statistics->seconds > 0);
   CHECK(statistics->phase_count > 0 && statistics->phases[0].name[0] != '\0');
@@ -231,10 +231,12 @@ static void test_float(void) {
   for (size_t k = 0; k < 2 * kPoints; ++k) narrow[k] = (float)points[k];
   flaunay_triangulation *wide = on_host(points, kPoints, NULL, 0, 0), *result = NULL;
   OK(flaunay_triangulate_float(triangulator, narrow, kPoints, NULL, 0, NULL, &result));
-  const size_t triangles = flaunay_triangulation_triangle_count(wide);
-  CHECK(flaunay_triangulation_triangle_count(result) == triangles);
-  CHECK(same(flaunay_triangulation_triangles(result), flaunay_triangulation_triangles(wide), 3 * triangles));
-  CHECK(same(flaunay_triangulation_neighbors(result), flaunay_triangulation_neighbors(wide), 3 * triangles));
+  const size_t triangles = flaunay_triangulation_mesh(wide)->triangle_count;
+  CHECK(flaunay_triangulation_mesh(result)->triangle_count == triangles);
+  CHECK(same(flaunay_triangulation_mesh(result)->triangles, flaunay_triangulation_mesh(wide)->triangles,
+             3 * triangles));
+  CHECK(same(flaunay_triangulation_mesh(result)->neighbors, flaunay_triangulation_mesh(wide)->neighbors,
+             3 * triangles));
   flaunay_triangulation_destroy(result);
 }
 
@@ -244,14 +246,14 @@ static const size_t kSetOffsets[] = {0, 4, 4, 7, 10};
 
 static void test_batches(void) {
   flaunay_triangulation* mesh = on_host(kSets, 10, kSetOffsets, 4, 0);
-  CHECK(flaunay_triangulation_set_count(mesh) == 4);
-  CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2, 2, 2, 3}, 5));
-  CHECK(same_sizes(flaunay_triangulation_hull_offsets(mesh), (const size_t[]){0, 4, 4, 6, 9}, 5));
-  CHECK(same(flaunay_triangulation_hull(mesh), (const int32_t[]){0, 1, 2, 3, 5, 4, 7, 8, 9}, 9));
-  CHECK(
-      same(flaunay_triangulation_representatives(mesh), (const int32_t[]){0, 1, 2, 3, 4, 5, 4, 7, 8, 9}, 10));
-  CHECK(same(flaunay_triangulation_triangles(mesh) + 6, (const int32_t[]){7, 8, 9}, 3));
-  CHECK(flaunay_triangulation_statistics(mesh)->duplicates == 1);
+  CHECK(flaunay_triangulation_mesh(mesh)->set_count == 4);
+  CHECK(same_sizes(flaunay_triangulation_mesh(mesh)->triangle_offsets, (const size_t[]){0, 2, 2, 2, 3}, 5));
+  CHECK(same_sizes(flaunay_triangulation_mesh(mesh)->hull_offsets, (const size_t[]){0, 4, 4, 6, 9}, 5));
+  CHECK(same(flaunay_triangulation_mesh(mesh)->hull, (const int32_t[]){0, 1, 2, 3, 5, 4, 7, 8, 9}, 9));
+  CHECK(same(flaunay_triangulation_mesh(mesh)->representatives,
+             (const int32_t[]){0, 1, 2, 3, 4, 5, 4, 7, 8, 9}, 10));
+  CHECK(same(flaunay_triangulation_mesh(mesh)->triangles + 6, (const int32_t[]){7, 8, 9}, 3));
+  CHECK(flaunay_triangulation_mesh(mesh)->statistics->duplicates == 1);
 }
 
 static void test_modes(void) {
@@ -259,8 +261,9 @@ static void test_modes(void) {
     flaunay_options options = {.mode = mode, .cut = FLAUNAY_CUT_ALTERNATE};
     flaunay_triangulation* mesh = NULL;
     OK(flaunay_triangulate(triangulator, kSets, 10, kSetOffsets, 4, &options, &mesh));
-    CHECK(same_sizes(flaunay_triangulation_triangle_offsets(mesh), (const size_t[]){0, 2, 2, 2, 3}, 5));
-    CHECK(flaunay_triangulation_point_count(mesh) == 10 && flaunay_triangulation_set_count(mesh) == 4);
+    CHECK(same_sizes(flaunay_triangulation_mesh(mesh)->triangle_offsets, (const size_t[]){0, 2, 2, 2, 3}, 5));
+    CHECK(flaunay_triangulation_mesh(mesh)->point_count == 10 &&
+          flaunay_triangulation_mesh(mesh)->set_count == 4);
     flaunay_triangulation_destroy(mesh);
   }
 }
@@ -288,16 +291,16 @@ static void test_mesh_in_one_struct(void) {
   const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   REQUIRE(mesh != NULL);
   CHECK(mesh->point_count == 10 && mesh->set_count == 4 && mesh->triangle_count == 3);
-  CHECK(mesh->hull_count == flaunay_triangulation_hull_count(result));
-  CHECK(mesh->triangles == flaunay_triangulation_triangles(result) && mesh->triangles != NULL);
-  CHECK(mesh->neighbors == flaunay_triangulation_neighbors(result) && mesh->neighbors != NULL);
-  CHECK(mesh->halfedges == flaunay_triangulation_halfedges(result) && mesh->halfedges != NULL);
-  CHECK(mesh->areas == flaunay_triangulation_areas(result) && mesh->areas[0] + mesh->areas[1] == 14);
-  CHECK(mesh->hull == flaunay_triangulation_hull(result) && mesh->hull != NULL);
-  CHECK(mesh->representatives == flaunay_triangulation_representatives(result));
-  CHECK(mesh->triangle_offsets == flaunay_triangulation_triangle_offsets(result));
-  CHECK(mesh->hull_offsets == flaunay_triangulation_hull_offsets(result));
-  CHECK(mesh->statistics == flaunay_triangulation_statistics(result) && mesh->statistics->points == 10);
+  CHECK(mesh->hull_count == flaunay_triangulation_mesh(result)->hull_count);
+  CHECK(mesh->triangles == flaunay_triangulation_mesh(result)->triangles && mesh->triangles != NULL);
+  CHECK(mesh->neighbors == flaunay_triangulation_mesh(result)->neighbors && mesh->neighbors != NULL);
+  CHECK(mesh->halfedges == flaunay_triangulation_mesh(result)->halfedges && mesh->halfedges != NULL);
+  CHECK(mesh->areas == flaunay_triangulation_mesh(result)->areas && mesh->areas[0] + mesh->areas[1] == 14);
+  CHECK(mesh->hull == flaunay_triangulation_mesh(result)->hull && mesh->hull != NULL);
+  CHECK(mesh->representatives == flaunay_triangulation_mesh(result)->representatives);
+  CHECK(mesh->triangle_offsets == flaunay_triangulation_mesh(result)->triangle_offsets);
+  CHECK(mesh->hull_offsets == flaunay_triangulation_mesh(result)->hull_offsets);
+  CHECK(mesh->statistics == flaunay_triangulation_mesh(result)->statistics && mesh->statistics->points == 10);
 }
 
 // Triangulations that were kept as arrays.
@@ -308,8 +311,15 @@ typedef struct {
 } kept_mesh;
 
 static flaunay_status create_from(kept_mesh kept, flaunay_triangulation** result) {
-  return flaunay_triangulation_create(kept.n, kept.triangles, kept.t, kept.neighbors, kept.hull, kept.h,
-                                      kept.representatives, result);
+  const flaunay_mesh mesh = {.point_count = kept.n,
+                             .set_count = 1,
+                             .triangle_count = kept.t,
+                             .hull_count = kept.h,
+                             .triangles = kept.triangles,
+                             .neighbors = kept.neighbors,
+                             .hull = kept.hull,
+                             .representatives = kept.representatives};
+  return flaunay_triangulation_create(&mesh, NULL, result);
 }
 
 static void test_kept_triangulations(void) {
@@ -336,7 +346,8 @@ static void test_kept_triangulations(void) {
 
   const kept_mesh none = {0};
   OK(create_from(none, &result));
-  CHECK(flaunay_triangulation_point_count(result) == 0 && flaunay_triangulation_set_count(result) == 1);
+  CHECK(flaunay_triangulation_mesh(result)->point_count == 0 &&
+        flaunay_triangulation_mesh(result)->set_count == 1);
   flaunay_triangulation_destroy(result);
 }
 
@@ -366,7 +377,7 @@ static void test_bad_kept_triangulations(void) {
   changed = good, changed.t = SIZE_MAX / 3 + 1;
   WRONG_INPUT(create_from(changed, &result), "triangles are too many");
   changed = good, changed.hull = NULL;
-  REFUSED(create_from(changed, &result), "3 hull vertices, but the pointer to them is NULL");
+  REFUSED(create_from(changed, &result), "3 values of hull, but the pointer to them is NULL");
   REFUSED(create_from(good, NULL), "handle");
   CHECK(flaunay_last_error_status() == usage);
 }
@@ -441,7 +452,7 @@ static void test_on_host(void) {
   flaunay_options options = {.mode = FLAUNAY_MODE_DWYER};
   flaunay_triangulation* mesh = NULL;
   OK(flaunay_triangulate_on_host(kSquare, 4, NULL, 0, &options, &mesh));
-  CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
+  CHECK(flaunay_triangulation_mesh(mesh)->triangle_count == 2);
   flaunay_triangulation_destroy(mesh);
   REFUSED(flaunay_triangulate_on_host(NULL, 4, NULL, 0, &options, &mesh), "4 points");
   REFUSED(flaunay_triangulate_on_host(kSquare, 4, NULL, 0, NULL, &mesh), "modes");
@@ -458,7 +469,7 @@ static void test_progress_and_profile(void) {
   flaunay_triangulation* mesh = NULL;
   OK(flaunay_triangulate(triangulator, points, kPoints, NULL, 0, &options, &mesh));
   CHECK(calls > 0);
-  const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+  const flaunay_statistics* statistics = flaunay_triangulation_mesh(mesh)->statistics;
   REQUIRE(statistics->kernel_count > 0);
   CHECK(statistics->kernels[0].name[0] != '\0' && statistics->kernels[0].launches > 0);
   CHECK(statistics->kernels[0].seconds >= statistics->kernels[statistics->kernel_count - 1].seconds);
@@ -521,20 +532,20 @@ static int has_bytes(cl_mem memory, const void* expected, size_t bytes) {
 
 // The result of a call that is complete on the test's queue, with all parts.
 static void check_same(const flaunay_device_triangulation* mesh, flaunay_triangulation* expected) {
-  const size_t n = flaunay_triangulation_point_count(expected);
-  const size_t sets = flaunay_triangulation_set_count(expected);
-  const size_t triangles = flaunay_triangulation_triangle_count(expected);
-  const size_t hull = flaunay_triangulation_hull_count(expected);
+  const size_t n = flaunay_triangulation_mesh(expected)->point_count;
+  const size_t sets = flaunay_triangulation_mesh(expected)->set_count;
+  const size_t triangles = flaunay_triangulation_mesh(expected)->triangle_count;
+  const size_t hull = flaunay_triangulation_mesh(expected)->hull_count;
   CHECK(flaunay_device_triangulation_parts(mesh) == kAllParts);
-  CHECK(flaunay_device_triangulation_point_count(mesh) == n);
-  CHECK(flaunay_device_triangulation_set_count(mesh) == sets);
-  CHECK(flaunay_device_triangulation_hull_count(mesh) == hull);
-  REQUIRE(flaunay_device_triangulation_triangle_count(mesh) == triangles);
-  CHECK(flaunay_device_triangulation_point_offsets(mesh)[sets] == n);
-  CHECK(same_sizes(flaunay_device_triangulation_triangle_offsets(mesh),
-                   flaunay_triangulation_triangle_offsets(expected), sets + 1));
-  CHECK(same_sizes(flaunay_device_triangulation_hull_offsets(mesh),
-                   flaunay_triangulation_hull_offsets(expected), sets + 1));
+  CHECK(flaunay_device_triangulation_mesh(mesh)->point_count == n);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->set_count == sets);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->hull_count == hull);
+  REQUIRE(flaunay_device_triangulation_mesh(mesh)->triangle_count == triangles);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->point_offsets[sets] == n);
+  CHECK(same_sizes(flaunay_device_triangulation_mesh(mesh)->triangle_offsets,
+                   flaunay_triangulation_mesh(expected)->triangle_offsets, sets + 1));
+  CHECK(same_sizes(flaunay_device_triangulation_mesh(mesh)->hull_offsets,
+                   flaunay_triangulation_mesh(expected)->hull_offsets, sets + 1));
   const flaunay_mesh* arrays = flaunay_triangulation_mesh(expected);
   const struct {
     flaunay_part part;
@@ -557,9 +568,9 @@ static flaunay_device_triangulation* make_device_triangulation(void) {
   flaunay_device_triangulation* result = NULL;
   OK(flaunay_device_triangulation_create(&result));
   CHECK(flaunay_device_triangulation_parts(result) == 0);
-  CHECK(flaunay_device_triangulation_set_count(result) == 0);
-  CHECK(flaunay_device_triangulation_triangle_count(result) == 0);
-  CHECK(strcmp(flaunay_device_triangulation_statistics(result)->device, "") == 0);
+  CHECK(flaunay_device_triangulation_mesh(result)->set_count == 0);
+  CHECK(flaunay_device_triangulation_mesh(result)->triangle_count == 0);
+  CHECK(strcmp(flaunay_device_triangulation_mesh(result)->statistics->device, "") == 0);
   return device_meshes[device_mesh_count++] = result;
 }
 
@@ -589,7 +600,7 @@ static void test_device_to_device(void) {
   CHECK(clWaitForEvents(1, &done) == CL_SUCCESS);
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, kAllParts);
   check_same(mesh, expected);
-  const flaunay_statistics* statistics = flaunay_device_triangulation_statistics(mesh);
+  const flaunay_statistics* statistics = flaunay_device_triangulation_mesh(mesh)->statistics;
   CHECK(statistics->points == kPoints && statistics->host_waits > 0 && statistics->host_waits < 20);
   CHECK(statistics->bytes_to_host < 4096 && statistics->bytes_to_device < 4096);
   clReleaseEvent(uploaded);
@@ -612,7 +623,7 @@ static void test_own_buffers(void) {
     OK(flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh));
     CHECK(clFinish(queue) == CL_SUCCESS);
   }
-  CHECK(flaunay_device_triangulation_statistics(mesh)->device_allocations == 0);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->statistics->device_allocations == 0);
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, kAllParts);
   check_same(mesh, expected);
 }
@@ -646,7 +657,7 @@ static void test_device_profile(void) {
   flaunay_enqueue enqueue = {.queue = timed, .profile = 1};
   flaunay_device_triangulation* mesh = make_device_triangulation();
   OK(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, mesh));
-  CHECK(flaunay_device_triangulation_statistics(mesh)->kernel_count > 0);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->statistics->kernel_count > 0);
   enqueue.queue = queue;
   REFUSED(flaunay_triangulate_device(triangulator, &input, 0, &enqueue, mesh), "CL_QUEUE_PROFILING_ENABLE");
   clReleaseCommandQueue(timed);
@@ -748,7 +759,7 @@ static void test_bad_device_points(void) {
       {{.memory = memory, .count = 5}, "it has 64 bytes, 80 are needed"},
       {{.count = 4}, "no buffer of points"},
       {{.memory = memory, .count = 4, .precision = 17}, "17"},
-      {{.memory = memory, .count = 4, .reserved = {[3] = 1}}, "flaunay_device_points"},
+      {{.memory = memory, .count = 4, .reserved = {[2] = 1}}, "flaunay_device_points"},
       {{.memory = memory, .count = 4, .offsets = offsets, .device_offsets = memory, .sets = 2}, "twice"}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
     REFUSED(triangulate_square(bad[k].input, 0, NULL), bad[k].text);
@@ -800,7 +811,7 @@ static const double kValues[] = {0, 4, 7, 4};  // x + y
 // As of points 0 to 3 of the square.
 static void check_answers(const flaunay_triangulation* mesh, const int32_t* triangles, const int32_t* nearest,
                           const double* values) {
-  const int32_t* all = flaunay_triangulation_triangles(mesh);
+  const int32_t* all = flaunay_triangulation_mesh(mesh)->triangles;
   for (int k = 0; k < 2; ++k) {
     const int32_t t = triangles[k];
     if (!CHECK(t == 0 || t == 1)) return;
@@ -825,7 +836,7 @@ static void test_voronoi(void) {
     for (int32_t k = offsets[i]; k < offsets[i + 1]; ++k) {
       const int32_t t = flaunay_voronoi_cells(dual)[k];
       const double* centre = flaunay_voronoi_circumcentres(dual) + 2 * (size_t)t;
-      const int32_t other = flaunay_triangulation_triangles(mesh)[3 * t];
+      const int32_t other = flaunay_triangulation_mesh(mesh)->triangles[3 * t];
       CHECK(fabs(hypot(kSquare[2 * i] - centre[0], kSquare[2 * i + 1] - centre[1]) -
                  hypot(kSquare[2 * other] - centre[0], kSquare[2 * other + 1] - centre[1])) < 1e-12);
     }
@@ -848,18 +859,18 @@ static const double kTwoSquares[] = {0, 0, 2, 0, 2, 2, 0, 2, 5, 0, 7, 0, 7, 2, 5
 static const size_t kTwoSets[] = {0, 4, 8};
 static const int32_t kDiagonals[] = {1, 3, 4, 6, 6, 4, 5, 5};
 
-static flaunay_constrained* constrain_two_squares(const flaunay_constraints* constraints,
-                                                  const flaunay_options* options) {
+static flaunay_triangulation* constrain_two_squares(const flaunay_constraints* constraints,
+                                                    const flaunay_options* options) {
   REQUIRE(constrained_count < sizeof constrained_meshes / sizeof *constrained_meshes);
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   OK(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, constraints, options,
                                      &result));
   return constrained_meshes[constrained_count++] = result;
 }
 
-static flaunay_constrained* polygons_of(const flaunay_polygons* polygons) {
+static flaunay_triangulation* polygons_of(const flaunay_polygons* polygons) {
   REQUIRE(constrained_count < sizeof constrained_meshes / sizeof *constrained_meshes);
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   OK(flaunay_triangulate_polygons(triangulator, polygons, NULL, &result));
   return constrained_meshes[constrained_count++] = result;
 }
@@ -867,12 +878,12 @@ static flaunay_constrained* polygons_of(const flaunay_polygons* polygons) {
 static void test_constrained(void) {
   const flaunay_constraints diagonals = {.segments = kDiagonals, .segment_count = 4};
   const flaunay_options options = {.parts = FLAUNAY_PART_HALFEDGES | FLAUNAY_PART_NEIGHBORS};
-  flaunay_constrained* result = constrain_two_squares(&diagonals, &options);
-  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  flaunay_triangulation* result = constrain_two_squares(&diagonals, &options);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   CHECK(mesh->point_count == 8 && mesh->set_count == 2 && mesh->triangle_count == 4);
   CHECK(mesh->hull_count == 8 && mesh->statistics->points == 8);
   CHECK(mesh->triangle_offsets[1] == 2 && mesh->hull_offsets[1] == 4);
-  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  const flaunay_constrained_arrays* arrays = flaunay_triangulation_constraints(result);
   CHECK(arrays->added_count == 0 && arrays->added_points == NULL && arrays->added_offsets[2] == 0);
   CHECK(arrays->constraint_count == 2 && arrays->segment_count == 4 && arrays->piece_count == 4);
   const int32_t edges[] = {3, 1, 4, 6}, segments[] = {0, 1}, offsets[] = {0, 1, 2, 3, 4};
@@ -888,10 +899,10 @@ static void test_constrained(void) {
   }
   // Without constraints.
   result = constrain_two_squares(NULL, NULL);
-  mesh = flaunay_constrained_mesh(result);
+  mesh = flaunay_triangulation_mesh(result);
   CHECK(mesh->triangle_count == 4 && mesh->halfedges == NULL);
-  CHECK(flaunay_constrained_get_arrays(result)->constraint_edges == NULL);
-  CHECK(flaunay_constrained_get_arrays(result)->piece_offsets[0] == 0);
+  CHECK(flaunay_triangulation_constraints(result)->constraint_edges == NULL);
+  CHECK(flaunay_triangulation_constraints(result)->piece_offsets[0] == 0);
 }
 
 static void test_carried(void) {
@@ -906,9 +917,9 @@ static void test_carried(void) {
                                            .seed_attributes = attributes,
                                            .seed_count = 3,
                                            .seed_offsets = seed_offsets};
-  flaunay_constrained* result = constrain_two_squares(&constraints, NULL);
-  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
-  const int32_t* triangles = flaunay_constrained_mesh(result)->triangles;
+  flaunay_triangulation* result = constrain_two_squares(&constraints, NULL);
+  const flaunay_constrained_arrays* arrays = flaunay_triangulation_constraints(result);
+  const int32_t* triangles = flaunay_triangulation_mesh(result)->triangles;
   CHECK(same(arrays->edge_markers, segment_markers, 2) && same(arrays->vertex_markers, point_markers, 8));
   for (size_t t = 0; t < 4; ++t) {
     // Triangles of the first square with its point 0, and of the second with the point at the upper left.
@@ -946,10 +957,10 @@ static void test_refined(void) {
       .min_angle = 25, .max_area = 0.05, .areas_at = areas_at, .areas_data = &calls, .smoothing_steps = 2};
   flaunay_constraints constraints = {.segments = kDiagonals, .segment_count = 4, .refinement = &refinement};
   const flaunay_options options = {.parts = FLAUNAY_PART_AREAS};
-  flaunay_constrained* result = constrain_two_squares(&constraints, &options);
-  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
-  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
-  const flaunay_refinement_report* report = flaunay_constrained_refinement(result);
+  flaunay_triangulation* result = constrain_two_squares(&constraints, &options);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
+  const flaunay_constrained_arrays* arrays = flaunay_triangulation_constraints(result);
+  const flaunay_refinement_report* report = flaunay_triangulation_refinement(result);
   CHECK(arrays->added_count > 0 && report->added_points == arrays->added_count && report->rounds > 0);
   CHECK(mesh->point_count == 8 + arrays->added_count && mesh->set_count == 2 && calls > 0);
   CHECK(report->split_points > 0 && report->smallest_angle >= 25 - 1e-9 &&
@@ -963,21 +974,21 @@ static void test_refined(void) {
   refinement.has_most_points = 1;
   refinement.most_points = 3;
   result = constrain_two_squares(&constraints, &options);
-  report = flaunay_constrained_refinement(result);
+  report = flaunay_triangulation_refinement(result);
   CHECK(report->added_points <= 6 && report->bad_count > 0);
   for (size_t k = 0; k < report->bad_count; ++k) {
     CHECK(report->excuses[k] == FLAUNAY_EXCUSE_MOST_POINTS || report->excuses[k] == FLAUNAY_EXCUSE_KEPT);
   }
-  CHECK(flaunay_constrained_get_arrays(result)->piece_edges[1] == 1);
+  CHECK(flaunay_triangulation_constraints(result)->piece_edges[1] == 1);
 
   // No rounds are none.
   refinement = (flaunay_refinement){.max_area = 0.05, .has_most_rounds = 1};
-  report = flaunay_constrained_refinement(constrain_two_squares(&constraints, NULL));
+  report = flaunay_triangulation_refinement(constrain_two_squares(&constraints, NULL));
   CHECK(report->added_points == 0 && report->excuses[0] == FLAUNAY_EXCUSE_MOST_ROUNDS);
   flaunay_polygons polygons = kPolygons;
   polygons.refinement = &refinement;
   refinement = (flaunay_refinement){.min_angle = 20, .kept = FLAUNAY_KEPT_EDGES_NONE};
-  CHECK(flaunay_constrained_refinement(polygons_of(&polygons))->smallest_angle >= 20 - 1e-9);
+  CHECK(flaunay_triangulation_refinement(polygons_of(&polygons))->smallest_angle >= 20 - 1e-9);
 
   // A mesh that is refined further, and is Delaunay.
   const int32_t triangles[] = {0, 1, 2, 0, 3, 2};
@@ -987,8 +998,8 @@ static void test_refined(void) {
   refinement = (flaunay_refinement){.mesh = &given, .conforming = 1};
   constraints = (flaunay_constraints){.refinement = &refinement};
   result = constrain_two_squares(&constraints, &options);
-  mesh = flaunay_constrained_mesh(result);
-  arrays = flaunay_constrained_get_arrays(result);
+  mesh = flaunay_triangulation_mesh(result);
+  arrays = flaunay_triangulation_constraints(result);
   CHECK(mesh->triangle_offsets[1] == mesh->triangle_count && arrays->segment_count == 5);
   size_t small = 0;
   for (size_t t = 0; t < mesh->triangle_count; ++t) {
@@ -1022,11 +1033,11 @@ static void test_refined(void) {
 }
 
 static flaunay_status constrain_square(flaunay_constraints constraints, const flaunay_options* options) {
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   const flaunay_status status =
       flaunay_triangulate_constrained(triangulator, kSquare, 4, NULL, 0, &constraints, options, &result);
   CHECK((status == FLAUNAY_SUCCESS) == (result != NULL));
-  flaunay_constrained_destroy(result);
+  flaunay_triangulation_destroy(result);
   return status;
 }
 
@@ -1057,25 +1068,25 @@ static void test_bad_constraints(void) {
                                "_fill_rule",
                                "flaunay_constraints"};
   for (int k = 0; k < 8; ++k) REFUSED(constrain_square(bad[k], NULL), texts[k]);
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   const flaunay_constraints between = {.segments = across, .segment_count = 1};
   CHECK(flaunay_triangulate_constrained(triangulator, kTwoSquares, 8, kTwoSets, 2, &between, NULL, &result) ==
         usage);
 }
 
 static void test_polygons(void) {
-  flaunay_constrained* result = polygons_of(&kPolygons);
-  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  flaunay_triangulation* result = polygons_of(&kPolygons);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
   CHECK(mesh->point_count == 12 && mesh->set_count == 2 && mesh->triangle_count == 9);
   CHECK(mesh->triangle_offsets[1] == 8 && mesh->triangle_offsets[2] == 9);
-  const flaunay_constrained_arrays* arrays = flaunay_constrained_get_arrays(result);
+  const flaunay_constrained_arrays* arrays = flaunay_triangulation_constraints(result);
   CHECK(arrays->segment_count == 12 && arrays->constraint_count == 11 && arrays->polygons == NULL);
 
   flaunay_polygons input = kPolygons;
   input.map = input.labels = 1;
   result = polygons_of(&input);
-  arrays = flaunay_constrained_get_arrays(result);
-  CHECK(flaunay_constrained_mesh(result)->set_count == 1 && arrays->constraint_count == 10);
+  arrays = flaunay_triangulation_constraints(result);
+  CHECK(flaunay_triangulation_mesh(result)->set_count == 1 && arrays->constraint_count == 10);
   int of_second = 0;
   for (size_t t = 0; t < 9; ++t) of_second += arrays->polygons[t] == 1;
   CHECK(of_second == 1 && arrays->depths[0] == 1 && arrays->regions[0] == 0);
@@ -1083,11 +1094,11 @@ static void test_polygons(void) {
   // Rings alone: the hole is a polygon of its own. What is outside and in holes may be kept.
   input = kPolygons;
   input.polygon_offsets = NULL;
-  mesh = flaunay_constrained_mesh(polygons_of(&input));
+  mesh = flaunay_triangulation_mesh(polygons_of(&input));
   CHECK(mesh->set_count == 3 && mesh->triangle_count == 5);
   input = kPolygons;
   input.has_outside = input.has_fill_rule = 1;
-  CHECK(flaunay_constrained_mesh(polygons_of(&input))->triangle_count == 11);
+  CHECK(flaunay_triangulation_mesh(polygons_of(&input))->triangle_count == 11);
 
   // Borders and holes of any direction, if the parts are known: winding alone would fill this hole, and leave
   // out what is in both parts.
@@ -1104,21 +1115,21 @@ static void test_polygons(void) {
                              .part_offsets = kPartOffsets,
                              .part_count = 2};
   result = polygons_of(&input);
-  mesh = flaunay_constrained_mesh(result);
+  mesh = flaunay_triangulation_mesh(result);
   double area = 0;
   for (size_t t = 0; t < mesh->triangle_count; ++t) {
     double measured = 0;
     OK(flaunay_triangle_areas(kParts, 12, mesh->triangles + 3 * t, 1, &measured));
     area += measured;
-    CHECK(flaunay_constrained_get_arrays(result)->depths[t] == 1);
+    CHECK(flaunay_triangulation_constraints(result)->depths[t] == 1);
   }
   CHECK(area == 36 - 4);
 }
 
 static flaunay_status polygons_with(flaunay_polygons input) {
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   const flaunay_status status = flaunay_triangulate_polygons(triangulator, &input, NULL, &result);
-  flaunay_constrained_destroy(result);
+  flaunay_triangulation_destroy(result);
   return status;
 }
 
@@ -1154,7 +1165,7 @@ static void test_clipped_voronoi(void) {
   const double box[] = {0, 0, 3, 0, 3, 3, 0, 3}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
   flaunay_clipped_voronoi* cells = NULL;
   flaunay_triangulation* mesh = on_host(kSquare, 4, NULL, 0, 0);
-  OK(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, box, 4, &cells));
+  OK(flaunay_voronoi_clip(triangulator, kSquare, NULL, 4, mesh, box, 4, &cells));
   CHECK(flaunay_clipped_voronoi_point_count(cells) == 4);
   const int32_t* offsets = flaunay_clipped_voronoi_offsets(cells);
   CHECK(offsets[0] == 0 && (size_t)offsets[4] == flaunay_clipped_voronoi_vertex_count(cells));
@@ -1166,9 +1177,9 @@ static void test_clipped_voronoi(void) {
   const double* vertices = flaunay_clipped_voronoi_vertices(cells);
   for (int32_t v = 0; v < 2 * offsets[4]; ++v) CHECK(vertices[v] >= 0 && vertices[v] <= 3);
   flaunay_clipped_voronoi_destroy(cells);
-  WRONG_INPUT(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, bow, 4, &cells), "corner 1");
+  WRONG_INPUT(flaunay_voronoi_clip(triangulator, kSquare, NULL, 4, mesh, bow, 4, &cells), "corner 1");
   CHECK(cells == NULL);
-  REFUSED(flaunay_voronoi_clip(triangulator, kSquare, 3, mesh, box, 4, &cells), "points");
+  REFUSED(flaunay_voronoi_clip(triangulator, kSquare, NULL, 3, mesh, box, 4, &cells), "points");
 }
 
 static void check_same_cells(const flaunay_device_clipped_voronoi* cells,
@@ -1195,7 +1206,7 @@ static void test_clipped_voronoi_on_device(void) {
   const double box[] = {-9, -9, 9, -9, 9, 9, -9, 9}, bow[] = {0, 0, 3, 3, 3, 0, 0, 3};
   flaunay_clipped_voronoi* expected = NULL;
   flaunay_triangulation* mesh = on_host(kSquare, 4, NULL, 0, 0);
-  OK(flaunay_voronoi_clip(triangulator, kSquare, 4, mesh, box, 4, &expected));
+  OK(flaunay_voronoi_clip(triangulator, kSquare, NULL, 4, mesh, box, 4, &expected));
 
   const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
   flaunay_device_triangulation* device_mesh = make_device_triangulation();
@@ -1244,7 +1255,7 @@ static void test_constrained_on_device(void) {
   CHECK(flaunay_device_constraints_edge_count(edges) == 0);
   const flaunay_enqueue plain = {.queue = queue};
   OK(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges));
-  CHECK(flaunay_device_triangulation_triangle_count(mesh) == 2);
+  CHECK(flaunay_device_triangulation_mesh(mesh)->triangle_count == 2);
   REQUIRE(flaunay_device_constraints_edge_count(edges) == 1);
   int32_t ends[2] = {0, 0}, range[2] = {9, 9};
   read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_EDGES), sizeof ends, ends);
@@ -1307,83 +1318,118 @@ static void test_raster(void) {
   flaunay_contours_destroy(lines);
 }
 
+static flaunay_space on_torus(double period_x, double period_y) {
+  return (flaunay_space){.kind = FLAUNAY_SPACE_TORUS, .period_x = period_x, .period_y = period_y};
+}
+
+static flaunay_status triangulate_in(flaunay_space space, const double* places, size_t n,
+                                     const size_t* offsets, size_t sets, flaunay_triangulation** result) {
+  const flaunay_options options = {.parts = FLAUNAY_PART_NEIGHBORS, .space = &space};
+  return flaunay_triangulate(triangulator, places, n, offsets, sets, &options, result);
+}
+
 static void test_sphere(void) {
   const double places[] = {0, 0, 90, 0, 0, 90, 0, -90, 0, 90}, values[] = {1, 2, 3, 4, 5};
   const double queries[] = {10, 20, -100, -80}, other[] = {1, 0, 90, 0, 0, 90, 0, -90, 0, 90};
-  const int degrees = FLAUNAY_SPHERE_DEGREES;
-  flaunay_spherical *spherical = NULL, *none = NULL;
-  OK(flaunay_spherical_create(triangulator, places, 5, NULL, 0, degrees, &spherical));
-  REQUIRE(flaunay_spherical_point_count(spherical) == 5 && flaunay_spherical_triangle_count(spherical) == 4);
-  for (size_t c = 0; c < 12; ++c) {
-    CHECK(flaunay_spherical_triangles(spherical)[c] < 4 && flaunay_spherical_neighbors(spherical)[c] >= 0);
-  }
-  CHECK(flaunay_spherical_representatives(spherical)[4] == 2);
-  CHECK(flaunay_spherical_triangle_offsets(spherical)[1] == 4);
-  CHECK(flaunay_spherical_places(spherical)[0] == 1 && isinf(flaunay_spherical_places(spherical)[6]));
+  const flaunay_space space = {.kind = FLAUNAY_SPACE_SPHERE, .coordinates = FLAUNAY_SPHERE_DEGREES};
+  flaunay_triangulation *sphere = NULL, *none = NULL;
+  OK(triangulate_in(space, places, 5, NULL, 0, &sphere));
+  const flaunay_mesh* const mesh = flaunay_triangulation_mesh(sphere);
+  REQUIRE(mesh->point_count == 5 && mesh->triangle_count == 4 && mesh->hull == NULL);
+  for (size_t c = 0; c < 12; ++c) CHECK(mesh->triangles[c] < 4 && mesh->neighbors[c] >= 0);
+  CHECK(mesh->representatives[4] == 2 && mesh->triangle_offsets[1] == 4 && mesh->point_offsets[1] == 5);
+  CHECK(mesh->places[0] == 1 && isinf(mesh->places[6]) && mesh->space->kind == FLAUNAY_SPACE_SPHERE);
   double directions[15] = {0};
-  OK(flaunay_spherical_directions(spherical, directions));
+  OK(flaunay_directions(mesh->places, 5, directions));
   CHECK(directions[0] == 1 && directions[4] == 1 && directions[8] == 1 && directions[11] == -1);
-  OK(flaunay_spherical_verify(spherical, places, degrees));
-  CHECK(fails(flaunay_spherical_verify(spherical, other, degrees), FLAUNAY_ERROR_INTERNAL,
+  OK(flaunay_mesh_verify(mesh, places, NULL, &space));
+  CHECK(fails(flaunay_mesh_verify(mesh, other, NULL, &space), FLAUNAY_ERROR_INTERNAL,
               "point 0 has a wrong place"));
+  REFUSED(flaunay_mesh_verify(mesh, places, NULL, NULL), "another space");
 
-  flaunay_spherical_voronoi* voronoi = NULL;
-  OK(flaunay_spherical_voronoi_create(triangulator, spherical, &voronoi));
-  CHECK(fabs(total(flaunay_spherical_voronoi_areas(voronoi), 5) - 4 * acos(-1)) < 1e-12);
-  CHECK(flaunay_spherical_voronoi_cell_offsets(voronoi)[5] == 12);
-  CHECK(flaunay_spherical_voronoi_cells(voronoi)[0] >= 0);
-  CHECK(fabs(flaunay_spherical_voronoi_centres(voronoi)[0]) <= 1);
+  flaunay_voronoi* voronoi = NULL;
+  OK(flaunay_voronoi_compute(triangulator, NULL, 0, sphere, &voronoi));
+  CHECK(fabs(total(flaunay_voronoi_areas(voronoi), 5) - 4 * acos(-1)) < 1e-12);
+  CHECK(flaunay_voronoi_cell_offsets(voronoi)[5] == 12 && flaunay_voronoi_triangle_count(voronoi) == 4);
+  CHECK(flaunay_voronoi_cells(voronoi)[0] >= 0 && flaunay_voronoi_unbounded(voronoi) == NULL);
+  CHECK(fabs(flaunay_voronoi_circumcentres(voronoi)[0]) <= 1);
 
-  flaunay_spherical_locator* locator = NULL;
-  OK(flaunay_spherical_locator_create(triangulator, spherical, &locator));
+  // A copy serves as the original does.
+  flaunay_triangulation* copy = NULL;
+  OK(flaunay_triangulation_create(mesh, NULL, &copy));
+  flaunay_triangulation_destroy(sphere);
+  flaunay_locator* locator = NULL;
+  OK(flaunay_locator_create(triangulator, NULL, 0, NULL, 0, copy, &locator));
   int32_t found[2] = {0}, nearest[2] = {0};
   double between[2] = {0};
-  OK(flaunay_spherical_locator_locate(locator, queries, 2, degrees, found));
-  OK(flaunay_spherical_locator_nearest(locator, queries, 2, degrees, nearest));
-  OK(flaunay_spherical_locator_interpolate(locator, values, 1, places, 2, degrees, between));
+  OK(flaunay_locator_locate(locator, queries, 2, NULL, 0, found));
+  OK(flaunay_locator_nearest(locator, queries, 2, NULL, 0, nearest));
+  OK(flaunay_locator_interpolate(locator, values, places, 2, NULL, 0, NULL, between));
   CHECK(found[0] >= 0 && found[1] == -1 && nearest[0] == 0 && nearest[1] == 3);
+  CHECK(between[0] == 1 && between[1] == 2);
+  OK(flaunay_locator_set_coordinates(locator, FLAUNAY_SPHERE_DIRECTIONS));
+  OK(flaunay_locator_nearest(locator, directions, 2, NULL, 0, nearest));
+  CHECK(nearest[0] == 0 && nearest[1] == 1);
+  REFUSED(flaunay_locator_set_coordinates(locator, 2), "2 is no flaunay_sphere_coordinates");
+  flaunay_locator_destroy(locator);
+  flaunay_point_tree* tree = NULL;
+  OK(flaunay_point_tree_create_in_space(triangulator, copy, &tree));
   int32_t rows[4] = {0};
   double angles[4] = {0};
-  OK(flaunay_spherical_locator_nearest_points(locator, queries, 2, degrees, 2, INFINITY, rows, angles));
+  OK(flaunay_point_tree_nearest(tree, queries, 2, 2, INFINITY, rows, angles));
   CHECK(rows[0] == 0 && rows[2] == 3 && rows[1] != 0 && angles[0] <= angles[1]);
-  REFUSED(flaunay_spherical_locator_nearest_points(locator, queries, 2, degrees, 0, INFINITY, rows, NULL),
-          "must be 1 or more");
-  CHECK(between[0] == 1 && between[1] == 2);
-  REFUSED(flaunay_spherical_locator_nearest(locator, queries, 2, 2, nearest),
-          "2 is no flaunay_sphere_coordinates");
-  WRONG_INPUT(flaunay_spherical_create(triangulator, (const double[]){0, 99}, 1, NULL, 0, degrees, &none),
-              "latitude 99");
-  flaunay_spherical_locator_destroy(locator);
-  flaunay_spherical_voronoi_destroy(voronoi);
-  flaunay_spherical_destroy(spherical);
+  REFUSED(flaunay_point_tree_nearest(tree, queries, 2, 0, INFINITY, rows, NULL), "must be 1 or more");
+  OK(flaunay_point_tree_set_coordinates(tree, FLAUNAY_SPHERE_DIRECTIONS));
+  OK(flaunay_point_tree_nearest(tree, directions, 2, 1, INFINITY, rows, angles));
+  CHECK(rows[0] == 0 && rows[1] == 1 && angles[1] == 0);
+  flaunay_point_tree_destroy(tree);
+  WRONG_INPUT(triangulate_in(space, (const double[]){0, 99}, 1, NULL, 0, &none), "latitude 99");
+  flaunay_voronoi_destroy(voronoi);
+  flaunay_triangulation_destroy(copy);
 }
 
 static void test_weighted(void) {
   const double places[] = {0, 0, 4, 0, 4, 4, 0, 4, 1, 2, 1, 2}, weights[] = {0, 0, 0, 0, -8, 3};
   const double corners[] = {0, 0, 4, 0, 4, 4, 0, 4};
-  flaunay_weighted *weighted = NULL, *none = NULL;
-  OK(flaunay_weighted_create(triangulator, places, weights, 6, NULL, 0, &weighted));
-  CHECK(flaunay_weighted_point_count(weighted) == 6 && flaunay_weighted_triangle_count(weighted) == 4);
-  CHECK(flaunay_weighted_hull_vertex_count(weighted) == 4 && flaunay_weighted_hull(weighted)[2] == 2);
-  REQUIRE(flaunay_weighted_hidden_count(weighted) == 1);
-  CHECK(flaunay_weighted_hidden(weighted)[0] == 4 && flaunay_weighted_representatives(weighted)[5] == 5);
-  CHECK(flaunay_weighted_triangles(weighted)[0] == 0 && flaunay_weighted_neighbors(weighted)[1] >= -1);
-  CHECK(flaunay_weighted_triangle_offsets(weighted)[1] == 4 &&
-        flaunay_weighted_hull_offsets(weighted)[1] == 4);
-  OK(flaunay_weighted_verify(weighted, places, weights));
+  const flaunay_space space = {.weights = weights};
+  flaunay_triangulation* weighted = NULL;
+  OK(triangulate_in(space, places, 6, NULL, 0, &weighted));
+  const flaunay_mesh* const mesh = flaunay_triangulation_mesh(weighted);
+  CHECK(mesh->point_count == 6 && mesh->triangle_count == 4 && mesh->hull_count == 4 && mesh->hull[2] == 2);
+  REQUIRE(mesh->hidden_count == 1);
+  CHECK(mesh->hidden[0] == 4 && mesh->representatives[5] == 5 && mesh->space->weights == NULL);
+  CHECK(mesh->triangles[0] == 0 && mesh->neighbors[1] >= -1);
+  CHECK(mesh->triangle_offsets[1] == 4 && mesh->hull_offsets[1] == 4);
+  OK(flaunay_mesh_verify(mesh, places, NULL, &space));
   const double others[] = {0, 0, 0, 0, 8, 3};
-  CHECK(fails(flaunay_weighted_verify(weighted, places, others), FLAUNAY_ERROR_INTERNAL, "point 4"));
+  const flaunay_space heavier = {.weights = others};
+  CHECK(fails(flaunay_mesh_verify(mesh, places, NULL, &heavier), FLAUNAY_ERROR_INTERNAL, "point 4"));
   int32_t hiding = -1;
-  OK(flaunay_weighted_hiding_triangles(triangulator, weighted, places, &hiding));
+  OK(flaunay_hiding_triangles(triangulator, places, NULL, 0, weighted, &hiding));
   CHECK(hiding == 0);
   flaunay_clipped_voronoi* cells = NULL;
-  OK(flaunay_weighted_cells(triangulator, weighted, places, weights, corners, 4, &cells));
+  OK(flaunay_voronoi_clip(triangulator, places, weights, 6, weighted, corners, 4, &cells));
   const double* areas = flaunay_clipped_voronoi_areas(cells);
   CHECK(areas[4] == 0 && areas[5] > 4);
   CHECK(fabs(areas[0] + areas[1] + areas[2] + areas[3] + areas[5] - 16) < 1e-12);
   flaunay_clipped_voronoi_destroy(cells);
-  CHECK(none == NULL);
-  flaunay_weighted_destroy(weighted);
+  flaunay_triangulation_destroy(weighted);
+  // What the plane without weights alone has.
+  flaunay_triangulation* none = NULL;
+  flaunay_space torus = on_torus(8, 8);
+  torus.weights = weights;
+  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "weights");
+  const flaunay_options dwyer = {.mode = FLAUNAY_MODE_DWYER, .space = &space};
+  REFUSED(flaunay_triangulate(triangulator, places, 6, NULL, 0, &dwyer, &none), "mode");
+  const flaunay_options with_space = {.space = &space};
+  REFUSED(flaunay_triangulate_constrained(triangulator, places, 6, NULL, 0, NULL, &with_space, &none),
+          "space");
+  const float narrow[] = {0, 0, 1, 0, 0, 1};
+  REFUSED(flaunay_triangulate_float(triangulator, narrow, 3, NULL, 0, &with_space, &none), "space");
+  torus = (flaunay_space){.kind = 3};
+  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "3 is no flaunay_space_kind");
+  torus = (flaunay_space){.reserved = {1}};
+  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "flaunay_space has members");
 }
 
 static void test_periodic(void) {
@@ -1393,52 +1439,62 @@ static void test_periodic(void) {
     places[2 * i] = (double)(i % SIDE);
     places[2 * i + 1] = (double)(i / SIDE) * 2 - 40;
   }
-  flaunay_periodic *periodic = NULL, *none = NULL;
-  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, SIDE, 2 * SIDE, &periodic));
-  const size_t triangles = flaunay_periodic_triangle_count(periodic);
-  REQUIRE(flaunay_periodic_point_count(periodic) == COUNT && triangles == 2 * COUNT);
-  CHECK(flaunay_periodic_image_count(periodic) > 0);
+  const flaunay_space space = on_torus(SIDE, 2 * SIDE);
+  flaunay_triangulation *torus = NULL, *none = NULL;
+  OK(triangulate_in(space, places, COUNT, NULL, 0, &torus));
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(torus);
+  const size_t triangles = mesh->triangle_count;
+  REQUIRE(mesh->point_count == COUNT && triangles == 2 * COUNT && mesh->image_count > 0);
   for (size_t c = 0; c < 3 * triangles; ++c) {
-    CHECK(flaunay_periodic_triangles(periodic)[c] < COUNT && flaunay_periodic_neighbors(periodic)[c] >= 0);
-    CHECK(abs(flaunay_periodic_offsets(periodic)[2 * c]) <= 1);
+    CHECK(mesh->triangles[c] < COUNT && mesh->neighbors[c] >= 0);
+    CHECK(abs(mesh->corner_offsets[2 * c]) <= 1);
   }
-  CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
-  CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
-  CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
-  OK(flaunay_periodic_verify(periodic));
-  flaunay_point_tree* periodic_tree = NULL;
-  OK(flaunay_point_tree_create_periodic(triangulator, periodic, &periodic_tree));
-  flaunay_point_tree_destroy(periodic_tree);
+  CHECK(mesh->places[1] == 8 && mesh->representatives[7] == 7 && mesh->triangle_offsets[1] == triangles);
+  CHECK(mesh->space->kind == FLAUNAY_SPACE_TORUS && mesh->space->period_y == 2 * SIDE);
+  OK(flaunay_mesh_verify(mesh, places, NULL, &space));
+  const flaunay_space other = on_torus(SIDE, SIDE);
+  CHECK(fails(flaunay_mesh_verify(mesh, places, NULL, &other), FLAUNAY_ERROR_INTERNAL, "period"));
+  flaunay_point_tree* tree = NULL;
+  OK(flaunay_point_tree_create_in_space(triangulator, torus, &tree));
+  REFUSED(flaunay_point_tree_set_coordinates(tree, FLAUNAY_SPHERE_DEGREES), "coordinates");
+  flaunay_point_tree_destroy(tree);
   flaunay_clipped_voronoi* cells = NULL;
-  OK(flaunay_periodic_cells(triangulator, periodic, &cells));
+  OK(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, torus, NULL, 0, &cells));
   const double* const areas = flaunay_clipped_voronoi_areas(cells);
   CHECK(flaunay_clipped_voronoi_vertex_count(cells) == 4 * COUNT && fabs(areas[7] - 2) < 1e-12);
-  flaunay_periodic_locator* locator = NULL;
-  OK(flaunay_periodic_locator_create(triangulator, periodic, &locator));
+  flaunay_locator* locator = NULL;
+  OK(flaunay_locator_create(triangulator, NULL, 0, NULL, 0, torus, &locator));
   const double query[] = {SIDE - 0.25, -0.5};
   int32_t found[] = {-2, -2};
   double value = 0;
-  OK(flaunay_periodic_locator_locate(locator, query, 1, found));
+  OK(flaunay_locator_locate(locator, query, 1, NULL, 0, found));
   CHECK(found[0] >= 0);
-  OK(flaunay_periodic_locator_nearest(locator, query, 1, found));
-  CHECK(flaunay_periodic_places(periodic)[2 * found[0]] == 0 && found[1] == -2);
-  OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, NULL, &value));
+  OK(flaunay_locator_nearest(locator, query, 1, NULL, 0, found));
+  CHECK(mesh->places[2 * found[0]] == 0 && found[1] == -2);
+  OK(flaunay_locator_interpolate(locator, areas, query, 1, NULL, 0, NULL, &value));
   CHECK(fabs(value - 2) < 1e-12);
   flaunay_interpolation_options how = {0};
   how.method = FLAUNAY_INTERPOLATION_SIBSON;
   how.columns = 1;
-  OK(flaunay_periodic_locator_interpolate(locator, areas, query, 1, &how, &value));
+  OK(flaunay_locator_interpolate(locator, areas, query, 1, NULL, 0, &how, &value));
   CHECK(fabs(value - 2) < 1e-12);
   how.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER;
-  REFUSED(flaunay_periodic_locator_interpolate(locator, areas, query, 1, &how, &value), "gradients");
+  REFUSED(flaunay_locator_interpolate(locator, areas, query, 1, NULL, 0, &how, &value), "gradients");
+  const size_t two_sets[] = {0, 1, 1};
+  REFUSED(flaunay_locator_locate(locator, query, 1, two_sets, 2, found), "one set");
+  REFUSED(flaunay_locator_gradients(locator, areas, NULL, places), "torus");
   flaunay_clipped_voronoi_destroy(cells);
-  flaunay_periodic_locator_destroy(locator);
-  flaunay_periodic_destroy(periodic);
-  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, &periodic));
-  CHECK(flaunay_periodic_triangle_count(periodic) == 2 * COUNT - 2 * SIDE);
-  REFUSED(flaunay_periodic_cells(triangulator, periodic, &cells), "cylinder");
-  REFUSED(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), "period");
-  flaunay_periodic_destroy(periodic);
+  flaunay_locator_destroy(locator);
+  flaunay_voronoi* voronoi = NULL;
+  REFUSED(flaunay_voronoi_compute(triangulator, places, COUNT, torus, &voronoi), "torus");
+  flaunay_triangulation_destroy(torus);
+  OK(triangulate_in(on_torus(INFINITY, 2 * SIDE), places, COUNT, NULL, 0, &torus));
+  CHECK(flaunay_triangulation_mesh(torus)->triangle_count == 2 * COUNT - 2 * SIDE);
+  REFUSED(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, torus, NULL, 0, &cells), "cylinder");
+  REFUSED(triangulate_in(on_torus(0, 1), places, 3, NULL, 0, &none), "period");
+  const flaunay_options with_areas = {.parts = FLAUNAY_PART_AREAS, .space = &space};
+  REFUSED(flaunay_triangulate(triangulator, places, COUNT, NULL, 0, &with_areas, &none), "areas");
+  flaunay_triangulation_destroy(torus);
 }
 
 static void test_relax_on_device(void) {
@@ -1478,7 +1534,7 @@ static void test_locator(void) {
   double values[kQueryCount];
   OK(flaunay_locator_locate(locator, kQueries, kQueryCount, NULL, 1, triangles));
   OK(flaunay_locator_nearest(locator, kQueries, kQueryCount, NULL, 1, nearest));
-  OK(flaunay_locator_interpolate(locator, kValues, kQueries, kQueryCount, NULL, 1, values));
+  OK(flaunay_locator_interpolate(locator, kValues, kQueries, kQueryCount, NULL, 1, NULL, values));
   check_answers(mesh, triangles, nearest, values);
 
   const double rows[] = {1, -1, 4, -4, 7, -7, 2, -2};
@@ -1486,7 +1542,7 @@ static void test_locator(void) {
   double pairs[2 * kQueryCount], gradients[16];
   for (int method = 0; method <= FLAUNAY_INTERPOLATION_CLOUGH_TOCHER; ++method) {
     options.method = method;
-    OK(flaunay_locator_interpolate_with(locator, rows, kQueries, kQueryCount, NULL, 1, &options, pairs));
+    OK(flaunay_locator_interpolate(locator, rows, kQueries, kQueryCount, NULL, 1, &options, pairs));
     for (int k = 0; k < kQueryCount; ++k) CHECK(pairs[2 * k + 1] == -pairs[2 * k] || pairs[2 * k] == 5);
     CHECK(pairs[2] == 7 && pairs[4] == (method == FLAUNAY_INTERPOLATION_NEAREST ? 1 : 5));
   }
@@ -1494,12 +1550,12 @@ static void test_locator(void) {
   for (int k = 0; k < 4; ++k) CHECK(gradients[4 * k] == -gradients[4 * k + 2] && gradients[4 * k] > 0);
   double again[2 * kQueryCount];
   options.gradients = gradients;
-  OK(flaunay_locator_interpolate_with(locator, rows, kQueries, kQueryCount, NULL, 1, &options, again));
+  OK(flaunay_locator_interpolate(locator, rows, kQueries, kQueryCount, NULL, 1, &options, again));
   CHECK(memcmp(pairs, again, sizeof pairs) == 0);
-  OK(flaunay_locator_interpolate_with(locator, kValues, kQueries, kQueryCount, NULL, 1, NULL, values));
+  OK(flaunay_locator_interpolate(locator, kValues, kQueries, kQueryCount, NULL, 1, NULL, values));
   check_answers(mesh, triangles, nearest, values);
   options.method = 77;
-  REFUSED(flaunay_locator_interpolate_with(locator, rows, kQueries, 2, NULL, 1, &options, pairs),
+  REFUSED(flaunay_locator_interpolate(locator, rows, kQueries, 2, NULL, 1, &options, pairs),
           "77 is no flaunay_interpolation");
   options.method = 0;
   options.reserved[7] = 1;
@@ -1536,15 +1592,20 @@ static void test_queries_with_constraints(void) {
   const flaunay_constraints constraints = {
       .segments = rings, .segment_count = 8, .outside = FLAUNAY_OUTSIDE_HOLES};
   const flaunay_options options = {.parts = FLAUNAY_PART_NEIGHBORS};
-  flaunay_constrained* result = NULL;
+  flaunay_triangulation* result = NULL;
   OK(flaunay_triangulate_constrained(triangulator, corners, 8, NULL, 1, &constraints, &options, &result));
-  const flaunay_mesh* mesh = flaunay_constrained_mesh(result);
+  const flaunay_mesh* mesh = flaunay_triangulation_mesh(result);
+  // Of kept arrays, as the original.
   flaunay_triangulation* copy = NULL;
-  OK(flaunay_triangulation_create(8, mesh->triangles, mesh->triangle_count, mesh->neighbors, mesh->hull,
-                                  mesh->hull_count, mesh->representatives, &copy));
-  const uint8_t* constrained = flaunay_constrained_get_arrays(result)->constrained;
+  const flaunay_constrained_arrays kept = {.constrained =
+                                               flaunay_triangulation_constraints(result)->constrained};
+  OK(flaunay_triangulation_create(mesh, &kept, &copy));
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create_constrained(triangulator, corners, 8, copy, constrained, &locator));
+  OK(flaunay_locator_create(triangulator, corners, 8, NULL, 0, result, &locator));
+  flaunay_locator_destroy(locator);
+  OK(flaunay_locator_create(triangulator, corners, 8, NULL, 0, copy, &locator));
+  flaunay_voronoi* dual = NULL;
+  REFUSED(flaunay_voronoi_compute(triangulator, corners, 8, copy, &dual), "dual");
   const double queries[] = {4.5, 4.5, 1, 1, 6, 4, 12, 1};
   int32_t triangles[4], nearest[4];
   double heights[4], values[8];
@@ -1554,14 +1615,13 @@ static void test_queries_with_constraints(void) {
   OK(flaunay_locator_nearest(locator, queries, 4, NULL, 1, nearest));
   CHECK(nearest[0] == 4 && nearest[1] == 0 && nearest[2] == 5 && nearest[3] == 1);
   const flaunay_interpolation_options sibson = {.method = FLAUNAY_INTERPOLATION_SIBSON};
-  OK(flaunay_locator_interpolate_with(locator, values, queries, 4, NULL, 1, &sibson, heights));
+  OK(flaunay_locator_interpolate(locator, values, queries, 4, NULL, 1, &sibson, heights));
   CHECK(isnan(heights[0]) && fabs(heights[1] - 3) < 1e-9 && fabs(heights[2] - 16) < 1e-9 &&
         isnan(heights[3]));
   flaunay_locator_destroy(locator);
-  REFUSED(flaunay_locator_create_constrained(triangulator, corners, 7, copy, constrained, &locator),
-          "points");
+  REFUSED(flaunay_locator_create(triangulator, corners, 7, NULL, 0, copy, &locator), "points");
   flaunay_triangulation_destroy(copy);
-  flaunay_constrained_destroy(result);
+  flaunay_triangulation_destroy(result);
 }
 
 static void test_sphere_on_device(void) {
@@ -1571,30 +1631,36 @@ static void test_sphere_on_device(void) {
   flaunay_device_points given = {
       .memory = make_buffer(context, sizeof places, places), .count = 5, .offsets = sets, .sets = 2};
   const flaunay_enqueue enqueue = {.queue = queue};
-  flaunay_spherical* host = NULL;
-  flaunay_device_spherical* spherical = NULL;
-  OK(flaunay_device_spherical_create(&spherical));
-  CHECK(flaunay_device_spherical_triangle_count(spherical) == 0);
+  flaunay_space space = {.kind = FLAUNAY_SPACE_SPHERE, .coordinates = FLAUNAY_SPHERE_DEGREES};
+  given.space = &space;
+  flaunay_triangulation* host = NULL;
+  flaunay_device_triangulation* sphere = NULL;
+  OK(flaunay_device_triangulation_create(&sphere));
+  CHECK(flaunay_device_triangulation_mesh(sphere)->triangle_count == 0);
   cl_mem own = make_buffer(context, 24 * 5, NULL);
-  OK(flaunay_device_spherical_set_buffer(spherical, FLAUNAY_SPHERICAL_TRIANGLES, own));
+  OK(flaunay_device_triangulation_set_buffer(sphere, FLAUNAY_PART_TRIANGLES, own));
   for (size_t first = 0; first < 2; ++first) {
     given.first = first;
-    OK(flaunay_spherical_create(triangulator, places + 2 * first, 5, sets, 2, FLAUNAY_SPHERE_DEGREES, &host));
-    OK(flaunay_spherical_compute_device(triangulator, &given, FLAUNAY_SPHERE_DEGREES, &enqueue, spherical));
-    const size_t triangles = flaunay_spherical_triangle_count(host);
-    REQUIRE(flaunay_device_spherical_triangle_count(spherical) == triangles && triangles == 2);
-    CHECK(flaunay_device_spherical_triangle_offsets(spherical)[2] == triangles);
-    CHECK(flaunay_device_spherical_buffer(spherical, FLAUNAY_SPHERICAL_TRIANGLES) == own);
-    cl_mem neighbors = flaunay_device_spherical_buffer(spherical, FLAUNAY_SPHERICAL_NEIGHBORS);
-    CHECK(has_bytes(own, flaunay_spherical_triangles(host), 12 * triangles));
-    CHECK(has_bytes(neighbors, flaunay_spherical_neighbors(host), 12 * triangles));
-    flaunay_spherical_destroy(host);
+    OK(triangulate_in(space, places + 2 * first, 5, sets, 2, &host));
+    OK(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, sphere));
+    const flaunay_mesh *expected = flaunay_triangulation_mesh(host),
+                       *mesh = flaunay_device_triangulation_mesh(sphere);
+    const size_t triangles = expected->triangle_count;
+    REQUIRE(mesh->triangle_count == triangles && triangles == 2 && mesh->point_count == 5);
+    CHECK(mesh->triangle_offsets[2] == triangles && mesh->space->kind == FLAUNAY_SPACE_SPHERE);
+    CHECK(flaunay_device_triangulation_buffer(sphere, FLAUNAY_PART_TRIANGLES) == own);
+    cl_mem neighbors = flaunay_device_triangulation_buffer(sphere, FLAUNAY_PART_NEIGHBORS);
+    CHECK(has_bytes(own, expected->triangles, 12 * triangles));
+    CHECK(has_bytes(neighbors, expected->neighbors, 12 * triangles));
+    flaunay_triangulation_destroy(host);
   }
-  REFUSED(
-      flaunay_spherical_compute_device(triangulator, &given, FLAUNAY_SPHERE_DIRECTIONS, &enqueue, spherical),
-      "too small");
-  REFUSED(flaunay_device_spherical_set_buffer(spherical, 16, own), "16");
-  flaunay_device_spherical_destroy(spherical);
+  // No call in the plane takes these.
+  flaunay_locator* locator = NULL;
+  REFUSED(flaunay_locator_create_device(triangulator, &given, sphere, &enqueue, &locator), "space");
+  space.coordinates = FLAUNAY_SPHERE_DIRECTIONS;
+  REFUSED(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, sphere), "too small");
+  REFUSED(flaunay_device_triangulation_set_buffer(sphere, 256, own), "256");
+  flaunay_device_triangulation_destroy(sphere);
 }
 
 static void test_derived_on_device(void) {
@@ -1624,24 +1690,24 @@ static void test_derived_on_device(void) {
   OK(flaunay_locator_create_device(triangulator, &square, device_mesh, &enqueue, &locator));
   OK(flaunay_locator_locate_device(locator, &queries, &enqueue, &found));
   OK(flaunay_locator_nearest_device(locator, &queries, &enqueue, &near));
-  OK(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &results));
+  OK(flaunay_locator_interpolate_device(locator, values, &queries, NULL, &enqueue, &results));
   int32_t triangles[kQueryCount], nearest[kQueryCount];
   double interpolated[kQueryCount];
   read_buffer(found, sizeof triangles, triangles);
   read_buffer(near, sizeof nearest, nearest);
   read_buffer(results, sizeof interpolated, interpolated);
   check_answers(mesh, triangles, nearest, interpolated);
-  REFUSED(flaunay_locator_interpolate_device(locator, values, &queries, &enqueue, &found), "too small");
+  REFUSED(flaunay_locator_interpolate_device(locator, values, &queries, NULL, &enqueue, &found), "too small");
   flaunay_interpolation_options options = {.method = FLAUNAY_INTERPOLATION_CLOUGH_TOCHER};
   double slopes[8];
   OK(flaunay_locator_gradients_device(locator, values, NULL, &enqueue, &options.device_gradients));
   read_buffer(options.device_gradients, sizeof slopes, slopes);
   for (int k = 0; k < 8; ++k) CHECK(isfinite(slopes[k]));
-  OK(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results));
+  OK(flaunay_locator_interpolate_device(locator, values, &queries, &options, &enqueue, &results));
   read_buffer(results, sizeof interpolated, interpolated);
   CHECK(interpolated[1] == 7 && isnan(interpolated[2]));
   options.gradients = slopes;
-  REFUSED(flaunay_locator_interpolate_with_device(locator, values, &queries, &options, &enqueue, &results),
+  REFUSED(flaunay_locator_interpolate_device(locator, values, &queries, &options, &enqueue, &results),
           "host memory");
   clReleaseMemObject(options.device_gradients);
   flaunay_locator_destroy(locator);
@@ -1653,44 +1719,48 @@ static void test_periodic_on_device(void) {
   enum { COUNT = 50 };
   double places[2 * COUNT];
   for (size_t i = 0; i < 2 * COUNT; ++i) places[i] = fmod(0.618034 * (double)(i * i), 1);
-  flaunay_periodic* expected = NULL;
+  flaunay_space space = on_torus(1, 0.75);
+  flaunay_triangulation* host = NULL;
   const size_t offsets[] = {0, 10, COUNT};
-  OK(flaunay_periodic_create(triangulator, places, COUNT, offsets, 2, 1, 0.75, &expected));
-  flaunay_device_points given = {
-      .memory = make_buffer(context, sizeof places, places), .count = COUNT, .offsets = offsets, .sets = 2};
+  OK(triangulate_in(space, places, COUNT, offsets, 2, &host));
+  flaunay_device_points given = {.memory = make_buffer(context, sizeof places, places),
+                                 .count = COUNT,
+                                 .offsets = offsets,
+                                 .sets = 2,
+                                 .space = &space};
   const flaunay_enqueue enqueue = {.queue = queue};
-  flaunay_device_periodic* periodic = NULL;
-  OK(flaunay_device_periodic_create(&periodic));
-  CHECK(flaunay_device_periodic_triangle_count(periodic) == 0);
+  flaunay_device_triangulation* torus = NULL;
+  OK(flaunay_device_triangulation_create(&torus));
   cl_mem own = make_buffer(context, 12 * COUNT, NULL), small = make_buffer(context, 12 * COUNT - 1, NULL);
-  OK(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, own));
-  OK(flaunay_periodic_compute_device(triangulator, &given, 1, 0.75, &enqueue, periodic));
-  const size_t triangles = flaunay_periodic_triangle_count(expected);
-  CHECK(flaunay_device_periodic_triangle_count(periodic) == triangles);
-  CHECK(flaunay_device_periodic_triangle_offsets(periodic)[1] ==
-        flaunay_periodic_triangle_offsets(expected)[1]);
-  CHECK(flaunay_device_periodic_image_count(periodic) == flaunay_periodic_image_count(expected));
-  CHECK(flaunay_device_periodic_period(periodic)[1] == 0.75);
+  OK(flaunay_device_triangulation_set_buffer(torus, FLAUNAY_PART_CORNER_OFFSETS, own));
+  OK(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, torus));
+  const flaunay_mesh *expected = flaunay_triangulation_mesh(host),
+                     *mesh = flaunay_device_triangulation_mesh(torus);
+  const size_t triangles = expected->triangle_count;
+  CHECK(mesh->triangle_count == triangles && mesh->triangle_offsets[1] == expected->triangle_offsets[1]);
+  CHECK(mesh->image_count == expected->image_count && mesh->space->period_y == 0.75);
   const struct {
     unsigned part;
     const void* values;
     size_t bytes;
-  } parts[] = {{FLAUNAY_PERIODIC_PLACES, flaunay_periodic_places(expected), 16 * COUNT},
-               {FLAUNAY_PERIODIC_TRIANGLES, flaunay_periodic_triangles(expected), 12 * triangles},
-               {FLAUNAY_PERIODIC_OFFSETS, flaunay_periodic_offsets(expected), 6 * triangles},
-               {FLAUNAY_PERIODIC_NEIGHBORS, flaunay_periodic_neighbors(expected), 12 * triangles},
-               {FLAUNAY_PERIODIC_REPRESENTATIVES, flaunay_periodic_representatives(expected), 4 * COUNT}};
+  } parts[] = {{FLAUNAY_PART_PLACES, expected->places, 16 * COUNT},
+               {FLAUNAY_PART_TRIANGLES, expected->triangles, 12 * triangles},
+               {FLAUNAY_PART_CORNER_OFFSETS, expected->corner_offsets, 6 * triangles},
+               {FLAUNAY_PART_NEIGHBORS, expected->neighbors, 12 * triangles},
+               {FLAUNAY_PART_REPRESENTATIVES, expected->representatives, 4 * COUNT}};
   for (size_t p = 0; p < sizeof parts / sizeof *parts; ++p) {
-    cl_mem memory = flaunay_device_periodic_buffer(periodic, parts[p].part);
+    cl_mem memory = flaunay_device_triangulation_buffer(torus, parts[p].part);
     CHECK(has_bytes(memory, parts[p].values, parts[p].bytes));
   }
-  CHECK(flaunay_device_periodic_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS) == own);
-  CHECK(flaunay_device_periodic_buffer(periodic, 3) == NULL);
-  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 0, 1, &enqueue, periodic), "period");
-  OK(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, small));
-  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 1, 1, &enqueue, periodic), "too small");
-  flaunay_device_periodic_destroy(periodic);
-  flaunay_periodic_destroy(expected);
+  CHECK(flaunay_device_triangulation_buffer(torus, FLAUNAY_PART_CORNER_OFFSETS) == own);
+  CHECK(flaunay_device_triangulation_buffer(torus, 3) == NULL);
+  space = on_torus(0, 1);
+  REFUSED(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, torus), "period");
+  space = on_torus(1, 1);
+  OK(flaunay_device_triangulation_set_buffer(torus, FLAUNAY_PART_CORNER_OFFSETS, small));
+  REFUSED(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, torus), "too small");
+  flaunay_device_triangulation_destroy(torus);
+  flaunay_triangulation_destroy(host);
 }
 
 // ---- Chunks
@@ -1729,9 +1799,9 @@ static uint64_t row_sum(const int32_t* triangles, const int32_t* neighbors, size
 static void check_chunk_statistics(const flaunay_chunk_statistics* statistics,
                                    const flaunay_triangulation* expected) {
   CHECK(statistics->points == kPoints && statistics->chunk_points == kChunkPoints);
-  CHECK(statistics->triangles == flaunay_triangulation_triangle_count(expected));
-  CHECK(statistics->hull_vertices == flaunay_triangulation_hull_count(expected));
-  CHECK(statistics->duplicates == flaunay_triangulation_statistics(expected)->duplicates);
+  CHECK(statistics->triangles == flaunay_triangulation_mesh(expected)->triangle_count);
+  CHECK(statistics->hull_vertices == flaunay_triangulation_mesh(expected)->hull_count);
+  CHECK(statistics->duplicates == flaunay_triangulation_mesh(expected)->statistics->duplicates);
   CHECK(statistics->seconds > 0 && statistics->scratch_bytes >= 24 * kPoints);
   REQUIRE(statistics->round_count >= 2 && statistics->device_count == 1 && statistics->phase_count >= 3);
   CHECK(statistics->rounds[0].points == kPoints && statistics->rounds[0].chunks >= kPoints / kChunkPoints);
@@ -1749,11 +1819,13 @@ static const flaunay_chunk_options kSmallChunks = {
 static void check_same_mesh(const int32_t* triangles, const int32_t* neighbors, const int32_t* hull,
                             const int32_t* representatives, const double* areas,
                             const flaunay_triangulation* expected) {
-  const size_t count = flaunay_triangulation_triangle_count(expected);
-  CHECK(row_sum(triangles, neighbors, count) ==
-        row_sum(flaunay_triangulation_triangles(expected), flaunay_triangulation_neighbors(expected), count));
-  CHECK(same(hull, flaunay_triangulation_hull(expected), flaunay_triangulation_hull_count(expected)));
-  CHECK(same(representatives, flaunay_triangulation_representatives(expected), kPoints));
+  const size_t count = flaunay_triangulation_mesh(expected)->triangle_count;
+  CHECK(row_sum(triangles, neighbors, count) == row_sum(flaunay_triangulation_mesh(expected)->triangles,
+                                                        flaunay_triangulation_mesh(expected)->neighbors,
+                                                        count));
+  CHECK(same(hull, flaunay_triangulation_mesh(expected)->hull,
+             flaunay_triangulation_mesh(expected)->hull_count));
+  CHECK(same(representatives, flaunay_triangulation_mesh(expected)->representatives, kPoints));
   double* own = make_doubles(count);
   OK(flaunay_triangle_areas(points, kPoints, triangles, count, own));
   CHECK(memcmp(areas, own, count * sizeof *own) == 0);
@@ -1782,8 +1854,8 @@ static void test_chunks_in_arrays(void) {
                flaunay_triangulator_device(triangulator)->name) == 0);
   const size_t hull_count = flaunay_chunk_report_statistics(report)->hull_vertices;
   CHECK(flaunay_chunk_report_statistics(report)->round_count == 1);
-  REQUIRE(hull_count == flaunay_triangulation_hull_count(expected));
-  for (size_t k = 0; k < hull_count; ++k) CHECK(wide[k] == flaunay_triangulation_hull(expected)[k]);
+  REQUIRE(hull_count == flaunay_triangulation_mesh(expected)->hull_count);
+  for (size_t k = 0; k < hull_count; ++k) CHECK(wide[k] == flaunay_triangulation_mesh(expected)->hull[k]);
   flaunay_chunk_report_destroy(report);
 }
 
@@ -1838,9 +1910,10 @@ static void test_chunks_to_files(void) {
   OK(flaunay_triangulate_chunks_to_files(&source, &arrays, &files, &kSmallChunks, &report));
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
   check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
-  const size_t bytes = 3 * flaunay_triangulation_triangle_count(expected) * sizeof(int32_t);
+  const size_t bytes = 3 * flaunay_triangulation_mesh(expected)->triangle_count * sizeof(int32_t);
   int32_t *triangles = read_entries(triangles_path, bytes), *neighbors = read_entries(neighbors_path, bytes);
-  double* areas = read_entries(areas_path, flaunay_triangulation_triangle_count(expected) * sizeof(double));
+  double* areas =
+      read_entries(areas_path, flaunay_triangulation_mesh(expected)->triangle_count * sizeof(double));
   check_same_mesh(triangles, neighbors, arrays.hull, arrays.representatives, areas, expected);
   flaunay_chunk_report_destroy(report);
 
@@ -1954,29 +2027,30 @@ static void test_chunks_with_a_period(void) {
   flaunay_mesh_files files = {.neighbors = neighbors_path, .offsets = offsets_path};
   flaunay_chunk_report* report = NULL;
   OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, &arrays, &files, &kSmallChunks, &report));
-  flaunay_periodic* expected = NULL;
-  OK(flaunay_periodic_create(triangulator, points, kPoints, NULL, 0, 0.7, INFINITY, &expected));
-  const size_t count = flaunay_periodic_triangle_count(expected);
+  flaunay_triangulation* cylinder = NULL;
+  OK(triangulate_in(on_torus(0.7, INFINITY), points, kPoints, NULL, 0, &cylinder));
+  const flaunay_mesh* const expected = flaunay_triangulation_mesh(cylinder);
+  const size_t count = expected->triangle_count;
   const flaunay_chunk_statistics* const statistics = flaunay_chunk_report_statistics(report);
   CHECK(statistics->triangles == count && statistics->points == kPoints && statistics->hull_vertices == 0);
   CHECK(statistics->images > 0 && statistics->rounds[0].points == kPoints + statistics->images);
   int32_t* const neighbors = read_entries(neighbors_path, 3 * count * sizeof *neighbors);
   int8_t* const offsets = read_entries(offsets_path, 6 * count);
   CHECK(row_sum(arrays.triangles, neighbors, count) ==
-        row_sum(flaunay_periodic_triangles(expected), flaunay_periodic_neighbors(expected), count));
-  CHECK(same(arrays.representatives, flaunay_periodic_representatives(expected), kPoints));
+        row_sum(expected->triangles, expected->neighbors, count));
+  CHECK(same(arrays.representatives, expected->representatives, kPoints));
   int sums[2] = {0, 0};
   for (size_t k = 0; k < 6 * count; ++k) {
     sums[0] += offsets[k] * (k % 2 == 0 ? 1 : 1000);
-    sums[1] += flaunay_periodic_offsets(expected)[k] * (k % 2 == 0 ? 1 : 1000);
+    sums[1] += expected->corner_offsets[k] * (k % 2 == 0 ? 1 : 1000);
   }
   CHECK(sums[0] == sums[1]);
   double period[] = {0.7, INFINITY};
   double* const places = make_doubles(2 * kPoints);
   memcpy(places, points, 2 * kPoints * sizeof *places);
   OK(flaunay_take_to_places(period, places, kPoints));
-  CHECK(period[0] == flaunay_periodic_period(expected)[0] && period[1] == INFINITY);
-  CHECK(memcmp(places, flaunay_periodic_places(expected), 2 * kPoints * sizeof *places) == 0);
+  CHECK(period[0] == expected->space->period_x && period[1] == INFINITY);
+  CHECK(memcmp(places, expected->places, 2 * kPoints * sizeof *places) == 0);
   flaunay_chunk_report_destroy(report);
 
   report = NULL;
@@ -1989,7 +2063,7 @@ static void test_chunks_with_a_period(void) {
   REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), "no period");
   CHECK(report == NULL);
   CHECK(remove(neighbors_path) == 0 && remove(offsets_path) == 0);
-  flaunay_periodic_destroy(expected);
+  flaunay_triangulation_destroy(cylinder);
 }
 
 static void test_chunks_in_files(void) {
@@ -2014,7 +2088,7 @@ static void test_chunks_in_files(void) {
   CHECK(mesh.parts == sink.parts);
   flaunay_triangulation* expected = on_host(points, kPoints, NULL, 0, 0);
   check_chunk_statistics(flaunay_chunk_report_statistics(report), expected);
-  const size_t entries = 3 * flaunay_triangulation_triangle_count(expected);
+  const size_t entries = 3 * flaunay_triangulation_mesh(expected)->triangle_count;
   int32_t* triangles = make_indices(entries);
   rewind(mesh.triangles);
   REQUIRE(fread(triangles, sizeof *triangles, entries, mesh.triangles) == entries);
@@ -2153,14 +2227,14 @@ static void test_raster_in_chunks(void) {
   const flaunay_raster raster = {
       .x = step, .y = step, .dx = step, .dy = step, .rows = kRows, .columns = kColumns};
   flaunay_triangulation* mesh = on_host(points, kPoints, NULL, 0, FLAUNAY_PART_NEIGHBORS);
-  OK(flaunay_rasterize(triangulator, points, kPoints, flaunay_triangulation_triangles(mesh),
-                       flaunay_triangulation_neighbors(mesh), flaunay_triangulation_triangle_count(mesh),
-                       values, &raster, expected));
+  OK(flaunay_rasterize(triangulator, points, kPoints, flaunay_triangulation_mesh(mesh)->triangles,
+                       flaunay_triangulation_mesh(mesh)->neighbors,
+                       flaunay_triangulation_mesh(mesh)->triangle_count, values, &raster, expected));
   const double levels[] = {20.5, 70.5};
   flaunay_contours *lines = NULL, *expected_lines = NULL;
-  OK(flaunay_contours_compute(triangulator, points, kPoints, flaunay_triangulation_triangles(mesh),
-                              flaunay_triangulation_neighbors(mesh),
-                              flaunay_triangulation_triangle_count(mesh), values, levels, 2, 0,
+  OK(flaunay_contours_compute(triangulator, points, kPoints, flaunay_triangulation_mesh(mesh)->triangles,
+                              flaunay_triangulation_mesh(mesh)->neighbors,
+                              flaunay_triangulation_mesh(mesh)->triangle_count, values, levels, 2, 0,
                               &expected_lines));
 
   const flaunay_strided_points of_records = {.coordinates = &scan->x,
@@ -2283,11 +2357,12 @@ static void test_dynamic(void) {
   // What is left is triangle 1, 2, 3, with point 4 on the edge from 1 to 3, or beside it.
   flaunay_triangulation* mesh = NULL;
   OK(flaunay_dynamic_triangulation(dynamic, &mesh));
-  const size_t triangles = flaunay_triangulation_triangle_count(mesh);
+  const size_t triangles = flaunay_triangulation_mesh(mesh)->triangle_count;
   CHECK(triangles == 2 && flaunay_dynamic_triangle_count(dynamic) == 2);
-  CHECK(flaunay_triangulation_halfedges(mesh) != NULL && flaunay_triangulation_neighbors(mesh) == NULL);
+  CHECK(flaunay_triangulation_mesh(mesh)->halfedges != NULL &&
+        flaunay_triangulation_mesh(mesh)->neighbors == NULL);
   const int32_t expected[] = {-1, 1, 2, 3, 4, 2};
-  CHECK(same(flaunay_triangulation_representatives(mesh), expected, 6));
+  CHECK(same(flaunay_triangulation_mesh(mesh)->representatives, expected, 6));
   flaunay_triangulation_destroy(mesh);
 
   const size_t rows = flaunay_dynamic_row_count(dynamic);
@@ -2337,10 +2412,11 @@ static void test_dynamic_from_device(void) {
   flaunay_triangulation* expected = on_host(points, 2000, NULL, 0, 0);
   flaunay_triangulation* mesh = NULL;
   OK(flaunay_dynamic_triangulation(dynamic, &mesh));
-  const size_t count = flaunay_triangulation_triangle_count(expected);
-  REQUIRE(flaunay_triangulation_triangle_count(mesh) == count);
-  CHECK(row_sum(flaunay_triangulation_triangles(mesh), flaunay_triangulation_neighbors(mesh), count) ==
-        row_sum(flaunay_triangulation_triangles(expected), flaunay_triangulation_neighbors(expected), count));
+  const size_t count = flaunay_triangulation_mesh(expected)->triangle_count;
+  REQUIRE(flaunay_triangulation_mesh(mesh)->triangle_count == count);
+  CHECK(row_sum(flaunay_triangulation_mesh(mesh)->triangles, flaunay_triangulation_mesh(mesh)->neighbors,
+                count) == row_sum(flaunay_triangulation_mesh(expected)->triangles,
+                                  flaunay_triangulation_mesh(expected)->neighbors, count));
   flaunay_triangulation_destroy(mesh);
   flaunay_dynamic_destroy(dynamic);
 }
@@ -2427,8 +2503,8 @@ static void test_no_fp64(void) {
     if (is_wide) corners[7] = 0.5;
     flaunay_triangulation* mesh = NULL;
     OK(flaunay_triangulate(used, corners, 4, NULL, 1, NULL, &mesh));
-    CHECK(flaunay_triangulation_triangle_count(mesh) == 2);
-    const flaunay_statistics* statistics = flaunay_triangulation_statistics(mesh);
+    CHECK(flaunay_triangulation_mesh(mesh)->triangle_count == 2);
+    const flaunay_statistics* statistics = flaunay_triangulation_mesh(mesh)->statistics;
     CHECK(strcmp(statistics->device, is_wide ? "host" : name) == 0);
     CHECK(is_wide ? strstr(statistics->note, "fp64") != NULL : statistics->note[0] == '\0');
     flaunay_triangulation_destroy(mesh);
@@ -2436,7 +2512,7 @@ static void test_no_fp64(void) {
   flaunay_options options = {.mode = FLAUNAY_MODE_FLATTENED};
   flaunay_triangulation* by_host = NULL;
   OK(flaunay_triangulate(used, corners, 4, NULL, 1, &options, &by_host));
-  const char* note = flaunay_triangulation_statistics(by_host)->note;
+  const char* note = flaunay_triangulation_mesh(by_host)->statistics->note;
   CHECK(strstr(note, name) != NULL && strstr(note, "flattened") != NULL);
   flaunay_triangulation_destroy(by_host);
   flaunay_triangulator_destroy(used);
@@ -2571,9 +2647,9 @@ static void test_small_buffers(void) {
   CHECK(strstr(flaunay_last_error(), "in one piece") != NULL);
   const int32_t segment[] = {0, arrays->triangles[0]};
   const flaunay_constraints constraints = {.segments = segment, .segment_count = 1};
-  flaunay_constrained* constrained = NULL;
+  flaunay_triangulation* constrained = NULL;
   OK(flaunay_triangulate_constrained(small, input, n, NULL, 0, &constraints, NULL, &constrained));
-  flaunay_constrained_destroy(constrained);
+  flaunay_triangulation_destroy(constrained);
   CHECK(fails(flaunay_triangulate_constrained(small, input, n + 1, NULL, 0, &constraints, NULL, &constrained),
               device_error, fits));
 
@@ -2582,7 +2658,7 @@ static void test_small_buffers(void) {
   flaunay_voronoi_destroy(voronoi);
   const double box[] = {0, 0, 0x1p32, 0, 0x1p32, 0x1p32, 0, 0x1p32};
   flaunay_clipped_voronoi* cells = NULL;
-  CHECK(works_or_is_too_large(flaunay_voronoi_clip(small, input, n, mesh, box, 4, &cells)));
+  CHECK(works_or_is_too_large(flaunay_voronoi_clip(small, input, NULL, n, mesh, box, 4, &cells)));
   flaunay_clipped_voronoi_destroy(cells);
 
   // Queries at the points, and many more queries than points.
@@ -2593,7 +2669,7 @@ static void test_small_buffers(void) {
   OK(flaunay_locator_nearest(locator, input, n, NULL, 0, found));
   CHECK(same(found, right->representatives, n));
   OK(flaunay_locator_locate(locator, input, n, NULL, 0, found));
-  OK(flaunay_locator_interpolate(locator, input, input, n, NULL, 0, values));
+  OK(flaunay_locator_interpolate(locator, input, input, n, NULL, 0, NULL, values));
   const size_t many = kLargestBuffer / 16 + 1;
   double* const queries = random_points(many);
   int32_t* const of_many = allocate(many * sizeof *of_many);

@@ -28,13 +28,13 @@ struct Data {
         points(random_places(n, 1)),
         queries(random_places(n, 2)),
         values(n, 1.0),
-        mesh(triangulate_periodic(triangulator, points.data(), n, {})),
+        mesh(triangulator.triangulate(points.data(), n, Space::torus({}))),
         locator(triangulator, mesh) {}
 
   std::size_t n;
   std::vector<double> points, queries, values;
-  PeriodicTriangulation mesh;
-  PeriodicLocator locator;
+  Triangulation mesh;
+  Locator locator;
 };
 
 void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
@@ -44,7 +44,7 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   };
   add("triangulate", [&] {
     const Stopwatch watch;
-    const auto mesh = triangulate_periodic(triangulator, on.points.data(), on.n, {});
+    const auto mesh = triangulator.triangulate(on.points.data(), on.n, Space::torus({}));
     return Outcome(watch.seconds(), mesh.triangles.size() / 3);
   });
   if (run_cgal_periodic != nullptr)
@@ -53,10 +53,12 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   add("triangulate in the plane",
       [&] { return seconds_of([&] { triangulator.triangulate(on.points.data(), on.n); }); });
   add("cylinder", [&] {
-    return seconds_of([&] { triangulate_periodic(triangulator, on.points.data(), on.n, {1, HUGE_VAL}); });
+    return seconds_of([&] { triangulator.triangulate(on.points.data(), on.n, Space::torus({1, HUGE_VAL})); });
   });
-  add("verify", [&] { return seconds_of([&] { verify(on.mesh); }); });
-  add("locator", [&] { return seconds_of([&] { PeriodicLocator(triangulator, on.mesh); }); });
+  add("verify", [&] {
+    return seconds_of([&] { verify(on.mesh.places.data(), on.mesh.point_offsets, on.mesh.space, on.mesh); });
+  });
+  add("locator", [&] { return seconds_of([&] { Locator(triangulator, on.mesh); }); });
   const double* const queries = on.queries.data();
   add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n); }); });
   add("nearest", [&, queries] { return seconds_of([&] { on.locator.nearest(queries, on.n); }); });

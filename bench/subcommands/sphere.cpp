@@ -36,13 +36,13 @@ struct Data {
         points(random_directions(n, 1)),
         queries(random_directions(n, 2)),
         values(n, 1.0),
-        mesh(triangulate_sphere(triangulator, points.data(), n, kDirections)),
+        mesh(triangulator.triangulate(points.data(), n, Space::sphere(kDirections))),
         locator(triangulator, mesh) {}
 
   std::size_t n;
   std::vector<double> points, queries, values;
-  SphericalTriangulation mesh;
-  SphereLocator locator;
+  Triangulation mesh;
+  Locator locator;
 };
 
 void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
@@ -52,7 +52,7 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   };
   add("triangulate", [&] {
     const Stopwatch watch;
-    const auto mesh = triangulate_sphere(triangulator, on.points.data(), on.n, kDirections);
+    const auto mesh = triangulator.triangulate(on.points.data(), on.n, Space::sphere(kDirections));
     return Outcome(watch.seconds(), mesh.triangles.size() / 3);
   });
   if (run_cgal_on_sphere != nullptr)
@@ -60,18 +60,16 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
         "triangulate", [&] { return run_cgal_on_sphere(on.points); }, "cgal");
   add("triangulate places",
       [&] { return seconds_of([&] { triangulator.triangulate(on.mesh.places.data(), on.n); }); });
-  add("cells", [&] { return seconds_of([&] { voronoi_on_sphere(triangulator, on.mesh); }); });
+  add("cells", [&] { return seconds_of([&] { triangulator.voronoi(on.mesh); }); });
   add("verify", [&] {
-    return seconds_of([&] { verify(on.points.data(), {0, on.n}, kDirections, on.mesh); });
+    return seconds_of([&] { verify(on.points.data(), {0, on.n}, Space::sphere(kDirections), on.mesh); });
   });
-  add("locator", [&] { return seconds_of([&] { SphereLocator(triangulator, on.mesh); }); });
+  add("locator", [&] { return seconds_of([&] { Locator(triangulator, on.mesh); }); });
   const double* const queries = on.queries.data();
-  add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n, kDirections); }); });
-  add("nearest",
-      [&, queries] { return seconds_of([&] { on.locator.nearest(queries, on.n, kDirections); }); });
-  add("linear", [&, queries] {
-    return seconds_of([&] { on.locator.interpolate(on.values.data(), 1, queries, on.n, kDirections); });
-  });
+  add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n); }); });
+  add("nearest", [&, queries] { return seconds_of([&] { on.locator.nearest(queries, on.n); }); });
+  add("linear",
+      [&, queries] { return seconds_of([&] { on.locator.interpolate(on.values.data(), queries, on.n); }); });
 }
 
 Result measure_sphere(const Request& request) {

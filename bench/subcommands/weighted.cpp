@@ -23,14 +23,14 @@ struct Data {
     for (double& x : points) x = unit(engine);
     for (double& weight : weights) weight = unit(engine) * areas / static_cast<double>(n);
     options.neighbors = true;
-    mesh = triangulate_weighted(triangulator, points.data(), weights.data(), n, options);
+    mesh = triangulator.triangulate(points.data(), n, Space::plane().with_weights(weights.data()), options);
   }
 
   std::size_t n;
   std::vector<double> points, weights;
   std::vector<std::size_t> offsets;
   flaunay::Options options;
-  WeightedTriangulation mesh;
+  Triangulation mesh;
 };
 
 constexpr double kBox[] = {0, 0, 1, 0, 1, 1, 0, 1};
@@ -47,7 +47,8 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   const double *const points = on.points.data(), *const weights = on.weights.data();
   add("triangulate", [&, points, weights] {
     const Stopwatch watch;
-    const auto mesh = triangulate_weighted(triangulator, points, weights, on.n, on.options);
+    const auto mesh =
+        triangulator.triangulate(points, on.n, Space::plane().with_weights(weights), on.options);
     return Outcome(watch.seconds(), mesh.triangles.size() / 3);
   });
   if (run_cgal_weighted != nullptr)
@@ -59,7 +60,7 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
     return seconds_of([&] { hiding_triangles(triangulator, points, on.offsets, on.mesh); });
   });
   add("cells", [&, points, weights] {
-    return seconds_of([&] { power_cells(triangulator, points, weights, on.n, on.mesh, kBox, 4); });
+    return seconds_of([&] { triangulator.clipped_voronoi(points, weights, on.n, on.mesh, kBox, 4); });
   });
 }
 

@@ -57,20 +57,21 @@ _TABLES = {
     for name, table in vars(_declarations).items()
     if name.endswith("_ARRAYS") and isinstance(table, dict)
 }
-TRIANGULATION, _CONSTRAINED = _TABLES["triangulation"], _TABLES["constrained"]
+TRIANGULATION, _CONSTRAINED, _SPACE = (_TABLES[name] for name in ("triangulation", "constrained", "space"))
 _OFFSETS = (_INT64, "set_offset", 1, "always")
 # Those of triangulations are asked for by their own names.
 _MADE: _Arrays = {
     name: (dtype, row, columns, name if asked == "on_request" else asked)
     for name, (dtype, row, columns, asked) in {**TRIANGULATION, **_CONSTRAINED}.items()
 }
-_MADE |= dict.fromkeys(["triangle_offsets", "hull_offsets"], _OFFSETS)
+_MADE |= _SPACE | dict.fromkeys(["triangle_offsets", "hull_offsets"], _OFFSETS)
 # How many rows there are of what, in flaunay_mesh and flaunay_constrained_arrays.
 _ROWS: dict[str, Callable[[Any, Any], int]] = {
     "triangle": lambda mesh, _: mesh.triangle_count,
     "halfedge": lambda mesh, _: 3 * mesh.triangle_count,
     "hull_vertex": lambda mesh, _: mesh.hull_count,
     "point": lambda mesh, _: mesh.point_count,
+    "hidden": lambda mesh, _: mesh.hidden_count,
     "set_offset": lambda mesh, _: mesh.set_count + 1,
     "added_point": lambda _, arrays: arrays.added_count,
     "constraint": lambda _, arrays: arrays.constraint_count,
@@ -225,7 +226,7 @@ def _call_with_mesh(function: Any, *arguments: Any) -> None:
 # ---- Structs
 
 
-def _struct(kind: Callable[..., Any], **members: Any) -> Any:
+def _struct(of: Callable[..., Any], /, **members: Any) -> Any:
     """A struct of C with the addresses of arrays and of other structs, which it keeps."""
     kept = []
     for name, value in members.items():
@@ -236,7 +237,7 @@ def _struct(kind: Callable[..., Any], **members: Any) -> Any:
             members[name] = _address_or_none(value)
         elif isinstance(value, ctypes.Structure):
             members[name] = ctypes.pointer(value)
-    made = kind(**members)
+    made = of(**members)
     made._refers_to = kept
     return made
 
@@ -331,6 +332,23 @@ def _options_for(mode: str, parts: int) -> _declarations.Options:
     return found
 
 
+SPACE_KINDS = _declarations.SPACE_KIND
+
+
+def space_of(
+    kind: str,
+    period: tuple[float, float] = (0, 0),
+    coordinates: int = 0,
+    weights: Optional[_Doubles] = None,
+) -> _declarations.Space:
+    """A flaunay_space. kind: "plane", "torus" or "sphere"."""
+    numbers = {"kind": SPACE_KINDS[kind], "coordinates": coordinates}
+    space: _declarations.Space = _struct(
+        _declarations.Space, **numbers, period_x=period[0], period_y=period[1], weights=weights
+    )
+    return space
+
+
 def _parts_of(wanted: set[str]) -> int:
     parts = 0
     for name in wanted:
@@ -370,7 +388,24 @@ class Made(dict[str, Any]):
 
 
 class _Triangulation(Handle):
+    """A triangulation, with constraints or without."""
+
     _destroy = library.triangulation_destroy
+
+    def report(self) -> RefinementReport:
+        """How refinement went."""
+        given = library.triangulation_refinement(self.pointer)[0]
+        shape = (given.bad_count,)
+        return RefinementReport.of(
+            bad_triangles=_view(self, given.bad_triangles, shape, _INT32),
+            excuses=_view(self, given.excuses, shape, _UINT8),
+            **_REFINEMENT(given),
+        )
+
+    def made(self, wanted: set[str]) -> Made:
+        """wanted: the optional arrays, and what asks for some."""
+        pointer = self.pointer
+        return Made(self, wanted, library.triangulation_mesh(pointer), library.triangulation_constraints(pointer))
 
 
 class _Aside:
@@ -482,25 +517,6 @@ class _Refinement:
         given = _as_arguments(arguments)
         with triangulator.turn:
             self._aside.run(lambda: int(function(*given)), self._write_areas)
-
-
-class _Constrained(Handle):
-    _destroy = library.constrained_destroy
-
-    def report(self) -> RefinementReport:
-        """How refinement went."""
-        given = library.constrained_refinement(self.pointer)[0]
-        shape = (given.bad_count,)
-        return RefinementReport.of(
-            bad_triangles=_view(self, given.bad_triangles, shape, _INT32),
-            excuses=_view(self, given.excuses, shape, _UINT8),
-            **_REFINEMENT(given),
-        )
-
-    def made(self, wanted: set[str]) -> Made:
-        """wanted: the optional arrays, and what asks for some."""
-        arrays = library.constrained_get_arrays(self.pointer)
-        return Made(self, wanted, library.constrained_mesh(self.pointer), arrays)
 
 
 class Triangulator(DeviceHandle):
@@ -632,7 +648,7 @@ def _make_constrained(
     asked: set[str],
 ) -> Made:
     """given: what a function takes before a struct, asked_for: that, with its members but `refinement`."""
-    (kind, members), result = asked_for, _Constrained()
+    (kind, members), result = asked_for, _Triangulation()
     options = _options_for("blocks", _parts_of(wanted) | PART["triangles"])
     refining = _Refinement(refinement)
     struct = _struct(kind, **members, refinement=refining.struct)
@@ -690,7 +706,7 @@ def verify(points: _Doubles, offsets: Optional[_Offsets], arrays: dict[str, Any]
         raise UsageError(f"the triangulation has {mesh.set_count} sets, but there are {max(sets, 1)}")
     if len(arrays["representatives"]) != n:
         raise UsageError(f"the triangulation has {len(arrays['representatives'])} points, but there are {n}")
-    check(library.mesh_verify(mesh, _address_of(points), _address_or_none(sizes)))
+    check(library.mesh_verify(mesh, _address_of(points), _address_or_none(sizes), None))
 
 
 def verify_constrained(
@@ -933,6 +949,10 @@ class DevicePoints:
         self.sets: int = self.struct.sets if offsets is not None or device_offsets else 1
         self._as_parameter_ = ctypes.pointer(self.struct)
 
+    def lie_in(self, space: _declarations.Space) -> DevicePoints:
+        self._space, self.struct.space = space, ctypes.pointer(space)
+        return self
+
 
 class Enqueue:
     """How a call on device memory is enqueued. The queue and the events must be alive during the call."""
@@ -983,18 +1003,24 @@ class _DeviceArrays(DeviceHandle):
     def arrays(self, **counts: int) -> _Places:
         """counts: how many there are of what has rows, unless a function says so. Flags are numbers."""
         parts = getattr(_declarations, f"{self._name.upper()}_PART", PART)
+        return self._places(_TABLES[self._name], parts, **counts)
+
+    def _places(self, table: _Arrays, parts: dict[str, int], **counts: int) -> _Places:
         return {
             name: (
                 self.read("buffer", parts[name]) or 0,
                 _shape(counts[row] if row in counts else self.read(f"{row}_count"), columns),
                 _UINT8 if dtype == _BOOL else dtype,
             )
-            for name, (dtype, row, columns, _) in _TABLES[self._name].items()
+            for name, (dtype, row, columns, _) in table.items()
         }
 
 
 class DeviceTriangulation(_DeviceArrays):
     """A triangulation in device memory, with the triangulator that made it."""
+
+    _MEMBERS = {name for name, *_ in _declarations.Mesh._fields_} - set(TRIANGULATION)
+    _IN_SPACE = ("triangles", "neighbors", "representatives", "places")
 
     def __init__(
         self, triangulator: Triangulator, points: DevicePoints, wanted: set[str], enqueue: Enqueue
@@ -1002,9 +1028,25 @@ class DeviceTriangulation(_DeviceArrays):
         given = (triangulator, points, _parts_of(wanted), enqueue)
         super().__init__("triangulation", library.triangulate_device, *given)
 
+    def read(self, member: str, *given: Any) -> Any:
+        """A member of its flaunay_mesh, or what a function says."""
+        if member in self._MEMBERS:
+            return getattr(library.device_triangulation_mesh(self.pointer)[0], member)
+        return super().read(member, *given)
+
     @property
     def hull_offsets(self) -> _Offsets:
         return self.copied("hull_offsets", self._sets + 1, _INT64)
+
+    @property
+    def period(self) -> tuple[float, float]:
+        space = self.read("space")[0]
+        return space.period_x, space.period_y
+
+    def arrays_in_space(self, *names: str) -> _Places:
+        """The arrays that there are in another space than the plane, and these."""
+        parts = {name: row for name, row in {**TRIANGULATION, **_SPACE}.items() if name in (*self._IN_SPACE, *names)}
+        return self._places(parts, PART)
 
     def computed(self) -> _Places:
         """The arrays that were computed."""
@@ -1021,8 +1063,6 @@ class DeviceTriangulation(_DeviceArrays):
 DeviceRows = functools.partial(_DeviceArrays, "rows", library.dynamic_rows_device)
 DeviceVoronoi = functools.partial(_DeviceArrays, "voronoi", library.voronoi_compute_device)
 DeviceClippedVoronoi = functools.partial(_DeviceArrays, "clipped_voronoi", library.voronoi_clip_device)
-DeviceSpherical = functools.partial(_DeviceArrays, "spherical", library.spherical_compute_device)
-DevicePeriodic = functools.partial(_DeviceArrays, "periodic", library.periodic_compute_device)
 
 
 def relax_device(
@@ -1210,19 +1250,28 @@ def rasterize_chunks(
 # ---- Voronoi diagrams and queries
 
 
-def _triangulation_of(mesh: Searched) -> tuple[_Doubles, int, _Triangulation]:
-    """The points of a mesh, how many there are, and what the library knows of it."""
+def _triangulation_of(
+    mesh: Searched, constrained: Optional[npt.NDArray[np.bool_]] = None
+) -> tuple[_Doubles, int, _Triangulation]:
+    """The points of a mesh, how many there are, and what the library knows of it.
+
+    constrained: of a mesh with constraints, for each corner whether the edge opposite to it is one.
+    """
     given, representatives = mesh._stand_ins
     points = np.ascontiguousarray(given, _FLOAT64)
     n, corners = _count_points(points), _as_corners(mesh.simplices)
     beyond = _as_indices(mesh.neighbors, "neighbors", (len(corners), 3))
     ring = _as_indices(mesh.hull, "hull", (-1,))
     equal = _as_indices(representatives, "representatives", (n,))
+    arrays = {"triangles": corners, "neighbors": beyond, "hull": ring, "representatives": equal}
+    counts = {"point_count": n, "set_count": 1, "triangle_count": len(corners), "hull_count": len(ring)}
+    kept = None
+    if constrained is not None:
+        marks = np.ascontiguousarray(constrained, np.bool_)
+        kept = _struct(_declarations.ConstrainedArrays, constrained=marks)
     result = _Triangulation()
-    _call_with_mesh(
-        library.triangulation_create,
-        *(n, corners, len(corners), beyond, ring, len(ring), equal, result.place),
-    )
+    whole = _struct(_declarations.Mesh, **arrays, **counts)
+    _call_with_mesh(library.triangulation_create, whole, kept, result.place)
     return points, n, result
 
 
@@ -1234,16 +1283,16 @@ def voronoi(triangulator: Triangulator, mesh: Mesh) -> dict[str, Any]:
     return result.views()
 
 
-def _clipped_cells(triangulator: Triangulator, function: Any, *given: Any) -> dict[str, Any]:
+def _clipped_cells(triangulator: Triangulator, *given: Any) -> dict[str, Any]:
     """The vertices of clipped cells, their offsets, the cells' areas and centroids."""
     result = _Result("clipped_voronoi")
-    triangulator.make(result, function, *given)
+    triangulator.make(result, library.voronoi_clip, *given)
     return result.views()
 
 
 def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -> dict[str, Any]:
-    given = (*_triangulation_of(mesh), _as_doubles(corners), len(corners))
-    return _clipped_cells(triangulator, library.voronoi_clip, *given)
+    points, n, primal = _triangulation_of(mesh)
+    return _clipped_cells(triangulator, points, None, n, primal, _as_doubles(corners), len(corners))
 
 
 def relax(
@@ -1359,13 +1408,8 @@ class Locator(_Locator):
     ) -> None:
         """constrained: of a mesh with constraints, for each corner whether the edge opposite to it is one."""
         super().__init__(triangulator)
-        points, self._point_count, primal = _triangulation_of(mesh)
-        given = (points, self._point_count)
-        if constrained is None:
-            triangulator.make(self, library.locator_create, *given, None, 0, primal)
-            return
-        marks = np.ascontiguousarray(constrained, np.bool_)
-        triangulator.make(self, library.locator_create_constrained, *given, primal, marks)
+        points, self._point_count, primal = _triangulation_of(mesh, constrained)
+        triangulator.make(self, library.locator_create, points, self._point_count, None, 0, primal)
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:
         """What a function answers to each query."""
@@ -1411,7 +1455,7 @@ class Locator(_Locator):
         m = len(queries)
         results = np.empty((m, table.columns))
         at, out = _address_of(queries), _address_of(results)
-        interpolate = library.locator_interpolate_with
+        interpolate = library.locator_interpolate
         with self._triangulator.turn:
             status = interpolate(self.pointer, table.address, at, m, None, 0, table.options, out)
         if status:
@@ -1441,12 +1485,20 @@ class PointTree(_InTurns):
         triangulator.make(self, library.point_tree_create, _as_doubles(points), self.count)
 
     @classmethod
-    def of_periodic(cls, triangulator: Triangulator, periodic: Periodic) -> PointTree:
-        """A tree of the places of one set, where each point counts once, as it lies nearest."""
+    def in_space(cls, triangulator: Triangulator, mesh: InSpace) -> PointTree:
+        """A tree of one set on a torus, where each point counts once, as it lies nearest, or on the sphere."""
         tree = cls.__new__(cls)
         _InTurns.__init__(tree, triangulator)
-        triangulator.make(tree, library.point_tree_create_periodic, periodic)
+        triangulator.make(tree, library.point_tree_create_in_space, mesh)
         return tree
+
+    def nearest_on_sphere(
+        self, queries: _Doubles, count: int, max_distance: float
+    ) -> tuple[_Indices, _Doubles]:
+        """As `nearest`, with angles. queries: longitudes and latitudes, or x, y and z."""
+        with self._triangulator.turn:
+            self._call(library.point_tree_set_coordinates, sphere_coordinates(queries.shape[1]))
+            return self.nearest(queries, count, max_distance)
 
     def nearest(
         self, queries: _Doubles, count: int, max_distance: float
@@ -1509,7 +1561,7 @@ class DeviceLocator(_Locator):
             device_gradients=gradients or None,
         )
         given = (values or None, queries, options, enqueue)
-        return self._answer(library.locator_interpolate_with_device, *given)
+        return self._answer(library.locator_interpolate_device, *given)
 
     def gradients(
         self, values: int, columns: int, tolerance: float, iterations: int, enqueue: Enqueue
@@ -1528,181 +1580,109 @@ def sphere_coordinates(width: int) -> int:
     return int(_declarations.SPHERE_COORDINATES["degrees" if width == 2 else "directions"])
 
 
-class _Surface(_Result):
-    """Triangulations of sets of points."""
-
-    _offsets: tuple[str, ...] = ("triangle_offsets",)
-
-    def __init__(
-        self,
-        name: str,
-        triangulator: Triangulator,
-        given: list[_Doubles],
-        offsets: Optional[_Offsets],
-        *others: Any,
-    ) -> None:
-        """given: points, and other arrays with a row for each."""
-        super().__init__(name)
-        n, create = len(given[0]), getattr(library, f"{name}_create")
-        starts, sets = _as_offsets(offsets, n)
-        arguments = _as_arguments((*map(_as_doubles, given), n, starts, sets, *others))
-        with triangulator.turn:
-            check(create(triangulator.pointer, *arguments, self.place))
-        self._counts = {"point": n, "set": 1 if starts is None else sets}
-
-    def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        return self.views(*self._offsets, **self._counts)
-
-    def _check(self, function: Any, *given: Any) -> None:
-        check(function(self.pointer, *_as_arguments(given)))
+def sphere(width: int) -> _declarations.Space:
+    """The sphere, of points that have two or three numbers."""
+    return space_of("sphere", coordinates=sphere_coordinates(width))
 
 
-class Spherical(_Surface):
-    """Triangulations of points on a sphere, as longitudes and latitudes or x, y and z."""
-
-    def __init__(
-        self, triangulator: Triangulator, points: _Doubles, offsets: Optional[_Offsets]
-    ) -> None:
-        super().__init__(
-            "spherical", triangulator, [points], offsets, sphere_coordinates(points.shape[1])
-        )
-
-    def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        directions = np.empty((self._counts["point"], 3))
-        self._check(library.spherical_directions, directions)
-        return {"directions": directions, **super().arrays()}
-
-    def verify(self, points: _Doubles) -> None:
-        width = sphere_coordinates(points.shape[1])
-        self._check(library.spherical_verify, _as_doubles(points), width)
-
-    def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
-        made, triangles = _Result("spherical_voronoi"), self.read("triangle_count")
-        triangulator.make(made, library.spherical_voronoi_create, self)
-        counts = {"triangle": triangles, "corner": 3 * triangles}
-        arrays = made.views(**self._counts, **counts)
-        return {"vertices": arrays.pop("centres"), **arrays}
-
-
-class Periodic(_Surface):
-    """Triangulations of points on a torus or a cylinder."""
+class InSpace(_Triangulation):
+    """Triangulations of sets of points in a space."""
 
     def __init__(
         self,
         triangulator: Triangulator,
         points: _Doubles,
-        period: tuple[float, float],
         offsets: Optional[_Offsets],
+        space: _declarations.Space,
     ) -> None:
-        super().__init__("periodic", triangulator, [points], offsets, *period)
+        super().__init__()
+        self._given = _as_doubles(points), _as_offsets(offsets, len(points))[0], space
+        self.on_sphere = bool(space.kind == SPACE_KINDS["sphere"])
+        coordinates, starts, _ = self._given
+        options = _struct(_declarations.Options, parts=PART["neighbors"], space=space)
+        sets = 0 if starts is None else len(starts) - 1
+        given = (coordinates, len(points), starts, sets, options, self.place)
+        triangulator.call(library.triangulate, triangulator, *given)
 
-    def arrays(self) -> dict[str, npt.NDArray[Any]]:
-        arrays = super().arrays()
-        arrays["period"] = _view(self, self.read("period"), (2,), _FLOAT64)
-        arrays["offsets"] = arrays["offsets"].reshape(-1, 3, 2)
-        return arrays
+    @property
+    def _mesh(self) -> Any:
+        return library.triangulation_mesh(self.pointer)
+
+    def arrays(self) -> Made:
+        return Made(self, {"neighbors"}, self._mesh)
+
+    def period(self) -> tuple[float, float]:
+        space = self._mesh[0].space[0]
+        return space.period_x, space.period_y
 
     def verify(self) -> None:
-        self._check(library.periodic_verify)
+        points, starts, space = self._given
+        check(library.mesh_verify(self._mesh, _address_of(points), _address_or_none(starts), space))
 
-    def cells(self, triangulator: Triangulator) -> dict[str, Any]:
-        return _clipped_cells(triangulator, library.periodic_cells, self)
-
-
-class Weighted(_Surface):
-    """Regular triangulations of weighted points."""
-
-    _offsets = ("triangle_offsets", "hull_offsets")
-
-    def __init__(
-        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, offsets: Optional[_Offsets]
-    ) -> None:
-        super().__init__("weighted", triangulator, [points, weights], offsets)
-
-    def hiding_triangles(self, triangulator: Triangulator, points: _Doubles) -> _Indices:
-        triangles = np.empty(self.read("hidden_count"), np.int32)
-        given = (self, _as_doubles(points), triangles)
-        triangulator.call(library.weighted_hiding_triangles, triangulator, *given)
+    def hiding_triangles(self, triangulator: Triangulator) -> _Indices:
+        points, starts, _ = self._given
+        triangles = np.empty(self._mesh[0].hidden_count, np.int32)
+        sets = 0 if starts is None else len(starts) - 1
+        triangulator.call(library.hiding_triangles, triangulator, points, starts, sets, self, triangles)
         return triangles
 
-    def verify(self, points: _Doubles, weights: _Doubles) -> None:
-        self._check(library.weighted_verify, _as_doubles(points), _as_doubles(weights))
-
-    def cells(
-        self, triangulator: Triangulator, points: _Doubles, weights: _Doubles, corners: _Doubles
+    def clipped_cells(
+        self, triangulator: Triangulator, weights: Optional[_Doubles] = None, corners: Optional[_Doubles] = None
     ) -> dict[str, Any]:
-        given = (self, _as_doubles(points), _as_doubles(weights), _as_doubles(corners), len(corners))
-        return _clipped_cells(triangulator, library.weighted_cells, *given)
+        """The cells of a torus, or with weights of one set in the plane, clipped to a polygon."""
+        points, count = self._given[0], 0 if corners is None else len(corners)
+        given = (points, weights, len(points), self, None if corners is None else _as_doubles(corners), count)
+        return _clipped_cells(triangulator, *given)
+
+    def voronoi(self, triangulator: Triangulator) -> dict[str, npt.NDArray[Any]]:
+        """The Voronoi cells on the sphere."""
+        made, n = _Result("voronoi"), len(self._given[0])
+        triangulator.make(made, library.voronoi_compute, None, 0, self)
+        triangles = made.read("triangle_count")
+        shapes = {"circumcentres": (triangles, 3), "areas": (n,)}
+        arrays = {name: _view(made, made.read(name), shape, _FLOAT64) for name, shape in shapes.items()}
+        shapes = {"cell_offsets": (n + 1,), "cells": (made.read("corner_count"),)}
+        arrays |= {name: _view(made, made.read(name), shape, _INT32) for name, shape in shapes.items()}
+        return {"vertices": arrays.pop("circumcentres"), **arrays}
 
 
-class SurfaceLocator(_InTurns):
+def directions_of(places: _Doubles) -> _Doubles:
+    """Unit vectors of places on the sphere."""
+    directions = np.empty((len(places), 3))
+    check(library.directions(*_as_arguments((_as_doubles(places), len(places), directions))))
+    return directions
+
+
+class SpaceLocator(_Locator):
     """Answers queries on a sphere, a torus or a cylinder."""
 
-    _name: ClassVar[str]
-
-    def __init__(self, triangulator: Triangulator, mesh: Handle) -> None:
+    def __init__(self, triangulator: Triangulator, mesh: InSpace) -> None:
         super().__init__(triangulator)
-        triangulator.make(self, self._function("create"), mesh)
+        self._on_sphere = mesh.on_sphere
+        triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
 
-    def _function(self, name: str) -> Any:
-        return getattr(library, f"{self._name}_locator_{name}")
+    def _ask(self, function: Any, queries: _Doubles, *after: Any, before: tuple[Any, ...] = ()) -> None:
+        """Calls a function of queries. before, after: what it takes before these, and behind their sets."""
+        queries = _as_doubles(queries)
+        with self._triangulator.turn:
+            if self._on_sphere:
+                self._call(library.locator_set_coordinates, sphere_coordinates(queries.shape[1]))
+            self._call(function, *before, queries, len(queries), None, 0, *after)
 
-    def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
-        """What the functions take behind the number of queries."""
-        return ()
-
-    def _find(self, function: str, queries: _Doubles) -> _Indices:
-        found, queries = np.empty(len(queries), np.int32), _as_doubles(queries)
-        self._call(
-            self._function(function), queries, len(queries), *self._kind_of(queries), found
-        )
+    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+        found = np.empty(len(queries), np.int32)
+        self._ask(function, queries, found)
         return found
 
     def locate(self, queries: _Doubles) -> _Indices:
-        return self._find("locate", queries)
+        return self._find(library.locator_locate, queries)
 
     def nearest(self, queries: _Doubles) -> _Indices:
-        return self._find("nearest", queries)
-
-    def interpolate(self, values: _Doubles, queries: _Doubles) -> _Doubles:
-        """A row of values at each query. values: one for each point."""
-        results = np.empty((len(queries), values.shape[1]))
-        queries = _as_doubles(queries)
-        given = (_as_doubles(values), values.shape[1], queries, len(queries), *self._kind_of(queries))
-        self._call(self._function("interpolate"), *given, results)
-        return results
-
-
-class SphericalLocator(SurfaceLocator):
-    """Answers queries on a sphere."""
-
-    _name, _destroy = "spherical", library.spherical_locator_destroy
-
-    def _kind_of(self, queries: _Doubles) -> tuple[int, ...]:
-        return (sphere_coordinates(queries.shape[1]),)
-
-    def nearest_points(
-        self, queries: _Doubles, count: int, max_distance: float
-    ) -> tuple[_Indices, _Doubles]:
-        """As `PointTree.nearest`, with angles."""
-        m = len(queries)
-        points, distances = np.empty((m, count), _INT32), np.empty((m, count))
-        given = _as_doubles(queries), m, *self._kind_of(queries), count, max_distance
-        self._call(self._function("nearest_points"), *given, points, distances)
-        return points, distances
-
-
-class PeriodicLocator(SurfaceLocator):
-    """Answers queries on a torus or a cylinder."""
-
-    _name, _destroy = "periodic", library.periodic_locator_destroy
+        return self._find(library.locator_nearest, queries)
 
     def interpolate(self, values: _Doubles, queries: _Doubles, method: str = "linear") -> _Doubles:
         """A row of values at each query. values: one for each point."""
         table = Interpolation(values, method, np.nan)
-        results, queries = np.empty((len(queries), table.columns)), _as_doubles(queries)
-        self._call(
-            library.periodic_locator_interpolate,
-            *(table.address, queries, len(queries), table.options, results),
-        )
+        results = np.empty((len(queries), table.columns))
+        self._ask(library.locator_interpolate, queries, table.options, results, before=(table.address,))
         return results

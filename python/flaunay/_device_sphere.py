@@ -93,9 +93,9 @@ def spherical_device(
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points = call.points(points, offsets, "points", widths=(2, 3))
     triangulator = _triangulators.of_queue(call.queue)
-    n, kind = int(points.shape[0]), _calls.sphere_coordinates(int(points.shape[1]))
-    made, event = call.run(_calls.DeviceSpherical, triangulator, device_points, kind)
-    places = made.arrays(point=n, triangle=int(made.triangle_offsets[-1]))
+    device_points.lie_in(_calls.sphere(int(points.shape[1])))
+    made, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, set())
+    places = made.arrays_in_space()
     views = {name: view(*place, call.queue, event) for name, place in places.items()}
     return DeviceSpherical(
         simplices=views.pop("triangles"),

@@ -41,7 +41,7 @@ def _as_queries(given: ArrayLike) -> Doubles:
     return queries
 
 
-class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
+class PeriodicDelaunay(WithLocator):
     """Delaunay triangulations of points on a torus or a cylinder. `periodic` makes them.
 
     Attributes
@@ -68,8 +68,6 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
     """
 
-    _Locator = _calls.PeriodicLocator
-
     def __init__(
         self,
         points: Doubles,
@@ -78,19 +76,18 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         device: Optional[str],
     ) -> None:
         self._given = points, period, offsets, device
-        self._handle = _calls.Periodic(_triangulators.of_device(device), points, period, offsets)
-        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
+        space = _calls.space_of("torus", period)
+        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
+        made = self._handle.arrays()
         self.points = points
-        across, up = arrays["period"].tolist()
-        self.period: tuple[float, float] = across, up
-        self.places: Doubles = arrays["places"]
-        self.simplices: Indices = arrays["triangles"]
-        self.corner_offsets: npt.NDArray[np.int8] = arrays["offsets"]
-        self.neighbors: Indices = arrays["neighbors"]
-        self.representatives: Indices = arrays["representatives"]
-        self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
-        self._kept_locator: Kept[_calls.PeriodicLocator] = Kept()
-        self._kept_tree: Kept[_calls.PointTree] = Kept()
+        self.period: tuple[float, float] = self._handle.period()
+        self.places: Doubles = frozen(made["places"])
+        self.simplices: Indices = frozen(made["triangles"])
+        self.corner_offsets: npt.NDArray[np.int8] = frozen(made["corner_offsets"].reshape(-1, 3, 2))
+        self.neighbors: Indices = frozen(made["neighbors"])
+        self.representatives: Indices = frozen(made["representatives"])
+        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
+        self._kept_locator, self._kept_tree = Kept(), Kept()
 
     @cached_property
     def cells(self) -> ClippedVoronoi:
@@ -113,7 +110,7 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         """
         across, up = self.period
         box = np.array([[0, 0], [across, 0], [across, up], [0, up]])
-        return ClippedVoronoi(**self._handle.cells(self._triangulator), bounds=box)
+        return ClippedVoronoi(**self._handle.clipped_cells(self._triangulator), bounds=box)
 
     @cached_property
     def corners(self) -> Doubles:
@@ -166,17 +163,9 @@ class PeriodicDelaunay(WithLocator[_calls.PeriodicLocator]):
         >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
         array([5, 5], dtype=int32)
         """
-        return self._find(_as_queries(xi), _calls.SurfaceLocator.locate)
+        return self._find(_as_queries(xi), _calls.SpaceLocator.locate)
 
     _as_queries = staticmethod(_as_queries)
-
-    def _nearest_points(
-        self, queries: Doubles, count: int, most: float
-    ) -> tuple[Indices, Doubles]:
-        tree = self._kept_tree.get(
-            lambda: _calls.PointTree.of_periodic(self._triangulator, self._handle)
-        )
-        return tree.nearest(queries, count, most)
 
     def interpolate(
         self,
@@ -402,19 +391,17 @@ def periodic_device(
     <flaunay.DevicePeriodic: 1000 points, 2000 triangles>
     """
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
-    device_points, lengths = call.points(points, offsets, "points"), as_lengths(period)
+    device_points, space = call.points(points, offsets, "points"), _calls.space_of("torus", as_lengths(period))
     triangulator = _triangulators.of_queue(call.queue)
-    made, event = call.run(_calls.DevicePeriodic, triangulator, device_points, *lengths)
-    triangles = int(made.triangle_offsets[-1])
-    places = made.arrays(point=int(points.shape[0]), triangle=triangles)
+    made, event = call.run(_calls.DeviceTriangulation, triangulator, device_points.lie_in(space), set())
+    triangles, places = made.read("triangle_count"), made.arrays_in_space("corner_offsets")
     views = {name: view(*place, call.queue, event) for name, place in places.items()}
-    across, up = made.copied("period", 2).tolist()
     return DevicePeriodic(
         simplices=views.pop("triangles"),
-        corner_offsets=views.pop("offsets").reshape(triangles, 3, 2),
+        corner_offsets=views.pop("corner_offsets").reshape(triangles, 3, 2),
         **views,
         points=points,
-        period=(across, up),
+        period=made.period,
         simplex_offsets=made.triangle_offsets,
         event=event,
     )

@@ -122,7 +122,7 @@ class SphericalVoronoi:
         return circle if i == low else circle[::-1].copy()
 
 
-class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
+class SphericalDelaunay(WithLocator):
     """Delaunay triangulations of points on the unit sphere: their convex hulls. `spherical` makes them.
 
     Attributes
@@ -145,8 +145,6 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
     """
 
-    _Locator = _calls.SphericalLocator
-
     def __init__(
         self,
         points: Doubles,
@@ -154,16 +152,17 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         device: Optional[str],
     ) -> None:
         self._given = points, offsets, device
-        self._handle = _calls.Spherical(_triangulators.of_device(device), points, offsets)
-        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
+        space = _calls.sphere(points.shape[1])
+        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
+        made = self._handle.arrays()
         self.points = points
-        self.places: Doubles = arrays["places"]
-        self.xyz: Doubles = arrays["directions"]
-        self.simplices: Indices = arrays["triangles"]
-        self.neighbors: Indices = arrays["neighbors"]
-        self.representatives: Indices = arrays["representatives"]
-        self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
-        self._kept_locator: Kept[_calls.SphericalLocator] = Kept()
+        self.places: Doubles = frozen(made["places"])
+        self.xyz: Doubles = frozen(_calls.directions_of(self.places))
+        self.simplices: Indices = frozen(made["triangles"])
+        self.neighbors: Indices = frozen(made["neighbors"])
+        self.representatives: Indices = frozen(made["representatives"])
+        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
+        self._kept_locator, self._kept_tree = Kept(), Kept()
 
     @cached_property
     def voronoi(self) -> SphericalVoronoi:
@@ -190,7 +189,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(self.points)
+        self._handle.verify()
 
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
@@ -217,7 +216,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
         >>> tri.find_simplex([[10, 20], [190, -20]])
         array([ 0, -1], dtype=int32)
         """
-        return self._find(_as_points(xi, "xi"), _calls.SurfaceLocator.locate)
+        return self._find(_as_points(xi, "xi"), _calls.SpaceLocator.locate)
 
     @staticmethod
     def _as_queries(given: ArrayLike) -> Doubles:
@@ -226,7 +225,7 @@ class SphericalDelaunay(WithLocator[_calls.SphericalLocator]):
     def _nearest_points(
         self, queries: Doubles, count: int, most: float
     ) -> tuple[Indices, Doubles]:
-        return self._locator.nearest_points(queries, count, most)
+        return self._tree.nearest_on_sphere(queries, count, most)
 
     def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
         """Values between points, by linear interpolation in the triangles in space (Renka, 1984).

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, ClassVar, Generic, Literal, Optional, TypeVar, Union, overload
+from typing import Any, Callable, Literal, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,6 @@ from flaunay._queries import Kept, count_and_bound
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
-Locator = TypeVar("Locator", bound=_calls.SurfaceLocator)
 
 
 class OfPoints:
@@ -44,23 +43,23 @@ class OfPoints:
         return len(self.simplices)
 
 
-class WithLocator(OfPoints, Generic[Locator]):
-    """One that answers queries, by a locator that is made when it is first needed."""
+class WithLocator(OfPoints):
+    """One that answers queries, by a locator and a tree that are made when they are first needed."""
 
-    _Locator: ClassVar[Callable[..., Any]]
-    _handle: Any
-    _kept_locator: Kept[Locator]
+    _handle: _calls.InSpace
+    _kept_locator: Kept[_calls.SpaceLocator]
+    _kept_tree: Kept[_calls.PointTree]
 
     @property
-    def _locator(self) -> Locator:
-        return self._kept_locator.get(self._make_locator)
+    def _locator(self) -> _calls.SpaceLocator:
+        return self._kept_locator.get(lambda: _calls.SpaceLocator(self._triangulator, self._handle))
 
-    def _make_locator(self) -> Locator:
-        locator: Locator = self._Locator(self._triangulator, self._handle)
-        return locator
+    @property
+    def _tree(self) -> _calls.PointTree:
+        return self._kept_tree.get(lambda: _calls.PointTree.in_space(self._triangulator, self._handle))
 
     def _find(
-        self, queries: Doubles, search: Callable[[_calls.SurfaceLocator, Doubles], Indices]
+        self, queries: Doubles, search: Callable[[_calls.SpaceLocator, Doubles], Indices]
     ) -> Indices:
         """What a method of the locator finds. Queries are checked before there is one."""
         found = search(self._locator, queries.reshape(-1, queries.shape[-1]))
@@ -75,7 +74,7 @@ class WithLocator(OfPoints, Generic[Locator]):
         self, queries: Doubles, count: int, most: float
     ) -> tuple[Indices, Doubles]:
         """Rows of so many points, within a distance, and of their distances."""
-        raise NotImplementedError
+        return self._tree.nearest(queries, count, most)
 
     @overload
     def nearest(
@@ -140,7 +139,7 @@ class WithLocator(OfPoints, Generic[Locator]):
         """
         queries = self._as_queries(xi)
         if k is None and distance_upper_bound is None and not return_distances:
-            return self._find(queries, _calls.SurfaceLocator.nearest)
+            return self._find(queries, _calls.SpaceLocator.nearest)
         count, most = count_and_bound(k, distance_upper_bound)
         shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
         rows = queries.reshape(-1, queries.shape[-1])

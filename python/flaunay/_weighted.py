@@ -46,17 +46,18 @@ class WeightedDelaunay(OfPoints):
         device: Optional[str],
     ) -> None:
         self._given = points, weights, offsets, device
-        self._handle = _calls.Weighted(_triangulators.of_device(device), points, weights, offsets)
-        arrays = {name: frozen(array) for name, array in self._handle.arrays().items()}
+        space = _calls.space_of("plane", weights=weights)
+        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
+        made = self._handle.arrays()
         self.points = points
         self.weights = weights
-        self.simplices: Indices = arrays["triangles"]
-        self.neighbors: Indices = arrays["neighbors"]
-        self.hull: Indices = arrays["hull"]
-        self.hidden: Indices = arrays["hidden"]
-        self.representatives: Indices = arrays["representatives"]
-        self.simplex_offsets: npt.NDArray[np.int64] = arrays["triangle_offsets"]
-        self.hull_offsets: npt.NDArray[np.int64] = arrays["hull_offsets"]
+        self.simplices: Indices = frozen(made["triangles"])
+        self.neighbors: Indices = frozen(made["neighbors"])
+        self.hull: Indices = frozen(made["hull"])
+        self.hidden: Indices = frozen(made["hidden"])
+        self.representatives: Indices = frozen(made["representatives"])
+        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
+        self.hull_offsets: npt.NDArray[np.int64] = frozen(made["hull_offsets"])
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex, hidden=len(self.hidden))
@@ -67,9 +68,7 @@ class WeightedDelaunay(OfPoints):
 
         It has the point inside or on its border; of several it is the first. -1 in a set without triangles.
         """
-        return frozen(
-            self._handle.hiding_triangles(self._triangulator, self.points)
-        )
+        return frozen(self._handle.hiding_triangles(self._triangulator))
 
     def verify(self) -> None:
         """Checks exactly that this is the canonical regular triangulation of its points.
@@ -79,7 +78,7 @@ class WeightedDelaunay(OfPoints):
         InternalError
             If it is not; the message says what is wrong.
         """
-        self._handle.verify(self.points, self.weights)
+        self._handle.verify()
 
     def cells(self, bounds: Any) -> ClippedVoronoi:
         """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.
@@ -108,9 +107,7 @@ class WeightedDelaunay(OfPoints):
         if len(self.simplex_offsets) != 2:
             raise UsageError("power cells are of one set; triangulate the sets one by one")
         corners = corners_of(bounds)
-        arrays = self._handle.cells(
-            self._triangulator, self.points, self.weights, corners
-        )
+        arrays = self._handle.clipped_cells(self._triangulator, self.weights, corners)
         return ClippedVoronoi(**arrays, bounds=corners)
 
 

@@ -11,11 +11,15 @@ using c::required;
 FLAUNAY_DESTROY(clipped_voronoi)
 FLAUNAY_HANDLE(device_clipped_voronoi, DeviceClippedVoronoi)
 
-flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
+flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
+                                    const double* weights, size_t n,
                                     const flaunay_triangulation* triangulation, const double* corners,
                                     size_t corner_count, flaunay_clipped_voronoi** cells) {
   return c::make(triangulator, cells, [&](Triangulator& cpp) {
-    const Triangulation& primal = required(triangulation, "the triangulation").cpp;
+    const Triangulation& primal = required(triangulation, "the triangulation").plain();
+    if (primal.space.kind != SpaceKind::plane) return cpp.clipped_voronoi(primal);
+    if (weights != nullptr)
+      return cpp.clipped_voronoi(coordinates, weights, n, primal, corners, corner_count);
     return cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count);
   });
 }

@@ -20,34 +20,6 @@ FLAUNAY_HANDLE(device_constraints, DeviceConstraintEdges)
 
 namespace {
 
-flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
-  flaunay_constrained_arrays view{};
-  view.added_count = result.added_points.size() / 2;
-  view.constraint_count = result.constraint_edges.size() / 2;
-  view.segment_count = result.piece_offsets.size() - 1;
-  view.piece_count = result.piece_edges.size() / 2;
-#define VIEW(type, name, ...) view.name = elements(result.name);
-  FLAUNAY_CONSTRAINED_ARRAYS(VIEW)
-#undef VIEW
-  return view;
-}
-
-flaunay_refinement_report view_of(const RefinementReport& report) {
-  flaunay_refinement_report view{};
-  view.rounds = report.rounds;
-  view.added_points = report.added_points;
-  view.split_points = report.split_points;
-  view.smallest_angle = report.smallest_angle;
-  view.largest_angle = report.largest_angle;
-  view.bad_count = report.bad_triangles.size();
-  view.bad_triangles = elements(report.bad_triangles);
-  view.mean_angle = report.mean_angle;
-  view.smallest_angle_before = report.smallest_angle_before;
-  view.mean_angle_before = report.mean_angle_before;
-  view.excuses = reinterpret_cast<const std::uint8_t*>(elements(report.excuses));
-  return view;
-}
-
 static_assert(c::agree<flaunay_excuse, Excuse, 1>());
 
 // A value that counts if the caller says so. Others must be 0, so that none is forgotten.
@@ -121,21 +93,8 @@ PolygonOptions to_polygon_options(const flaunay_polygons& given, const flaunay_o
 // A copy of the caller's arrays.
 ConstrainedTriangulation to_result(const flaunay_mesh* mesh, const flaunay_constrained_arrays* arrays,
                                    const flaunay_refinement_report* report) {
-  const flaunay_mesh& given = required(mesh, "the mesh");
-  const flaunay_constrained_arrays& more = required(arrays, "the arrays of constraints");
   ConstrainedTriangulation result;
-  c::copy_to(result, given);
-  const std::size_t triangles = given.triangle_count;
-  expect(more.added_count <= given.point_count, "there are more added points than points");
-  result.added_points = c::copied(more.added_points, 2 * more.added_count, "added points");
-  result.added_offsets = c::copied_offsets(more.added_offsets, given.set_count, more.added_count);
-  result.constraint_edges = c::copied(more.constraint_edges, 2 * more.constraint_count, "constraint edges");
-  result.edge_segments = c::copied(more.edge_segments, more.constraint_count, "segments of edges");
-  result.piece_offsets = c::copied(more.piece_offsets, more.segment_count + 1, "offsets of pieces");
-  result.piece_edges = c::copied(more.piece_edges, 2 * more.piece_count, "edges of pieces");
-  result.constrained = c::copied(more.constrained, 3 * triangles, "constrained", true);
-  result.depths = c::copied(more.depths, triangles, "depths", true);
-  result.regions = c::copied(more.regions, triangles, "regions", true);
+  c::copy_to(result, required(mesh, "the mesh"), required(arrays, "the arrays of constraints"));
   if (report == nullptr) return result;
   result.refinement.added_points = report->added_points;
   result.refinement.bad_triangles = c::copied(report->bad_triangles, report->bad_count, "bad triangles");
@@ -168,6 +127,52 @@ Polygons to_polygons(const flaunay_polygons& given) {
 
 namespace flaunay::c {
 
+flaunay_constrained_arrays view_of(const ConstrainedTriangulation& result) {
+  flaunay_constrained_arrays view{};
+  view.added_count = result.added_points.size() / 2;
+  view.constraint_count = result.constraint_edges.size() / 2;
+  view.segment_count = result.piece_offsets.size() - 1;
+  view.piece_count = result.piece_edges.size() / 2;
+#define VIEW(type, name, ...) view.name = elements(result.name);
+  FLAUNAY_CONSTRAINED_ARRAYS(VIEW)
+#undef VIEW
+  return view;
+}
+
+flaunay_refinement_report view_of(const RefinementReport& report) {
+  flaunay_refinement_report view{};
+  view.rounds = report.rounds;
+  view.added_points = report.added_points;
+  view.split_points = report.split_points;
+  view.smallest_angle = report.smallest_angle;
+  view.largest_angle = report.largest_angle;
+  view.bad_count = report.bad_triangles.size();
+  view.bad_triangles = elements(report.bad_triangles);
+  view.mean_angle = report.mean_angle;
+  view.smallest_angle_before = report.smallest_angle_before;
+  view.mean_angle_before = report.mean_angle_before;
+  view.excuses = reinterpret_cast<const std::uint8_t*>(elements(report.excuses));
+  return view;
+}
+
+void copy_to(ConstrainedTriangulation& result, const flaunay_mesh& mesh,
+             const flaunay_constrained_arrays& more) {
+  copy_to(result, mesh);
+  const std::size_t triangles = mesh.triangle_count;
+  expect(more.added_count <= mesh.point_count, "there are more added points than points");
+  result.added_points = copied(more.added_points, 2 * more.added_count, "added points");
+  result.added_offsets = copied_offsets(more.added_offsets, mesh.set_count, more.added_count);
+  result.constraint_edges = copied(more.constraint_edges, 2 * more.constraint_count, "constraint edges");
+  result.edge_segments = copied(more.edge_segments, more.constraint_count, "segments of edges");
+  result.piece_offsets = {0};
+  if (more.segment_count > 0 || more.piece_offsets != nullptr)
+    result.piece_offsets = copied(more.piece_offsets, more.segment_count + 1, "offsets of pieces");
+  result.piece_edges = copied(more.piece_edges, 2 * more.piece_count, "edges of pieces");
+  result.constrained = copied(more.constrained, 3 * triangles, "constrained", true);
+  result.depths = copied(more.depths, triangles, "depths", true);
+  result.regions = copied(more.regions, triangles, "regions", true);
+}
+
 Constraints to_constraints(const flaunay_constraints& given, std::size_t sets) {
   Constraints result;
   result.segments = given.segments;
@@ -193,28 +198,11 @@ ConstrainedOptions to_constrained_options(const flaunay_constraints& given, cons
 
 }  // namespace flaunay::c
 
-struct flaunay_constrained {
-  explicit flaunay_constrained(ConstrainedTriangulation computed) : cpp(std::move(computed)) {
-    statistics.show(cpp.statistics);
-    mesh = c::view_of(cpp, statistics);
-    arrays = view_of(cpp);
-    refinement = view_of(cpp.refinement);
-  }
-  // The views refer to the other members.
-  flaunay_constrained(const flaunay_constrained&) = delete;
-  flaunay_constrained& operator=(const flaunay_constrained&) = delete;
-
-  ConstrainedTriangulation cpp;
-  c::StatisticsView statistics;
-  flaunay_mesh mesh;
-  flaunay_constrained_arrays arrays;
-  flaunay_refinement_report refinement;
-};
-
 flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulator, const double* coordinates,
                                                size_t n, const size_t* offsets, size_t sets,
                                                const flaunay_constraints* constraints,
-                                               const flaunay_options* options, flaunay_constrained** result) {
+                                               const flaunay_options* options,
+                                               flaunay_triangulation** result) {
   return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_constraints given = constraints != nullptr ? *constraints : flaunay_constraints{};
     c::check_reserved(given, "flaunay_constraints");
@@ -227,7 +215,7 @@ flaunay_status flaunay_triangulate_constrained(flaunay_triangulator* triangulato
 
 flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
                                             const flaunay_polygons* polygons, const flaunay_options* options,
-                                            flaunay_constrained** result) {
+                                            flaunay_triangulation** result) {
   return c::make(triangulator, result, [&](Triangulator& cpp) {
     const flaunay_polygons& given = required(polygons, "the polygons");
     c::check_reserved(given, "flaunay_polygons");
@@ -235,10 +223,10 @@ flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
   });
 }
 
-FLAUNAY_DESTROY(constrained)
-FLAUNAY_ACCESSOR(const flaunay_mesh*, constrained, mesh, &handle.mesh)
-FLAUNAY_ACCESSOR(const flaunay_constrained_arrays*, constrained, get_arrays, &handle.arrays)
-FLAUNAY_ACCESSOR(const flaunay_refinement_report*, constrained, refinement, &handle.refinement)
+FLAUNAY_ACCESSOR(const flaunay_constrained_arrays*, triangulation, constraints,
+                 handle.constrained() != nullptr ? &handle.constraints : nullptr)
+FLAUNAY_ACCESSOR(const flaunay_refinement_report*, triangulation, refinement,
+                 handle.constrained() != nullptr ? &handle.refinement : nullptr)
 
 flaunay_status flaunay_mesh_verify_constrained(const flaunay_mesh* mesh,
                                                const flaunay_constrained_arrays* arrays,
@@ -279,9 +267,8 @@ flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* tria
   return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(mesh, "the mesh");
     DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
-    // The view refers to statistics that the call replaces.
-    handle.statistics.clear();
+    handle.clear();
     cpp.constrained(c::to_points(points), {segments, segment_count}, handle.cpp, result, queued);
-    handle.statistics.show(handle.cpp.statistics);
+    handle.show();
   });
 }

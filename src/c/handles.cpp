@@ -21,6 +21,7 @@ using research::Mode;
 constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
 
 void check_parts(unsigned parts) {
+  // Those of spaces are computed whatever is asked for.
   constexpr unsigned kAll = bit_of(kTriangulationArrayCount) - 1;
   if (parts & ~kAll) throw_usage(fmt::format("there are no parts {:#x}", parts & ~kAll));
 }
@@ -110,17 +111,57 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
   view.hull_count = triangulation.hull.size();
 #define VIEW(type, name, ...) view.name = elements(triangulation.name);
   FLAUNAY_TRIANGULATION_ARRAYS(VIEW)
+  FLAUNAY_SPACE_ARRAYS(VIEW)
 #undef VIEW
+  view.hidden_count = triangulation.hidden.size();
+  view.image_count = triangulation.images;
   view.triangle_offsets = elements(triangulation.triangle_offsets);
   view.hull_offsets = elements(triangulation.hull_offsets);
+  view.point_offsets = elements(triangulation.point_offsets);
   view.statistics = statistics.get();
   return view;
 }
 
-research::Options to_options(const flaunay_options* options) {
+flaunay_mesh view_of(const DeviceTriangulation& triangulation, const StatisticsView& statistics) {
+  flaunay_mesh view{};
+  view.point_count = triangulation.points;
+  view.set_count = set_count(triangulation.point_offsets);
+  view.triangle_count = total(triangulation.triangle_offsets);
+  view.hull_count = total(triangulation.hull_offsets);
+  view.image_count = triangulation.images;
+  view.triangle_offsets = elements(triangulation.triangle_offsets);
+  view.hull_offsets = elements(triangulation.hull_offsets);
+  view.point_offsets = elements(triangulation.point_offsets);
+  view.statistics = statistics.get();
+  return view;
+}
+
+flaunay_space view_of(const Space& space) {
+  flaunay_space view{};
+  view.kind = static_cast<int>(space.kind);
+  if (space.kind == SpaceKind::sphere) view.coordinates = static_cast<int>(space.coordinates);
+  if (space.kind == SpaceKind::torus) {
+    view.period_x = space.period.x;
+    view.period_y = space.period.y;
+  }
+  return view;
+}
+
+Space to_space(const flaunay_space* given) {
+  if (given == nullptr) return Space::plane();
+  check_reserved(*given, "flaunay_space");
+  Space space = Space::plane().with_weights(given->weights);
+  space.kind = to_enum<flaunay_space_kind, SpaceKind>(given->kind);
+  space.coordinates = to_enum<flaunay_sphere_coordinates, SphereCoordinates>(given->coordinates);
+  space.period = {given->period_x, given->period_y};
+  return space;
+}
+
+research::Options to_options(const flaunay_options* options, bool has_space) {
   research::Options result;
   if (options == nullptr) return result;
   check_reserved(*options, "flaunay_options");
+  expect(has_space || options->space == nullptr, "this call has points in the plane: flaunay_options.space");
   check_parts(options->parts);
   request(options->parts, result);
   result.mode = to_enum<flaunay_mode, Mode>(options->mode);
@@ -189,6 +230,7 @@ DevicePoints to_points(const flaunay_device_points* points, const char* what) {
   if (given.offsets != nullptr) result.offsets = to_offsets(given.offsets, given.sets, given.count);
   result.device_offsets = given.device_offsets;
   result.sets = given.sets;
+  result.space = to_space(given.space);
   return result;
 }
 

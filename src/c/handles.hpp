@@ -10,6 +10,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "c/enumerators.hpp"
@@ -20,6 +21,7 @@
 #include "flaunay/neighbors.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/result_arrays.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::c {
 
@@ -53,9 +55,18 @@ flaunay_device_info view_of(const DeviceInfo& info);
 
 /// A triangulation as a C struct. It refers to both, which must outlive it.
 flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics);
+flaunay_mesh view_of(const DeviceTriangulation& triangulation, const StatisticsView& statistics);
+flaunay_constrained_arrays view_of(const ConstrainedTriangulation& triangulation);
+flaunay_refinement_report view_of(const RefinementReport& report);
 
-/// A copy of the caller's arrays. Throws Error(usage) for one that is null but has elements.
+flaunay_space view_of(const Space& space);
+/// Null: the plane. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
+Space to_space(const flaunay_space* space);
+
+/// Copies of the caller's arrays. Throw Error(usage) for one that is null but has elements.
 void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh);
+void copy_to(ConstrainedTriangulation& triangulation, const flaunay_mesh& mesh,
+             const flaunay_constrained_arrays& arrays);
 /// Copies rows of points, and their distances unless these are null.
 inline void copy_to(const Neighbors& found, std::int32_t* points, double* distances) {
   std::copy(found.points.begin(), found.points.end(), points);
@@ -71,8 +82,9 @@ std::vector<T> copied(const T* values, std::size_t count, const char* name, bool
 /// `count` parts of `size` things; null if there is but one.
 std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t count, std::size_t size);
 
-/// Null: the defaults. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
-research::Options to_options(const flaunay_options* options);
+/// Null: the defaults. Throws Error(usage) for unknown enumerators, for reserved members that are not 0, and
+/// for a space, which calls that have spaces read by to_space.
+research::Options to_options(const flaunay_options* options, bool has_space = false);
 
 Constraints to_constraints(const flaunay_constraints& given, std::size_t sets);
 /// Throws Error(usage) for unknown enumerators, and for another mode than blocks.
@@ -194,28 +206,81 @@ struct flaunay_triangulator {
   mutable flaunay_device_info view_{};
 };
 
+/// A triangulation, with constraints or without.
 struct flaunay_triangulation {
-  explicit flaunay_triangulation(flaunay::Triangulation computed) : cpp(std::move(computed)) {
-    statistics.show(cpp.statistics);
-    view = flaunay::c::view_of(cpp, statistics);
+  explicit flaunay_triangulation(flaunay::Triangulation computed) : held_(std::move(computed)) {
+    show(plain());
+  }
+  explicit flaunay_triangulation(flaunay::ConstrainedTriangulation computed) : held_(std::move(computed)) {
+    show(*constrained());
+    constraints = flaunay::c::view_of(*constrained());
+    refinement = flaunay::c::view_of(constrained()->refinement);
   }
   // The views refer to the other members.
   flaunay_triangulation(const flaunay_triangulation&) = delete;
   flaunay_triangulation& operator=(const flaunay_triangulation&) = delete;
 
-  flaunay::Triangulation cpp;
-  flaunay::c::StatisticsView statistics;
-  flaunay_mesh view;
+  /// Null without constraints.
+  const flaunay::ConstrainedTriangulation* constrained() const {
+    return std::get_if<flaunay::ConstrainedTriangulation>(&held_);
+  }
+  /// Throws Error(usage) if it has constraints.
+  const flaunay::Triangulation& plain() const {
+    flaunay::expect(constrained() == nullptr,
+                    "a constrained triangulation is not the dual of a Voronoi diagram");
+    return std::get<flaunay::Triangulation>(held_);
+  }
+
+  flaunay_mesh view{};
+  flaunay_constrained_arrays constraints{};
+  flaunay_refinement_report refinement{};
+
+ private:
+  void show(const flaunay::Triangulation& mesh) {
+    statistics_.show(mesh.statistics);
+    view = flaunay::c::view_of(mesh, statistics_);
+    space_ = flaunay::c::view_of(mesh.space);
+    view.space = &space_;
+  }
+
+  flaunay_space space_{};
+  std::variant<flaunay::Triangulation, flaunay::ConstrainedTriangulation> held_;
+  flaunay::c::StatisticsView statistics_;
 };
 
 struct flaunay_device_triangulation {
-  flaunay_device_triangulation() { statistics.clear(); }
+  flaunay_device_triangulation() { clear(); }
+  /// Before a call: views refer to what it replaces.
+  void clear() {
+    statistics_.clear();
+    view = {};
+    view.statistics = statistics_.get();
+  }
+  /// After a call.
+  void show() {
+    statistics_.show(cpp.statistics);
+    view = flaunay::c::view_of(cpp, statistics_);
+    space_ = flaunay::c::view_of(cpp.space);
+    view.space = &space_;
+  }
   flaunay::DeviceTriangulation cpp;
-  flaunay::c::StatisticsView statistics;
+  flaunay_mesh view{};
+
+ private:
+  flaunay_space space_{};
+  flaunay::c::StatisticsView statistics_;
 };
 
 struct flaunay_point_tree {
   flaunay::PointTree cpp;
+};
+
+struct flaunay_locator {
+  flaunay::Locator cpp;
+};
+
+struct flaunay_voronoi {
+  flaunay::Voronoi cpp;
 };
 
 struct flaunay_clipped_voronoi {

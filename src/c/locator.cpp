@@ -13,7 +13,7 @@ using c::create;
 using c::guarded;
 using c::required;
 
-FLAUNAY_HANDLE(locator, Locator)
+FLAUNAY_DESTROY(locator)
 FLAUNAY_HANDLE(natural_weights, NaturalWeights)
 
 namespace {
@@ -61,22 +61,20 @@ flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const 
                                       const size_t* offsets, size_t sets,
                                       const flaunay_triangulation* triangulation, flaunay_locator** locator) {
   return c::make(triangulator, locator, [&](Triangulator& cpp) {
-    const Triangulation& searched = required(triangulation, "the triangulation").cpp;
-    return Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched);
+    const flaunay_triangulation& searched = required(triangulation, "the triangulation");
+    if (searched.constrained() != nullptr) {
+      expect(offsets == nullptr || sets == 1, "a triangulation with constraints must be of one set");
+      return Locator(cpp, coordinates, n, *searched.constrained());
+    }
+    if (searched.plain().space.kind != SpaceKind::plane) return Locator(cpp, searched.plain());
+    return Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched.plain());
   });
 }
 
-flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangulator,
-                                                  const double* coordinates, size_t n,
-                                                  const flaunay_triangulation* triangulation,
-                                                  const uint8_t* constrained, flaunay_locator** locator) {
-  return c::make(triangulator, locator, [&](Triangulator& cpp) {
-    ConstrainedTriangulation searched;
-    static_cast<Triangulation&>(searched) = required(triangulation, "the triangulation").cpp;
-    const std::size_t corners = searched.triangles.size();
-    check_array(constrained, corners, "marks of constrained edges");
-    searched.constrained.assign(constrained, constrained + corners);
-    return Locator(cpp, coordinates, n, searched);
+flaunay_status flaunay_locator_set_coordinates(flaunay_locator* locator, int coordinates) {
+  return guarded([&] {
+    required(locator, "the locator")
+        .cpp.set_coordinates(c::to_enum<flaunay_sphere_coordinates, SphereCoordinates>(coordinates));
   });
 }
 
@@ -105,13 +103,6 @@ flaunay_status flaunay_locator_nearest(flaunay_locator* locator, const double* q
                 [&](Locator& cpp, const auto& checked) { return cpp.nearest(queries, checked); });
 }
 
-flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
-                                           const double* queries, size_t m, const size_t* offsets,
-                                           size_t sets, double* results) {
-  return answer(locator, queries, m, offsets, sets, results,
-                [&](Locator& cpp, const auto& checked) { return cpp.interpolate(values, queries, checked); });
-}
-
 flaunay_status flaunay_locator_locate_device(flaunay_locator* locator, const flaunay_device_points* queries,
                                              const flaunay_enqueue* enqueue, cl_mem* triangles) {
   return answer_on_device(locator, queries, enqueue, triangles,
@@ -124,26 +115,19 @@ flaunay_status flaunay_locator_nearest_device(flaunay_locator* locator, const fl
                           [](Locator& cpp, auto&&... given) { cpp.nearest(given...); });
 }
 
-flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_mem values,
-                                                  const flaunay_device_points* queries,
-                                                  const flaunay_enqueue* enqueue, cl_mem* results) {
-  return answer_on_device(locator, queries, enqueue, results,
-                          [&](Locator& cpp, auto&&... given) { cpp.interpolate(values, given...); });
-}
-
-flaunay_status flaunay_locator_interpolate_with(flaunay_locator* locator, const double* values,
-                                                const double* queries, size_t m, const size_t* offsets,
-                                                size_t sets, const flaunay_interpolation_options* options,
-                                                double* results) {
+flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
+                                           const double* queries, size_t m, const size_t* offsets,
+                                           size_t sets, const flaunay_interpolation_options* options,
+                                           double* results) {
   return answer(locator, queries, m, offsets, sets, results, [&](Locator& cpp, const auto& checked) {
     return cpp.interpolate(values, queries, checked, c::to_interpolation(options));
   });
 }
 
-flaunay_status flaunay_locator_interpolate_with_device(flaunay_locator* locator, cl_mem values,
-                                                       const flaunay_device_points* queries,
-                                                       const flaunay_interpolation_options* options,
-                                                       const flaunay_enqueue* enqueue, cl_mem* results) {
+flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_mem values,
+                                                  const flaunay_device_points* queries,
+                                                  const flaunay_interpolation_options* options,
+                                                  const flaunay_enqueue* enqueue, cl_mem* results) {
   return answer_on_device(
       locator, queries, enqueue, results,
       [&](Locator& cpp, const DevicePoints& points, DeviceBuffer& buffer, const Enqueue& queued) {
@@ -190,6 +174,21 @@ flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator, con
 }
 
 FLAUNAY_DESTROY(point_tree)
+
+flaunay_status flaunay_point_tree_create_in_space(flaunay_triangulator* triangulator,
+                                                  const flaunay_triangulation* triangulation,
+                                                  flaunay_point_tree** tree) {
+  return c::make(triangulator, tree, [&](Triangulator& cpp) {
+    return PointTree(cpp, required(triangulation, "the triangulation").plain());
+  });
+}
+
+flaunay_status flaunay_point_tree_set_coordinates(flaunay_point_tree* tree, int coordinates) {
+  return guarded([&] {
+    required(tree, "the tree")
+        .cpp.set_coordinates(c::to_enum<flaunay_sphere_coordinates, SphereCoordinates>(coordinates));
+  });
+}
 
 flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries, size_t m,
                                           size_t count, double max_distance, int32_t* points,

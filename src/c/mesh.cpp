@@ -8,7 +8,9 @@
 #include "c/errors.hpp"
 #include "c/handles.hpp"
 #include "flaunay/flaunay.h"
+#include "flaunay/sphere.hpp"
 #include "flaunay/verify.hpp"
+#include "flaunay/weighted.hpp"
 #include "geometry/triangles.hpp"
 
 using namespace flaunay;
@@ -21,6 +23,17 @@ namespace {
 
 using Indices = std::vector<std::int32_t>;
 
+// Throws Error(usage) for an index that is not from `lowest` to n - 1. name: the array; what: that of which
+// there are n.
+void check_each(const Indices& given, std::int32_t lowest, std::size_t n, const char* name,
+                const char* what) {
+  for (const std::int32_t index : given) {
+    if (index < lowest || index >= static_cast<std::int64_t>(n)) {
+      throw Error(ErrorKind::usage, fmt::format("{}: {} is none of the {} {}", name, index, n, what));
+    }
+  }
+}
+
 // A copy of the caller's indices, in `rows` rows of so many columns, from `lowest` to n - 1. They are checked
 // in the copy, since the caller's other threads may change the original. name: the array; what: that of which
 // there are n.
@@ -28,17 +41,23 @@ Indices checked(const std::int32_t* given, std::size_t rows, std::size_t columns
                 std::size_t n, const char* name, const char* what) {
   check_array(given, rows, name, kMostIndexed / columns);
   Indices copy(given, given + rows * columns);
-  for (const std::int32_t index : copy) {
-    if (index < lowest || index >= static_cast<std::int64_t>(n)) {
-      throw Error(ErrorKind::usage, fmt::format("{}: {} is none of the {} {}", name, index, n, what));
-    }
-  }
+  check_each(copy, lowest, n, name, what);
   return copy;
 }
 
 Indices checked_corners(const std::int32_t* triangles, std::size_t t, std::size_t n) {
   check_count(n, "points");
   return checked(triangles, t, 3, 0, n, "triangles", "points");
+}
+
+// Throws Error(usage) for an index that is out of range.
+void check_indices(const Triangulation& mesh) {
+  const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
+  check_each(mesh.triangles, 0, n, "triangles", "points");
+  check_each(mesh.neighbors, -1, triangles, "neighbors", "triangles");
+  check_each(mesh.hull, 0, n, "hull vertices", "points");
+  check_each(mesh.representatives, 0, n, "representatives", "points");
+  check_each(mesh.hidden, 0, n, "hidden points", "points");
 }
 
 // Calls visit(from, to) for each edge of a mesh from each of its ends: a triangle has its edges one way
@@ -78,42 +97,77 @@ void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh) {
   constexpr bool always = true, on_request = false;
   const std::size_t triangle = mesh.triangle_count, halfedge = 3 * triangle, hull_vertex = mesh.hull_count,
                     point = mesh.point_count;
+#define COPY_IN_SPACE(type, name, row, columns) COPY(type, name, row, columns, on_request)
 #define COPY(type, name, row, columns, asked, ...) \
   triangulation.name = copied(mesh.name, columns * row, "values of " #name, !asked);
   FLAUNAY_TRIANGULATION_ARRAYS(COPY)
+  const std::size_t hidden = mesh.hidden_count;
+  FLAUNAY_SPACE_ARRAYS(COPY_IN_SPACE)
+#undef COPY_IN_SPACE
 #undef COPY
+  triangulation.space = to_space(mesh.space);
+  triangulation.images = mesh.image_count;
   triangulation.triangle_offsets = copied_offsets(mesh.triangle_offsets, mesh.set_count, mesh.triangle_count);
-  triangulation.hull_offsets = copied_offsets(mesh.hull_offsets, mesh.set_count, mesh.hull_count);
+  if (triangulation.space.kind == SpaceKind::plane) {
+    triangulation.hull_offsets = copied_offsets(mesh.hull_offsets, mesh.set_count, mesh.hull_count);
+  } else {
+    triangulation.point_offsets = copied_offsets(mesh.point_offsets, mesh.set_count, mesh.point_count);
+  }
 }
 
 }  // namespace flaunay::c
 
-flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, size_t t,
-                                            const int32_t* neighbors, const int32_t* hull, size_t h,
-                                            const int32_t* representatives,
+flaunay_status flaunay_triangulation_create(const flaunay_mesh* mesh,
+                                            const flaunay_constrained_arrays* constraints,
                                             flaunay_triangulation** triangulation) {
   return create(triangulation, [&] {
-    Triangulation made;
-    made.triangles = checked_corners(triangles, t, n);
-    made.neighbors = checked(neighbors, t, 3, -1, t, "neighbors", "triangles");
-    made.hull = checked(hull, h, 1, 0, n, "hull vertices", "points");
-    made.representatives = checked(representatives, n, 1, 0, n, "representatives", "points");
-    made.triangle_offsets = {0, t};
-    made.hull_offsets = {0, h};
-    made.statistics.points = n;
-    made.statistics.triangles = t;
-    made.statistics.hull_vertices = h;
+    const flaunay_mesh& given = required(mesh, "the mesh");
+    const auto complete = [](Triangulation& made) {
+      check_indices(made);
+      made.statistics.points = made.representatives.size();
+      made.statistics.triangles = made.triangles.size() / 3;
+      made.statistics.hull_vertices = made.hull.size();
+    };
+    if (constraints == nullptr) {
+      Triangulation made;
+      c::copy_to(made, given);
+      complete(made);
+      return std::make_unique<flaunay_triangulation>(std::move(made));
+    }
+    ConstrainedTriangulation made;
+    c::copy_to(made, given, *constraints);
+    complete(made);
     return std::make_unique<flaunay_triangulation>(std::move(made));
   });
 }
 
-flaunay_status flaunay_mesh_verify(const flaunay_mesh* mesh, const double* coordinates,
-                                   const size_t* offsets) {
+flaunay_status flaunay_mesh_verify(const flaunay_mesh* mesh, const double* coordinates, const size_t* offsets,
+                                   const flaunay_space* space) {
   return c::verified([&] {
     const flaunay_mesh& given = required(mesh, "the mesh");
     Triangulation triangulation;
     c::copy_to(triangulation, given);
-    return verify(coordinates, c::copied_offsets(offsets, given.set_count, given.point_count), triangulation);
+    return verify(coordinates, c::copied_offsets(offsets, given.set_count, given.point_count),
+                  c::to_space(space), triangulation);
+  });
+}
+
+flaunay_status flaunay_hiding_triangles(flaunay_triangulator* triangulator, const double* points,
+                                        const size_t* offsets, size_t sets,
+                                        const flaunay_triangulation* triangulation, int32_t* triangles) {
+  return c::with(triangulator, [&](Triangulator& cpp) {
+    const Triangulation& mesh = required(triangulation, "the triangulation").plain();
+    c::copy_to(triangles,
+               hiding_triangles(cpp, points, c::to_offsets(offsets, sets, mesh.representatives.size()), mesh),
+               "results");
+  });
+}
+
+flaunay_status flaunay_directions(const double* places, size_t n, double* directions) {
+  return guarded([&] {
+    check_array(places, n, "places of points", kMostIndexed / 2);
+    check_array(directions, n, "directions");
+    c::copy_to(directions, directions_of({places, places + 2 * n}), "directions");
   });
 }
 

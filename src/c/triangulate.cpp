@@ -16,13 +16,26 @@ using c::required;
 
 namespace {
 
+Triangulation triangulate_in(Triangulator& cpp, const double* coordinates,
+                             const std::vector<std::size_t>& offsets, const Space& space,
+                             const research::Options& options) {
+  expect(options.mode == research::Mode::blocks, "spaces and weights are for mode blocks alone");
+  return cpp.triangulate(coordinates, offsets, space, static_cast<const Options&>(options));
+}
+Triangulation triangulate_in(Triangulator&, const float*, const std::vector<std::size_t>&, const Space&,
+                             const research::Options&) {
+  throw Error(ErrorKind::usage, "points in single precision lie in the plane: flaunay_options.space");
+}
+
 template <typename Coordinate>
 flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate* coordinates, size_t n,
                            const size_t* offsets, size_t sets, const flaunay_options* options,
                            flaunay_triangulation** result) {
   return c::make(triangulator, result, [&](Triangulator& cpp) {
     const std::vector<std::size_t> all = c::to_offsets(offsets, sets, n);
-    const research::Options wanted = c::to_options(options);
+    const research::Options wanted = c::to_options(options, true);
+    if (options != nullptr && options->space != nullptr)
+      return triangulate_in(cpp, coordinates, all, c::to_space(options->space), wanted);
     // What is about the paper's modes has a call of its own, which refuses what does not go together.
     const bool is_plain =
         wanted.mode == research::Mode::blocks && wanted.hull != research::Hull::monotone_chain;
@@ -133,34 +146,14 @@ flaunay_status flaunay_triangulate_on_host(const double* coordinates, size_t n, 
 }
 
 FLAUNAY_DESTROY(triangulation)
-#define MEMBER(type, name) FLAUNAY_ACCESSOR(type, triangulation, name, handle.view.name)
-#define ARRAY(type, name, ...) MEMBER(const type*, name)
-MEMBER(size_t, point_count)
-MEMBER(size_t, set_count)
-MEMBER(size_t, triangle_count)
-MEMBER(size_t, hull_count)
-FLAUNAY_TRIANGULATION_ARRAYS(ARRAY)
-ARRAY(size_t, triangle_offsets)
-ARRAY(size_t, hull_offsets)
-ARRAY(flaunay_statistics, statistics)
-#undef ARRAY
-#undef MEMBER
 FLAUNAY_ACCESSOR(const flaunay_mesh*, triangulation, mesh, &handle.view)
 
 FLAUNAY_DESTROY(device_triangulation)
-FLAUNAY_DEVICE_RESULT(triangulation, flaunay_part, FLAUNAY_TRIANGULATION_ARRAYS, "the triangulation",
-                      "a triangulation")
-#define MEMBER(type, name, value) FLAUNAY_ACCESSOR(type, device_triangulation, name, value)
-MEMBER(unsigned, parts, c::to_bits(handle.cpp.parts))
-MEMBER(size_t, point_count, handle.cpp.points)
-MEMBER(size_t, set_count, c::set_count(handle.cpp.point_offsets))
-MEMBER(size_t, triangle_count, c::total(handle.cpp.triangle_offsets))
-MEMBER(size_t, hull_count, c::total(handle.cpp.hull_offsets))
-MEMBER(const size_t*, point_offsets, c::elements(handle.cpp.point_offsets))
-MEMBER(const size_t*, triangle_offsets, c::elements(handle.cpp.triangle_offsets))
-MEMBER(const size_t*, hull_offsets, c::elements(handle.cpp.hull_offsets))
-MEMBER(const flaunay_statistics*, statistics, handle.statistics.get())
-#undef MEMBER
+#define ARRAYS(X) FLAUNAY_TRIANGULATION_ARRAYS(X) X(double, places) X(std::int8_t, corner_offsets)
+FLAUNAY_DEVICE_RESULT(triangulation, flaunay_part, ARRAYS, "the triangulation", "a triangulation")
+#undef ARRAYS
+FLAUNAY_ACCESSOR(unsigned, device_triangulation, parts, c::to_bits(handle.cpp.parts))
+FLAUNAY_ACCESSOR(const flaunay_mesh*, device_triangulation, mesh, &handle.view)
 
 flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                           const flaunay_device_points* points, unsigned parts,
@@ -168,9 +161,8 @@ flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                           flaunay_device_triangulation* result) {
   return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(result, "the result");
-    // The view refers to statistics that the call replaces.
-    handle.statistics.clear();
+    handle.clear();
     cpp.triangulate(c::to_points(points), handle.cpp, c::to_parts(parts), queued);
-    handle.statistics.show(handle.cpp.statistics);
+    handle.show();
   });
 }

@@ -89,7 +89,9 @@ void Frame::begin() {
   scope_.emplace(runtime.arena());
 }
 
-void Frame::check(const DevicePoints& points, const char* what) {
+void Frame::check(const DevicePoints& points, const char* what, SpaceKind kind) {
+  expect(points.space.kind == kind && points.space.weights == nullptr,
+         [&] { return fmt::format("the {} are given for another space", what); });
   check_device_points(place_.device->runtime, points, what);
   memories_.push_back(points.memory);
 }

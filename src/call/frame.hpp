@@ -120,8 +120,8 @@ class Frame {
     }
     return buffer;
   }
-  /// Throws Error(usage) if the buffer of points is missing or too small.
-  void check(const DevicePoints& points, const char* what);
+  /// Throws Error(usage) if the buffer of points is missing or too small, or the points lie in another space.
+  void check(const DevicePoints& points, const char* what, SpaceKind kind = SpaceKind::plane);
   /// The coordinates in double precision. Those in device memory must have been checked.
   Buffer<cl_double> points(const HostPoints& points);
   Buffer<cl_double> points(const DevicePoints& points);

@@ -1,6 +1,8 @@
 // The public class Locator.
 #include "derived/locate/locator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,7 @@
 #include "blocks/run.hpp"
 #include "call/constrained.hpp"
 #include "call/mesh_of.hpp"
+#include "call/spaces.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/whole_mesh.hpp"
 #include "derived/interpolate/interpolate.hpp"
@@ -265,7 +268,21 @@ struct Locator::Implementation {
                                              output);
   }
 
+  /// Throws Error(usage) for what there is in the plane alone.
+  void expect_plane(const char* what) const {
+    call::expect(!in_space, [&] {
+      return fmt::format("{}: not for a triangulation on a torus, a cylinder or the sphere", what);
+    });
+  }
+  /// The number of queries in another space, whose locators are of one set.
+  static std::size_t count_in_space(const std::vector<std::size_t>& offsets) {
+    check_offsets(offsets);
+    call::expect(offsets.size() == 2, "queries on a torus, a cylinder or the sphere are of one set");
+    return offsets.back();
+  }
+
   std::shared_ptr<Triangulator::Implementation> owner;
+  std::unique_ptr<call::SpaceLocator> in_space;  ///< answers all queries in another space than the plane
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
   // All points of a mesh with constraints, and WholeMesh::constrained; empty without constraints.
@@ -343,19 +360,35 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
   self.point_count = points.count;
 }
 
+Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation)
+    : implementation_(make(triangulator, false)) {
+  implementation_->in_space =
+      with_errors([&] { return call::make_locator_in_space(triangulator, triangulation); });
+}
+
 Locator::~Locator() = default;
 Locator::Locator(Locator&&) noexcept = default;
 Locator& Locator::operator=(Locator&&) noexcept = default;
+
+void Locator::set_coordinates(SphereCoordinates coordinates) {
+  with_errors([&] {
+    call::expect(implementation_->in_space != nullptr, "queries in the plane have no such coordinates");
+    implementation_->in_space->set_coordinates(coordinates);
+  });
+}
 
 std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) {
   return locate(queries, std::vector<std::size_t>{0, m});
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
+  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
+    return in_space->locate(queries, Implementation::count_in_space(offsets));
   return implementation_->take_turn([&] { return implementation_->answer_all(queries, offsets, kLocate); });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
+  implementation_->expect_plane("queries in device memory");
   implementation_->take_turn(enqueue, [&] {
     implementation_->answer_all(queries, triangles, "located triangles", enqueue, kLocate);
   });
@@ -366,11 +399,14 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
+  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
+    return in_space->nearest(queries, Implementation::count_in_space(offsets));
   return implementation_->take_turn(
       [&] { return implementation_->for_nearest().answer_all(queries, offsets, kNearest); });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
+  implementation_->expect_plane("queries in device memory");
   implementation_->take_turn(enqueue, [&] {
     implementation_->for_nearest().answer_all(queries, points, "nearest points", enqueue, kNearest);
   });
@@ -398,6 +434,8 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 std::vector<double> Locator::interpolate(const double* values, const double* queries,
                                          const std::vector<std::size_t>& offsets,
                                          const InterpolationOptions& options) {
+  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
+    return in_space->interpolate(values, queries, Implementation::count_in_space(offsets), options);
   check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   check_enumerator(options.method);
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
@@ -410,6 +448,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 
 void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                           const InterpolationOptions& options, const Enqueue& enqueue) {
+  implementation_->expect_plane("queries in device memory");
   check_enumerator(options.method);
   implementation_->take_turn(enqueue, [&] {
     Implementation& self = implementation_->for_method(options.method);
@@ -425,6 +464,7 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
 
 NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
   Implementation& self = *implementation_;
+  self.expect_plane("weights of natural neighbors");
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_queries(queries, m);
@@ -445,6 +485,7 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;
+  self.expect_plane("gradients");
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_array(values, self.numbers(columns), "values", kMostCountable);
@@ -459,6 +500,7 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
 void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
                         const GradientOptions& options, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
+  self.expect_plane("gradients");
   self.take_turn(enqueue, [&] {
     call::Answerer& by = self.doubles();
     self.on_device(by, enqueue, [&](call::Frame& call) {

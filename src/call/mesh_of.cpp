@@ -5,10 +5,16 @@
 #include "geometry/arguments.hpp"
 
 namespace flaunay::call {
+namespace {
+
+constexpr const char* kOtherSpace = "the triangulation is one on a torus, a cylinder or the sphere";
+
+}  // namespace
 
 points::DeviceMesh mesh_of(Frame& call, const HostPoints& points, const Triangulation& triangulation) {
   const std::size_t n = points.count;
   check_points(points.wide, n);
+  expect(triangulation.space.kind == SpaceKind::plane, kOtherSpace);
   expect(triangulation.representatives.size() == n, "the triangulation is of another number of points");
   expect(triangulation.neighbors.size() == triangulation.triangles.size(),
          "the triangulation has no neighbours: see Options::neighbors");
@@ -67,6 +73,7 @@ points::DeviceMesh mesh_of(Frame& call, const DevicePoints& points,
                            const DeviceTriangulation& triangulation) {
   const Parts& parts = triangulation.parts;
   expect(!triangulation.is_constrained, "a constrained triangulation is not the dual of a Voronoi diagram");
+  expect(triangulation.space.kind == SpaceKind::plane, kOtherSpace);
   expect(parts.triangles && parts.neighbors && parts.hull && parts.representatives,
          "the parts triangles, neighbors, hull and representatives are needed");
   expect(points.count == triangulation.points, "the triangulation is of another number of points");

@@ -11,10 +11,10 @@
 
 #include "blocks/memory.hpp"
 #include "blocks/run.hpp"
+#include "call/spaces.hpp"
 #include "call/triangulate.hpp"
 #include "derived/periodic/cells.hpp"
 #include "derived/periodic/fold.hpp"
-#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "prove/periodic_proof.hpp"
 
@@ -35,11 +35,12 @@ void call::check(const Period& period) {
                   period.x, period.y));
 }
 
-void call::check(const PeriodicTriangulation& mesh) {
-  check(mesh.period);
+void call::check_on_torus(const Triangulation& mesh) {
+  expect(mesh.space.kind == SpaceKind::torus, "the triangulation is not one on a torus or a cylinder");
+  check(mesh.space.period);
   const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
   expect(mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
-             mesh.offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
+             mesh.corner_offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
              !mesh.point_offsets.empty() &&
              are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
              are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
@@ -47,9 +48,10 @@ void call::check(const PeriodicTriangulation& mesh) {
          "the arrays are not those of a triangulation on a torus or a cylinder");
 }
 
-void call::check_with_places(const PeriodicTriangulation& mesh) {
-  check(mesh);
-  const kernel::periodic_axes axes = periodic::axes_of({mesh.period.x, mesh.period.y});
+void call::check_with_places(const Triangulation& mesh) {
+  check_on_torus(mesh);
+  const Period& period = mesh.space.period;
+  const kernel::periodic_axes axes = periodic::axes_of({period.x, period.y});
   const auto is_place = [](double x, const auto& axis) {
     return std::isfinite(x) && kernel::place_of(x, axis) == x;
   };
@@ -78,7 +80,8 @@ class Rounds {
         places_(places),
         result_(result),
         offsets_(result.point_offsets),
-        boxes_(periodic::find_boxes(call.runtime, places, offsets_, {result.period.x, result.period.y})) {}
+        boxes_(periodic::find_boxes(call.runtime, places, offsets_,
+                                    {result.space.period.x, result.space.period.y})) {}
 
   // The other arrays of the result.
   void run(const call::Output<cl_int>& triangles, const call::Output<cl_char>& periods,
@@ -119,17 +122,17 @@ class Rounds {
 
  private:
   // Whether the rows of a set in host memory stay in the arrays that they have in the plane.
-  bool is_in_place() const { return std::is_same_v<Result, PeriodicTriangulation> && boxes_.size() == 1; }
+  bool is_in_place() const { return std::is_same_v<Result, Triangulation> && boxes_.size() == 1; }
 
   // Of a set in host memory, images go behind the places.
-  periodic::UnrolledSets::MakeRoom make_room(PeriodicTriangulation& result) {
+  periodic::UnrolledSets::MakeRoom make_room(Triangulation& result) {
     if (!is_in_place()) return nullptr;
     return [&](std::size_t count) {
       call_.runtime.resize(result.places, 2 * count);
       return places_ = call_.in(result.places);
     };
   }
-  static periodic::UnrolledSets::MakeRoom make_room(DevicePeriodicTriangulation&) { return nullptr; }
+  static periodic::UnrolledSets::MakeRoom make_room(DeviceTriangulation&) { return nullptr; }
 
   periodic::UnrolledSets unroll(const std::vector<std::size_t>& sets) {
     std::vector<std::size_t> first, last;
@@ -142,14 +145,14 @@ class Rounds {
     return {call_.runtime, engine_.even, places_, first, last, std::move(boxes), make_room(result_)};
   }
 
-  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DevicePeriodicTriangulation&) const {
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DeviceTriangulation&) const {
     const std::size_t count = plane.offsets().back();
     engine_.check_size(count);
     engine_.persistent.reserve(blocks::workspace_bytes(call_.runtime, count, plane.sets()).persistent);
     Arena::Scope scope(engine_.persistent), scratch_scope(call_.runtime.arena());
     return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even);
   }
-  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, PeriodicTriangulation& result) {
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, Triangulation& result) {
     const auto* const coordinates =
         reinterpret_cast<const double*>(host::address_of(plane.coordinates().memory()));
     planar_ = call::triangulate(self_, {coordinates, nullptr, plane.offsets().back()}, plane.offsets(), {});
@@ -161,8 +164,8 @@ class Rounds {
     mesh.representatives = call_.in(planar_.representatives);
     return mesh;
   }
-  void take_rows(DevicePeriodicTriangulation&) {}
-  void take_rows(PeriodicTriangulation& result) {
+  void take_rows(DeviceTriangulation&) {}
+  void take_rows(Triangulation& result) {
     result.triangles = std::move(planar_.triangles);
     result.neighbors = std::move(planar_.neighbors);
     result.places.resize(2 * offsets_.back());
@@ -206,15 +209,15 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
              const std::vector<std::size_t>& offsets, const Period& period, Result& result) {
   const std::size_t n = points.count, most = blocks::kMostTrianglesPerPoint * n;
   const periodic::Pair<double> lengths = periodic::rounded(period);
-  result.period = {lengths[0], lengths[1]};
+  result.space = Space::torus({lengths[0], lengths[1]});
   result.point_offsets = offsets;
   result.triangle_offsets.assign(offsets.size(), 0);
   result.images = 0;
   result.statistics = {};
-  const std::size_t room = std::is_same_v<Result, PeriodicTriangulation> ? n / 4 : 0;  // for images
+  const std::size_t room = std::is_same_v<Result, Triangulation> ? n / 4 : 0;  // for images
   const auto places = call.template output<cl_double>(result.places, 2 * (n + room), "places").buffer(2 * n);
   const auto triangles = call.template output<cl_int>(result.triangles, 3 * most, "triangles");
-  const auto periods = call.template output<cl_char>(result.offsets, 6 * most, "offsets");
+  const auto periods = call.template output<cl_char>(result.corner_offsets, 6 * most, "offsets");
   const auto neighbors = call.template output<cl_int>(result.neighbors, 3 * most, "neighbors");
   const auto representatives = call.template out<cl_int>(result.representatives, n, "representatives");
   call.check_distinct();
@@ -230,61 +233,65 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
 
 }  // namespace
 
-PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points, std::size_t n,
-                                           const Period& period) {
-  return triangulate_periodic(triangulator, points, std::vector<std::size_t>{0, n}, period);
+Triangulation call::triangulate_on_torus(Implementation& self, const HostPoints& points,
+                                         const std::vector<std::size_t>& offsets, const Period& period) {
+  check(period);
+  check_points(points.wide, points.count);
+  Triangulation result;
+  Frame call(self.native_for(points.count));
+  compute(self, call, points, offsets, period, result);
+  return result;
 }
 
-PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
-                                           const std::vector<std::size_t>& offsets, const Period& period) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
-    check_offsets(offsets);
-    call::check(period);
-    check_points(points, offsets.back());
-    PeriodicTriangulation result;
-    call::Frame call(self.native_for(offsets.back()));
-    compute(self, call, call::HostPoints{points, nullptr, offsets.back()}, offsets, period, result);
-    return result;
-  });
+void call::triangulate_on_torus(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                                const Enqueue& enqueue) {
+  check(points.space.period);
+  const Place place = with_doubles(self, self.on_device());
+  Frame call(self, place, enqueue);
+  call.check(points, "points", SpaceKind::torus);
+  place.device->check_size(points.count);
+  call.check_size(points.count);
+  call.begin();
+  const double begin = place.device->runtime.working_clock();
+  compute(self, call, points, call.offsets(points), points.space.period, result);
+  result.points = points.count;
+  result.parts = kPartsInSpace;
+  result.hull_offsets.clear();
+  Statistics& statistics = result.statistics;
+  statistics.device = call.runtime.name();
+  statistics.points = points.count;
+  statistics.triangles = result.triangle_offsets.back();
+  statistics.seconds = place.device->runtime.working_clock() - begin;
+  place.device->write_accounts(statistics);
+  add_note(*place.device, call.engine, "a torus", "triangulated", statistics);
 }
 
-void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, const Period& period,
-                          DevicePeriodicTriangulation& result, const Enqueue& enqueue) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  call::take_turn(self, enqueue, [&] {
-    call::check(period);
-    const call::Place place = call::with_doubles(self, self.on_device());
-    call::Frame call(self, place, enqueue);
-    call.check(points, "points");
-    place.device->check_size(points.count);
-    call.check_size(points.count);
-    call.begin();
-    const double begin = place.device->runtime.working_clock();
-    compute(self, call, points, call.offsets(points), period, result);
-    Statistics& statistics = result.statistics;
-    statistics.device = call.runtime.name();
-    statistics.points = points.count;
-    statistics.triangles = result.triangle_offsets.back();
-    statistics.seconds = place.device->runtime.working_clock() - begin;
-    place.device->write_accounts(statistics);
-    call::add_note(*place.device, call.engine, "a torus", "triangulated", statistics);
-  });
-}
-
-ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
+ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh) {
+  return call::take_turn(*implementation_, [&] {
     call::check_with_places(mesh);
-    call::expect(std::isfinite(mesh.period.x) && std::isfinite(mesh.period.y),
+    call::expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
                  "cells on a cylinder have no end");
-    return periodic::make_cells(self.native().runtime, mesh);
+    return periodic::make_cells(implementation_->native().runtime, mesh);
   });
 }
 
-std::string verify(const PeriodicTriangulation& mesh) {
-  call::check(mesh);
-  return prove::find_problem(mesh);
+std::string call::problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
+                                   const Period& period, const Triangulation& mesh) {
+  check(period);
+  check_on_torus(mesh);
+  if (offsets != mesh.point_offsets) return "the sets have other points";
+  const periodic::Pair<double> lengths = periodic::rounded(period);
+  if (mesh.space.period.x != lengths[0] || mesh.space.period.y != lengths[1])
+    return "the period is another one";
+  check_points(points, offsets.back());
+  std::string problem = prove::find_problem(mesh);
+  if (!problem.empty()) return problem;
+  const std::vector<double> places =
+      periodic::to_places(Engine::of_thread().runtime, points, offsets.back(), lengths, "point");
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] != mesh.places[k]) return fmt::format("point {} has another place", k / 2);
+  }
+  return problem;
 }
 
 }  // namespace flaunay

@@ -1,15 +1,15 @@
 // What calls for points on a torus or a cylinder share.
 #pragma once
 
-#include "flaunay/periodic.hpp"
+#include "flaunay/flaunay.hpp"
 
 namespace flaunay::call {
 
 /// Throws Error(usage) for a period that is none.
 void check(const Period& period);
 /// Throws Error(usage) for arrays that are not those of a triangulation on a torus or a cylinder.
-void check(const PeriodicTriangulation& mesh);
+void check_on_torus(const Triangulation& mesh);
 /// Throws Error(usage), too, if it has places that no call has made.
-void check_with_places(const PeriodicTriangulation& mesh);
+void check_with_places(const Triangulation& mesh);
 
 }  // namespace flaunay::call

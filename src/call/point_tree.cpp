@@ -9,6 +9,7 @@
 
 #include "call/frame.hpp"
 #include "call/periodic.hpp"
+#include "call/sphere.hpp"
 #include "derived/periodic/fold.hpp"
 #include "geometry/arguments.hpp"
 
@@ -24,6 +25,11 @@ constexpr std::size_t kRun = 512;
 struct PointTree::Implementation {
   Implementation(std::shared_ptr<call::Implementation> of, const double* coordinates, std::size_t n)
       : owner(std::move(of)), tree(coordinates, n) {}
+
+  Implementation(Triangulator& triangulator, const Triangulation& mesh)
+      : Implementation(TriangulatorAccess::shared(triangulator), nullptr, 0) {
+    on_sphere.emplace(triangulator, mesh);
+  }
 
   // queries: in the period, if there is one.
   Neighbors find(const double* queries, std::size_t m, const NeighborOptions& options) const {
@@ -87,6 +93,7 @@ struct PointTree::Implementation {
 
   std::shared_ptr<call::Implementation> owner;
   nearest::PointTree tree;
+  std::optional<call::SphereLocator> on_sphere;  // answers all queries there
   std::optional<periodic::Pair<double>> period;  // none in the plane
   std::size_t points = 0;                        // with a period: in front of their images
   std::vector<std::int32_t> originals;           // of these
@@ -98,11 +105,12 @@ PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std:
         return std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator), coordinates, n);
       })) {}
 
-PointTree::PointTree(Triangulator& triangulator, const PeriodicTriangulation& mesh)
+PointTree::PointTree(Triangulator& triangulator, const Triangulation& mesh)
     : implementation_(with_errors([&] {
+        if (mesh.space.kind == SpaceKind::sphere) return std::make_unique<Implementation>(triangulator, mesh);
         call::check_with_places(mesh);
         call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
-        const periodic::Pair<double> period{mesh.period.x, mesh.period.y};
+        const periodic::Pair<double> period{mesh.space.period.x, mesh.space.period.y};
         periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, period);
         box.margin = 0;
         for (const double length : period) {
@@ -122,8 +130,19 @@ PointTree::~PointTree() = default;
 PointTree::PointTree(PointTree&&) noexcept = default;
 PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
+void PointTree::set_coordinates(SphereCoordinates coordinates) {
+  with_errors([&] {
+    call::expect(implementation_->on_sphere.has_value(), "queries in the plane have no such coordinates");
+    implementation_->on_sphere->set_coordinates(coordinates);
+  });
+}
+
 Neighbors PointTree::nearest(const double* queries, std::size_t m, const NeighborOptions& options) {
-  const Implementation& self = *implementation_;
+  Implementation& self = *implementation_;
+  if (self.on_sphere) {
+    with_errors([&] { check_neighbors(options, m); });
+    return self.on_sphere->nearest(queries, m, options);
+  }
   return call::take_turn(*self.owner, [&] {
     check_queries(queries, m);
     return self.period ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);

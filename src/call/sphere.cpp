@@ -1,21 +1,20 @@
-// The public calls for points on a sphere.
+// Triangulations and Voronoi diagrams on the sphere.
 #include "flaunay/sphere.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <optional>
+#include <memory>
 #include <utility>
 
+#include "call/spaces.hpp"
+#include "call/sphere.hpp"
 #include "call/triangulate.hpp"
 #include "derived/sphere/close.hpp"
 #include "derived/sphere/dual.hpp"
 #include "derived/sphere/places.hpp"
 #include "derived/sphere/plane.hpp"
-#include "derived/sphere/walk.hpp"
 #include "flaunay/device_memory.hpp"
-#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "launchers/sphere/cap.cl.hpp"
 #include "mesh/corners.hpp"
@@ -104,7 +103,7 @@ Caps make_caps(const HullVertices& hulls, const Planar& planar, const Plane& pla
 }
 
 // The rows of a single set in host memory stay where they are. Returns whether it is one.
-bool append(const Caps& caps, Triangulation& planar, SphericalTriangulation& result) {
+bool append(const Caps& caps, Triangulation& planar, Triangulation& result) {
   if (result.point_offsets.size() != 2) return false;
   result.triangles = std::move(planar.triangles);
   result.neighbors = std::move(planar.neighbors);
@@ -114,7 +113,7 @@ bool append(const Caps& caps, Triangulation& planar, SphericalTriangulation& res
   for (const cl_int2& link : caps.links) result.neighbors[static_cast<std::size_t>(link.s[0])] = link.s[1];
   return true;
 }
-bool append(const Caps&, const DeviceTriangulation&, DeviceSphericalTriangulation&) { return false; }
+bool append(const Caps&, const DeviceTriangulation&, DeviceTriangulation&) { return false; }
 
 Ids narrow(const Offsets& offsets) { return {offsets.begin(), offsets.end()}; }
 
@@ -148,27 +147,6 @@ void write_triangles(call::Frame& call, const Plane& plane, Planar& planar, Resu
                                        .neighbors = neighbors});
 }
 
-// It is the triangulator's turn.
-SphericalTriangulation triangulate_in_turn(call::Implementation& self, const double* points,
-                                           const Offsets& offsets, SphereCoordinates coordinates) {
-  const std::size_t n = offsets.back();
-  SphericalTriangulation result;
-  result.point_offsets = offsets;
-  Triangulation planar;
-  call::Frame call(self.native_for(n));
-  const bool has_pole =
-      sphere::find_places(call.runtime, call.in<cl_double>(points, n * sphere::width_of(coordinates)), 0, n,
-                          coordinates, call.out<cl_double>(result.places, 2 * n), "point");
-  const Plane plane = sphere::make_plane(result.places, offsets, has_pole);
-  planar = call::triangulate(self, {plane.places().data(), nullptr, plane.offsets.back()}, plane.offsets, {});
-  sphere::number_by_points(plane, n, planar);
-  write_triangles(call, plane, planar, result);
-  call.end();
-  result.representatives = std::move(planar.representatives);
-  result.statistics = std::move(planar.statistics);
-  return result;
-}
-
 // Computes places. If one is the south pole, returns the points for the host.
 template <typename T>
 std::vector<double> write_places(call::Frame& call, const DevicePoints& points, SphereCoordinates coordinates,
@@ -182,10 +160,10 @@ std::vector<double> write_places(call::Frame& call, const DevicePoints& points, 
 }
 
 std::vector<double> write_places(call::Implementation& self, const DevicePoints& points,
-                                 SphereCoordinates coordinates, DeviceSphericalTriangulation& result,
+                                 SphereCoordinates coordinates, DeviceTriangulation& result,
                                  const Enqueue& enqueue) {
   call::Frame call(self, call::with_doubles(self, self.on_device()), enqueue);
-  call.check(points, "points");
+  call.check(points, "points", SpaceKind::sphere);
   check_count(points.count, "points", kMostPointsAtOnce);
   call.begin();
   result.point_offsets = call.offsets(points);
@@ -201,7 +179,7 @@ std::vector<double> write_places(call::Implementation& self, const DevicePoints&
   return for_host;
 }
 
-void triangulate_plane(call::Implementation& self, std::size_t n, DeviceSphericalTriangulation& result,
+void triangulate_plane(call::Implementation& self, std::size_t n, DeviceTriangulation& result,
                        Enqueue enqueue) {
   enqueue.event = nullptr;
   DevicePoints in_plane;
@@ -210,10 +188,12 @@ void triangulate_plane(call::Implementation& self, std::size_t n, DeviceSpherica
   in_plane.offsets = result.point_offsets;
   Parts parts;
   parts.neighbors = parts.hull = parts.representatives = true;
-  result.planar.representatives = result.representatives;
-  call::triangulate(self, in_plane, result.planar, parts, enqueue);
-  result.representatives = result.planar.representatives;
-  result.statistics = result.planar.statistics;
+  if (!result.planar) result.planar = std::make_shared<DeviceTriangulation>();
+  DeviceTriangulation& planar = *result.planar;
+  planar.representatives = result.representatives;
+  call::triangulate(self, in_plane, planar, parts, enqueue);
+  result.representatives = planar.representatives;
+  result.statistics = planar.statistics;
 }
 
 template <typename T>
@@ -221,7 +201,7 @@ void write(call::Frame& call, DeviceBuffer& to, std::size_t most, const char* wh
   call::write_result(call.runtime, call.output<T>(to, most, what).buffer(values.size()), std::move(values));
 }
 
-void write_all(call::Frame& call, SphericalTriangulation mesh, DeviceSphericalTriangulation& result) {
+void write_all(call::Frame& call, Triangulation mesh, DeviceTriangulation& result) {
   const std::size_t n = mesh.representatives.size();
   write<cl_int>(call, result.triangles, 6 * n, "triangles", std::move(mesh.triangles));
   write<cl_int>(call, result.neighbors, 6 * n, "neighbors", std::move(mesh.neighbors));
@@ -230,7 +210,8 @@ void write_all(call::Frame& call, SphericalTriangulation mesh, DeviceSphericalTr
   result.statistics = std::move(mesh.statistics);
 }
 
-void check_arrays(const SphericalTriangulation& mesh) {
+void check_arrays(const Triangulation& mesh) {
+  call::expect(mesh.space.kind == SpaceKind::sphere, "the triangulation is not one on the sphere");
   const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
   const bool is_whole = mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 &&
                         mesh.representatives.size() == n && mesh.neighbors.size() == mesh.triangles.size() &&
@@ -241,7 +222,71 @@ void check_arrays(const SphericalTriangulation& mesh) {
   call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
 }
 
-void check(const SphericalTriangulation& mesh) {
+}  // namespace
+
+Triangulation call::triangulate_on_sphere(Implementation& self, const double* points, const Offsets& offsets,
+                                          SphereCoordinates coordinates) {
+  const std::size_t n = offsets.back();
+  check_points(points, n);
+  check_enumerator(coordinates);
+  Triangulation result;
+  result.space = Space::sphere(coordinates);
+  result.point_offsets = offsets;
+  Triangulation planar;
+  Frame call(self.native_for(n));
+  const bool has_pole =
+      sphere::find_places(call.runtime, call.in<cl_double>(points, n * sphere::width_of(coordinates)), 0, n,
+                          coordinates, call.out<cl_double>(result.places, 2 * n), "point");
+  const Plane plane = sphere::make_plane(result.places, offsets, has_pole);
+  planar = triangulate(self, {plane.places().data(), nullptr, plane.offsets.back()}, plane.offsets, {});
+  sphere::number_by_points(plane, n, planar);
+  write_triangles(call, plane, planar, result);
+  call.end();
+  result.representatives = std::move(planar.representatives);
+  result.statistics = std::move(planar.statistics);
+  return result;
+}
+
+void call::triangulate_on_sphere(Implementation& self, const DevicePoints& points,
+                                 DeviceTriangulation& result, const Enqueue& enqueue) {
+  const SphereCoordinates coordinates = points.space.coordinates;
+  check_enumerator(coordinates);
+  result.points = points.count;
+  result.parts = kPartsInSpace;
+  result.hull_offsets.clear();
+  result.images = 0;
+  Enqueue first = enqueue, rest = enqueue;
+  first.event = nullptr;
+  rest.wait_for.clear();
+  const std::vector<double> for_host = write_places(self, points, coordinates, result, first);
+  if (!for_host.empty()) {
+    Triangulation mesh = triangulate_on_sphere(self, for_host.data(), result.point_offsets, coordinates);
+    // Copies alone need no doubles.
+    Engine& device = self.on_device();
+    Frame call(self, Place{device, &device}, rest);
+    call.begin();
+    write_all(call, std::move(mesh), result);
+    return call.end();
+  }
+  if (points.count > 0) triangulate_plane(self, points.count, result, rest);
+  Frame call(self, with_doubles(self, self.on_device()), rest);
+  call.begin();
+  if (points.count > 0) {
+    Plane plane;
+    plane.poles.resize(result.point_offsets.size() - 1);
+    write_triangles(call, plane, *result.planar, result);
+  }
+  call.end();
+}
+
+std::string call::problem_on_sphere(const double* points, const Offsets& offsets,
+                                    SphereCoordinates coordinates, const Triangulation& mesh) {
+  check_arrays(mesh);
+  if (offsets != mesh.point_offsets) return "the sets have other points";
+  return prove::find_problem(places_on_sphere(points, offsets.back(), coordinates), mesh);
+}
+
+void call::check_on_sphere(const Triangulation& mesh) {
   check_arrays(mesh);
   for (std::size_t i = 0; i < mesh.places.size() / 2; ++i) {
     const Point place = sphere::place_at(mesh.places, i), known = kernel::rounded_place(place.x, place.y);
@@ -260,64 +305,6 @@ void check(const SphericalTriangulation& mesh) {
   }
 }
 
-}  // namespace
-
-SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points, std::size_t n,
-                                          SphereCoordinates coordinates) {
-  return triangulate_sphere(triangulator, points, std::vector<std::size_t>{0, n}, coordinates);
-}
-
-SphericalTriangulation triangulate_sphere(Triangulator& triangulator, const double* points,
-                                          const std::vector<std::size_t>& offsets,
-                                          SphereCoordinates coordinates) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
-    check_offsets(offsets);
-    check_points(points, offsets.back());
-    check_enumerator(coordinates);
-    return triangulate_in_turn(self, points, offsets, coordinates);
-  });
-}
-
-void triangulate_sphere(Triangulator& triangulator, const DevicePoints& points, SphereCoordinates coordinates,
-                        DeviceSphericalTriangulation& result, const Enqueue& enqueue) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  call::take_turn(self, enqueue, [&] {
-    check_enumerator(coordinates);
-    Enqueue first = enqueue, rest = enqueue;
-    first.event = nullptr;
-    rest.wait_for.clear();
-    const std::vector<double> for_host = write_places(self, points, coordinates, result, first);
-    if (!for_host.empty()) {
-      SphericalTriangulation mesh =
-          triangulate_in_turn(self, for_host.data(), result.point_offsets, coordinates);
-      // Copies alone need no doubles.
-      call::Engine& device = self.on_device();
-      call::Frame call(self, call::Place{device, &device}, rest);
-      call.begin();
-      write_all(call, std::move(mesh), result);
-      return call.end();
-    }
-    if (points.count > 0) triangulate_plane(self, points.count, result, rest);
-    call::Frame call(self, call::with_doubles(self, self.on_device()), rest);
-    call.begin();
-    if (points.count > 0) {
-      Plane plane;
-      plane.poles.resize(result.point_offsets.size() - 1);
-      write_triangles(call, plane, result.planar, result);
-    }
-    call.end();
-  });
-}
-
-std::string verify(const double* points, const std::vector<std::size_t>& offsets,
-                   SphereCoordinates coordinates, const SphericalTriangulation& triangulation) {
-  check_offsets(offsets);
-  check_arrays(triangulation);
-  if (offsets != triangulation.point_offsets) return "the sets have other points";
-  return prove::find_problem(places_on_sphere(points, offsets.back(), coordinates), triangulation);
-}
-
 std::vector<double> places_on_sphere(const double* points, std::size_t n, SphereCoordinates coordinates) {
   check_points(points, n);
   check_enumerator(coordinates);
@@ -334,166 +321,11 @@ std::vector<double> directions_of(const std::vector<double>& places) {
   return directions;
 }
 
-SphericalVoronoi voronoi_on_sphere(Triangulator& triangulator, const SphericalTriangulation& triangulation) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
-    check(triangulation);
-    return sphere::make_dual(self.native().runtime, triangulation);
+Voronoi Triangulator::voronoi(const Triangulation& mesh) {
+  return call::take_turn(*implementation_, [&] {
+    call::check_on_sphere(mesh);
+    return sphere::make_dual(implementation_->native().runtime, mesh);
   });
-}
-
-struct SphereLocator::Implementation {
-  Implementation(Triangulator& used, const SphericalTriangulation& triangulation)
-      : owner(TriangulatorAccess::shared(used)), mesh(triangulation) {
-    call::take_turn(*owner, [&] {
-      check(mesh);
-      call::expect(mesh.point_offsets.size() == 2, "queries on a sphere need one set of points");
-      walker.emplace(mesh);
-      plane = sphere::make_plane(mesh.places, mesh.point_offsets);
-      if (plane.places().empty()) return;
-      const double* const places = plane.places().data();
-      const std::size_t n = plane.places().size() / 2;
-      Triangulation planar = sphere::planar_part(plane, mesh);
-      if (planar.triangles.empty()) planar = call::triangulate(*owner, {places, nullptr, n}, {0, n}, {});
-      const call::WithinTurn within(*owner);
-      locator.emplace(used, places, n, planar);
-    });
-  }
-
-  /// Of each query a vertex near it, in the order given; -1 if there are no points.
-  Ids starts(const std::vector<double>& places, const Ids& order) {
-    const std::int32_t other = plane.poles[0].empty() ? -1 : plane.poles[0].front();
-    if (!locator) return Ids(order.size(), other);
-    std::vector<double> in_plane;
-    in_plane.reserve(places.size());
-    for (const std::int32_t i : order) {
-      const Point p = sphere::place_at(places, static_cast<std::size_t>(i));
-      in_plane.insert(in_plane.end(), {sphere::is_pole(p) ? 0 : p.x, sphere::is_pole(p) ? 0 : p.y});
-    }
-    const call::WithinTurn within(*owner);
-    Ids result = locator->nearest(in_plane.data(), order.size());
-    if (!plane.points.empty()) {
-      for (std::int32_t& v : result) v = plane.points[static_cast<std::size_t>(v)];
-    }
-    return result;
-  }
-
-  /// Returns so many numbers per query. Calls work(place, start, numbers) for each query, on several threads;
-  /// for those that are near each other one after the other, which finds what they need in the cache.
-  template <typename T, typename Work>
-  std::vector<T> answer(const double* queries, std::size_t m, SphereCoordinates coordinates,
-                        std::size_t columns, T none, const Work& work) {
-    return call::take_turn(*owner, [&] {
-      check_queries(queries, m);
-      std::vector<T> result(check_columns(columns, m), none);
-      check_enumerator(coordinates);
-      host::Runtime& runtime = owner->native().runtime;
-      const std::vector<double> places = sphere::to_places(runtime, queries, m, coordinates, "query");
-      const Ids order = sphere::order_along_curve(runtime, places), start = starts(places, order);
-      sphere::for_each(runtime, m, [&](std::size_t k) {
-        const auto i = static_cast<std::size_t>(order[k]);
-        if (start[k] >= 0) work(sphere::place_at(places, i), start[k], &result[columns * i]);
-      });
-      return result;
-    });
-  }
-
-  // A set without triangles has one or two points.
-  std::int32_t nearest_of_two(Point query) const {
-    std::int32_t best = -1;
-    for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
-      if (mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
-      const Point p = sphere::place_at(mesh.places, i);
-      const int sign = best < 0 ? 1 : sphere::nearer(query, p, walker->place(best));
-      if (sign > 0 || (sign == 0 && sphere::comes_first(p, walker->place(best))))
-        best = static_cast<std::int32_t>(i);
-    }
-    return best;
-  }
-
-  sphere::Found locate(Point query, std::int32_t start) const {
-    return mesh.triangles.empty() ? sphere::Found() : walker->locate(query, walker->nearest(query, start));
-  }
-  std::int32_t nearest(Point query, std::int32_t start) const {
-    return mesh.triangles.empty() ? nearest_of_two(query) : walker->nearest(query, start);
-  }
-
-  std::shared_ptr<call::Implementation> owner;
-  SphericalTriangulation mesh;
-  std::optional<sphere::Walker> walker;
-  Plane plane;
-  std::optional<Locator> locator;
-};
-
-SphereLocator::SphereLocator(Triangulator& triangulator, const SphericalTriangulation& triangulation)
-    : implementation_(std::make_unique<Implementation>(triangulator, triangulation)) {}
-SphereLocator::~SphereLocator() = default;
-SphereLocator::SphereLocator(SphereLocator&&) noexcept = default;
-SphereLocator& SphereLocator::operator=(SphereLocator&&) noexcept = default;
-
-std::vector<std::int32_t> SphereLocator::locate(const double* queries, std::size_t m,
-                                                SphereCoordinates coordinates) {
-  return implementation_->answer(queries, m, coordinates, 1, std::int32_t{-1},
-                                 [&](Point query, std::int32_t start, std::int32_t* triangle) {
-                                   *triangle = implementation_->locate(query, start).triangle;
-                                 });
-}
-
-std::vector<std::int32_t> SphereLocator::nearest(const double* queries, std::size_t m,
-                                                 SphereCoordinates coordinates) {
-  return implementation_->answer(queries, m, coordinates, 1, std::int32_t{-1},
-                                 [&](Point query, std::int32_t start, std::int32_t* point) {
-                                   *point = implementation_->nearest(query, start);
-                                 });
-}
-
-Neighbors SphereLocator::nearest(const double* queries, std::size_t m, SphereCoordinates coordinates,
-                                 const NeighborOptions& options) {
-  with_errors([&] { check_neighbors(options, m); });
-  struct Near {
-    std::int32_t point = -1;
-    double angle = std::numeric_limits<double>::infinity();
-  };
-  const auto find = [&](Point query, std::int32_t start, Near* row) {
-    const sphere::Walker& walker = *implementation_->walker;
-    const sphere::Direction from = sphere::direction_of(query);
-    double angle = 0;
-    for (const std::int32_t v :
-         walker.nearest_points(query, implementation_->nearest(query, start), options.count)) {
-      // The order is exact, but angles are rounded: none is less than the one before.
-      angle = std::max(angle, sphere::angle_between(from, sphere::direction_of(walker.place(v))));
-      if (angle <= options.max_distance) *row++ = {v, angle};
-    }
-  };
-  Neighbors result;
-  for (const Near& near : implementation_->answer(queries, m, coordinates, options.count, Near(), find)) {
-    result.points.push_back(near.point);
-    result.distances.push_back(near.angle);
-  }
-  return result;
-}
-
-std::vector<double> SphereLocator::interpolate(const double* values, std::size_t columns,
-                                               const double* queries, std::size_t m,
-                                               SphereCoordinates coordinates) {
-  check_array(values, check_columns(columns, implementation_->mesh.representatives.size()), "values",
-              kMostCountable);
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const auto compute = [&](Point query, std::int32_t start, double* numbers) {
-    const sphere::Found found = implementation_->locate(query, start);
-    if (found.triangle < 0) return;
-    const std::array<double, 3> weights = implementation_->walker->weights(found, query);
-    for (std::size_t c = 0; c < columns; ++c) {
-      double sum = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto v =
-            static_cast<std::size_t>(implementation_->walker->corner(found.triangle, static_cast<int>(k)));
-        if (weights[k] != 0) sum += weights[k] * values[columns * v + c];
-      }
-      numbers[c] = sum;
-    }
-  };
-  return implementation_->answer(queries, m, coordinates, columns, kNone, compute);
 }
 
 }  // namespace flaunay

@@ -105,12 +105,6 @@ Triangulation Triangulator::triangulate(const float* coordinates, const std::vec
   return checked_call(*implementation_, nullptr, coordinates, offsets, options);
 }
 
-void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& result, const Parts& parts,
-                               const Enqueue& enqueue) {
-  call::take_turn(*implementation_, enqueue,
-                  [&] { call::triangulate(*implementation_, points, result, parts, enqueue); });
-}
-
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {
   return with_errors([&] {
     const call::Engine& engine = implementation_->on_device();

@@ -9,6 +9,7 @@ namespace flaunay {
 
 std::string verify(const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Triangulation& mesh) {
+  expect(mesh.space.kind == SpaceKind::plane, "the triangulation is one in another space");
   prove::check_arrays(coordinates, offsets, mesh);
   const std::vector<std::int32_t> made = mesh.neighbors.empty()
                                              ? prove::neighbors_of(mesh.triangles, offsets.back())

@@ -1,4 +1,4 @@
-// The public calls for weighted points.
+// Triangulations of points with weights, and their power cells.
 #include "flaunay/weighted.hpp"
 
 #include <fmt/format.h>
@@ -10,10 +10,10 @@
 #include "arithmetic/coordinates.h"
 #include "blocks/weighted.hpp"
 #include "call/frame.hpp"
+#include "call/spaces.hpp"
 #include "call/triangulate.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
-#include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
@@ -50,9 +50,9 @@ double scaled_weight(double weight, std::size_t point, const kernel::scaling& sc
                   point, weight, is_large ? "large" : "fine"));
 }
 
-// Makes of representatives what WeightedTriangulation says of them, and lists all hidden points.
+// Makes of representatives what Triangulation says of them, and lists all hidden points.
 void settle(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
-            WeightedTriangulation& mesh) {
+            Triangulation& mesh) {
   const auto key = [&](std::int32_t i) { return std::tuple(points[2 * i], points[2 * i + 1], weights[i]); };
   const std::ptrdiff_t others = std::ssize(mesh.hidden);
   Ids lighter;  // those in the places of heavier ones, side by side if they are equal
@@ -77,7 +77,7 @@ void settle(const double* points, const double* weights, const std::vector<std::
   }
 }
 
-void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+void check(const double* points, const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
   prove::check_arrays(points, offsets, mesh);
   call::expect(
       are_indices(mesh.hidden, offsets.back()) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
@@ -87,43 +87,35 @@ void check(const double* points, const std::vector<std::size_t>& offsets, const 
 
 }  // namespace
 
-WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
-                                           const double* weights, std::size_t n, const Options& options) {
-  return triangulate_weighted(triangulator, points, weights, std::vector<std::size_t>{0, n}, options);
-}
-
-WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
-                                           const double* weights, const std::vector<std::size_t>& offsets,
-                                           const Options& options) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
-    const call::HostPoints given = call::checked_points(points, nullptr, offsets);
-    check_array(weights, given.count, "weights");
-    self.native().check_size(given.count);
-    const geometry::SetScalings scalings = geometry::set_scalings(
-        points, offsets,
-        [&](std::size_t first, std::size_t last) { return geometry::inspect(points, first, last); });
-    WeightedTriangulation mesh;
-    call::ScaledWeights scaled{std::vector<double>(given.count), 0, &blocks::kWeightedSolver, mesh.hidden};
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-      const kernel::scaling scale = kernel::scale_of(scalings.shift(s));
-      for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
-        scaled.values[i] = scaled_weight(weights[i], i, scale);
-        least = std::min(least, scaled.values[i]);
-        most = std::max(most, scaled.values[i]);
-      }
+Triangulation call::triangulate_with_weights(Implementation& self, const HostPoints& points,
+                                             const double* weights, const std::vector<std::size_t>& offsets,
+                                             const Options& options) {
+  const HostPoints given = checked_points(points.wide, nullptr, offsets);
+  check_array(weights, given.count, "weights");
+  self.native().check_size(given.count);
+  const geometry::SetScalings scalings = geometry::set_scalings(
+      points.wide, offsets,
+      [&](std::size_t first, std::size_t last) { return geometry::inspect(points.wide, first, last); });
+  Ids hidden;
+  ScaledWeights scaled{std::vector<double>(given.count), 0, &blocks::kWeightedSolver, hidden};
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    const kernel::scaling scale = kernel::scale_of(scalings.shift(s));
+    for (std::size_t i = offsets[s]; i < offsets[s + 1]; ++i) {
+      scaled.values[i] = scaled_weight(weights[i], i, scale);
+      least = std::min(least, scaled.values[i]);
+      most = std::max(most, scaled.values[i]);
     }
-    if (given.count > 0) scaled.range = most - least;
-    static_cast<Triangulation&>(mesh) =
-        call::triangulate_weighted(self.native(), given, scaled, offsets, options);
-    settle(points, weights, offsets, mesh);
-    return mesh;
-  });
+  }
+  if (given.count > 0) scaled.range = most - least;
+  Triangulation mesh = triangulate_weighted(self.native(), given, scaled, offsets, options);
+  mesh.hidden = std::move(hidden);
+  settle(points.wide, weights, offsets, mesh);
+  return mesh;
 }
 
 Ids hiding_triangles(Triangulator& triangulator, const double* points,
-                     const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
+                     const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
   check(points, offsets, mesh);
   if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
   const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
@@ -140,20 +132,20 @@ Ids hiding_triangles(Triangulator& triangulator, const double* points,
   return locator.locate(queries.data(), of_sets);
 }
 
-ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, const double* weights,
-                           std::size_t n, const WeightedTriangulation& mesh, const double* corners,
-                           std::size_t corner_count) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
+ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
+                                             const Triangulation& mesh, const double* corners,
+                                             std::size_t corner_count) {
+  return call::take_turn(*implementation_, [&] {
     const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    check(points, {0, n}, mesh);
+    check(coordinates, {0, n}, mesh);
     check_array(weights, n, "weights");
-    return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
+    return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
+                                polygon.corners);
   });
 }
 
-std::string verify(const double* points, const double* weights, const std::vector<std::size_t>& offsets,
-                   const WeightedTriangulation& mesh) {
+std::string call::problem_with_weights(const double* points, const double* weights,
+                                       const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
   check(points, offsets, mesh);
   check_array(weights, offsets.back(), "weights");
   return prove::find_problem({points, weights, offsets, mesh, mesh.neighbors, mesh.hidden});

@@ -29,11 +29,11 @@ using TorusPlace = std::array<double, 2>;
 
 class PeriodicProof : RowsProof {
  public:
-  explicit PeriodicProof(const PeriodicTriangulation& mesh)
+  explicit PeriodicProof(const Triangulation& mesh)
       : RowsProof({mesh.triangles, mesh.neighbors, mesh.representatives, mesh.point_offsets,
                    mesh.triangle_offsets}),
         mesh_(mesh),
-        period_{mesh.period.x, mesh.period.y},
+        period_{mesh.space.period.x, mesh.space.period.y},
         scaled_period_(period_) {}
 
   void run() {
@@ -46,7 +46,7 @@ class PeriodicProof : RowsProof {
   bool repeats(std::size_t axis) const { return std::isfinite(period_[axis]); }
 
   void check_places() const {
-    require(periodic::rounded(mesh_.period) == period_, "the period is not rounded");
+    require(periodic::rounded(mesh_.space.period) == period_, "the period is not rounded");
     std::vector<double> places(mesh_.places.size());
     periodic::take_into(period_, mesh_.places.data(), places.size() / 2, 0, "place", places.data());
     const auto wrong = std::mismatch(places.begin(), places.end(), mesh_.places.begin()).first;
@@ -68,7 +68,7 @@ class PeriodicProof : RowsProof {
   }
 
   Image corner(std::size_t c) const {
-    return {mesh_.triangles[c], {mesh_.offsets[2 * c], mesh_.offsets[2 * c + 1]}};
+    return {mesh_.triangles[c], {mesh_.corner_offsets[2 * c], mesh_.corner_offsets[2 * c + 1]}};
   }
   // Relative to the origin's image in a direction that has a period. No edge of a Delaunay triangulation is
   // longer than a period, so a mesh with rounded differences is wrong anyway.
@@ -154,7 +154,7 @@ class PeriodicProof : RowsProof {
     return false;
   }
 
-  const PeriodicTriangulation& mesh_;
+  const Triangulation& mesh_;
   Pair<double> period_, scaled_period_;
   std::vector<double> places_;  // scaled
   ExactPredicates predicates_;
@@ -186,7 +186,7 @@ std::vector<std::int32_t> neighbors_of(const std::vector<std::int32_t>& triangle
   return neighbors;
 }
 
-std::string find_problem(const PeriodicTriangulation& mesh) {
+std::string find_problem(const Triangulation& mesh) {
   return problem_in([&] { PeriodicProof(mesh).run(); });
 }
 

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "flaunay/periodic.hpp"
+#include "flaunay/flaunay.hpp"
 
 namespace flaunay::prove {
 
 /// Returns the first error found; empty if all is right. call::check must have checked the mesh. O(n log n).
-std::string find_problem(const PeriodicTriangulation& mesh);
+std::string find_problem(const Triangulation& mesh);
 
-/// The triangles beyond the edges opposite to corners, or -1. offsets: as in PeriodicTriangulation. If a
+/// The triangles beyond the edges opposite to corners, or -1. offsets: as in Triangulation. If a
 /// half-edge occurs twice, either of its triangles is returned. O(t log t) for t triangles.
 std::vector<std::int32_t> neighbors_of(const std::vector<std::int32_t>& triangles,
                                        const std::vector<std::int8_t>& offsets);

@@ -17,7 +17,7 @@ struct PlanarClaim {
   const std::vector<std::size_t>& offsets;
   const Triangulation& mesh;                   ///< its arrays have sizes and indices that fit each other
   const std::vector<std::int32_t>& neighbors;  ///< its neighbours
-  const std::vector<std::int32_t>& hidden;     ///< ascending; see WeightedTriangulation
+  const std::vector<std::int32_t>& hidden;     ///< ascending; see Triangulation
 };
 
 /// Finds an error in a Delaunay triangulation, or with weights a regular one, or in any of its arrays; empty

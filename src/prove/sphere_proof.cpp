@@ -54,7 +54,7 @@ enum Kind : std::int8_t { kLeft = 1, kRight = -1, kAlong = 2, kAgainst = -2 };
 
 class SphereProof : RowsProof {
  public:
-  explicit SphereProof(const SphericalTriangulation& mesh)
+  explicit SphereProof(const Triangulation& mesh)
       : RowsProof({mesh.triangles, mesh.neighbors, mesh.representatives, mesh.point_offsets,
                    mesh.triangle_offsets}),
         mesh_(mesh),
@@ -181,7 +181,7 @@ class SphereProof : RowsProof {
     require(steps == edges && turns == 2, "the triangles around the south pole go around more than once");
   }
 
-  const SphericalTriangulation& mesh_;
+  const Triangulation& mesh_;
   ExactPredicates predicates_;
   std::vector<Kind> kinds_;
   std::vector<std::int32_t> next_;  // along the border
@@ -198,7 +198,7 @@ void check_places(const std::vector<double>& places, const std::vector<double>& 
 
 }  // namespace
 
-std::string find_problem(const std::vector<double>& places, const SphericalTriangulation& mesh) {
+std::string find_problem(const std::vector<double>& places, const Triangulation& mesh) {
   return problem_in([&] {
     check_places(places, mesh.places);
     SphereProof(mesh).run();

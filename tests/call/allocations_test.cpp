@@ -315,10 +315,10 @@ TEST_F(SmallAllocations, OfTheInterfaceForC) {
   attack([&]() -> std::uint64_t {
     flaunay_triangulator* triangulator = nullptr;
     flaunay_triangulation* mesh = nullptr;
-    flaunay_constrained* constrained = nullptr;
+    flaunay_triangulation* constrained = nullptr;
     std::uint64_t found = 0;
     const auto destroy = [&] {
-      flaunay_constrained_destroy(constrained);
+      flaunay_triangulation_destroy(constrained);
       flaunay_triangulation_destroy(mesh);
       flaunay_triangulator_destroy(triangulator);
     };
@@ -327,8 +327,8 @@ TEST_F(SmallAllocations, OfTheInterfaceForC) {
       check(flaunay_triangulate(triangulator, points.data(), 3000, nullptr, 1, nullptr, &mesh));
       check(flaunay_triangulate_constrained(triangulator, points.data(), 3000, nullptr, 1, &constraints,
                                             nullptr, &constrained));
-      found =
-          flaunay_triangulation_triangle_count(mesh) + flaunay_constrained_mesh(constrained)->triangle_count;
+      found = flaunay_triangulation_mesh(mesh)->triangle_count +
+              flaunay_triangulation_mesh(constrained)->triangle_count;
     } catch (...) {
       destroy();
       throw;

@@ -59,9 +59,6 @@ flaunay_triangulator* triangulator() {
 void make(flaunay_triangulation** made) {
   flaunay_triangulate(triangulator(), kPoints, kCount, nullptr, 0, nullptr, made);
 }
-void make(flaunay_constrained** made) {
-  flaunay_triangulate_constrained(triangulator(), kPoints, kCount, nullptr, 0, nullptr, nullptr, made);
-}
 void make(flaunay_dynamic** made) {
   flaunay_dynamic_create(triangulator(), kPoints, kCount, nullptr, nullptr, made);
 }
@@ -72,34 +69,11 @@ void make(flaunay_locator** made) {
   flaunay_triangulation_destroy(mesh);
 }
 void make(flaunay_point_tree** made) { flaunay_point_tree_create(triangulator(), kPoints, kCount, made); }
-void make(flaunay_spherical** made) {
-  flaunay_spherical_create(triangulator(), kPoints, kCount, nullptr, 0, FLAUNAY_SPHERE_DEGREES, made);
-}
-void make(flaunay_spherical_locator** made) {
-  flaunay_spherical* mesh = nullptr;
-  make(&mesh);
-  flaunay_spherical_locator_create(triangulator(), mesh, made);
-  flaunay_spherical_destroy(mesh);
-}
-void make(flaunay_periodic** made) {
-  flaunay_periodic_create(triangulator(), kPoints, kCount, nullptr, 0, 8, 8, made);
-}
-void make(flaunay_periodic_locator** made) {
-  flaunay_periodic* mesh = nullptr;
-  make(&mesh);
-  flaunay_periodic_locator_create(triangulator(), mesh, made);
-  flaunay_periodic_destroy(mesh);
-}
-void make(flaunay_weighted** made) {
-  flaunay_weighted_create(triangulator(), kPoints, kPoints, kCount, nullptr, 0, made);
-}
 void make(flaunay_device_triangulation** made) { flaunay_device_triangulation_create(made); }
 void make(flaunay_device_constraints** made) { flaunay_device_constraints_create(made); }
 void make(flaunay_device_rows** made) { flaunay_device_rows_create(made); }
 void make(flaunay_device_voronoi** made) { flaunay_device_voronoi_create(made); }
 void make(flaunay_device_clipped_voronoi** made) { flaunay_device_clipped_voronoi_create(made); }
-void make(flaunay_device_spherical** made) { flaunay_device_spherical_create(made); }
-void make(flaunay_device_periodic** made) { flaunay_device_periodic_create(made); }
 
 // An argument with which nothing is wrong.
 template <typename T>
@@ -147,9 +121,6 @@ std::vector<std::string> words_for(const std::string& name) {
   static const std::map<std::string, std::vector<std::string>> words = {
       {"coordinates", {"points", "coordinates"}},
       {"dynamic", {"triangulation"}},
-      {"periodic", {"triangulation"}},
-      {"spherical", {"triangulation"}},
-      {"weighted", {"triangulation"}},
       {"voronoi", {"Voronoi"}},
       {"n", {"points"}},
       {"t", {"triangles"}},
@@ -169,21 +140,17 @@ bool says(const std::string& message, const std::vector<std::string>& words) {
                      [&](const std::string& word) { return message.find(word) != std::string::npos; });
 }
 
-constexpr const char* kMayBeNull[] = {"offsets",    "options", "enqueue", "constraints",
-                                      "distances",  "device",  "context", "contours",
-                                      "breaklines", "arrays",  "files"};
+constexpr const char* kMayBeNull[] = {"offsets", "options", "enqueue",  "constraints", "distances",
+                                      "device",  "context", "contours", "breaklines",  "arrays",
+                                      "files",   "space",   "weights"};
 // Nothing is wrong with these here, or something else: there is no hidden point, no mode of the host, no
 // period, no point in a mesh, and nothing refined.
-constexpr const char* kOther[] = {"flaunay_dynamic_rows(triangles)",
-                                  "flaunay_dynamic_rows(neighbors)",
-                                  "flaunay_weighted_hiding_triangles(triangles)",
-                                  "flaunay_triangulate_on_host(n)",
-                                  "flaunay_triangulate_on_host(coordinates)",
-                                  "flaunay_take_to_places(n)",
-                                  "flaunay_mesh_verify(coordinates)",
-                                  "flaunay_mesh_verify_constrained(coordinates)",
-                                  "flaunay_mesh_verify_constrained(report)",
-                                  "flaunay_mesh_verify_polygons(report)"};
+constexpr const char* kOther[] = {
+    "flaunay_dynamic_rows(triangles)",          "flaunay_dynamic_rows(neighbors)",
+    "flaunay_hiding_triangles(triangles)",      "flaunay_triangulate_on_host(n)",
+    "flaunay_triangulate_on_host(coordinates)", "flaunay_take_to_places(n)",
+    "flaunay_mesh_verify(coordinates)",         "flaunay_mesh_verify_constrained(coordinates)",
+    "flaunay_mesh_verify_constrained(report)",  "flaunay_mesh_verify_polygons(report)"};
 
 template <std::size_t N>
 bool is_one_of(const char* const (&names)[N], const std::string& name) {
@@ -323,12 +290,12 @@ void throw_error_of(flaunay_status status) {
 
 TEST(SmallArguments, InStructsOfC) {
   const auto constrained = [](const flaunay_constraints& given) {
-    flaunay_constrained* result = nullptr;
+    flaunay_triangulation* result = nullptr;
     throw_error_of(flaunay_triangulate_constrained(triangulator(), kPoints, kCount, nullptr, 0, &given,
                                                    nullptr, &result));
   };
   const auto of_polygons = [](const flaunay_polygons& given) {
-    flaunay_constrained* result = nullptr;
+    flaunay_triangulation* result = nullptr;
     throw_error_of(flaunay_triangulate_polygons(triangulator(), &given, nullptr, &result));
   };
   const auto chunks = [](const flaunay_chunk_options& given) {
@@ -492,11 +459,11 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
   Triangulator used("host");
   const Triangulation mesh = used.triangulate(kPoints, kCount);
   const ConstrainedTriangulation constrained = used.constrained(kPoints, kCount, {});
-  const SphericalTriangulation sphere = triangulate_sphere(used, kPoints, kCount, SphereCoordinates::degrees);
-  const PeriodicTriangulation torus = triangulate_periodic(used, kPoints, kCount, {8, 8});
+  const Triangulation sphere = used.triangulate(kPoints, kCount, Space::sphere(SphereCoordinates::degrees));
+  const Triangulation torus = used.triangulate(kPoints, kCount, Space::torus({8, 8}));
   Locator locator(used, kPoints, kCount, mesh);
-  SphereLocator on_sphere(used, sphere);
-  PeriodicLocator on_torus(used, torus);
+  Locator on_sphere(used, sphere);
+  Locator on_torus(used, torus);
   PointTree tree(used, kPoints, kCount);
   DynamicTriangulation dynamic(used, kPoints, kCount);
   const auto points = [](std::size_t count) { return array_for(count, kPoints); };
@@ -525,12 +492,13 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
       {"points", [&](std::size_t n) { dynamic.insert(points(n), counted(n)); }},
       {"points", [&](std::size_t n) { dynamic.remove(indices(n), counted(n)); }},
       {"points", [&](std::size_t n) { dynamic.move(kTriangles, points(n), counted(n)); }},
-      {"points", [&](std::size_t n) { triangulate_sphere(used, points(n), counted(n), degrees); }},
+      {"points", [&](std::size_t n) { used.triangulate(points(n), counted(n), Space::sphere(degrees)); }},
       {"points",
        [&](std::size_t n) {
-         triangulate_periodic(used, points(n), counted(n), {8, 8});
+         used.triangulate(points(n), counted(n), Space::torus({8, 8}));
        }},
-      {"points", [&](std::size_t n) { triangulate_weighted(used, points(n), kPoints, counted(n)); }},
+      {"points",
+       [&](std::size_t n) { used.triangulate(points(n), counted(n), Space::plane().with_weights(kPoints)); }},
       {"points",
        [&](std::size_t n) {
          research::Options options;
@@ -567,9 +535,9 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
       {"queries", [&](std::size_t m) { locator.interpolate(kPoints, points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { locator.natural_weights(points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { tree.nearest(points(m), counted(m)); }},
-      {"queries", [&](std::size_t m) { on_sphere.locate(points(m), counted(m), degrees); }},
-      {"queries", [&](std::size_t m) { on_sphere.nearest(points(m), counted(m), degrees); }},
-      {"queries", [&](std::size_t m) { on_sphere.interpolate(kPoints, 1, points(m), counted(m), degrees); }},
+      {"queries", [&](std::size_t m) { on_sphere.locate(points(m), counted(m)); }},
+      {"queries", [&](std::size_t m) { on_sphere.nearest(points(m), counted(m)); }},
+      {"queries", [&](std::size_t m) { on_sphere.interpolate(kPoints, points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { on_torus.locate(points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { on_torus.nearest(points(m), counted(m)); }},
       {"queries", [&](std::size_t m) { on_torus.interpolate(kPoints, points(m), counted(m)); }},
@@ -579,9 +547,9 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
       const auto refused = [&](const std::function<void()>& call) {
         testing::expect_error(ErrorKind::input, {"columns", "too many"}, call);
       };
-      refused([&] { on_sphere.interpolate(kPoints, count, kPoints, queries, degrees); });
       InterpolationOptions options;
       options.columns = count;
+      refused([&] { on_sphere.interpolate(kPoints, kPoints, queries, options); });
       refused([&] { on_torus.interpolate(kPoints, kPoints, queries, options); });
       refused([&] { locator.gradients(kPoints, count); });
     }
@@ -624,7 +592,13 @@ TEST(SmallArguments, UnknownEnumerators) {
       {"Interpolation",
        [&](int v) { locator.natural_weights(kPoints, kCount, static_cast<Interpolation>(v)); }},
       {"SphereCoordinates",
-       [&](int v) { triangulate_sphere(used, kPoints, kCount, static_cast<SphereCoordinates>(v)); }},
+       [&](int v) { used.triangulate(kPoints, kCount, Space::sphere(static_cast<SphereCoordinates>(v))); }},
+      {"SpaceKind",
+       [&](int v) {
+         Space space = Space::plane();
+         space.kind = static_cast<SpaceKind>(v);
+         used.triangulate(kPoints, kCount, space);
+       }},
       {"Duplicates",
        [&](int v) {
          struct : ValuedPoints {
@@ -655,20 +629,20 @@ TEST(SmallArguments, PlacesThatAreNone) {
   Triangulator used("host");
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN(),
                    kInfinite = std::numeric_limits<double>::infinity();
-  const SphericalTriangulation sphere = triangulate_sphere(used, kPoints, 5, SphereCoordinates::degrees);
-  const PeriodicTriangulation torus = triangulate_periodic(used, kPoints, 5, {8, 8});
+  const Triangulation sphere = used.triangulate(kPoints, 5, Space::sphere(SphereCoordinates::degrees));
+  const Triangulation torus = used.triangulate(kPoints, 5, Space::torus({8, 8}));
   for (const double wrong : {kNone, -kInfinite, 1e300, 0x1p-80}) {
     SCOPED_TRACE(wrong);
     for (std::size_t i = 0; i < 10; ++i) {
-      SphericalTriangulation changed = sphere;
+      Triangulation changed = sphere;
       changed.places[i] = wrong;
       const std::string place = "place " + std::to_string(i / 2);
-      testing::expect_error(ErrorKind::usage, {place}, [&] { SphereLocator(used, changed); });
-      testing::expect_error(ErrorKind::usage, {place}, [&] { voronoi_on_sphere(used, changed); });
-      PeriodicTriangulation moved = torus;
+      testing::expect_error(ErrorKind::usage, {place}, [&] { Locator(used, changed); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { used.voronoi(changed); });
+      Triangulation moved = torus;
       moved.places[i] = wrong;
-      testing::expect_error(ErrorKind::usage, {place}, [&] { PeriodicLocator(used, moved); });
-      testing::expect_error(ErrorKind::usage, {place}, [&] { periodic_cells(used, moved); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { Locator(used, moved); });
+      testing::expect_error(ErrorKind::usage, {place}, [&] { used.clipped_voronoi(moved); });
     }
   }
 }
@@ -677,7 +651,7 @@ TEST(SmallArguments, PeriodsThatAreNone) {
   Triangulator used("host");
   for (const double wrong : {0.0, -1.0, 1e271, 1e-272, std::numeric_limits<double>::quiet_NaN()}) {
     testing::expect_error(ErrorKind::usage, {"2^900", "1.2e-271", "8.4e270"}, [&] {
-      triangulate_periodic(used, kPoints, kCount, {wrong, 1});
+      used.triangulate(kPoints, kCount, Space::torus({wrong, 1}));
     });
   }
 }

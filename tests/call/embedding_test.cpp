@@ -573,9 +573,11 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
   const auto dual = std::make_shared<DeviceVoronoi>();
   const auto clipped = std::make_shared<DeviceClippedVoronoi>();
   const auto relaxed = std::make_shared<DeviceBuffer>();
-  const auto periodic = std::make_shared<DevicePeriodicTriangulation>();
+  const auto periodic = std::make_shared<DeviceTriangulation>();
   const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
   const DevicePoints points = points_in(memory, n);
+  DevicePoints on_torus = points;
+  on_torus.space = Space::torus({});
   return {
       {"triangulate", [=, &t, &xy] { t.triangulate(xy.data(), n); }},
       {"triangulate float", [=, &t] { t.triangulate(narrow->data(), n); }},
@@ -595,8 +597,7 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
       {"relax on device",
        [=, &t, &enqueue] { t.relax(points, kTriangle.data(), kTriangle.size() / 2, 1, *relaxed, enqueue); }},
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
-      {"periodic on device",
-       [=, &t, &enqueue] { triangulate_periodic(t, points, Period(), *periodic, enqueue); }},
+      {"periodic on device", [=, &t, &enqueue] { t.triangulate(on_torus, *periodic, kAll, enqueue); }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
       {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},
@@ -1357,8 +1358,10 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
   // Without double precision, it is computed on the host.
   if (kept.device().fp64) attack("a diagram", [&] { kept.voronoi(coordinates.data(), n, expected); });
   attack("a torus", [&] {
-    DevicePeriodicTriangulation result;
-    triangulate_periodic(kept, points_in(memory, n), Period(), result, on_own());
+    DeviceTriangulation result;
+    DevicePoints points = points_in(memory, n);
+    points.space = Space::torus({});
+    kept.triangulate(points, result, kAll, on_own());
     EXPECT_EQ(result.triangle_offsets.back(), 2 * n);
   });
   attack("a locator", [&] {

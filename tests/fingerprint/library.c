@@ -143,18 +143,18 @@ static void print_statistics(const char* key, const flaunay_statistics* of) {
 }
 
 static void print_triangulation(const char* key, const flaunay_triangulation* mesh) {
-  const size_t corners = 3 * flaunay_triangulation_triangle_count(mesh) * sizeof(int32_t);
-  const size_t offsets = (flaunay_triangulation_set_count(mesh) + 1) * sizeof(size_t);
-  const size_t hull = flaunay_triangulation_hull_count(mesh) * sizeof(int32_t);
-  const size_t points = flaunay_triangulation_point_count(mesh) * sizeof(int32_t);
-  print_hash(key, "triangles", flaunay_triangulation_triangles(mesh), corners);
-  print_hash(key, "neighbors", flaunay_triangulation_neighbors(mesh), corners);
-  print_hash(key, "halfedges", flaunay_triangulation_halfedges(mesh), corners);
-  print_hash(key, "hull", flaunay_triangulation_hull(mesh), hull);
-  print_hash(key, "representatives", flaunay_triangulation_representatives(mesh), points);
-  print_hash(key, "triangle-offsets", flaunay_triangulation_triangle_offsets(mesh), offsets);
-  print_hash(key, "hull-offsets", flaunay_triangulation_hull_offsets(mesh), offsets);
-  print_statistics(key, flaunay_triangulation_statistics(mesh));
+  const size_t corners = 3 * flaunay_triangulation_mesh(mesh)->triangle_count * sizeof(int32_t);
+  const size_t offsets = (flaunay_triangulation_mesh(mesh)->set_count + 1) * sizeof(size_t);
+  const size_t hull = flaunay_triangulation_mesh(mesh)->hull_count * sizeof(int32_t);
+  const size_t points = flaunay_triangulation_mesh(mesh)->point_count * sizeof(int32_t);
+  print_hash(key, "triangles", flaunay_triangulation_mesh(mesh)->triangles, corners);
+  print_hash(key, "neighbors", flaunay_triangulation_mesh(mesh)->neighbors, corners);
+  print_hash(key, "halfedges", flaunay_triangulation_mesh(mesh)->halfedges, corners);
+  print_hash(key, "hull", flaunay_triangulation_mesh(mesh)->hull, hull);
+  print_hash(key, "representatives", flaunay_triangulation_mesh(mesh)->representatives, points);
+  print_hash(key, "triangle-offsets", flaunay_triangulation_mesh(mesh)->triangle_offsets, offsets);
+  print_hash(key, "hull-offsets", flaunay_triangulation_mesh(mesh)->hull_offsets, offsets);
+  print_statistics(key, flaunay_triangulation_mesh(mesh)->statistics);
 }
 
 static void print_modes(const Sets* sets) {
@@ -239,7 +239,7 @@ static void print_derived(const Sets* sets) {
     if (succeeded(key, flaunay_locator_nearest(locator, queries, m, offsets, sets->sets, indices))) {
       print_hash(key, "nearest", indices, m * sizeof *indices);
     }
-    if (succeeded(key, flaunay_locator_interpolate(locator, values, queries, m, offsets, sets->sets,
+    if (succeeded(key, flaunay_locator_interpolate(locator, values, queries, m, offsets, sets->sets, NULL,
                                                    interpolated))) {
       // Not-a-numbers have many forms.
       for (size_t k = 0; k < m; ++k) interpolated[k] = isnan(interpolated[k]) ? -1.0 : interpolated[k];
@@ -278,7 +278,7 @@ static void print_device_derived(const char* key, const flaunay_device_points* i
   flaunay_device_voronoi* dual = NULL;
   require(flaunay_device_voronoi_create(&dual) == FLAUNAY_SUCCESS, "flaunay_device_voronoi_create");
   if (succeeded(key, flaunay_voronoi_compute_device(triangulator, input, mesh, &enqueue, dual))) {
-    const size_t n = sets->count, t = flaunay_device_triangulation_triangle_count(mesh);
+    const size_t n = sets->count, t = flaunay_device_triangulation_mesh(mesh)->triangle_count;
     size_t bytes[] = {16 * t, 4 * (n + 1), 12 * t, n};
     static const char* const names[] = {"circumcentres", "cell-offsets", "cells", "unbounded"};
     for (int p = 0; p < 4; ++p) {
@@ -303,8 +303,8 @@ static void print_device_derived(const char* key, const flaunay_device_points* i
     if (succeeded(key, flaunay_locator_nearest_device(locator, &query_points, &enqueue, &results[1]))) {
       print_buffer(key, "nearest", results[1], m * sizeof(int32_t));
     }
-    if (succeeded(key, flaunay_locator_interpolate_device(locator, given_values, &query_points, &enqueue,
-                                                          &results[2]))) {
+    if (succeeded(key, flaunay_locator_interpolate_device(locator, given_values, &query_points, NULL,
+                                                          &enqueue, &results[2]))) {
       print_buffer(key, "interpolate", results[2], m * sizeof(double));
     }
     for (int k = 0; k < 3; ++k) {
@@ -342,16 +342,17 @@ static void print_on_device(const Sets* sets, int offsets_on_device, size_t firs
           "flaunay_device_triangulation_create");
   if (succeeded(key, flaunay_triangulate_device(triangulator, &input, kAllParts, &enqueue, mesh))) {
     static const char* const names[] = {"triangles", "neighbors", "halfedges", "hull", "representatives"};
-    const size_t t = flaunay_device_triangulation_triangle_count(mesh);
-    const size_t counts[] = {3 * t, 3 * t, 3 * t, flaunay_device_triangulation_hull_count(mesh), sets->count};
+    const size_t t = flaunay_device_triangulation_mesh(mesh)->triangle_count;
+    const size_t counts[] = {3 * t, 3 * t, 3 * t, flaunay_device_triangulation_mesh(mesh)->hull_count,
+                             sets->count};
     for (int p = 0; p < 5; ++p) {
       print_buffer(key, names[p], flaunay_device_triangulation_buffer(mesh, 1u << p), counts[p] * 4);
     }
     const size_t bytes = (sets->sets + 1) * sizeof(size_t);
-    print_hash(key, "point-offsets", flaunay_device_triangulation_point_offsets(mesh), bytes);
-    print_hash(key, "triangle-offsets", flaunay_device_triangulation_triangle_offsets(mesh), bytes);
-    print_hash(key, "hull-offsets", flaunay_device_triangulation_hull_offsets(mesh), bytes);
-    print_statistics(key, flaunay_device_triangulation_statistics(mesh));
+    print_hash(key, "point-offsets", flaunay_device_triangulation_mesh(mesh)->point_offsets, bytes);
+    print_hash(key, "triangle-offsets", flaunay_device_triangulation_mesh(mesh)->triangle_offsets, bytes);
+    print_hash(key, "hull-offsets", flaunay_device_triangulation_mesh(mesh)->hull_offsets, bytes);
+    print_statistics(key, flaunay_device_triangulation_mesh(mesh)->statistics);
     if (first == 0 && !offsets_on_device) print_device_derived(key, &input, mesh, sets);
   }
   flaunay_device_triangulation_destroy(mesh);

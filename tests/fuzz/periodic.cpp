@@ -82,15 +82,17 @@ class PeriodicFuzzer : public Fuzzer {
 
   std::string problem_of(const Coordinates& points, const std::vector<std::size_t>& offsets,
                          const Period& period) {
-    const PeriodicTriangulation mesh = triangulate_periodic(host_, points.data(), offsets, period);
+    const Triangulation mesh = host_.triangulate(points.data(), offsets, Space::torus(period));
     images_ += mesh.images;
-    const std::string problem = verify(mesh);
+    const std::string problem = verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh);
     if (!problem.empty()) return problem;
-    const PeriodicTriangulation again = triangulate_periodic(host_, mesh.places.data(), offsets, mesh.period);
-    if (again.triangles != mesh.triangles || again.offsets != mesh.offsets || again.places != mesh.places)
+    const Triangulation again =
+        host_.triangulate(mesh.places.data(), offsets, Space::torus(mesh.space.period));
+    if (again.triangles != mesh.triangles || again.corner_offsets != mesh.corner_offsets ||
+        again.places != mesh.places)
       return "its places have another triangulation";
     if (offsets.size() != 2) return "";
-    PeriodicLocator locator(host_, mesh);
+    Locator locator(host_, mesh);
     const std::size_t n = points.size() / 2;
     if (locator.nearest(points.data(), n) != mesh.representatives) return "the nearest point is another one";
     const std::vector<std::int32_t> found = locator.locate(points.data(), n);

@@ -70,7 +70,7 @@ void add_directions(FixtureRandom& random, const Coordinates& set, Numbers& poin
 }
 
 /// The corners' places of each triangle of a set, the smallest first, in order.
-std::vector<std::array<double, 6>> faces_of(const SphericalTriangulation& mesh, std::size_t set) {
+std::vector<std::array<double, 6>> faces_of(const Triangulation& mesh, std::size_t set) {
   std::vector<std::array<double, 6>> faces;
   for (std::size_t t = mesh.triangle_offsets[set]; t < mesh.triangle_offsets[set + 1]; ++t) {
     std::array<std::array<double, 2>, 3> corners;
@@ -127,18 +127,17 @@ class SphereFuzzer : public Fuzzer {
 
  private:
   std::string problem_of(const Numbers& points, const Offsets& offsets, FixtureRandom& random) {
-    const SphericalTriangulation mesh = triangulate_sphere(host_, points.data(), offsets, coordinates_);
-    std::string problem = verify(points.data(), offsets, coordinates_, mesh);
+    const Triangulation mesh = host_.triangulate(points.data(), offsets, Space::sphere(coordinates_));
+    std::string problem = verify(points.data(), offsets, Space::sphere(coordinates_), mesh);
     if (problem.empty()) problem = problem_of_order(points, mesh, random);
-    const SphericalVoronoi dual = voronoi_on_sphere(host_, mesh);
+    const Voronoi dual = host_.voronoi(mesh);
     for (std::size_t s = 0; s + 1 < offsets.size() && problem.empty(); ++s)
       problem = problem_of_set(mesh, dual, s);
     if (problem.empty() && offsets.size() == 2) problem = problem_of_queries(points, mesh, random);
     return problem;
   }
 
-  std::string problem_of_order(const Numbers& points, const SphericalTriangulation& mesh,
-                               FixtureRandom& random) {
+  std::string problem_of_order(const Numbers& points, const Triangulation& mesh, FixtureRandom& random) {
     const std::size_t width = sphere::width_of(coordinates_);
     Numbers shuffled;
     for (std::size_t s = 0; s + 1 < mesh.point_offsets.size(); ++s) {
@@ -148,8 +147,8 @@ class SphereFuzzer : public Fuzzer {
       for (const std::size_t i : order)
         shuffled.insert(shuffled.end(), &points[width * i], &points[width * i] + width);
     }
-    const SphericalTriangulation other =
-        triangulate_sphere(small_blocks_, shuffled.data(), mesh.point_offsets, coordinates_);
+    const Triangulation other =
+        small_blocks_.triangulate(shuffled.data(), mesh.point_offsets, Space::sphere(coordinates_));
     for (std::size_t s = 0; s + 1 < mesh.point_offsets.size(); ++s) {
       if (faces_of(mesh, s) != faces_of(other, s))
         return fmt::format("set {} depends on the order of points", s);
@@ -159,7 +158,7 @@ class SphereFuzzer : public Fuzzer {
 
   static std::size_t index_of(std::int32_t i) { return static_cast<std::size_t>(i); }
   /// The distance between the nearest points of a set, as a chord.
-  static double shortest_edge(const SphericalTriangulation& mesh, std::size_t s) {
+  static double shortest_edge(const Triangulation& mesh, std::size_t s) {
     double shortest = 2;
     for (std::size_t c = 3 * mesh.triangle_offsets[s]; c < 3 * mesh.triangle_offsets[s + 1]; ++c) {
       const sphere::Point a = sphere::place_at(mesh.places, index_of(mesh.triangles[c]));
@@ -174,8 +173,7 @@ class SphereFuzzer : public Fuzzer {
     return shortest;
   }
 
-  static std::string problem_of_set(const SphericalTriangulation& mesh, const SphericalVoronoi& dual,
-                                    std::size_t s) {
+  static std::string problem_of_set(const Triangulation& mesh, const Voronoi& dual, std::size_t s) {
     std::size_t n = 0;
     double area = 0, radius = 0;  // of a cap around the first point that has all, as a chord
     const sphere::Point first = mesh.point_offsets[s] < mesh.point_offsets[s + 1]
@@ -202,12 +200,10 @@ class SphereFuzzer : public Fuzzer {
     return "";
   }
 
-  std::string problem_of_queries(const Numbers& points, const SphericalTriangulation& mesh,
-                                 FixtureRandom& random) {
-    SphereLocator locator(host_, mesh);
+  std::string problem_of_queries(const Numbers& points, const Triangulation& mesh, FixtureRandom& random) {
+    Locator locator(host_, mesh);
     const std::size_t n = mesh.places.size() / 2;
-    if (locator.nearest(points.data(), n, coordinates_) != mesh.representatives)
-      return "the nearest point is another one";
+    if (locator.nearest(points.data(), n) != mesh.representatives) return "the nearest point is another one";
     Numbers queries;
     for (int k = 0; k < 12; ++k) {
       // Any, points and what is opposite to them, and between two.
@@ -228,9 +224,10 @@ class SphereFuzzer : public Fuzzer {
     }
     const std::size_t m = queries.size() / 3;
     queries_ += m;
-    const Numbers asked = triangulate_sphere(host_, queries.data(), m, SphereCoordinates::directions).places;
-    const auto nearest = locator.nearest(queries.data(), m, SphereCoordinates::directions),
-               located = locator.locate(queries.data(), m, SphereCoordinates::directions);
+    const Numbers asked =
+        host_.triangulate(queries.data(), m, Space::sphere(SphereCoordinates::directions)).places;
+    locator.set_coordinates(SphereCoordinates::directions);
+    const auto nearest = locator.nearest(queries.data(), m), located = locator.locate(queries.data(), m);
     for (std::size_t i = 0; i < m; ++i) {
       const Point q = sphere::place_at(asked, i);
       if (nearest[i] != nearest_to(mesh, q))
@@ -241,7 +238,7 @@ class SphereFuzzer : public Fuzzer {
     return "";
   }
 
-  static std::int32_t nearest_to(const SphericalTriangulation& mesh, Point q) {
+  static std::int32_t nearest_to(const Triangulation& mesh, Point q) {
     std::int32_t best = -1;
     for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
       const Point p = sphere::place_at(mesh.places, i);
@@ -252,7 +249,7 @@ class SphereFuzzer : public Fuzzer {
     return best;
   }
 
-  static std::int32_t triangle_at(const SphericalTriangulation& mesh, Point q) {
+  static std::int32_t triangle_at(const Triangulation& mesh, Point q) {
     for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
       const auto at = [&](std::size_t k) {
         return sphere::place_at(mesh.places, static_cast<std::size_t>(mesh.triangles[3 * t + k]));

@@ -36,10 +36,11 @@ class WeightedFuzzer : public Fuzzer {
     start_check();
     std::string problem;
     try {
-      const WeightedTriangulation mesh = triangulated(host_, points, weights, offsets);
-      problem = verify(points.data(), weights.data(), offsets, mesh);
-      const WeightedTriangulation other = triangulated(small_blocks_, points, weights, offsets);
-      if (problem.empty()) problem = verify(points.data(), weights.data(), offsets, other);
+      const Triangulation mesh = triangulated(host_, points, weights, offsets);
+      problem = verify(points.data(), offsets, Space::plane().with_weights(weights.data()), mesh);
+      const Triangulation other = triangulated(small_blocks_, points, weights, offsets);
+      if (problem.empty())
+        problem = verify(points.data(), offsets, Space::plane().with_weights(weights.data()), other);
       if (problem.empty() && (mesh.hidden != other.hidden || mesh.hull != other.hull))
         problem = "blocks differ";
       hidden_ += mesh.hidden.size();
@@ -63,12 +64,13 @@ class WeightedFuzzer : public Fuzzer {
   }
 
  private:
-  static WeightedTriangulation triangulated(Triangulator& triangulator, const Coordinates& points,
-                                            const std::vector<double>& weights,
-                                            const std::vector<std::size_t>& offsets) {
+  static Triangulation triangulated(Triangulator& triangulator, const Coordinates& points,
+                                    const std::vector<double>& weights,
+                                    const std::vector<std::size_t>& offsets) {
     Options options;
     options.neighbors = true;
-    return triangulate_weighted(triangulator, points.data(), weights.data(), offsets, options);
+    return triangulator.triangulate(points.data(), offsets, Space::plane().with_weights(weights.data()),
+                                    options);
   }
 
   /// Of one kind for a set: equal ones, few different ones, those that lift points to a plane or nearly so,

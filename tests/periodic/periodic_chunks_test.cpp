@@ -89,8 +89,7 @@ ChunkOptions in_chunks_of(std::size_t points) {
 
 ChunkStatistics compare(const Numbers& points, const Period& period, const ChunkOptions& options) {
   const std::size_t n = points.size() / 2;
-  const PeriodicTriangulation expected =
-      triangulate_periodic(testing::triangulator(), points.data(), n, period);
+  const Triangulation expected = testing::triangulator().triangulate(points.data(), n, Space::torus(period));
   ArrayPoints source(points.data(), n);
   GrowingSink sink;
   const ChunkStatistics statistics = triangulate_periodic_chunks(source, period, sink, options);
@@ -103,9 +102,9 @@ ChunkStatistics compare(const Numbers& points, const Period& period, const Chunk
   if (::testing::Test::HasFailure()) return statistics;
   sink.triangles.resize(expected.triangles.size());
   sink.neighbors.resize(expected.neighbors.size());
-  sink.offsets.resize(expected.offsets.size());
+  sink.offsets.resize(expected.corner_offsets.size());
   sink.areas.resize(expected.triangles.size() / 3);
-  EXPECT_TRUE(sorted_rows(expected.triangles, expected.offsets, expected.neighbors) ==
+  EXPECT_TRUE(sorted_rows(expected.triangles, expected.corner_offsets, expected.neighbors) ==
               sorted_rows(sink.triangles, sink.offsets, sink.neighbors));
   EXPECT_TRUE(std::equal(expected.representatives.begin(), expected.representatives.end(),
                          sink.representatives.begin(), sink.representatives.end(),
@@ -119,7 +118,7 @@ ChunkStatistics compare(const Numbers& points, const Period& period, const Chunk
   if (std::isfinite(period.x) && std::isfinite(period.y)) {
     double area = 0;
     for (const double one : sink.areas) area += one;
-    EXPECT_NEAR(1, area / (expected.period.x * expected.period.y), 1e-12);
+    EXPECT_NEAR(1, area / (expected.space.period.x * expected.space.period.y), 1e-12);
   }
   return statistics;
 }
@@ -230,19 +229,19 @@ TEST(PeriodicChunks, GoToArrays) {
       points.data(), n, period,
       MeshArrays<std::int32_t>{triangles.data(), neighbors.data(), nullptr, representatives.data(), nullptr},
       offsets.data(), in_chunks_of(700));
-  PeriodicTriangulation mesh;
-  mesh.period = take_to_places(period, points.data(), n);
+  Triangulation mesh;
+  mesh.space = Space::torus(take_to_places(period, points.data(), n));
   mesh.places = points;
   triangles.resize(3 * statistics.triangles);
   neighbors.resize(triangles.size());
   offsets.resize(2 * triangles.size());
   mesh.triangles = triangles;
   mesh.neighbors = neighbors;
-  mesh.offsets = offsets;
+  mesh.corner_offsets = offsets;
   mesh.representatives = representatives;
   mesh.point_offsets = {0, n};
   mesh.triangle_offsets = {0, statistics.triangles};
-  EXPECT_EQ("", verify(mesh));
+  EXPECT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh));
   std::vector<std::int64_t> wide(6 * n);
   triangulate_periodic_chunks(points.data(), n, period, MeshArrays<std::int64_t>{wide.data()}, nullptr,
                               in_chunks_of(700));

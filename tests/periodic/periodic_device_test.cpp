@@ -38,9 +38,15 @@ Enqueue on_own() {
   return enqueue;
 }
 
-void expect_same(const DevicePeriodicTriangulation& found, const PeriodicTriangulation& expected) {
-  EXPECT_EQ(found.period.x, expected.period.x);
-  EXPECT_EQ(found.period.y, expected.period.y);
+void triangulate_on_torus(DevicePoints points, const Period& period, DeviceTriangulation& result,
+                          const Enqueue& enqueue = on_own()) {
+  points.space = Space::torus(period);
+  embedded().triangulate(points, result, Parts(), enqueue);
+}
+
+void expect_same(const DeviceTriangulation& found, const Triangulation& expected) {
+  EXPECT_EQ(found.space.period.x, expected.space.period.x);
+  EXPECT_EQ(found.space.period.y, expected.space.period.y);
   EXPECT_EQ(found.images, expected.images);
   EXPECT_EQ(found.point_offsets, expected.point_offsets);
   EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
@@ -50,7 +56,7 @@ void expect_same(const DevicePeriodicTriangulation& found, const PeriodicTriangu
   };
   expect_array(found.places, expected.places);
   expect_array(found.triangles, expected.triangles);
-  expect_array(found.offsets, expected.offsets);
+  expect_array(found.corner_offsets, expected.corner_offsets);
   expect_array(found.neighbors, expected.neighbors);
   expect_array(found.representatives, expected.representatives);
 }
@@ -70,14 +76,13 @@ std::vector<Coordinates> periodic_points(std::size_t n) {
 }
 
 // Returns whether it is no error: points on a cylinder may be of too different magnitudes.
-bool expect_that_of_the_host(const Coordinates& points, const Period& period,
-                             DevicePeriodicTriangulation& found) {
+bool expect_that_of_the_host(const Coordinates& points, const Period& period, DeviceTriangulation& found) {
   const std::size_t n = points.size() / 2;
   const Memory memory = embedder().upload(points);
-  const auto run = [&] { triangulate_periodic(embedded(), points_in(memory, n), period, found, on_own()); };
-  PeriodicTriangulation expected;
+  const auto run = [&] { triangulate_on_torus(points_in(memory, n), period, found); };
+  Triangulation expected;
   try {
-    expected = triangulate_periodic(triangulator(), points.data(), n, period);
+    expected = triangulator().triangulate(points.data(), n, Space::torus(period));
   } catch (const Error& error) {
     expect_error(error.kind(), "", run);
     return false;
@@ -93,7 +98,7 @@ TEST(SmallPeriodicOnDevice, IsThatOfTheHost) {
     for (const Coordinates& points : periodic_points(n)) {
       for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}}) {
         SCOPED_TRACE(std::to_string(n) + " " + std::to_string(period.x) + " " + std::to_string(period.y));
-        DevicePeriodicTriangulation found;
+        DeviceTriangulation found;
         count += expect_that_of_the_host(points, period, found);
       }
     }
@@ -110,7 +115,7 @@ TEST(PeriodicOnDevice, LargerIsThatOfTheHost) {
       gap.insert(gap.end(), {inputs[0][i], inputs[0][i + 1]});
   }
   inputs.push_back(gap);
-  DevicePeriodicTriangulation found;
+  DeviceTriangulation found;
   for (const Coordinates& points : inputs) {
     for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}}) {
       if (!expect_that_of_the_host(points, period, found)) continue;
@@ -131,87 +136,16 @@ TEST(PeriodicOnDevice, LargerIsThatOfTheHost) {
   const Memory memory = embedder().upload(all);
   DevicePoints sets = points_in(memory, offsets.back());
   sets.offsets = offsets;
-  triangulate_periodic(embedded(), sets, {}, found, on_own());
-  expect_same(found, triangulate_periodic(triangulator(), all.data(), offsets, {}));
+  triangulate_on_torus(sets, {}, found);
+  expect_same(found, triangulator().triangulate(all.data(), offsets, Space::torus({})));
 }
 
-TEST(SmallPeriodicOnDevice, SetsOfFloatsThatBeginAnywhere) {
-  std::vector<float> all(6, std::nanf(""));
-  Coordinates wide;
-  Offsets offsets{0, 0};
-  for (const Coordinates& points : periodic_points(12)) {
-    for (const double x : points) {
-      all.push_back(static_cast<float>(std::fabs(x) < 1e30 ? x : 0));
-      wide.push_back(static_cast<double>(all.back()));
-    }
-    offsets.push_back(wide.size() / 2);
-  }
-  offsets.push_back(offsets.back());
-  const std::vector<std::int32_t> ids(offsets.begin(), offsets.end());
-  const Memory memory = embedder().upload(all), device_offsets = embedder().upload(ids);
-  for (const bool are_on_device : {false, true}) {
-    for (const Period& period : {Period{}, {1, HUGE_VAL}}) {
-      DevicePoints points = points_in(memory, offsets.back());
-      points.precision = Precision::float32;
-      points.first = 3;
-      if (are_on_device) {
-        points.device_offsets = device_offsets.get();
-        points.sets = offsets.size() - 1;
-      } else {
-        points.offsets = offsets;
-      }
-      DevicePeriodicTriangulation found;
-      triangulate_periodic(embedded(), points, period, found, on_own());
-      expect_same(found, triangulate_periodic(triangulator(), wide.data(), offsets, period));
-    }
-  }
-}
-
-TEST(SmallPeriodicOnDevice, CallersBuffersAndNoPoints) {
-  const std::size_t n = 40;
-  const Coordinates points = make_fixture("uniform", n, 6);
-  const Memory memory = embedder().upload(points);
-  DevicePeriodicTriangulation found;
-  const std::vector<std::pair<DeviceBuffer*, std::size_t>> buffers = {{&found.places, 16},
-                                                                      {&found.triangles, 24},
-                                                                      {&found.offsets, 12},
-                                                                      {&found.neighbors, 24},
-                                                                      {&found.representatives, 4}};
-  for (const auto& [buffer, bytes] : buffers) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
-  const auto run = [&](const Period& period = {}) {
-    triangulate_periodic(embedded(), points_in(memory, n), period, found, on_own());
-  };
-  run();
-  expect_same(found, triangulate_periodic(triangulator(), points.data(), n, Period()));
-  for (const auto& [buffer, bytes] : buffers) {
-    const DeviceBuffer kept = *buffer;
-    *buffer = DeviceBuffer(embedder().make_buffer(bytes * n - 1).get());
-    expect_error(ErrorKind::usage, "too small", [&] { run(); });
-    *buffer = kept;
-  }
-  const DeviceBuffer neighbors = std::exchange(found.neighbors, found.triangles);
-  expect_error(ErrorKind::usage, "two things", [&] { run(); });
-  found.neighbors = neighbors;
+TEST(SmallPeriodicOnDevice, PeriodsThatAreNoneAreRefused) {
+  const Memory memory = embedder().upload(make_fixture("uniform", 20, 5));
+  DeviceTriangulation found;
   for (const Period& period : {Period{0, 1}, {1, -1}, {std::nan(""), 1}, {HUGE_VAL, HUGE_VAL}, {1, 1e30}})
-    EXPECT_THROW(run(period), Error);
-  triangulate_periodic(embedded(), {}, {}, found, on_own());
-  EXPECT_EQ(found.triangle_offsets, (Offsets{0, 0}));
-}
-
-TEST(SmallPeriodicOnDevice, PointsThatAreNotFiniteAreNamed) {
-  Coordinates points = make_fixture("uniform", 20, 5);
-  points[2 * 13 + 1] = std::numeric_limits<double>::infinity();
-  points[2 * 16] = std::nan("");
-  const Memory memory = embedder().upload(points);
-  cl_event done = reinterpret_cast<cl_event>(8);
-  Enqueue enqueue = on_own();
-  enqueue.event = &done;
-  for (const Period& period : {Period{}, {HUGE_VAL, 1}, {1, HUGE_VAL}}) {
-    DevicePeriodicTriangulation found;
-    expect_error(ErrorKind::input, "point 13 is not finite: (",
-                 [&] { triangulate_periodic(embedded(), points_in(memory, 20), period, found, enqueue); });
-    EXPECT_EQ(done, nullptr);
-  }
+    expect_error(ErrorKind::usage, "period",
+                 [&] { triangulate_on_torus(points_in(memory, 20), period, found); });
 }
 
 }  // namespace

@@ -75,9 +75,9 @@ std::size_t points_at_ends(const std::set<std::pair<double, double>>& points, co
 
 /// That triangles are counter-clockwise and empty among all images, that neighbours are right, and that
 /// cocircular polygons are fans.
-void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::size_t n) {
-  ASSERT_EQ("", verify(mesh));
-  const Period& period = mesh.period;
+void expect_exact(const Triangulation& mesh, const Period& given, std::size_t n) {
+  ASSERT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh));
+  const Period& period = mesh.space.period;
   const bool is_across = std::isfinite(given.x), is_up = std::isfinite(given.y);
   if (is_across) {
     ASSERT_NEAR(1, period.x / given.x, 0x1p-52);
@@ -93,7 +93,7 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
   }
   ASSERT_EQ(3 * (2 * different.size() - points_at_ends(different, given)), mesh.triangles.size());
   ASSERT_EQ(mesh.triangles.size(), mesh.neighbors.size());
-  ASSERT_EQ(2 * mesh.triangles.size(), mesh.offsets.size());
+  ASSERT_EQ(2 * mesh.triangles.size(), mesh.corner_offsets.size());
   const auto image = [&](std::size_t v, int across, int up) {
     Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
     if (is_across) place.x += across * mpq_class(period.x);
@@ -101,7 +101,8 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
     return place;
   };
   const auto corner = [&](std::size_t c) {
-    return image(static_cast<std::size_t>(mesh.triangles[c]), mesh.offsets[2 * c], mesh.offsets[2 * c + 1]);
+    return image(static_cast<std::size_t>(mesh.triangles[c]), mesh.corner_offsets[2 * c],
+                 mesh.corner_offsets[2 * c + 1]);
   };
   const auto rounded = [](const Place& p) { return Near{p, p.x.get_d(), p.y.get_d()}; };
   std::vector<Near> images;
@@ -117,7 +118,7 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     const Place p[] = {corner(t), corner(t + 1), corner(t + 2)};
-    ASSERT_TRUE(mesh.offsets[2 * t] == 0 && mesh.offsets[2 * t + 1] == 0);
+    ASSERT_TRUE(mesh.corner_offsets[2 * t] == 0 && mesh.corner_offsets[2 * t + 1] == 0);
     ASSERT_TRUE(mesh.triangles[t] <= mesh.triangles[t + 1] && mesh.triangles[t] <= mesh.triangles[t + 2]);
     ASSERT_GT((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x), 0);
     const Near near[] = {rounded(p[0]), rounded(p[1]), rounded(p[2])};
@@ -138,15 +139,15 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
             mesh.triangles[c] != mesh.triangles[b] || mesh.triangles[d] != mesh.triangles[a])
           continue;
         // The other triangle as it lies beside this one.
-        const int across = mesh.offsets[2 * b] - mesh.offsets[2 * c],
-                  up = mesh.offsets[2 * b + 1] - mesh.offsets[2 * c + 1];
-        if (mesh.offsets[2 * d] + across != mesh.offsets[2 * a] ||
-            mesh.offsets[2 * d + 1] + up != mesh.offsets[2 * a + 1])
+        const int across = mesh.corner_offsets[2 * b] - mesh.corner_offsets[2 * c],
+                  up = mesh.corner_offsets[2 * b + 1] - mesh.corner_offsets[2 * c + 1];
+        if (mesh.corner_offsets[2 * d] + across != mesh.corner_offsets[2 * a] ||
+            mesh.corner_offsets[2 * d + 1] + up != mesh.corner_offsets[2 * a + 1])
           continue;
         is_joined = true;
-        const Place opposite =
-            image(static_cast<std::size_t>(mesh.triangles[other + j]), mesh.offsets[2 * (other + j)] + across,
-                  mesh.offsets[2 * (other + j) + 1] + up);
+        const Place opposite = image(static_cast<std::size_t>(mesh.triangles[other + j]),
+                                     mesh.corner_offsets[2 * (other + j)] + across,
+                                     mesh.corner_offsets[2 * (other + j) + 1] + up);
         if (in_circle(p[0], p[1], p[2], opposite) != 0) continue;
         const Place* const ends[] = {&p[(k + 1) % 3], &p[(k + 2) % 3]};
         const auto is_first = [&](const Place& e) {
@@ -160,12 +161,12 @@ void expect_exact(const PeriodicTriangulation& mesh, const Period& given, std::s
   }
   if (!is_across || !is_up) return;
   double sum = 0;
-  for (const double area : periodic_cells(testing::triangulator(), mesh).areas) sum += area;
+  for (const double area : testing::triangulator().clipped_voronoi(mesh).areas) sum += area;
   EXPECT_NEAR(1, sum / (period.x * period.y), 1e-12);
 }
 
-PeriodicTriangulation triangulated(const Numbers& points, const Period& period) {
-  return triangulate_periodic(testing::triangulator(), points.data(), points.size() / 2, period);
+Triangulation triangulated(const Numbers& points, const Period& period) {
+  return testing::triangulator().triangulate(points.data(), points.size() / 2, Space::torus(period));
 }
 
 Numbers uniform(std::size_t n, const Period& period, std::uint64_t seed) {
@@ -196,12 +197,12 @@ TEST(Periodic, TrianglesAreThoseOfAllImages) {
 }
 
 /// Corners and their offsets.
-std::set<std::array<int, 9>> sorted_triangles(const PeriodicTriangulation& mesh) {
+std::set<std::array<int, 9>> sorted_triangles(const Triangulation& mesh) {
   std::set<std::array<int, 9>> all;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     std::array<int, 9> one;
     for (std::size_t k = 0; k < 3; ++k) one[k] = mesh.triangles[t + k];
-    for (std::size_t k = 0; k < 6; ++k) one[3 + k] = mesh.offsets[2 * t + k];
+    for (std::size_t k = 0; k < 6; ++k) one[3 + k] = mesh.corner_offsets[2 * t + k];
     all.insert(one);
   }
   return all;
@@ -220,14 +221,14 @@ TEST(Periodic, LatticesAreFans) {
     for (std::size_t i = 0; i < points.size(); i += 2) {
       again.insert(again.end(), {points[i] + 3 * period.x, points[i + 1] - 2 * period.y});
     }
-    const PeriodicTriangulation mesh = triangulated(again, period);
+    const Triangulation mesh = triangulated(again, period);
     EXPECT_EQ(sorted_triangles(triangulated(points, period)), sorted_triangles(mesh));
     EXPECT_EQ(0, mesh.representatives[points.size() / 2]);
   }
 }
 
 TEST(Periodic, FewPointsHaveAllTriangles) {
-  const PeriodicTriangulation one = triangulated({0.25, 7.5}, {1, 2});
+  const Triangulation one = triangulated({0.25, 7.5}, {1, 2});
   EXPECT_EQ((std::vector<std::int32_t>(6, 0)), one.triangles);
   EXPECT_EQ((std::vector<std::int32_t>{1, 1, 1, 0, 0, 0}), one.neighbors);
   testing::FixtureRandom random(4);
@@ -253,7 +254,7 @@ TEST(Periodic, CylindersHaveTwoEnds) {
       for (const double x : points) coarse.push_back(std::floor(6 * x));
       for (std::size_t i = 0; i < n; ++i) std::swap(turned[2 * i], turned[2 * i + 1]);
       const Period across{length, HUGE_VAL}, up{HUGE_VAL, length};
-      const PeriodicTriangulation mesh = triangulated(points, across), other = triangulated(turned, up);
+      const Triangulation mesh = triangulated(points, across), other = triangulated(turned, up);
       expect_exact(mesh, across, n);
       expect_exact(other, up, n);
       EXPECT_EQ(mesh.triangles.size(), other.triangles.size());
@@ -263,11 +264,11 @@ TEST(Periodic, CylindersHaveTwoEnds) {
   }
   EXPECT_TRUE(triangulated({0.5, 3, 0.25, 3, 0.75, 3}, {1, HUGE_VAL}).triangles.empty());
   // As high as the smallest double, and as the largest.
-  const PeriodicTriangulation low = triangulated({0, 0, 0, 0x1p-1074}, {0x1p-800, HUGE_VAL});
+  const Triangulation low = triangulated({0, 0, 0, 0x1p-1074}, {0x1p-800, HUGE_VAL});
   EXPECT_EQ(2u, low.triangles.size() / 3);
-  const PeriodicTriangulation high = triangulated({0, -0x1p1023, 0, 0x1p1023}, {0x1p700, HUGE_VAL});
+  const Triangulation high = triangulated({0, -0x1p1023, 0, 0x1p1023}, {0x1p700, HUGE_VAL});
   EXPECT_EQ(2u, high.triangles.size() / 3);
-  const PeriodicTriangulation many = triangulated(uniform(50000, {}, 3), {1, HUGE_VAL});
+  const Triangulation many = triangulated(uniform(50000, {}, 3), {1, HUGE_VAL});
   EXPECT_EQ(100000u - 2, many.triangles.size() / 3);
   EXPECT_LT(many.images, 20000u);
   EXPECT_EQ(2, std::count(many.neighbors.begin(), many.neighbors.end(), -1));
@@ -277,33 +278,33 @@ TEST(Periodic, ShiftsByPeriodsChangeNothing) {
   const Period period{0.75, 1.25};
   Numbers points = uniform(150, period, 9);
   for (double& x : points) x = std::ldexp(std::nearbyint(std::ldexp(x, 30)), -30);
-  const PeriodicTriangulation first = triangulated(points, period);
+  const Triangulation first = triangulated(points, period);
   for (std::size_t i = 0; i < points.size(); i += 2) {
     points[i] += 1000 * period.x;
     points[i + 1] -= 77 * period.y;
   }
-  const PeriodicTriangulation second = triangulated(points, period);
+  const Triangulation second = triangulated(points, period);
   EXPECT_EQ(first.triangles, second.triangles);
-  EXPECT_EQ(first.offsets, second.offsets);
+  EXPECT_EQ(first.corner_offsets, second.corner_offsets);
   EXPECT_EQ(first.places, second.places);
 }
 
-Place image_of(const PeriodicTriangulation& mesh, std::size_t v, int across, int up) {
+Place image_of(const Triangulation& mesh, std::size_t v, int across, int up) {
   Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
-  if (std::isfinite(mesh.period.x)) place.x += across * mpq_class(mesh.period.x);
-  if (std::isfinite(mesh.period.y)) place.y += up * mpq_class(mesh.period.y);
+  if (std::isfinite(mesh.space.period.x)) place.x += across * mpq_class(mesh.space.period.x);
+  if (std::isfinite(mesh.space.period.y)) place.y += up * mpq_class(mesh.space.period.y);
   return place;
 }
 
 /// The values at the corners of a triangle, interpolated at q; NaN if no image of the triangle contains it.
-double value_in(const PeriodicTriangulation& mesh, std::size_t t, const Place& q, const Numbers& values) {
+double value_in(const Triangulation& mesh, std::size_t t, const Place& q, const Numbers& values) {
   for (int across = -2; across <= 2; ++across) {
     for (int up = -2; up <= 2; ++up) {
       std::array<Place, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k;
-        p[k] = image_of(mesh, static_cast<std::size_t>(mesh.triangles[c]), across + mesh.offsets[2 * c],
-                        up + mesh.offsets[2 * c + 1]);
+        p[k] = image_of(mesh, static_cast<std::size_t>(mesh.triangles[c]),
+                        across + mesh.corner_offsets[2 * c], up + mesh.corner_offsets[2 * c + 1]);
       }
       const auto area = [](const Place& a, const Place& b, const Place& c) {
         return mpq_class((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
@@ -319,7 +320,7 @@ double value_in(const PeriodicTriangulation& mesh, std::size_t t, const Place& q
   return std::nan("");
 }
 
-mpq_class distance_to(const PeriodicTriangulation& mesh, std::size_t v, const Place& q) {
+mpq_class distance_to(const Triangulation& mesh, std::size_t v, const Place& q) {
   mpq_class least = -1;
   for (int across = -1; across <= 1; ++across) {
     for (int up = -1; up <= 1; ++up) {
@@ -332,14 +333,14 @@ mpq_class distance_to(const PeriodicTriangulation& mesh, std::size_t v, const Pl
 }
 
 /// queries: places.
-void expect_answers(const PeriodicTriangulation& mesh, const Numbers& queries) {
-  PeriodicLocator locator(testing::triangulator(), mesh);
+void expect_answers(const Triangulation& mesh, const Numbers& queries) {
+  Locator locator(testing::triangulator(), mesh);
   const std::size_t n = mesh.representatives.size(), m = queries.size() / 2;
   Numbers values, elsewhere = queries;
   for (std::size_t i = 0; i < n; ++i) values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
   for (std::size_t i = 0; i < m; ++i) {
-    if (std::isfinite(mesh.period.x)) elsewhere[2 * i] -= 3 * mesh.period.x;
-    if (std::isfinite(mesh.period.y)) elsewhere[2 * i + 1] += 2 * mesh.period.y;
+    if (std::isfinite(mesh.space.period.x)) elsewhere[2 * i] -= 3 * mesh.space.period.x;
+    if (std::isfinite(mesh.space.period.y)) elsewhere[2 * i + 1] += 2 * mesh.space.period.y;
   }
   const auto triangles = locator.locate(queries.data(), m), points = locator.nearest(queries.data(), m);
   const Numbers found = locator.interpolate(values.data(), queries.data(), m);
@@ -347,16 +348,16 @@ void expect_answers(const PeriodicTriangulation& mesh, const Numbers& queries) {
   EXPECT_EQ(points, locator.nearest(elsewhere.data(), m));
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < n; ++i) {
-    const double at = mesh.places[2 * i + (std::isfinite(mesh.period.y) ? 0 : 1)];
+    const double at = mesh.places[2 * i + (std::isfinite(mesh.space.period.y) ? 0 : 1)];
     low = std::min(low, at);
     high = std::max(high, at);
   }
   for (std::size_t i = 0; i < m; ++i) {
     const Place q{mpq_class(queries[2 * i]), mpq_class(queries[2 * i + 1])};
     if (triangles[i] < 0) {
-      const double at = queries[2 * i + (std::isfinite(mesh.period.y) ? 0 : 1)];
+      const double at = queries[2 * i + (std::isfinite(mesh.space.period.y) ? 0 : 1)];
       EXPECT_TRUE(mesh.triangles.empty() ||
-                  (std::isinf(mesh.period.x + mesh.period.y) && (at < low || at > high)));
+                  (std::isinf(mesh.space.period.x + mesh.space.period.y) && (at < low || at > high)));
       EXPECT_TRUE(std::isnan(found[i]));
     } else {
       EXPECT_NEAR(value_in(mesh, static_cast<std::size_t>(triangles[i]), q, values), found[i], 1e-9) << i;
@@ -392,7 +393,7 @@ TEST(Periodic, QueriesAreWrapped) {
       }
     }
   }
-  PeriodicLocator none(testing::triangulator(), triangulated({}, {}));
+  Locator none(testing::triangulator(), triangulated({}, {}));
   const Numbers query = {0.5, 0.5};
   EXPECT_EQ(-1, none.locate(query.data(), 1)[0]);
   EXPECT_EQ(-1, none.nearest(query.data(), 1)[0]);
@@ -401,8 +402,8 @@ TEST(Periodic, QueriesAreWrapped) {
 }
 
 TEST(Periodic, QueriesOfManyPoints) {
-  const PeriodicTriangulation mesh = triangulated(uniform(20000, {}, 6), {});
-  PeriodicLocator locator(testing::triangulator(), mesh);
+  const Triangulation mesh = triangulated(uniform(20000, {}, 6), {});
+  Locator locator(testing::triangulator(), mesh);
   Numbers centres, values(40000);
   for (std::size_t i = 0; i < 20000; ++i) values[2 * i] = values[2 * i + 1] = 0.1 * static_cast<double>(i);
   std::vector<std::int32_t> expected;
@@ -410,8 +411,8 @@ TEST(Periodic, QueriesOfManyPoints) {
     double x = 0, y = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(mesh.triangles[3 * t + k]);
-      x += (mesh.places[2 * v] + mesh.offsets[6 * t + 2 * k]) / 3;
-      y += (mesh.places[2 * v + 1] + mesh.offsets[6 * t + 2 * k + 1]) / 3;
+      x += (mesh.places[2 * v] + mesh.corner_offsets[6 * t + 2 * k]) / 3;
+      y += (mesh.places[2 * v + 1] + mesh.corner_offsets[6 * t + 2 * k + 1]) / 3;
     }
     centres.insert(centres.end(), {x, y});
     expected.push_back(static_cast<std::int32_t>(t));
@@ -437,8 +438,8 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       for (std::size_t i = 0; i < n; i += 2)
         points[i] = std::floor(16 * points[i] / period.x) / 16 * period.x;
       points.insert(points.end(), points.begin(), points.begin() + 20);
-      const PeriodicTriangulation mesh = triangulated(points, period);
-      PeriodicLocator locator(testing::triangulator(), mesh);
+      const Triangulation mesh = triangulated(points, period);
+      Locator locator(testing::triangulator(), mesh);
       Numbers copies, values, of_copies, queries = uniform(100, period, 3);
       for (std::size_t i = 0; i < points.size() / 2; ++i) {
         values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
@@ -485,7 +486,7 @@ TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
   const auto interpolate = [&](const Numbers& points, const Period& period, Interpolation method) {
     InterpolationOptions options;
     options.method = method;
-    PeriodicLocator(testing::triangulator(), triangulated(points, period))
+    Locator(testing::triangulator(), triangulated(points, period))
         .interpolate(values.data(), query.data(), 1, options);
   };
   const Numbers some = uniform(30, {}, 3), line = {0.1, 0.5, 0.6, 0.5, 0.3, 0.52};
@@ -504,28 +505,28 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
   for (const Period& period : {Period{}, Period{1, HUGE_VAL}}) {
     Numbers points = uniform(80, {}, 2);
     points.insert(points.end(), points.begin(), points.begin() + 2);
-    const PeriodicTriangulation right = triangulated(points, period);
+    const Triangulation right = triangulated(points, period);
     const auto problem_of = [&](const auto& change) {
-      PeriodicTriangulation wrong = right;
+      Triangulation wrong = right;
       change(wrong);
-      return verify(wrong);
+      return verify(wrong.places.data(), wrong.point_offsets, wrong.space, wrong);
     };
-    EXPECT_EQ("", problem_of([](PeriodicTriangulation&) {}));
+    EXPECT_EQ("", problem_of([](Triangulation&) {}));
     const auto expect_problem = [&](const char* part, const auto& change) {
       const std::string problem = problem_of(change);
       EXPECT_NE(std::string::npos, problem.find(part)) << problem << " has no " << part;
     };
-    using Mesh = PeriodicTriangulation;
+    using Mesh = Triangulation;
     expect_problem("place 3 is not in the period", [](Mesh& mesh) { mesh.places[6] += 1; });
     expect_problem("place 3 is not", [](Mesh& mesh) { mesh.places[6] = 0x1p-60; });
     expect_problem("wrong representative", [](Mesh& mesh) { mesh.representatives[80] = 80; });
     expect_problem("another point represents",
                    [](Mesh& mesh) { std::replace(mesh.triangles.begin(), mesh.triangles.end(), 0, 80); });
-    expect_problem("first corner", [](Mesh& mesh) { mesh.offsets[0] = 1; });
+    expect_problem("first corner", [](Mesh& mesh) { mesh.corner_offsets[0] = 1; });
     expect_problem("first corner", [](Mesh& mesh) { std::swap(mesh.triangles[0], mesh.triangles[1]); });
     expect_problem("counter-clockwise", [](Mesh& mesh) {
       std::swap(mesh.triangles[1], mesh.triangles[2]);
-      std::swap_ranges(&mesh.offsets[2], &mesh.offsets[4], &mesh.offsets[4]);
+      std::swap_ranges(&mesh.corner_offsets[2], &mesh.corner_offsets[4], &mesh.corner_offsets[4]);
     });
     expect_problem("not neighbors of each other",
                    [](Mesh& mesh) { std::swap(mesh.neighbors[0], mesh.neighbors[1]); });
@@ -537,18 +538,18 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
       mesh.neighbors.resize(mesh.triangles.size());
       for (std::int32_t& t : mesh.neighbors)
         t = std::min(t, static_cast<std::int32_t>(mesh.triangles.size() / 3) - 1);
-      mesh.offsets.resize(2 * mesh.triangles.size());
+      mesh.corner_offsets.resize(2 * mesh.triangles.size());
       mesh.triangle_offsets[1] = mesh.triangles.size() / 3;
     });
     // A point moves into the circle of a triangle beside it.
     EXPECT_NE("", problem_of([](Mesh& mesh) { mesh.places[6] = mesh.places[6] < 0.5 ? 0.75 : 0.25; }));
   }
   // The other diagonal of a square.
-  PeriodicTriangulation square = triangulated({0, 0}, {});
-  EXPECT_EQ("", verify(square));
-  square.offsets = {0, 0, 0, 1, -1, 1, 0, 0, 1, 0, 0, 1};
+  Triangulation square = triangulated({0, 0}, {});
+  EXPECT_EQ("", verify(square.places.data(), square.point_offsets, square.space, square));
+  square.corner_offsets = {0, 0, 0, 1, -1, 1, 0, 0, 1, 0, 0, 1};
   square.triangles.assign(6, 0);
-  EXPECT_NE("", verify(square));
+  EXPECT_NE("", verify(square.places.data(), square.point_offsets, square.space, square));
 }
 
 // Against the diagram of nine copies in the plane.
@@ -558,8 +559,8 @@ TEST(Periodic, CellsAreThoseOfThePlane) {
     SCOPED_TRACE(n);
     Numbers points = uniform(n, period, n);
     points.insert(points.end(), {points[0], points[1]});  // has no cell
-    const PeriodicTriangulation mesh = triangulated(points, period);
-    const ClippedVoronoi cells = periodic_cells(testing::triangulator(), mesh);
+    const Triangulation mesh = triangulated(points, period);
+    const ClippedVoronoi cells = testing::triangulator().clipped_voronoi(mesh);
     Numbers copies;
     for (std::size_t i = 0; i < n; ++i)
       copies.insert(copies.end(), {mesh.places[2 * i], mesh.places[2 * i + 1]});
@@ -608,39 +609,40 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
     testing::expect_error(ErrorKind::usage, "the period", [&] { triangulated(few, period); });
   }
   testing::expect_error(ErrorKind::usage, "cells on a cylinder", [&] {
-    periodic_cells(testing::triangulator(), triangulated(few, {1, HUGE_VAL}));
+    testing::triangulator().clipped_voronoi(triangulated(few, {1, HUGE_VAL}));
   });
-  PeriodicTriangulation mesh = triangulated(few, {});
-  PeriodicLocator locator(testing::triangulator(), mesh);
+  Triangulation mesh = triangulated(few, {});
+  Locator locator(testing::triangulator(), mesh);
   const Numbers lost = {0, HUGE_VAL};
   testing::expect_error(ErrorKind::input, "query 0 is not finite", [&] { locator.nearest(lost.data(), 1); });
   testing::expect_error(ErrorKind::usage, "one set", [&] {
-    PeriodicLocator(testing::triangulator(),
-                    triangulate_periodic(testing::triangulator(), few.data(), {0, 1, 2}, {}));
+    Locator(testing::triangulator(),
+            testing::triangulator().triangulate(few.data(), {0, 1, 2}, Space::torus({})));
   });
   std::swap(mesh.triangles[1], mesh.triangles[2]);
   testing::expect_error(ErrorKind::usage, "not those of a triangulation",
-                        [&] { PeriodicLocator(testing::triangulator(), mesh); });
+                        [&] { Locator(testing::triangulator(), mesh); });
   testing::expect_error(ErrorKind::usage, "not those of a triangulation",
-                        [&] { periodic_cells(testing::triangulator(), mesh); });
+                        [&] { testing::triangulator().clipped_voronoi(mesh); });
   mesh.triangles[0] = 7;
   testing::expect_error(ErrorKind::usage, "not those of a triangulation",
-                        [&] { PeriodicLocator(testing::triangulator(), mesh); });
+                        [&] { Locator(testing::triangulator(), mesh); });
   testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulated(few, {1, 0x1p31}); });
   EXPECT_TRUE(triangulated({}, {}).triangles.empty());
 }
 
 TEST(Periodic, ManyPointsHaveTwiceAsManyTriangles) {
-  const PeriodicTriangulation mesh = triangulated(uniform(100000, {}, 3), {});
+  const Triangulation mesh = triangulated(uniform(100000, {}, 3), {});
   EXPECT_EQ(200000u, mesh.triangles.size() / 3);
   EXPECT_LT(mesh.images, 15000u);
   double sum = 0;
-  for (const double area : periodic_cells(testing::triangulator(), mesh).areas) sum += area;
+  for (const double area : testing::triangulator().clipped_voronoi(mesh).areas) sum += area;
   EXPECT_NEAR(1, sum, 1e-10);
   // In a strip, whose triangles in the plane are images for the most part.
   Numbers strip = uniform(30000, {}, 4);
   for (std::size_t i = 0; i < strip.size(); i += 2) strip[i] /= 256;
-  EXPECT_EQ("", verify(triangulated(strip, {})));
+  EXPECT_EQ("", verify(triangulated(strip, {}).places.data(), triangulated(strip, {}).point_offsets,
+                       triangulated(strip, {}).space, triangulated(strip, {})));
 }
 
 }  // namespace

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "flaunay/neighbors.hpp"
-#include "flaunay/periodic.hpp"
-#include "flaunay/sphere.hpp"
 #include "flaunay/verify.hpp"
-#include "flaunay/weighted.hpp"
 #include "tests/support/fixtures.hpp"
 
 namespace flaunay::testing::spaces {
@@ -27,88 +26,56 @@ struct Answers {
   Neighbors several;
 };
 
-struct Plane {
-  static constexpr std::size_t kWidth = 2;
-  static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
-    Options options;
-    options.neighbors = true;
-    return triangulator.triangulate(points.data(), offsets, options);
+/// A space, and how its points are given.
+struct TestSpace {
+  std::string name;
+  std::size_t width;  ///< numbers per point
+  Space space;
+  bool has_weights = false;  ///< the third number of a point is its weight
+
+  /// Calls work(coordinates, space) with the weights in the space.
+  template <typename Work>
+  auto with_columns(const Numbers& points, const Work& work) const {
+    if (!has_weights) return work(points, space);
+    Numbers coordinates, weights;
+    for (std::size_t i = 0; i < points.size(); i += width) {
+      coordinates.insert(coordinates.end(), {points[i], points[i + 1]});
+      weights.push_back(points[i + 2]);
+    }
+    return work(coordinates, space.with_weights(weights.data()));
   }
-  static std::string verify(const Numbers& points, const Offsets& offsets, const Triangulation& mesh) {
-    return flaunay::verify(points.data(), offsets, mesh);
+  Triangulation triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) const {
+    return with_columns(points, [&](const Numbers& coordinates, const Space& given) {
+      return triangulator.triangulate(coordinates.data(), offsets, given);
+    });
   }
-  static Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
-                         const Numbers& queries, const NeighborOptions& options) {
-    Locator locator(triangulator, points.data(), points.size() / kWidth, mesh);
-    PointTree tree(triangulator, points.data(), points.size() / kWidth);
-    const std::size_t m = queries.size() / kWidth;
+  std::string verify(const Numbers& points, const Offsets& offsets, const Triangulation& mesh) const {
+    return with_columns(points, [&](const Numbers& coordinates, const Space& given) {
+      return flaunay::verify(coordinates.data(), offsets, given, mesh);
+    });
+  }
+  Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
+                  const Numbers& queries, const NeighborOptions& options) const {
+    const std::size_t n = points.size() / width, m = queries.size() / width;
+    const bool is_plane = space.kind == SpaceKind::plane;
+    Locator locator = is_plane ? Locator(triangulator, points.data(), n, mesh) : Locator(triangulator, mesh);
+    PointTree tree = is_plane ? PointTree(triangulator, points.data(), n) : PointTree(triangulator, mesh);
     return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
             tree.nearest(queries.data(), m, options)};
   }
+
+  friend void PrintTo(const TestSpace& space, std::ostream* out) { *out << space.name; }
 };
 
-/// The third number of a point is its weight.
-struct Weighted {
-  static constexpr std::size_t kWidth = 3;
-  static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
-    Options options;
-    options.neighbors = true;
-    return triangulate_weighted(triangulator, columns(points, 0, 2).data(), columns(points, 2, 1).data(),
-                                offsets, options);
-  }
-  static std::string verify(const Numbers& points, const Offsets& offsets,
-                            const WeightedTriangulation& mesh) {
-    return flaunay::verify(columns(points, 0, 2).data(), columns(points, 2, 1).data(), offsets, mesh);
-  }
-  static Numbers columns(const Numbers& points, std::size_t first, std::size_t count) {
-    Numbers chosen;
-    for (std::size_t i = first; i < points.size(); i += kWidth)
-      chosen.insert(chosen.end(), &points[i], &points[i] + count);
-    return chosen;
-  }
-};
-
-template <int kAcross, int kUp>
-struct Periodic {
-  static constexpr std::size_t kWidth = 2;
-  static Period period() { return {kAcross > 0 ? kAcross * 0.75 : HUGE_VAL, kUp > 0 ? kUp * 1.0 : HUGE_VAL}; }
-  static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
-    return triangulate_periodic(triangulator, points.data(), offsets, period());
-  }
-  static std::string verify(const Numbers&, const Offsets&, const PeriodicTriangulation& mesh) {
-    return flaunay::verify(mesh);
-  }
-  static Answers answers(Triangulator& triangulator, const Numbers&, const PeriodicTriangulation& mesh,
-                         const Numbers& queries, const NeighborOptions& options) {
-    PeriodicLocator locator(triangulator, mesh);
-    PointTree tree(triangulator, mesh);
-    const std::size_t m = queries.size() / kWidth;
-    return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
-            tree.nearest(queries.data(), m, options)};
-  }
-};
-using Torus = Periodic<1, 1>;
-using Cylinder = Periodic<1, 0>;
-using UprightCylinder = Periodic<0, 1>;
-
-struct Sphere {
-  static constexpr std::size_t kWidth = 3;
-  static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
-    return triangulate_sphere(triangulator, points.data(), offsets, SphereCoordinates::directions);
-  }
-  static std::string verify(const Numbers& points, const Offsets& offsets,
-                            const SphericalTriangulation& mesh) {
-    return flaunay::verify(points.data(), offsets, SphereCoordinates::directions, mesh);
-  }
-  static Answers answers(Triangulator& triangulator, const Numbers&, const SphericalTriangulation& mesh,
-                         const Numbers& queries, const NeighborOptions& options) {
-    constexpr SphereCoordinates kDirections = SphereCoordinates::directions;
-    SphereLocator locator(triangulator, mesh);
-    const std::size_t m = queries.size() / kWidth;
-    return {locator.locate(queries.data(), m, kDirections), locator.nearest(queries.data(), m, kDirections),
-            locator.nearest(queries.data(), m, kDirections, options)};
-  }
-};
+inline std::vector<TestSpace> all_spaces() {
+  constexpr double kWhole = std::numeric_limits<double>::infinity();
+  return {{"plane", 2, Space::plane()},
+          {"weighted", 3, Space::plane(), true},
+          {"torus", 2, Space::torus({0.75, 1})},
+          {"cylinder", 2, Space::torus({0.75, kWhole})},
+          {"upright_cylinder", 2, Space::torus({kWhole, 1})},
+          {"sphere", 3, Space::sphere(SphereCoordinates::directions)}};
+}
 
 struct Case {
   std::string name;

@@ -51,12 +51,15 @@ TEST_F(Turns, TriangulationsTakeOne) {
   expect_one("constrained", [&] { made_.constrained(at_, kCount, constraints); });
   expect_one("refined", [&] { made_.constrained(at_, kCount, constraints, options); });
   expect_one("polygons", [&] { made_.polygons(polygons); });
-  expect_one("weighted", [&] { triangulate_weighted(made_, at_, weights.data(), kCount); });
+  expect_one("weighted",
+             [&] { made_.triangulate(at_, kCount, Space::plane().with_weights(weights.data())); });
   for (const Period& period : {Period{}, {1, HUGE_VAL}})
-    expect_one("periodic", [&] { triangulate_periodic(made_, at_, {0, 20, 60}, period); });
+    expect_one("periodic", [&] { made_.triangulate(at_, {0, 20, 60}, Space::torus(period)); });
   // Few points need wider margins.
-  expect_one("few periodic", [&] { triangulate_periodic(made_, at_, 3, {}); });
-  expect_one("sphere", [&] { triangulate_sphere(made_, at_, {0, 7, 60}, SphereCoordinates::degrees); });
+  expect_one("few periodic", [&] { made_.triangulate(at_, 3, Space::torus({})); });
+  expect_one("sphere", [&] {
+    made_.triangulate(at_, {0, 7, 60}, Space::sphere(SphereCoordinates::degrees));
+  });
   expect_one("relax", [&] { made_.relax(at_, kCount, square.data(), 4, 3); });
   DynamicTriangulation changing(made_, at_, kCount);
   const std::int32_t last = kCount - 1;
@@ -75,8 +78,8 @@ TEST_F(Turns, QueriesTakeOne) {
   constraints.segments = segments.data();
   constraints.segment_count = 1;
   const ConstrainedTriangulation constrained = made_.constrained(at_, kCount, constraints);
-  const PeriodicTriangulation torus = triangulate_periodic(made_, at_, kCount, {});
-  const SphericalTriangulation sphere = triangulate_sphere(made_, at_, kCount, SphereCoordinates::degrees);
+  const Triangulation torus = made_.triangulate(at_, kCount, Space::torus({}));
+  const Triangulation sphere = made_.triangulate(at_, kCount, Space::sphere(SphereCoordinates::degrees));
   const Numbers box = {0, 0, 1, 0, 1, 1, 0, 1}, values(kCount, 1);
   InterpolationOptions smooth;
   smooth.method = Interpolation::sibson;
@@ -84,12 +87,12 @@ TEST_F(Turns, QueriesTakeOne) {
   three.count = 3;
   expect_one("voronoi", [&] { made_.voronoi(at_, kCount, mesh); });
   expect_one("clipped", [&] { made_.clipped_voronoi(at_, kCount, mesh, box.data(), 4); });
-  expect_one("cells of a torus", [&] { periodic_cells(made_, torus); });
-  expect_one("cells of a sphere", [&] { voronoi_on_sphere(made_, sphere); });
+  expect_one("cells of a torus", [&] { made_.clipped_voronoi(torus); });
+  expect_one("cells of a sphere", [&] { made_.voronoi(sphere); });
   expect_one("a locator", [&] { Locator(made_, at_, kCount, mesh); });
   expect_one("a locator of a constrained mesh", [&] { Locator(made_, at_, kCount, constrained); });
-  expect_one("a locator of a torus", [&] { PeriodicLocator(made_, torus); });
-  expect_one("a locator of a sphere", [&] { SphereLocator(made_, sphere); });
+  expect_one("a locator of a torus", [&] { Locator(made_, torus); });
+  expect_one("a locator of a sphere", [&] { Locator(made_, sphere); });
   Locator locator(made_, at_, kCount, constrained);
   // The first one makes what answers it.
   expect_one("nearest", [&] { locator.nearest(at_, kCount); });
@@ -97,16 +100,16 @@ TEST_F(Turns, QueriesTakeOne) {
   expect_one("interpolate", [&] { locator.interpolate(values.data(), at_, kCount, smooth); });
   expect_one("weights", [&] { locator.natural_weights(at_, kCount, Interpolation::laplace); });
   expect_one("gradients", [&] { locator.gradients(values.data(), 1, {}); });
-  PeriodicLocator on_torus(made_, torus);
+  Locator on_torus(made_, torus);
   expect_one("locate on a torus", [&] { on_torus.locate(at_, kCount); });
   expect_one("nearest on a torus", [&] { on_torus.nearest(at_, kCount); });
   expect_one("interpolate on a torus", [&] { on_torus.interpolate(values.data(), at_, kCount, smooth); });
-  SphereLocator on_sphere(made_, sphere);
-  constexpr SphereCoordinates kDegrees = SphereCoordinates::degrees;
-  expect_one("locate on a sphere", [&] { on_sphere.locate(at_, kCount, kDegrees); });
-  expect_one("nearest on a sphere", [&] { on_sphere.nearest(at_, kCount, kDegrees, three); });
-  expect_one("interpolate on a sphere",
-             [&] { on_sphere.interpolate(values.data(), 1, at_, kCount, kDegrees); });
+  Locator on_sphere(made_, sphere);
+  expect_one("locate on a sphere", [&] { on_sphere.locate(at_, kCount); });
+  expect_one("nearest on a sphere", [&] { on_sphere.nearest(at_, kCount); });
+  expect_one("interpolate on a sphere", [&] { on_sphere.interpolate(values.data(), at_, kCount); });
+  PointTree tree_on_sphere(made_, sphere);
+  expect_one("several nearest on a sphere", [&] { tree_on_sphere.nearest(at_, kCount, three); });
   PointTree tree(made_, torus);
   expect_one("several nearest", [&] { tree.nearest(at_, kCount, three); });
 }

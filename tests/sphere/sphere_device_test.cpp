@@ -37,8 +37,7 @@ void expect_as_on_host(const std::vector<T>& points, Offsets offsets, SphereCoor
   const std::size_t width = width_of(coordinates), n = points.size() / width - first;
   if (offsets.empty()) offsets = {0, n};
   const Numbers wide(points.begin() + static_cast<std::ptrdiff_t>(first * width), points.end());
-  const SphericalTriangulation expected =
-      triangulate_sphere(triangulator(), wide.data(), offsets, coordinates);
+  const Triangulation expected = triangulator().triangulate(wide.data(), offsets, Space::sphere(coordinates));
   const Memory memory = embedder().upload(points);
   DevicePoints given;
   given.memory = memory.get();
@@ -46,10 +45,11 @@ void expect_as_on_host(const std::vector<T>& points, Offsets offsets, SphereCoor
   given.first = first;
   given.offsets = offsets;
   given.precision = sizeof(T) == sizeof(double) ? Precision::float64 : Precision::float32;
-  DeviceSphericalTriangulation result;
+  given.space = Space::sphere(coordinates);
+  DeviceTriangulation result;
   // The second call has the memory of the first one.
   for (int call = 0; call < 2; ++call) {
-    triangulate_sphere(embedded(), given, coordinates, result);
+    embedded().triangulate(given, result);
     EXPECT_EQ(expected.point_offsets, result.point_offsets);
     EXPECT_EQ(expected.triangle_offsets, result.triangle_offsets);
     EXPECT_EQ(expected.places, download<double>(result.places, 2 * n));
@@ -107,10 +107,10 @@ TEST(SphereOnDevice, ManyPointsAreAsOnTheHost) {
   expect_as_on_host(grid(3, false), {}, kDegrees);
 }
 
-std::string error_of(const DevicePoints& points, SphereCoordinates coordinates,
-                     DeviceSphericalTriangulation result = {}) {
+std::string error_of(DevicePoints points, SphereCoordinates coordinates, DeviceTriangulation result = {}) {
+  points.space = Space::sphere(coordinates);
   try {
-    triangulate_sphere(embedded(), points, coordinates, result);
+    embedded().triangulate(points, result);
   } catch (const Error& error) {
     return error.what();
   }
@@ -142,7 +142,7 @@ TEST(SmallSphereOnDevice, ErrorsSayWhatIsWrong) {
   points.memory = good.get();
   points.first = 0;
   points.count = 9;
-  DeviceSphericalTriangulation result;
+  DeviceTriangulation result;
   result.neighbors = DeviceBuffer(small.get());
   expect("neighbors", error_of(points, kDirections, result));
 }

@@ -63,7 +63,7 @@ mpq_class cosine(const Exact& a, const Exact& b) {
   return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / (a[3] * b[3]);
 }
 
-std::vector<Exact> exact_places(const SphericalTriangulation& mesh) {
+std::vector<Exact> exact_places(const Triangulation& mesh) {
   std::vector<Exact> points;
   for (std::size_t i = 0; i < mesh.places.size(); i += 2)
     points.push_back(exact(mesh.places[i], mesh.places[i + 1]));
@@ -71,7 +71,7 @@ std::vector<Exact> exact_places(const SphericalTriangulation& mesh) {
 }
 
 /// In the canonical order, the south pole is the first.
-bool comes_first(const SphericalTriangulation& mesh, std::int32_t a, std::int32_t b) {
+bool comes_first(const Triangulation& mesh, std::int32_t a, std::int32_t b) {
   const auto place = [&](std::int32_t v) {
     const double* const p = &mesh.places[2 * static_cast<std::size_t>(v)];
     return std::isinf(p[0]) ? std::pair(-HUGE_VAL, -HUGE_VAL) : std::pair(p[0], p[1]);
@@ -80,7 +80,7 @@ bool comes_first(const SphericalTriangulation& mesh, std::int32_t a, std::int32_
 }
 
 /// Of one set: that it is the convex hull, each face a fan from its first vertex, with the right neighbours.
-void expect_hull(const SphericalTriangulation& mesh) {
+void expect_hull(const Triangulation& mesh) {
   const std::vector<Exact> points = exact_places(mesh);
   std::set<std::pair<double, double>> different;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -124,15 +124,20 @@ void expect_hull(const SphericalTriangulation& mesh) {
   }
 }
 
-SphericalTriangulation triangulated(const Numbers& points, SphereCoordinates coordinates) {
-  return triangulate_sphere(testing::triangulator(), points.data(),
-                            points.size() / (coordinates == kDirections ? 3 : 2), coordinates);
+Triangulation triangulated(const Numbers& points, SphereCoordinates coordinates) {
+  return testing::triangulator().triangulate(
+      points.data(), points.size() / (coordinates == kDirections ? 3 : 2), Space::sphere(coordinates));
 }
 
-std::string problem_of(const SphericalTriangulation& mesh, const Numbers& points,
-                       SphereCoordinates coordinates) {
+InterpolationOptions columns(std::size_t count) {
+  InterpolationOptions options;
+  options.columns = count;
+  return options;
+}
+
+std::string problem_of(const Triangulation& mesh, const Numbers& points, SphereCoordinates coordinates) {
   const std::vector<std::size_t> offsets = {0, points.size() / (coordinates == kDirections ? 3 : 2)};
-  return verify(points.data(), offsets, coordinates, mesh);
+  return verify(points.data(), offsets, Space::sphere(coordinates), mesh);
 }
 
 struct Case {
@@ -230,14 +235,14 @@ std::vector<Case> cases() {
 TEST(Sphere, TrianglesAreTheConvexHull) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    const Triangulation mesh = triangulated(c.points, c.coordinates);
     expect_hull(mesh);
     EXPECT_EQ("", problem_of(mesh, c.points, c.coordinates));
   }
 }
 
 TEST(Sphere, PlacesAreThoseOfTheirDirections) {
-  const SphericalTriangulation mesh =
+  const Triangulation mesh =
       triangulated({0, 0, 0, 90, 90, 0, -90, 0, 180, 0, 123, -90, 540, 0, 30, 90, 45, 30}, kDegrees);
   const double kFar = HUGE_VAL;
   const Numbers places = {1, 0, 0, 0, 0, 1, 0, -1, -1, 0, kFar, kFar, -1, 0, 0, 0};
@@ -270,15 +275,15 @@ TEST(Sphere, PlacesAreThoseOfTheirDirections) {
 TEST(Sphere, CellsAreThoseOfTheirPoints) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
-    const SphericalVoronoi dual = voronoi_on_sphere(testing::triangulator(), mesh);
+    const Triangulation mesh = triangulated(c.points, c.coordinates);
+    const Voronoi dual = testing::triangulator().voronoi(mesh);
     const Numbers directions = directions_of(mesh.places);
     const std::size_t n = directions.size() / 3;
     const auto across = [](const double* a, const double* b) {
       return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     };
     for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
-      const double* const centre = &dual.centres[3 * t];
+      const double* const centre = &dual.circumcentres[3 * t];
       EXPECT_NEAR(1, across(centre, centre), 1e-15);
       double nearest = -1;
       for (std::size_t i = 0; i < n; ++i) nearest = std::max(nearest, across(centre, &directions[3 * i]));
@@ -312,17 +317,17 @@ TEST(Sphere, CellsAreThoseOfTheirPoints) {
       EXPECT_NEAR(n > 0 ? 4 * std::numbers::pi : 0, area, 1e-12);
     }
   }
-  const SphericalVoronoi octahedron =
-      voronoi_on_sphere(testing::triangulator(),
-                        triangulated({1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1}, kDirections));
+  const Voronoi octahedron = testing::triangulator().voronoi(
+      triangulated({1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1}, kDirections));
   for (const double area : octahedron.areas) EXPECT_NEAR(4 * std::numbers::pi / 6, area, 1e-14);
 }
 
 TEST(Sphere, QueriesFindTheirTrianglesAndNearestPoints) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
-    SphereLocator locator(testing::triangulator(), mesh);
+    const Triangulation mesh = triangulated(c.points, c.coordinates);
+    Locator locator(testing::triangulator(), mesh);
+    locator.set_coordinates(kDirections);
     Numbers queries = random_directions(40, 3);
     const Numbers own = directions_of(mesh.places);
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -331,14 +336,14 @@ TEST(Sphere, QueriesFindTheirTrianglesAndNearestPoints) {
     }
     queries.insert(queries.end(), {0, 0, -1, 0, 0, 1, 1, 0, 0});
     const std::size_t m = queries.size() / 3;
-    const Ids found = locator.locate(queries.data(), m, kDirections);
-    const Ids nearest = locator.nearest(queries.data(), m, kDirections);
+    const Ids found = locator.locate(queries.data(), m);
+    const Ids nearest = locator.nearest(queries.data(), m);
     const std::vector<Exact> points = exact_places(mesh),
                              asked = exact_places(triangulated(queries, kDirections));
     Numbers values;
     for (std::size_t i = 0; i < points.size(); ++i)
       values.insert(values.end(), {static_cast<double>(i), own[3 * i] + 2 * own[3 * i + 1]});
-    const Numbers between = locator.interpolate(values.data(), 2, queries.data(), m, kDirections);
+    const Numbers between = locator.interpolate(values.data(), queries.data(), m, columns(2));
     for (std::size_t q = 0; q < m; ++q) {
       std::int32_t best = -1;
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -372,7 +377,7 @@ TEST(Sphere, QueriesFindTheirTrianglesAndNearestPoints) {
 TEST(Sphere, PlanarPartsAreTheTriangulationsOfThePlane) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const SphericalTriangulation mesh = triangulated(c.points, c.coordinates);
+    const Triangulation mesh = triangulated(c.points, c.coordinates);
     const Plane plane = make_plane(mesh.places, mesh.point_offsets);
     const Triangulation part = planar_part(plane, mesh);
     const Triangulation planar =
@@ -388,11 +393,11 @@ TEST(Sphere, PlanarPartsAreTheTriangulationsOfThePlane) {
 
 TEST(Sphere, LinearFunctionsInSpaceAreInterpolated) {
   // On the triangle in space, which is where the values are linear: of x / (the plane's value), at the query.
-  const SphericalTriangulation mesh = triangulated(random_directions(50, 11), kDirections);
-  SphereLocator locator(testing::triangulator(), mesh);
+  const Triangulation mesh = triangulated(random_directions(50, 11), kDirections);
+  Locator locator(testing::triangulator(), mesh);
   const Numbers own = directions_of(mesh.places), queries = random_directions(100, 12);
-  const Ids found = locator.locate(queries.data(), 100, kDirections);
-  const Numbers between = locator.interpolate(own.data(), 3, queries.data(), 100, kDirections);
+  const Ids found = locator.locate(queries.data(), 100);
+  const Numbers between = locator.interpolate(own.data(), queries.data(), 100, columns(3));
   for (std::size_t q = 0; q < 100; ++q) {
     ASSERT_GE(found[q], 0);
     // The interpolated position has the query's direction.
@@ -415,21 +420,23 @@ TEST(Sphere, ErrorsSayWhatIsWrong) {
     triangulated({HUGE_VAL, 0}, kDegrees);
   });
   testing::expect_error(ErrorKind::usage, "NULL",
-                        [] { triangulate_sphere(testing::triangulator(), nullptr, 3, kDegrees); });
+                        [] { testing::triangulator().triangulate(nullptr, 3, Space::sphere(kDegrees)); });
   testing::expect_error(ErrorKind::usage, "offsets", [] {
     const double points[] = {1, 2, 3, 4};
-    triangulate_sphere(testing::triangulator(), points, {1, 2}, kDegrees);
+    testing::triangulator().triangulate(points, {1, 2}, Space::sphere(kDegrees));
   });
-  SphericalTriangulation mesh = triangulated(random_directions(9, 1), kDirections);
-  SphereLocator locator(testing::triangulator(), mesh);
+  Triangulation mesh = triangulated(random_directions(9, 1), kDirections);
+  Locator locator(testing::triangulator(), mesh);
   const double query[] = {0, 100};
-  testing::expect_error(ErrorKind::input, "query 0: the latitude 100",
-                        [&] { locator.nearest(query, 1, kDegrees); });
+  testing::expect_error(ErrorKind::input, "query 0: the latitude 100", [&] {
+    locator.set_coordinates(kDegrees);
+    locator.nearest(query, 1);
+  });
   mesh.neighbors[4] = (mesh.neighbors[4] + 1) % 14;
   testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
-                        [&] { voronoi_on_sphere(testing::triangulator(), mesh); });
+                        [&] { testing::triangulator().voronoi(mesh); });
   testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
-                        [&] { SphereLocator(testing::triangulator(), mesh); });
+                        [&] { Locator(testing::triangulator(), mesh); });
 }
 
 TEST(Sphere, ManyPointsHaveAllTriangles) {
@@ -448,9 +455,9 @@ TEST(Sphere, ManyPointsHaveAllTriangles) {
     kept += 3;
   }
   points.resize(kept);
-  const SphericalTriangulation mesh = triangulated(points, kDirections);
+  const Triangulation mesh = triangulated(points, kDirections);
   EXPECT_EQ(2 * kept / 3 - 4, mesh.triangles.size() / 3);
-  const SphericalVoronoi dual = voronoi_on_sphere(testing::triangulator(), mesh);
+  const Voronoi dual = testing::triangulator().voronoi(mesh);
   double area = 0;
   for (const double each : dual.areas) area += each;
   EXPECT_NEAR(4 * std::numbers::pi, area, 1e-10);
@@ -473,7 +480,7 @@ TEST(Sphere, ManyPointsHaveAllTriangles) {
 /// A closed surface, of which edges can be replaced by others.
 class Surface {
  public:
-  explicit Surface(const SphericalTriangulation& mesh) : mesh_(mesh), twins_(mesh.triangles.size()) {
+  explicit Surface(const Triangulation& mesh) : mesh_(mesh), twins_(mesh.triangles.size()) {
     for (std::size_t e = 0; e < twins_.size(); ++e) {
       twins_[e] = 3 * static_cast<std::size_t>(mesh.neighbors[e]);
       while (mesh_.triangles[next(twins_[e])] != mesh_.triangles[previous(e)] ||
@@ -497,8 +504,8 @@ class Surface {
   }
 
   /// Triangles from their smallest corners on, and their neighbours.
-  SphericalTriangulation mesh() const {
-    SphericalTriangulation result = mesh_;
+  Triangulation mesh() const {
+    Triangulation result = mesh_;
     for (std::size_t t = 0; t < twins_.size(); t += 3) {
       const auto first = static_cast<std::size_t>(
           std::min_element(&mesh_.triangles[t], &mesh_.triangles[t] + 3) - mesh_.triangles.data());
@@ -519,12 +526,12 @@ class Surface {
     twins_[f] = e;
   }
 
-  SphericalTriangulation mesh_;
+  Triangulation mesh_;
   std::vector<std::size_t> twins_;
 };
 
 /// What does not depend on the order of triangles: the corners of each, and of its neighbours.
-auto contents(const SphericalTriangulation& mesh) {
+auto contents(const Triangulation& mesh) {
   std::multiset<Ids> result;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     Ids triangle(&mesh.triangles[t], &mesh.triangles[t] + 3);
@@ -542,7 +549,7 @@ TEST(Sphere, VerifyRefusesOtherSurfaces) {
   std::size_t right = 0, wrong = 0;
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const SphericalTriangulation hull = triangulated(c.points, c.coordinates);
+    const Triangulation hull = triangulated(c.points, c.coordinates);
     if (hull.triangles.empty()) continue;
     const auto expected = contents(hull);
     Surface surface(hull);
@@ -550,7 +557,7 @@ TEST(Sphere, VerifyRefusesOtherSurfaces) {
       if (random.integer(0, 9) == 0) surface = Surface(hull);
       surface.flip(
           static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(hull.triangles.size()) - 1)));
-      const SphericalTriangulation mesh = surface.mesh();
+      const Triangulation mesh = surface.mesh();
       const bool is_right = contents(mesh) == expected;
       ASSERT_EQ(is_right, problem_of(mesh, c.points, c.coordinates).empty()) << step;
       ++(is_right ? right : wrong);
@@ -561,7 +568,7 @@ TEST(Sphere, VerifyRefusesOtherSurfaces) {
 }
 
 /// A closed surface of triangles whose edges occur once in each direction.
-SphericalTriangulation surface_of(const Ids& triangles, SphericalTriangulation mesh) {
+Triangulation surface_of(const Ids& triangles, Triangulation mesh) {
   mesh.triangles = triangles;
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> at_edge;
   for (std::size_t c = 0; c < triangles.size(); ++c) {
@@ -591,7 +598,7 @@ TEST(Sphere, VerifyRefusesSurfacesThatWindTwice) {
         points.insert(points.end(),
                       {u * across.x + v * up.x, u * across.y + v * up.y, u * across.z + v * up.z});
       }
-      const SphericalTriangulation mesh = triangulated(points, kDirections);
+      const Triangulation mesh = triangulated(points, kDirections);
       for (const int step : {1, 2}) {
         Ids triangles;
         for (int k = 0; k < corners; ++k) {
@@ -606,7 +613,7 @@ TEST(Sphere, VerifyRefusesSurfacesThatWindTwice) {
 }
 
 TEST(Sphere, VerifyFindsWhatIsWrong) {
-  using Mesh = SphericalTriangulation;
+  using Mesh = Triangulation;
   for (const double pole : {0.0, 1.0}) {
     Numbers points = random_directions(70, 3);
     points.insert(points.end(), {pole, 0, -1, points[0], points[1], points[2]});

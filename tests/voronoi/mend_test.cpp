@@ -99,8 +99,8 @@ TEST(SmallMend, ASetDependsOnNoOther) {
   const std::size_t n = sets.offsets.back();
   const ClippedVoronoi cells = triangulator.clipped_voronoi(sets.points.data(), n, mesh, box.data(), 4);
   const Voronoi dual = triangulator.voronoi(sets.points.data(), n, mesh);
-  const ClippedVoronoi torus = periodic_cells(
-      triangulator, triangulate_periodic(triangulator, sets.points.data(), sets.offsets, period));
+  const ClippedVoronoi torus = triangulator.clipped_voronoi(
+      triangulator.triangulate(sets.points.data(), sets.offsets, Space::torus(period)));
   for (std::size_t s = 0; s + 1 < sets.offsets.size(); ++s) {
     SCOPED_TRACE(s);
     const std::size_t first = sets.offsets[s], end = sets.offsets[s + 1];
@@ -110,9 +110,9 @@ TEST(SmallMend, ASetDependsOnNoOther) {
                       triangulator.clipped_voronoi(points.data(), end - first, own, box.data(), 4));
     EXPECT_TRUE(same(part(dual.circumcentres, mesh.triangle_offsets[s], mesh.triangle_offsets[s + 1]),
                      triangulator.voronoi(points.data(), end - first, own).circumcentres));
-    expect_same_cells(
-        torus, first, end,
-        periodic_cells(triangulator, triangulate_periodic(triangulator, points.data(), end - first, period)));
+    expect_same_cells(torus, first, end,
+                      triangulator.clipped_voronoi(
+                          triangulator.triangulate(points.data(), end - first, Space::torus(period))));
   }
 }
 

@@ -93,7 +93,7 @@ bool is_hidden(const std::vector<Exact>& all, std::size_t v) {
 
 /// That triangles are counter-clockwise and lie below all points, that they are as many as there must be, and
 /// that everything else belongs to them.
-void expect_regular(const WeightedPoints& points, const WeightedTriangulation& mesh, bool by_brute_force) {
+void expect_regular(const WeightedPoints& points, const Triangulation& mesh, bool by_brute_force) {
   SCOPED_TRACE(points.name);
   const std::vector<Exact> all = exactly(points);
   const std::size_t n = points.size();
@@ -119,7 +119,9 @@ void expect_regular(const WeightedPoints& points, const WeightedTriangulation& m
     if (!by_brute_force) continue;
     ASSERT_EQ(hidden.count(numbers[k]), is_hidden(different, k)) << numbers[k];
   }
-  ASSERT_EQ(verify(points.coordinates.data(), points.weights.data(), {0, n}, mesh), "");
+  ASSERT_EQ(
+      verify(points.coordinates.data(), {0, n}, Space::plane().with_weights(points.weights.data()), mesh),
+      "");
   ASSERT_EQ(mesh.statistics.triangles, mesh.triangles.size() / 3);
   ASSERT_EQ(mesh.neighbors.size(), mesh.triangles.size());
   if (!mesh.triangles.empty()) {
@@ -140,11 +142,11 @@ void expect_regular(const WeightedPoints& points, const WeightedTriangulation& m
   }
 }
 
-WeightedTriangulation triangulated(Triangulator& triangulator, const WeightedPoints& points) {
+Triangulation triangulated(Triangulator& triangulator, const WeightedPoints& points) {
   Options options;
   options.neighbors = true;
-  return triangulate_weighted(triangulator, points.coordinates.data(), points.weights.data(), points.size(),
-                              options);
+  return triangulator.triangulate(points.coordinates.data(), points.size(),
+                                  Space::plane().with_weights(points.weights.data()), options);
 }
 
 /// Small integers, so that many are in one place, on a line, or on one plane when they are lifted.
@@ -199,8 +201,8 @@ TEST_F(WeightedTest, EqualWeightsGiveTheBytesOfTheDelaunayTriangulation) {
       for (const int size : {3, 60, 1'000'000}) {
         const WeightedPoints points = lattice_points(random, n, size, 0);
         const Numbers weights(n, weight);
-        const WeightedTriangulation mesh =
-            triangulate_weighted(triangulator_, points.coordinates.data(), weights.data(), n, options);
+        const Triangulation mesh = triangulator_.triangulate(
+            points.coordinates.data(), n, Space::plane().with_weights(weights.data()), options);
         const Triangulation plain = triangulator_.triangulate(points.coordinates.data(), n, options);
         EXPECT_EQ(mesh.triangles, plain.triangles);
         EXPECT_EQ(mesh.neighbors, plain.neighbors);
@@ -269,7 +271,7 @@ TEST_F(WeightedTest, OnAPlaneOnlyCornersAreVertices) {
   for (int x = 0; x < 30; ++x) {
     for (int y = 0; y < 30; ++y) flat.add(x, y, x * x + y * y);
   }
-  const WeightedTriangulation mesh = triangulated(triangulator_, flat);
+  const Triangulation mesh = triangulated(triangulator_, flat);
   EXPECT_EQ(mesh.hull, (Ids{0, 29 * 30, 899, 29}));
   EXPECT_EQ(mesh.hidden.size(), 896u);
   expect_regular(flat, mesh, false);
@@ -282,7 +284,7 @@ TEST_F(WeightedTest, OneHeavyPointHidesAllButTheHullBeyondIt) {
   for (const double weight : {0.5, 100.0}) {
     WeightedPoints points = random_points(random, 1000, 0);
     points.add(0.5, 0.5, weight);
-    const WeightedTriangulation mesh = triangulated(triangulator_, points);
+    const Triangulation mesh = triangulated(triangulator_, points);
     expect_regular(points, mesh, false);
     EXPECT_GT(mesh.hidden.size(), 500u);
     EXPECT_EQ(std::count(mesh.hidden.begin(), mesh.hidden.end(), 1000), 0);
@@ -304,12 +306,12 @@ TEST_F(WeightedTest, PointsAreHiddenByTheirSets) {
   }
   Options options;
   options.neighbors = true;
-  const WeightedTriangulation mesh =
-      triangulate_weighted(triangulator_, all.coordinates.data(), all.weights.data(), offsets, options);
+  const Triangulation mesh = triangulator_.triangulate(
+      all.coordinates.data(), offsets, Space::plane().with_weights(all.weights.data()), options);
   const Ids hiding = hiding_triangles(triangulator_, all.coordinates.data(), offsets, mesh);
   std::size_t hidden = 0;
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const WeightedTriangulation own = triangulated(triangulator_, sets[s]);
+    const Triangulation own = triangulated(triangulator_, sets[s]);
     const auto first = static_cast<std::int32_t>(offsets[s]);
     ASSERT_EQ(mesh.hull_offsets[s + 1] - mesh.hull_offsets[s], own.hull.size());
     const Ids own_hiding =
@@ -327,7 +329,7 @@ TEST_F(WeightedTest, PointsAreHiddenByTheirSets) {
 TEST_F(WeightedTest, TheTriangleThatHidesAPointHasItBelow) {
   std::mt19937 random(7);
   for (const WeightedPoints& points : {random_points(random, 500, 3), lattice_points(random, 300, 12, 40)}) {
-    const WeightedTriangulation mesh = triangulated(triangulator_, points);
+    const Triangulation mesh = triangulated(triangulator_, points);
     const Ids hiding = hiding_triangles(triangulator_, points.coordinates.data(), {0, points.size()}, mesh);
     const std::vector<Exact> all = exactly(points);
     ASSERT_EQ(hiding.size(), mesh.hidden.size());
@@ -344,13 +346,14 @@ TEST_F(WeightedTest, TheTriangleThatHidesAPointHasItBelow) {
 
 TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
   std::mt19937 random(9);
-  const auto problem = [&](const WeightedPoints& points, const WeightedTriangulation& mesh) {
-    return verify(points.coordinates.data(), points.weights.data(), {0, points.size()}, mesh);
+  const auto problem = [&](const WeightedPoints& points, const Triangulation& mesh) {
+    return verify(points.coordinates.data(), {0, points.size()},
+                  Space::plane().with_weights(points.weights.data()), mesh);
   };
   for (int round = 0; round < 60; ++round) {
     const WeightedPoints points =
         round % 2 == 0 ? random_points(random, 60, 2) : lattice_points(random, 50, 6, 9);
-    const WeightedTriangulation good = triangulated(triangulator_, points);
+    const Triangulation good = triangulated(triangulator_, points);
     ASSERT_EQ(problem(points, good), "");
     // Another weight of a vertex hides it or, if it is greater, hides others or moves edges.
     WeightedPoints other = points;
@@ -359,7 +362,7 @@ TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
     if (std::find(good.hull.begin(), good.hull.end(), good.triangles[0]) == good.hull.end()) {
       ASSERT_NE(problem(other, good), "") << v;
     }
-    WeightedTriangulation bad = good;
+    Triangulation bad = good;
     std::swap(bad.triangles[1], bad.triangles[2]);
     ASSERT_NE(problem(points, bad), "");
     bad = good;
@@ -386,7 +389,7 @@ TEST_F(WeightedTest, VerificationFindsWhatIsWrong) {
   }
   // One of two diagonals, which weights alone tell apart.
   const WeightedPoints square{"square", {0, 0, 2, 0, 2, 2, 0, 2}, {0, 1, 0, 1}};
-  WeightedTriangulation mesh = triangulated(triangulator_, square);
+  Triangulation mesh = triangulated(triangulator_, square);
   ASSERT_EQ(mesh.triangles, (Ids{0, 1, 3, 1, 2, 3}));
   ASSERT_EQ(problem(square, mesh), "");
   WeightedPoints turned = square;
@@ -404,9 +407,10 @@ TEST_F(WeightedTest, CellsAreWhereThePowerIsLeast) {
                              (1.25 * 1.25 - 0 * 1.5) + (0 * -0.25 - -0.5 * 1.25));
   for (const double share : {0.0, 2.5}) {
     const WeightedPoints points = random_points(random, 200, share);
-    const WeightedTriangulation mesh = triangulated(triangulator_, points);
-    const ClippedVoronoi cells = power_cells(triangulator_, points.coordinates.data(), points.weights.data(),
-                                             points.size(), mesh, corners.data(), corners.size() / 2);
+    const Triangulation mesh = triangulated(triangulator_, points);
+    const ClippedVoronoi cells =
+        triangulator_.clipped_voronoi(points.coordinates.data(), points.weights.data(), points.size(), mesh,
+                                      corners.data(), corners.size() / 2);
     EXPECT_NEAR(std::accumulate(cells.areas.begin(), cells.areas.end(), 0.0), area, 1e-12);
     const auto power = [&](std::size_t i, double x, double y) {
       const double dx = points.coordinates[2 * i] - x, dy = points.coordinates[2 * i + 1] - y;
@@ -442,19 +446,21 @@ TEST_F(WeightedTest, CellsAreWhereThePowerIsLeast) {
 TEST_F(WeightedTest, CellsOfPointsOnALine) {
   const Numbers points = {0, 0, 2, 0, 1, 0, 2, 0}, weights = {0, 0, -5, 1},
                 corners = {-1, -1, 4, -1, 4, 1, -1, 1};
-  const WeightedTriangulation mesh = triangulate_weighted(triangulator_, points.data(), weights.data(), 4);
+  const Triangulation mesh =
+      triangulator_.triangulate(points.data(), 4, Space::plane().with_weights(weights.data()));
   EXPECT_EQ(mesh.hull, (Ids{0, 3}));
   EXPECT_EQ(mesh.hidden, (Ids{1, 2}));
   EXPECT_EQ(mesh.representatives, (Ids{0, 1, 2, 3}));
   EXPECT_EQ(hiding_triangles(triangulator_, points.data(), {0, 4}, mesh), (Ids{-1, -1}));
   const ClippedVoronoi cells =
-      power_cells(triangulator_, points.data(), weights.data(), 4, mesh, corners.data(), 4);
+      triangulator_.clipped_voronoi(points.data(), weights.data(), 4, mesh, corners.data(), 4);
   EXPECT_EQ(cells.areas, (Numbers{3.5, 0, 0, 6.5}));
 }
 
 TEST_F(WeightedTest, DuplicatesAreOfPlaceAndWeight) {
   const Numbers points = {0, 0, 4, 0, 0, 4, 0, 0, 0, 0, 4, 0, 0, 0}, weights = {1, 1, 1, 2, 2, 1, 1};
-  const WeightedTriangulation mesh = triangulate_weighted(triangulator_, points.data(), weights.data(), 7);
+  const Triangulation mesh =
+      triangulator_.triangulate(points.data(), 7, Space::plane().with_weights(weights.data()));
   EXPECT_EQ(mesh.representatives, (Ids{0, 1, 2, 3, 3, 1, 0}));
   EXPECT_EQ(mesh.hidden, (Ids{0}));
   EXPECT_EQ(mesh.triangles, (Ids{1, 2, 3}));
@@ -465,24 +471,22 @@ TEST_F(WeightedTest, WrongWeightsAreNamed) {
   const Numbers points = {0, 0, 1, 0, 0, 1};
   const auto with = [&](double weight) {
     const Numbers weights = {0, weight, 0};
-    triangulate_weighted(triangulator_, points.data(), weights.data(), 3);
+    triangulator_.triangulate(points.data(), 3, Space::plane().with_weights(weights.data()));
   };
   testing::expect_error(ErrorKind::input, {"point 1 has a weight that is not finite"}, [&] { with(NAN); });
   testing::expect_error(ErrorKind::input, {"point 1 has a weight", "too large"}, [&] { with(1e300); });
   testing::expect_error(ErrorKind::input, {"point 1 has a weight", "too fine"}, [&] { with(1e-300); });
-  testing::expect_error(ErrorKind::usage, {"weights", "NULL"},
-                        [&] { triangulate_weighted(triangulator_, points.data(), nullptr, 3); });
   with(0x1p490);
   const Numbers weights = {0, 1, 2};
   Options options;
   options.neighbors = false;
-  const WeightedTriangulation mesh =
-      triangulate_weighted(triangulator_, points.data(), weights.data(), 3, options);
+  const Triangulation mesh =
+      triangulator_.triangulate(points.data(), 3, Space::plane().with_weights(weights.data()), options);
   testing::expect_error(ErrorKind::usage, {"neighbours"}, [&] {
-    power_cells(triangulator_, points.data(), weights.data(), 3, mesh, points.data(), 3);
+    triangulator_.clipped_voronoi(points.data(), weights.data(), 3, mesh, points.data(), 3);
   });
   testing::expect_error(ErrorKind::usage, {"not one of these points"}, [&] {
-    power_cells(triangulator_, points.data(), weights.data(), 2, mesh, points.data(), 3);
+    triangulator_.clipped_voronoi(points.data(), weights.data(), 2, mesh, points.data(), 3);
   });
 }
 

@@ -43,8 +43,8 @@ int main(int argc, char** argv) {
     if (seconds < least) least = seconds;
     if (run < runs) flaunay_triangulation_destroy(mesh);
   }
-  const size_t triangles = flaunay_triangulation_triangle_count(mesh);
-  const int32_t* const vertices = flaunay_triangulation_triangles(mesh);
+  const size_t triangles = flaunay_triangulation_mesh(mesh)->triangle_count;
+  const int32_t* const vertices = flaunay_triangulation_mesh(mesh)->triangles;
   for (size_t k = 0; k < 3 * triangles; ++k) hash = hash * 1099511628211u + (uint64_t)vertices[k] + 1;
   printf("flaunay %s: %zu triangles, %016llx\n", flaunay_version(), triangles, (unsigned long long)hash);
   if (runs > 0) fprintf(stderr, "%.4f s\n", least);

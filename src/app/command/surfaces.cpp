@@ -26,19 +26,15 @@ const std::vector<std::string> kPeriodic = {"--period", "--offsets",      "--poi
                                             "--memory", "--chunk-points", "--scratch"};
 
 // What both surfaces have.
-template <typename Mesh>
-research::Triangulation arrays_of(Mesh& mesh, std::size_t n) {
+research::Triangulation completed(Triangulation mesh, std::size_t n) {
   research::Triangulation result;
-  result.statistics = std::move(mesh.statistics);
+  static_cast<Triangulation&>(result) = std::move(mesh);
   result.statistics.points = n;
   result.statistics.duplicates = 0;
   for (std::size_t i = 0; i < n; ++i)
-    result.statistics.duplicates += static_cast<std::size_t>(mesh.representatives[i]) != i;
-  result.statistics.triangles = mesh.triangles.size() / 3;
+    result.statistics.duplicates += static_cast<std::size_t>(result.representatives[i]) != i;
+  result.statistics.triangles = result.triangles.size() / 3;
   result.statistics.hull_vertices = 0;
-  result.triangles = std::move(mesh.triangles);
-  result.neighbors = std::move(mesh.neighbors);
-  result.representatives = std::move(mesh.representatives);
   return result;
 }
 
@@ -143,18 +139,18 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
   Period period;
   const auto named = [&](const auto& work) { return naming_files({{"point ", task.input}}, work); };
   if (request.is_sphere) {
-    SphericalTriangulation found =
-        named([&] { return triangulate_sphere(triangulator, coordinates, n, SphereCoordinates::degrees); });
+    Triangulation found = named(
+        [&] { return triangulator.triangulate(coordinates, n, Space::sphere(SphereCoordinates::degrees)); });
     on_sphere = std::move(found.places);
-    mesh = arrays_of(found, n);
+    mesh = completed(std::move(found), n);
   } else {
-    PeriodicTriangulation found = named([&] {
-      return triangulate_periodic(triangulator, coordinates, n, {request.period[0], request.period[1]});
+    Triangulation found = named([&] {
+      return triangulator.triangulate(coordinates, n, Space::torus({request.period[0], request.period[1]}));
     });
-    offsets.assign(found.offsets.begin(), found.offsets.end());
-    period = found.period;
+    offsets.assign(found.corner_offsets.begin(), found.corner_offsets.end());
+    period = found.space.period;
     points.coordinates = std::move(found.places);
-    mesh = arrays_of(found, n);
+    mesh = completed(std::move(found), n);
   }
 
   const auto write = [&] {

@@ -198,7 +198,7 @@ std::vector<std::int32_t> representatives_by(std::size_t n, const Key& key) {
 std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const auto [points, weights] = read_weighted(request.points, request.columns);
   n = points.size();
-  WeightedTriangulation mesh;
+  Triangulation mesh;
   read_rows(request, n, mesh);
   progress.update("verifying");
   const std::vector<double>& at = points.coordinates;
@@ -227,34 +227,35 @@ std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Pr
   // Which points of a line are hidden, triangles do not say.
   if (mesh.triangles.empty()) return flaunay::verify(at.data(), n, {}).problem;
   mesh.hull_offsets = {0, mesh.hull.size()};
-  return flaunay::verify(at.data(), weights.data(), {0, n}, mesh);
+  return flaunay::verify(at.data(), {0, n}, Space::plane().with_weights(weights.data()), mesh);
 }
 
 std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progress& progress) {
-  PeriodicTriangulation mesh;
+  Triangulation mesh;
   mesh.places = io::read_points(request.points, request.columns).coordinates;
   n = mesh.places.size() / 2;
-  mesh.period = naming_files({{"point ", request.points}}, [&] {
+  mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {
     return take_to_places({request.period[0], request.period[1]}, mesh.places.data(), n);
-  });
-  mesh.offsets = io::read_corner_offsets(request.offsets);
+  }));
+  mesh.corner_offsets = io::read_corner_offsets(request.offsets);
   read_rows(request, n, mesh);
-  if (mesh.offsets.size() != 2 * mesh.triangles.size()) {
+  if (mesh.corner_offsets.size() != 2 * mesh.triangles.size()) {
     throw Error(ErrorKind::input, fmt::format("{}: there are {} rows, but {} triangles", request.offsets,
-                                              mesh.offsets.size() / 6, mesh.triangles.size() / 3));
+                                              mesh.corner_offsets.size() / 6, mesh.triangles.size() / 3));
   }
   mesh.point_offsets = {0, n};
   progress.update("verifying");
   mesh.representatives = representatives_by(
       n, [&](std::int32_t i) { return std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]); });
-  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, mesh.offsets);
-  return flaunay::verify(mesh);
+  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, mesh.corner_offsets);
+  return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh);
 }
 
 std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const io::Points points = io::read_points(request.points, request.columns);
   n = points.size();
-  SphericalTriangulation mesh;
+  Triangulation mesh;
+  mesh.space = Space::sphere(SphereCoordinates::degrees);
   read_rows(request, n, mesh);
   mesh.point_offsets = {0, n};
   progress.update("verifying");
@@ -268,7 +269,7 @@ std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Prog
   if (open != mesh.neighbors.end()) {
     return fmt::format("triangle {} has no neighbor at an edge", (open - mesh.neighbors.begin()) / 3);
   }
-  return flaunay::verify(points.coordinates.data(), {0, n}, SphereCoordinates::degrees, mesh);
+  return flaunay::verify(points.coordinates.data(), {0, n}, mesh.space, mesh);
 }
 
 Checked verify_in_space(const VerifyRequest& request, Progress& progress) {

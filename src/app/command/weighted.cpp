@@ -8,7 +8,6 @@
 #include "app/command/errors.hpp"
 #include "app/command/progress.hpp"
 #include "app/files/scan.hpp"
-#include "flaunay/weighted.hpp"
 
 namespace flaunay::cli {
 
@@ -65,20 +64,20 @@ int triangulate_weighted(const Task& task, const WeightedRequest& request) {
   facts.opening_seconds = stopwatch.restart();
   Options options;
   ask_for(task.results, options);
-  WeightedTriangulation found = naming_files({{"point ", task.input}}, [&] {
-    return flaunay::triangulate_weighted(triangulator, points.coordinates.data(), weights.data(), n, options);
-  });
   research::Triangulation mesh;
-  static_cast<Triangulation&>(mesh) = std::move(found);
+  static_cast<Triangulation&>(mesh) = naming_files({{"point ", task.input}}, [&, &weights = weights] {
+    return triangulator.triangulate(points.coordinates.data(), n, Space::plane().with_weights(weights.data()),
+                                    options);
+  });
 
   const auto write = [&] {
     if (!task.results.mesh.empty()) io::write_mesh(outputs, task.results.mesh, {points, mesh});
     write_arrays(kTriangulationArrays, task.results.arrays, mesh, outputs, index);
-    if (!request.hidden.empty()) io::write_npy(outputs, request.hidden, found.hidden, 1, index);
+    if (!request.hidden.empty()) io::write_npy(outputs, request.hidden, mesh.hidden, 1, index);
   };
   write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
   if (!task.quiet) {
-    print(fmt::format("hidden points: {}\n", found.hidden.size()) + degenerate_note(mesh.statistics) +
+    print(fmt::format("hidden points: {}\n", mesh.hidden.size()) + degenerate_note(mesh.statistics) +
           summary(mesh.statistics, facts));
   }
   return kSuccess;

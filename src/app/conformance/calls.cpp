@@ -428,12 +428,12 @@ void terrain(Triangulator& triangulator, std::size_t n, Arrays& results) {
 void torus(Triangulator& triangulator, std::size_t n, Arrays& results) {
   for (const std::string& input : kTameInputs) {
     const Coordinates points = points_of(input, n), places = queries_of(points);
-    const PeriodicTriangulation mesh =
-        triangulate_periodic(triangulator, points.data(), points.size() / 2, {2.5, 1.25});
+    const Triangulation mesh =
+        triangulator.triangulate(points.data(), points.size() / 2, Space::torus({2.5, 1.25}));
     add_unfolded(results, input, mesh);
-    results.add(input + " offsets", mesh.offsets);
-    add(results, input + " cells", periodic_cells(triangulator, mesh));
-    PeriodicLocator locator(triangulator, mesh);
+    results.add(input + " offsets", mesh.corner_offsets);
+    add(results, input + " cells", triangulator.clipped_voronoi(mesh));
+    Locator locator(triangulator, mesh);
     results.add(input + " located", locator.locate(places.data(), places.size() / 2));
     results.add(input + " nearest", locator.nearest(places.data(), places.size() / 2));
   }
@@ -449,11 +449,11 @@ void sphere(Triangulator& triangulator, std::size_t n, Arrays& results) {
       points.insert(points.end(), {flat[k] - 0.5, flat[k + 1] - 0.5, side});
     }
     const std::size_t count = points.size() / 3;
-    const SphericalTriangulation mesh =
-        triangulate_sphere(triangulator, points.data(), count, SphereCoordinates::directions);
+    const Triangulation mesh =
+        triangulator.triangulate(points.data(), count, Space::sphere(SphereCoordinates::directions));
     add_unfolded(results, input, mesh);
-    SphereLocator locator(triangulator, mesh);
-    results.add(input + " nearest", locator.nearest(points.data(), count, SphereCoordinates::directions));
+    Locator locator(triangulator, mesh);
+    results.add(input + " nearest", locator.nearest(points.data(), count));
   }
 }
 
@@ -462,14 +462,14 @@ void weighted(Triangulator& triangulator, std::size_t n, Arrays& results) {
     const Coordinates points = points_of(input, n);
     std::vector<double> weights;
     for (std::size_t k = 0; k < points.size() / 2; ++k) weights.push_back(static_cast<double>(k % 5) / 64);
-    const WeightedTriangulation mesh =
-        triangulate_weighted(triangulator, points.data(), weights.data(), weights.size(), all_arrays());
-    add(results, input, static_cast<const Triangulation&>(mesh));
+    const Triangulation mesh = triangulator.triangulate(
+        points.data(), weights.size(), Space::plane().with_weights(weights.data()), all_arrays());
+    add(results, input, mesh);
     results.add(input + " hidden", mesh.hidden);
     const Coordinates box = box_in(points);
     add(results, input + " cells",
-        power_cells(triangulator, points.data(), weights.data(), weights.size(), mesh, box.data(),
-                    box.size() / 2));
+        triangulator.clipped_voronoi(points.data(), weights.data(), weights.size(), mesh, box.data(),
+                                     box.size() / 2));
   }
 }
 

@@ -72,7 +72,7 @@ std::vector<double> read_areas(const std::string& path);
 /// triangle indices or -1. Throws Error(usage) for another ending, Error(input) that names the place.
 std::vector<std::int32_t> read_neighbors(const std::string& path);
 
-/// Reads PeriodicTriangulation::offsets: .npy (int8, int32 or int64, m x 6). Errors as for read_neighbors.
+/// Reads Triangulation::corner_offsets: .npy (int8, int32 or int64, m x 6). Errors as for read_neighbors.
 std::vector<std::int8_t> read_corner_offsets(const std::string& path);
 
 }  // namespace flaunay::io

@@ -33,7 +33,7 @@ double determinant(double a, double b, double a2, double b2) {
 // Corners of triangles, 3 t + k, and what is around them.
 class Corners {
  public:
-  explicit Corners(const PeriodicTriangulation& mesh) : mesh_(mesh) {}
+  explicit Corners(const Triangulation& mesh) : mesh_(mesh) {}
 
   std::int32_t point(std::int32_t c) const { return mesh_.triangles[index(c)]; }
   // The same point's corner in the next triangle, counter-clockwise; -1 if the arrays are no triangulation's.
@@ -61,20 +61,20 @@ class Corners {
  private:
   // So many periods from one corner of a triangle to another one.
   int step(std::int32_t from, std::int32_t to, std::size_t axis) const {
-    return mesh_.offsets[2 * index(to) + axis] - mesh_.offsets[2 * index(from) + axis];
+    return mesh_.corner_offsets[2 * index(to) + axis] - mesh_.corner_offsets[2 * index(from) + axis];
   }
   Point seen(std::int32_t from, std::int32_t to) const {
     const Point p = place(point(from)), q = place(point(to));
-    return {(q.x + step(from, to, 0) * mesh_.period.x) - p.x,
-            (q.y + step(from, to, 1) * mesh_.period.y) - p.y};
+    return {(q.x + step(from, to, 0) * mesh_.space.period.x) - p.x,
+            (q.y + step(from, to, 1) * mesh_.space.period.y) - p.y};
   }
 
-  const PeriodicTriangulation& mesh_;
+  const Triangulation& mesh_;
 };
 
 }  // namespace
 
-ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
   const std::size_t n = mesh.places.size() / 2;
   ClippedVoronoi cells;
   cells.areas.assign(n, 0);
@@ -90,7 +90,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
   const Corners corners(mesh);
   // Within the period and rounded to its units, so that images are exact and cells have the same corners.
   // From the first corner by place, whatever the order of the points.
-  const Pair<double> period = {mesh.period.x, mesh.period.y};
+  const Pair<double> period = {mesh.space.period.x, mesh.space.period.y};
   const kernel::periodic_axes axes = axes_of(period);
   std::vector<Point> centres(mesh.triangles.size() / 3);
   for_each(runtime, centres.size(), [&](std::size_t t) {

@@ -177,11 +177,11 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
-double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+double widest_gap(host::Runtime& runtime, const Triangulation& mesh) {
   // Bounds of all roundings: images and differences of coordinates have one each.
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
   // With periods near 1, the squares of lengths are doubles.
-  const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.period.x, mesh.period.y)));
+  const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.space.period.x, mesh.space.period.y)));
   const std::size_t count = mesh.triangles.size() / 3;
   std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
   runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
@@ -190,8 +190,8 @@ double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
       std::array<Point, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
-        p[k] = {scale * (mesh.places[v] + mesh.offsets[2 * c] * mesh.period.x),
-                scale * (mesh.places[v + 1] + mesh.offsets[2 * c + 1] * mesh.period.y)};
+        p[k] = {scale * (mesh.places[v] + mesh.corner_offsets[2 * c] * mesh.space.period.x),
+                scale * (mesh.places[v + 1] + mesh.corner_offsets[2 * c + 1] * mesh.space.period.y)};
       }
       std::array<double, 3> opposite;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -222,8 +222,7 @@ bool is_box_inside(const Plane& plane, const Ids& hull) {
   return !hull.empty();
 }
 
-Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners,
-              const PeriodicTriangulation& mesh) {
+Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners, const Triangulation& mesh) {
   // Triangles by their first corner.
   std::vector<std::size_t> begins(mesh.representatives.size() + 1, 0);
   for (std::size_t c = 0; c < mesh.triangles.size(); c += 3) ++begins[index(mesh.triangles[c])];
@@ -236,7 +235,7 @@ Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners,
     const auto is_same = [&](std::int32_t t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * index(t) + k;
-        if (!(Image{mesh.triangles[c], {mesh.offsets[2 * c], mesh.offsets[2 * c + 1]}} ==
+        if (!(Image{mesh.triangles[c], {mesh.corner_offsets[2 * c], mesh.corner_offsets[2 * c + 1]}} ==
               beside(images[k], images[0])))
           return false;
       }

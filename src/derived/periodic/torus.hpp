@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "flaunay/periodic.hpp"
+#include "flaunay/flaunay.hpp"
 #include "geometry/predicates.hpp"
 #include "host/runtime.hpp"
 #include "periodic/records.h"
@@ -134,7 +134,7 @@ struct Plane {
 };
 
 /// About the width of the widest circle without points, on a torus; not less. O(t).
-double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh);
+double widest_gap(host::Runtime& runtime, const Triangulation& mesh);
 
 /// Whether all that lies in the box lies in the hull, by some distance. O(h).
 bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);
@@ -143,7 +143,6 @@ bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);
 /// if one of them is the image of none, or longer than the margin. Of a whole plane it is -1 for those that
 /// are images of none, which lie outside, and the result is empty if some triangle has no image. O(t).
 std::vector<std::int32_t> originals(host::Runtime& runtime, const Plane& plane,
-                                    const std::vector<std::int32_t>& corners,
-                                    const PeriodicTriangulation& mesh);
+                                    const std::vector<std::int32_t>& corners, const Triangulation& mesh);
 
 }  // namespace flaunay::periodic

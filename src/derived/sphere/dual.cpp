@@ -43,7 +43,7 @@ Direction centre_with_pole(Point a, Point b) {
   return normalized({x, y, -(x * p.x + y * p.y)});
 }
 
-Direction centre_of_triangle(const SphericalTriangulation& mesh, std::size_t t) {
+Direction centre_of_triangle(const Triangulation& mesh, std::size_t t) {
   Point p[3];
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = place_at(mesh.places, static_cast<std::size_t>(mesh.triangles[3 * t + k]));
@@ -105,8 +105,7 @@ class AreaSum {
 
 // Fetches what the corners of a triangle that is soon needed have in an array: `width` elements each.
 template <typename T>
-FETCHING void fetch_corners(const SphericalTriangulation& mesh, std::size_t t, const T* array,
-                            std::size_t width = 1) {
+FETCHING void fetch_corners(const Triangulation& mesh, std::size_t t, const T* array, std::size_t width = 1) {
   const std::size_t first = std::min(3 * t, mesh.triangles.size() - 3);
   for (std::size_t c = first; c < first + 3; ++c)
     kernel::fetch(array + width * static_cast<std::size_t>(mesh.triangles[c]));
@@ -114,10 +113,10 @@ FETCHING void fetch_corners(const SphericalTriangulation& mesh, std::size_t t, c
 
 class Dual {
  public:
-  Dual(const SphericalTriangulation& mesh, SphericalVoronoi& result) : mesh_(mesh), result_(result) {}
+  Dual(const Triangulation& mesh, Voronoi& result) : mesh_(mesh), result_(result) {}
 
   Direction centre(std::int32_t t) const {
-    const double* const c = &result_.centres[3 * static_cast<std::size_t>(t)];
+    const double* const c = &result_.circumcentres[3 * static_cast<std::size_t>(t)];
     return {c[0], c[1], c[2]};
   }
   Point place(std::int32_t v) const { return place_at(mesh_.places, static_cast<std::size_t>(v)); }
@@ -159,20 +158,20 @@ class Dual {
   // A border is an arc of at most half a great circle. If the cosine of its angle is less, it is halved.
   static constexpr double kLong = -0.5;
 
-  const SphericalTriangulation& mesh_;
-  SphericalVoronoi& result_;
+  const Triangulation& mesh_;
+  Voronoi& result_;
 };
 
 }  // namespace
 
-SphericalVoronoi make_dual(host::Runtime& runtime, const SphericalTriangulation& mesh) {
+Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh) {
   const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
-  SphericalVoronoi result;
-  result.centres.resize(3 * triangles);
+  Voronoi result;
+  result.circumcentres.resize(3 * triangles);
   for_each(runtime, triangles, [&](std::size_t t) {
     fetch_corners(mesh, t + kAhead, mesh.places.data(), 2);
     const Direction c = centre_of_triangle(mesh, t);
-    std::copy_n(std::begin({c.x, c.y, c.z}), 3, &result.centres[3 * t]);
+    std::copy_n(std::begin({c.x, c.y, c.z}), 3, &result.circumcentres[3 * t]);
   });
   result.cell_offsets.assign(n + 1, 0);
   std::vector<std::int32_t> smallest(n);

@@ -1,12 +1,12 @@
 // Voronoi cells of points on the sphere.
 #pragma once
 
-#include "flaunay/sphere.hpp"
+#include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 
 namespace flaunay::sphere {
 
-/// See voronoi_on_sphere. The mesh is one that triangulate_sphere made.
-SphericalVoronoi make_dual(host::Runtime& runtime, const SphericalTriangulation& mesh);
+/// See Triangulator::voronoi. The mesh is one on the sphere, as a call made it.
+Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh);
 
 }  // namespace flaunay::sphere

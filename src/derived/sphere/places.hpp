@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "flaunay/sphere.hpp"
+#include "flaunay/flaunay.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
 

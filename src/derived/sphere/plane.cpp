@@ -14,7 +14,7 @@ using Ids = std::vector<std::int32_t>;
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // Whether a triangle turns left in the plane, as none does that closes the gap around the pole.
-bool is_in_plane(const SphericalTriangulation& mesh, std::size_t t) {
+bool is_in_plane(const Triangulation& mesh, std::size_t t) {
   Point corners[3];
   for (std::size_t k = 0; k < 3; ++k) corners[k] = place_at(mesh.places, index(mesh.triangles[3 * t + k]));
   if (std::any_of(corners, corners + 3, is_pole)) return false;
@@ -85,7 +85,7 @@ void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) 
   planar.representatives = std::move(representatives);
 }
 
-Triangulation planar_part(const Plane& plane, const SphericalTriangulation& mesh) {
+Triangulation planar_part(const Plane& plane, const Triangulation& mesh) {
   // Rows are those of the plane, and then those around the pole.
   std::size_t rows = 0, end = mesh.triangles.size() / 3;
   while (rows < end) {

@@ -29,6 +29,6 @@ void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar);
 /// Takes the triangulation of the plane of one set out of that of the sphere, for its locator: triangles,
 /// neighbours, hull and representatives, numbered as the plane's points. No triangles, if the points are all
 /// on a line there. O(t).
-Triangulation planar_part(const Plane& plane, const SphericalTriangulation& mesh);
+Triangulation planar_part(const Plane& plane, const Triangulation& mesh);
 
 }  // namespace flaunay::sphere

@@ -6,7 +6,7 @@
 
 namespace flaunay::sphere {
 
-Walker::Walker(const SphericalTriangulation& mesh)
+Walker::Walker(const Triangulation& mesh)
     : mesh_(mesh),
       is_seen_(mesh.triangles.size() / 3),
       next_equal_(mesh.places.size() / 2, -1),

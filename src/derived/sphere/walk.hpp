@@ -18,8 +18,8 @@ struct Found {
 /// A triangulation of one set, on which any number of threads can walk at once. Refers to its arrays.
 class Walker {
  public:
-  /// O(t). The mesh is one that triangulate_sphere made.
-  explicit Walker(const SphericalTriangulation& mesh);
+  /// O(t). The mesh is one on the sphere, as a call made it.
+  explicit Walker(const Triangulation& mesh);
 
   Point place(std::int32_t v) const { return place_at(mesh_.places, static_cast<std::size_t>(v)); }
   std::int32_t corner(std::int32_t t, int k) const {
@@ -49,7 +49,7 @@ class Walker {
   Found found(std::int32_t t, Point query) const;
   Found smallest(Found here, Point query) const;
 
-  const SphericalTriangulation& mesh_;
+  const Triangulation& mesh_;
   /// Of each triangle whether it turns left, as seen from the sphere's centre: all do unless the points lie
   /// within a hemisphere.
   std::vector<std::uint8_t> is_seen_;

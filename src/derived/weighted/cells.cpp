@@ -26,7 +26,7 @@ using Ids = std::vector<std::int32_t>;
 // Visits the neighbours of vertices.
 class Stars {
  public:
-  Stars(std::size_t n, const WeightedTriangulation& mesh) : mesh_(mesh), triangle_at_(n, -1) {
+  Stars(std::size_t n, const Triangulation& mesh) : mesh_(mesh), triangle_at_(n, -1) {
     for (std::size_t c = 0; c < mesh.triangles.size(); ++c) add(mesh.triangles[c], c / 3);
     // In a set without triangles, `hull` has the vertices in their order on a line.
     for (std::size_t k = 0; mesh.triangles.empty() && k < mesh.hull.size(); ++k) add(mesh.hull[k], k);
@@ -88,7 +88,7 @@ class Stars {
     return corner(t, 0) == v ? 0 : corner(t, 1) == v ? 1 : 2;
   }
 
-  const WeightedTriangulation& mesh_;
+  const Triangulation& mesh_;
   Ids triangle_at_, vertices_;
 };
 
@@ -306,7 +306,7 @@ void append_places(const Places& places, std::int32_t vertex, const std::vector<
 }  // namespace
 
 Visible visible_points(const double* points, const std::vector<std::size_t>& offsets,
-                       const WeightedTriangulation& mesh) {
+                       const Triangulation& mesh) {
   const std::size_t n = offsets.back();
   std::vector<std::uint8_t> is_hidden(n, 0);
   for (const std::int32_t i : mesh.hidden) is_hidden[static_cast<std::size_t>(i)] = 1;
@@ -331,7 +331,7 @@ Visible visible_points(const double* points, const std::vector<std::size_t>& off
 }
 
 ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
-                          const WeightedTriangulation& mesh, const std::vector<double>& corners) {
+                          const Triangulation& mesh, const std::vector<double>& corners) {
   const Stars stars(n, mesh);
   const Places places(runtime, points, weights, mesh, corners);
   const Ids& vertices = stars.vertices();

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "flaunay/weighted.hpp"
+#include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
 
 namespace flaunay::weighted {
@@ -18,10 +18,10 @@ struct Visible {
 
 /// O(n).
 Visible visible_points(const double* points, const std::vector<std::size_t>& offsets,
-                       const WeightedTriangulation& mesh);
+                       const Triangulation& mesh);
 
-/// See power_cells; the arrays fit each other.
+/// See Triangulator::clipped_voronoi; the arrays fit each other.
 ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
-                          const WeightedTriangulation& mesh, const std::vector<double>& corners);
+                          const Triangulation& mesh, const std::vector<double>& corners);
 
 }  // namespace flaunay::weighted

@@ -29,6 +29,9 @@ struct DevicePoints {
   /// The sets + 1 offsets in device memory, int32. They are copied to the host, 4 bytes per set.
   cl_mem device_offsets = nullptr;
   std::size_t sets = 0;  ///< number of sets in device_offsets
+  /// The space that the points lie in. On the sphere, the buffer has per point the numbers of the
+  /// coordinates: x y z, or longitude and latitude.
+  Space space = Space::plane();
 };
 
 /// How a call on device memory is enqueued. The queue and the events must be alive when the call is made; the
@@ -81,9 +84,9 @@ struct Parts {
   bool areas = false;            ///< Triangulation::areas
 };
 
-/// A Triangulation in device memory. Areas are double, all other arrays int32. For n points the caller's
-/// buffers must have, and flaunay's have, 24 n bytes for triangles, neighbors and halfedges each, 4 n bytes
-/// for hull and representatives each, and 16 n bytes for areas.
+/// A Triangulation in device memory. Areas are double, other arrays int32 if nothing else is said. For n
+/// points the caller's buffers must have, and flaunay's have, 24 n bytes for triangles, neighbors and
+/// halfedges each, 4 n bytes for hull and representatives each, and 16 n bytes for areas.
 struct DeviceTriangulation {
   DeviceBuffer triangles;        ///< 3 per triangle
   DeviceBuffer neighbors;        ///< 3 per triangle
@@ -91,8 +94,16 @@ struct DeviceTriangulation {
   DeviceBuffer hull;             ///< 1 per hull vertex
   DeviceBuffer representatives;  ///< 1 per point
   DeviceBuffer areas;            ///< 1 per triangle
-  /// The arrays that the last call computed.
+  DeviceBuffer places;           ///< except in the plane, double2, 16 n bytes
+  DeviceBuffer corner_offsets;   ///< on a torus and a cylinder, char, 12 n bytes
+  /// The arrays that the last call computed. On a torus, a cylinder and the sphere these are triangles,
+  /// neighbors, representatives, places and corner offsets, whatever was asked for.
   Parts parts{false, false, false, false, false, false};
+  Space space = Space::plane();  ///< Triangulation::space
+  std::size_t images = 0;        ///< Triangulation::images
+  /// On the sphere, the triangulation of the places in the plane, kept for the memory that the next call
+  /// needs for it.
+  std::shared_ptr<DeviceTriangulation> planar;
   bool is_constrained = false;  ///< whether segments were made edges of it
   std::size_t points = 0;       ///< number of points over all sets
   /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],

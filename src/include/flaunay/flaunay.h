@@ -89,25 +89,63 @@ typedef enum flaunay_precision { FLAUNAY_FLOAT64 = 0, FLAUNAY_FLOAT32 = 1 } flau
 /// The type of the indices in arrays that the caller passes: int32_t or int64_t.
 typedef enum flaunay_index_type { FLAUNAY_INT32 = 0, FLAUNAY_INT64 = 1 } flaunay_index_type;
 
-/// The arrays of a triangulation, as bits. Areas are double, all others int32; triangulations in chunks have
-/// int64, too.
+/// The arrays of a triangulation, as bits. Areas and places are double, others int32 if nothing else is said;
+/// triangulations in chunks have int64, too.
 typedef enum flaunay_part {
-  /// 3 per triangle, counter-clockwise, smallest index first.
+  /// 3 per triangle, counter-clockwise, on the sphere as seen from outside, smallest index first. n different
+  /// points on a torus have 2 n, on a cylinder 2 n - h, if h of them are on its lowest and its highest
+  /// circle,
+  /// and on the sphere 2 n - 4 for n > 2.
   FLAUNAY_PART_TRIANGLES = 1,
-  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull.
+  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull or the end of a cylinder.
   FLAUNAY_PART_NEIGHBORS = 2,
   /// 3 per triangle. Halfedge 3t + k goes from vertex k of triangle t to its next vertex. Entry 3t + k is the
   /// opposite halfedge, in the adjacent triangle, or -1 on the hull. This is the convention of delaunator.
   FLAUNAY_PART_HALFEDGES = 4,
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
-  /// point. Collinear sets: the distinct points in lexicographic order.
+  /// point. Collinear sets: the distinct points in lexicographic order. In the plane alone.
   FLAUNAY_PART_HULL = 8,
-  /// One per input point: the smallest index of a point of its set with the same coordinates.
+  /// One per input point: the smallest index of a point of its set with the same coordinates, or the same
+  /// place, and the same weight.
   FLAUNAY_PART_REPRESENTATIVES = 16,
   /// One per triangle: its area, rounded to the nearest double, ties to even, whatever the coordinates: 0 up
   /// to 2^-1075, infinite from about 2^1024. Otherwise it is positive, since triangles are counter-clockwise.
-  FLAUNAY_PART_AREAS = 32
+  FLAUNAY_PART_AREAS = 32,
+  /// x and y per point on a torus, a cylinder and the sphere, always computed there. A point's place is
+  /// rounded once, and is then what the point is. On a torus it is the point in [0, period), a multiple of
+  /// the period's last bit but one; what has no period is not rounded. On the sphere it is where the line
+  /// from the south pole through the point meets the plane of the equator; infinite for the south pole.
+  FLAUNAY_PART_PLACES = 64,
+  /// int8, 6 per triangle on a torus and a cylinder, always computed there: x and y per corner, -1 to 1. With
+  /// the first corner in its place, a corner is at its place + offset * period.
+  FLAUNAY_PART_CORNER_OFFSETS = 128
 } flaunay_part;
+
+/// The kinds of spaces that points lie in.
+typedef enum flaunay_space_kind {
+  FLAUNAY_SPACE_PLANE = 0,  ///< the Euclidean plane
+  FLAUNAY_SPACE_TORUS = 1,  ///< a plane that repeats itself in x and y, or in one of them: a cylinder
+  FLAUNAY_SPACE_SPHERE = 2  ///< the unit sphere
+} flaunay_space_kind;
+
+/// How points of the unit sphere are given.
+typedef enum flaunay_sphere_coordinates {
+  FLAUNAY_SPHERE_DIRECTIONS = 0,  ///< x y z: any finite vector but 0; its length does not count
+  FLAUNAY_SPHERE_DEGREES = 1      ///< longitude to the east, any number, and latitude, -90 to 90
+} flaunay_sphere_coordinates;
+
+/// The space that points lie in, and their weights. {0}: the plane, without weights.
+typedef struct flaunay_space {
+  int kind;         ///< a flaunay_space_kind
+  int coordinates;  ///< on the sphere, a flaunay_sphere_coordinates
+  /// On a torus, where the plane begins again in x: from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and at
+  /// most 2^30 times the other period. If one is INFINITY, it is a cylinder.
+  double period_x;
+  double period_y;  ///< see period_x
+  /// In the plane, one per point: squared lengths of any sign; of circles, the squared radii. NULL: none.
+  const double* weights;
+  uintptr_t reserved[4];  ///< 0
+} flaunay_space;
 
 /// The arrays of a Voronoi diagram in device memory, as bits, with their types and their sizes in bytes for n
 /// points and t triangles.
@@ -206,8 +244,6 @@ typedef enum flaunay_excuse {
   FLAUNAY_EXCUSE_MOST_ROUNDS = 7   ///< most_rounds were made
 } flaunay_excuse;
 
-/// The triangulations of one or more point sets with constraints, in host memory.
-typedef struct flaunay_constrained flaunay_constrained;
 /// Constraint edges in device memory.
 typedef struct flaunay_device_constraints flaunay_device_constraints;
 /// A triangulation to which batches of points are inserted, removed and moved.
@@ -255,8 +291,9 @@ typedef struct flaunay_options {
   /// level: the level of the recursion, or -1 if there is none; done: the finished share of the work, 0 to 1.
   /// It must return normally.
   void (*progress)(const char* stage, int level, double done, void* progress_data);
-  void* progress_data;    ///< passed to progress unchanged
-  uintptr_t reserved[8];  ///< 0
+  void* progress_data;         ///< passed to progress unchanged
+  const flaunay_space* space;  ///< where points of flaunay_triangulate lie; NULL: in the plane
+  uintptr_t reserved[7];       ///< 0
 } flaunay_options;
 
 /// Points in device memory, in one or more sets.
@@ -270,8 +307,11 @@ typedef struct flaunay_device_points {
   const size_t* offsets;
   /// The offsets in device memory, int32. They are copied to the host, 4 bytes per set.
   cl_mem device_offsets;
-  size_t sets;            ///< number of sets in offsets or device_offsets
-  uintptr_t reserved[4];  ///< 0
+  size_t sets;  ///< number of sets in offsets or device_offsets
+  /// Where points of flaunay_triangulate_device lie; NULL: in the plane. On the sphere, the buffer has per
+  /// point the numbers of the coordinates: x y z, or longitude and latitude.
+  const flaunay_space* space;
+  uintptr_t reserved[3];  ///< 0
 } flaunay_device_points;
 
 /// How a call on device memory is enqueued. {0}: on the triangulator's own queue, without waiting for events.
@@ -460,7 +500,8 @@ typedef struct flaunay_statistics {
   const char* note;
 } flaunay_statistics;
 
-/// A triangulation's sizes, arrays and statistics, as the accessors of flaunay_triangulation describe them.
+/// A triangulation's sizes, arrays and statistics; flaunay_part says what the arrays have. Points and
+/// triangles are numbered over all sets.
 typedef struct flaunay_mesh {
   size_t point_count;                    ///< n, the number of points over all sets
   size_t set_count;                      ///< the number of sets
@@ -475,6 +516,19 @@ typedef struct flaunay_mesh {
   const size_t* hull_offsets;            ///< sets + 1 values
   const flaunay_statistics* statistics;  ///< what the call did and how long it took
   const double* areas;                   ///< t values; NULL if not asked for
+  /// Where the points lie, without their weights; NULL: in the plane. The period is as given, but for the
+  /// last bit of a double, which is 0 unless the period is a power of two.
+  const flaunay_space* space;
+  const double* places;          ///< 2 n values on a torus, a cylinder and the sphere; NULL in the plane
+  const int8_t* corner_offsets;  ///< 6 t values on a torus and a cylinder
+  size_t hidden_count;           ///< the number of hidden points
+  /// Of points with weights those without a power cell, in ascending order, but those that another point
+  /// represents: hidden_count values.
+  const int32_t* hidden;
+  const size_t* point_offsets;  ///< sets + 1 values; NULL in the plane, but for results in device memory
+  /// On a torus and a cylinder, images that were triangulated besides the points, because empty circles reach
+  /// across the border.
+  size_t image_count;
 } flaunay_mesh;
 
 /// The triangles of a mesh that is refined further. All points are triangulated anew, with the border of
@@ -812,8 +866,16 @@ FLAUNAY_API const flaunay_mode_info* flaunay_mode_at(size_t k);
 /// then `sets` is ignored; otherwise sets + 1 offsets from 0 to n, and set s has points
 /// [offsets[s], offsets[s + 1]), which may be none. options: NULL for the defaults. The caller destroys the
 /// result. FLAUNAY_ERROR_INPUT for a coordinate that is not finite, a range of magnitudes too large for exact
-/// arithmetic, or too many points; FLAUNAY_ERROR_USAGE for offsets that decrease or do not end with n. O(n
-/// log n) work.
+/// arithmetic, or too many points; FLAUNAY_ERROR_USAGE for offsets that decrease or do not end with n.
+///
+/// In other spaces than the plane, and with weights, results are exact functions of places and weights, too.
+/// With weights it is the regular triangulation: the lower hull of the points at height x^2 + y^2 - weight.
+/// On a torus or a cylinder, points are any finite numbers, which are taken into the period, and the result
+/// has each triangle of all images of all points once, however few points there are. On the sphere it is
+/// their convex hull in space. FLAUNAY_ERROR_USAGE also for a period that is none, for weights except in the
+/// plane, and for half-edges and areas on a torus or the sphere, which have neighbours always;
+/// FLAUNAY_ERROR_INPUT also for a weight that is not finite or beyond the squares of what coordinates may be,
+/// for the direction 0, and for a latitude beyond a pole. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_triangulate(flaunay_triangulator* triangulator, const double* coordinates,
                                                size_t n, const size_t* offsets, size_t sets,
                                                const flaunay_options* options,
@@ -830,46 +892,17 @@ FLAUNAY_API flaunay_status flaunay_triangulate_on_host(const double* coordinates
                                                        const size_t* offsets, size_t sets,
                                                        const flaunay_options* options,
                                                        flaunay_triangulation** result);
-/// Makes a triangulation of one set from arrays that were kept elsewhere, such as in files, for Voronoi
-/// diagrams and locators. The arrays are copied: 3 t values of triangles, 3 t of neighbors, h of hull and n
-/// of representatives, as the accessors below return them. FLAUNAY_ERROR_USAGE if an index is out of range;
-/// whether they are a triangulation is not checked. O(n) work.
-FLAUNAY_API flaunay_status flaunay_triangulation_create(size_t n, const int32_t* triangles, size_t t,
-                                                        const int32_t* neighbors, const int32_t* hull,
-                                                        size_t h, const int32_t* representatives,
+/// Makes a triangulation from arrays that were kept elsewhere, such as in files, for Voronoi diagrams, cells,
+/// locators and trees. mesh: its arrays are copied; those that were not asked for may be NULL. constraints:
+/// NULL without constraints; for locators, its member `constrained` is enough. FLAUNAY_ERROR_USAGE if an
+/// index is out of range; whether they are a triangulation is not checked. O(n) work.
+FLAUNAY_API flaunay_status flaunay_triangulation_create(const flaunay_mesh* mesh,
+                                                        const flaunay_constrained_arrays* constraints,
                                                         flaunay_triangulation** triangulation);
 /// Frees the arrays.
 FLAUNAY_API void flaunay_triangulation_destroy(flaunay_triangulation* triangulation);
 
-/// n, the number of points over all sets. This and the following accessors take O(1).
-FLAUNAY_API size_t flaunay_triangulation_point_count(const flaunay_triangulation* triangulation);
-/// The number of sets, 1 if there were no offsets.
-FLAUNAY_API size_t flaunay_triangulation_set_count(const flaunay_triangulation* triangulation);
-/// t, the number of triangles over all sets.
-FLAUNAY_API size_t flaunay_triangulation_triangle_count(const flaunay_triangulation* triangulation);
-/// h, the number of hull vertices over all sets.
-FLAUNAY_API size_t flaunay_triangulation_hull_count(const flaunay_triangulation* triangulation);
-/// 3 t values, see FLAUNAY_PART_TRIANGLES. Points and triangles are numbered over all sets. This and the
-/// following arrays are NULL if they are empty.
-FLAUNAY_API const int32_t* flaunay_triangulation_triangles(const flaunay_triangulation* triangulation);
-/// 3 t values, see FLAUNAY_PART_NEIGHBORS. NULL if not asked for.
-FLAUNAY_API const int32_t* flaunay_triangulation_neighbors(const flaunay_triangulation* triangulation);
-/// 3 t values, see FLAUNAY_PART_HALFEDGES. NULL if not asked for.
-FLAUNAY_API const int32_t* flaunay_triangulation_halfedges(const flaunay_triangulation* triangulation);
-/// h values, see FLAUNAY_PART_HULL.
-FLAUNAY_API const int32_t* flaunay_triangulation_hull(const flaunay_triangulation* triangulation);
-/// n values, see FLAUNAY_PART_REPRESENTATIVES.
-FLAUNAY_API const int32_t* flaunay_triangulation_representatives(const flaunay_triangulation* triangulation);
-/// t values, see FLAUNAY_PART_AREAS. NULL if not asked for.
-FLAUNAY_API const double* flaunay_triangulation_areas(const flaunay_triangulation* triangulation);
-/// sets + 1 values: set s has triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_triangulation_triangle_offsets(const flaunay_triangulation* triangulation);
-/// sets + 1 values: set s has hull vertices [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_triangulation_hull_offsets(const flaunay_triangulation* triangulation);
-/// What the call did and how long it took.
-FLAUNAY_API const flaunay_statistics* flaunay_triangulation_statistics(
-    const flaunay_triangulation* triangulation);
-/// All of these in one struct, for languages in which a call takes longer than reading memory does.
+/// Its sizes, arrays and statistics. O(1).
 FLAUNAY_API const flaunay_mesh* flaunay_triangulation_mesh(const flaunay_triangulation* triangulation);
 
 /// Finds for each of n points the first of t triangles that has it, -1 if none has. first: n values of the
@@ -915,9 +948,20 @@ FLAUNAY_API flaunay_status flaunay_same_circles(const double* coordinates, size_
 /// its arrays fit; if not, it is FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. The check has
 /// arithmetic and predicates of its own. mesh: of any call, or the caller's arrays; its statistics are not
 /// read. coordinates: of its points. offsets: its set_count sets, as for flaunay_triangulate; NULL: one set.
-/// FLAUNAY_ERROR_USAGE for arrays whose indices are out of range. O(n log n).
+/// space: that of the call, with weights; NULL: the plane. In other spaces it checks, too, that places are
+/// those of the points, and of weighted points which are hidden. FLAUNAY_ERROR_USAGE for arrays whose indices
+/// are out of range. O(n log n).
 FLAUNAY_API flaunay_status flaunay_mesh_verify(const flaunay_mesh* mesh, const double* coordinates,
-                                               const size_t* offsets);
+                                               const size_t* offsets, const flaunay_space* space);
+/// Finds for each hidden point of a triangulation with weights the triangle that hides it: the one of the
+/// smallest index that has it inside or on its border; -1 in a set without triangles. points, offsets, sets:
+/// those of the call. triangles: room for one value per hidden point.
+FLAUNAY_API flaunay_status flaunay_hiding_triangles(flaunay_triangulator* triangulator, const double* points,
+                                                    const size_t* offsets, size_t sets,
+                                                    const flaunay_triangulation* triangulation,
+                                                    int32_t* triangles);
+/// Computes the unit vectors x y z of n places on the sphere, rounded. directions: room for 3 n values.
+FLAUNAY_API flaunay_status flaunay_directions(const double* places, size_t n, double* directions);
 
 // ---- Constrained triangulations
 
@@ -933,7 +977,7 @@ FLAUNAY_API flaunay_status flaunay_triangulate_constrained(flaunay_triangulator*
                                                            const size_t* offsets, size_t sets,
                                                            const flaunay_constraints* constraints,
                                                            const flaunay_options* options,
-                                                           flaunay_constrained** result);
+                                                           flaunay_triangulation** result);
 /// Triangulates the insides of polygons, all at once. Each polygon is a set of its own, or all are one map.
 /// options: as for flaunay_triangulate_constrained. FLAUNAY_ERROR_USAGE if the offsets do not fit each other;
 /// the other errors are those of flaunay_triangulate_constrained. If segments cross, the message names the
@@ -941,20 +985,15 @@ FLAUNAY_API flaunay_status flaunay_triangulate_constrained(flaunay_triangulator*
 FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* triangulator,
                                                         const flaunay_polygons* polygons,
                                                         const flaunay_options* options,
-                                                        flaunay_constrained** result);
-/// Frees the arrays.
-FLAUNAY_API void flaunay_constrained_destroy(flaunay_constrained* result);
-/// The triangles with their neighbours and the other arrays of a triangulation. point_count, hull and
-/// representatives include points that were added. Where triangles are left out, neighbours and
-/// halfedges are -1; the hull remains that of the points. Voronoi diagrams need Delaunay triangulations, and
-/// must not be given its arrays; locators for it are made by flaunay_locator_create_constrained.
-FLAUNAY_API const flaunay_mesh* flaunay_constrained_mesh(const flaunay_constrained* result);
-/// What the result has besides.
-FLAUNAY_API const flaunay_constrained_arrays* flaunay_constrained_get_arrays(
-    const flaunay_constrained* result);
-/// How its refinement went.
-FLAUNAY_API const flaunay_refinement_report* flaunay_constrained_refinement(
-    const flaunay_constrained* result);
+                                                        flaunay_triangulation** result);
+/// What a triangulation with constraints has besides its flaunay_mesh; NULL without constraints. In the mesh,
+/// point_count, hull and representatives include points that were added. Where triangles are left out,
+/// neighbours and halfedges are -1; the hull remains that of the points.
+FLAUNAY_API const flaunay_constrained_arrays* flaunay_triangulation_constraints(
+    const flaunay_triangulation* triangulation);
+/// How its refinement went; NULL without constraints.
+FLAUNAY_API const flaunay_refinement_report* flaunay_triangulation_refinement(
+    const flaunay_triangulation* triangulation);
 /// As flaunay_mesh_verify, for what flaunay_triangulate_constrained made of these coordinates, offsets and
 /// constraints: segments are edges, the others are Delaunay, and just those triangles are there which were to
 /// be kept. Of a refined mesh: no triangle has a smaller angle or a larger area than asked for, but those
@@ -1075,7 +1114,8 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_create(flaunay_device_tr
 FLAUNAY_API void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation);
 /// Makes later calls write one part (one bit) to the caller's buffer, which is retained and never replaced.
 /// NULL: flaunay makes its own buffer again. The buffer must have, for n points, 24 n bytes for triangles,
-/// neighbors or halfedges, 4 n bytes for hull or representatives, and 16 n bytes for areas.
+/// neighbors or halfedges, 4 n bytes for hull or representatives, 16 n bytes for areas or places, and 12 n
+/// bytes for corner offsets.
 /// FLAUNAY_ERROR_USAGE if memory is not a buffer.
 FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
     flaunay_device_triangulation* triangulation, unsigned part, cl_mem memory);
@@ -1086,27 +1126,8 @@ FLAUNAY_API cl_mem flaunay_device_triangulation_buffer(const flaunay_device_tria
 /// What the last call computed, as bits of flaunay_part; 0 before the first call. This and the following
 /// values are known when the call returns.
 FLAUNAY_API unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation);
-/// n, the number of points over all sets.
-FLAUNAY_API size_t
-flaunay_device_triangulation_point_count(const flaunay_device_triangulation* triangulation);
-/// The number of sets.
-FLAUNAY_API size_t flaunay_device_triangulation_set_count(const flaunay_device_triangulation* triangulation);
-/// t, the number of triangles over all sets, whatever the parts.
-FLAUNAY_API size_t
-flaunay_device_triangulation_triangle_count(const flaunay_device_triangulation* triangulation);
-/// h, the number of hull vertices over all sets, whatever the parts.
-FLAUNAY_API size_t flaunay_device_triangulation_hull_count(const flaunay_device_triangulation* triangulation);
-/// sets + 1 values in host memory: set s has points [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_device_triangulation_point_offsets(
-    const flaunay_device_triangulation* triangulation);
-/// sets + 1 values in host memory: set s has triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_device_triangulation_triangle_offsets(
-    const flaunay_device_triangulation* triangulation);
-/// sets + 1 values in host memory: set s has hull vertices [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_device_triangulation_hull_offsets(
-    const flaunay_device_triangulation* triangulation);
-/// What the last call did and how long it took.
-FLAUNAY_API const flaunay_statistics* flaunay_device_triangulation_statistics(
+/// Its sizes, offsets, space and statistics, which are in host memory; the pointers to other arrays are NULL.
+FLAUNAY_API const flaunay_mesh* flaunay_device_triangulation_mesh(
     const flaunay_device_triangulation* triangulation);
 
 /// Triangulates points in device memory into device memory, in mode blocks. Points and results are not copied
@@ -1119,6 +1140,12 @@ FLAUNAY_API const flaunay_statistics* flaunay_device_triangulation_statistics(
 /// context, a queue of another context or device, offsets that decrease or do not end with the number of
 /// points; FLAUNAY_ERROR_INPUT as for points in host memory. The result is unspecified after an error. O(n
 /// log n) work.
+///
+/// On a torus, a cylinder or the sphere, triangles, neighbours, representatives and places are computed,
+/// whatever the parts. On a torus, the host joins what meets at the border, about the square root of n
+/// triangles, and waits about 5 times more; devices without fp64 leave it to the host. On the sphere, the
+/// host makes the triangles around the south pole, for which it reads the hull in the plane, and computes all
+/// if a point is there.
 FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, unsigned parts,
                                                       const flaunay_enqueue* enqueue,
@@ -1191,13 +1218,13 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
                                                                const flaunay_chunk_options* options,
                                                                flaunay_chunk_report** report);
 /// flaunay_triangulate_chunks_to_files on a torus or a cylinder: triangles, neighbours and offsets are those
-/// of flaunay_periodic_create, and the representatives, too. There is no hull. Points are read at least three
+/// of flaunay_triangulate, and the representatives, too. There is no hull. Points are read at least three
 /// times; the images of those near the border are in memory, 48 bytes for each. Further errors:
 /// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
 FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(
     const flaunay_strided_points* points, double period_x, double period_y, const flaunay_mesh_arrays* arrays,
     const flaunay_mesh_files* files, const flaunay_chunk_options* options, flaunay_chunk_report** report);
-/// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_periodic_create and
+/// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_triangulate and
 /// flaunay_triangulate_periodic_chunks do. period: x and y, which become the rounded ones. Errors are
 /// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite. O(n).
 FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
@@ -1211,7 +1238,7 @@ FLAUNAY_API const flaunay_chunk_statistics* flaunay_chunk_report_statistics(
 
 /// Computes the dual of a triangulation of these n points, which must have neighbours. Where more than three
 /// points are cocircular, circumcentres coincide. The caller destroys the result. O(n) work; one work-item
-/// per point takes as many steps as the point has triangles.
+/// per point takes as many steps as the point has triangles. On the sphere, coordinates and n are not read.
 FLAUNAY_API flaunay_status flaunay_voronoi_compute(flaunay_triangulator* triangulator,
                                                    const double* coordinates, size_t n,
                                                    const flaunay_triangulation* triangulation,
@@ -1224,7 +1251,8 @@ FLAUNAY_API size_t flaunay_voronoi_point_count(const flaunay_voronoi* voronoi);
 FLAUNAY_API size_t flaunay_voronoi_triangle_count(const flaunay_voronoi* voronoi);
 /// c, the number of corners of all cells.
 FLAUNAY_API size_t flaunay_voronoi_corner_count(const flaunay_voronoi* voronoi);
-/// 2 t values. They are rounded; which cells are adjacent was decided by exact predicates.
+/// 2 t values. They are rounded; which cells are adjacent was decided by exact predicates. On the sphere 3 t
+/// values, x y z: the centre of the empty cap whose rim passes through a triangle's corners.
 FLAUNAY_API const double* flaunay_voronoi_circumcentres(const flaunay_voronoi* voronoi);
 /// n + 1 values: the cell of point i has corners [offsets[i], offsets[i + 1]) of cells.
 FLAUNAY_API const int32_t* flaunay_voronoi_cell_offsets(const flaunay_voronoi* voronoi);
@@ -1232,10 +1260,17 @@ FLAUNAY_API const int32_t* flaunay_voronoi_cell_offsets(const flaunay_voronoi* v
 /// each point and begin with the smallest index. In an unbounded cell they begin at the hull edge that leaves
 /// the point and end at the hull edge that arrives at it; from the first and the last corner, a ray
 /// perpendicular to that edge goes outwards. Points that another point represents, and points on one line,
-/// have no corners.
+/// have no corners. On the sphere, cells are counter-clockwise as seen from outside, and a set of one or two
+/// points has no corners: the cells of two points are hemispheres. If all points are on one great circle,
+/// cells are lunes with two corners (and some that coincide), opposite to each other, so that a side needs
+/// its middle to be drawn: of the cell of p that is the direction of a x (q - p), for the side that begins at
+/// the centre a of a triangle and is shared with q, the corner before p in that triangle.
 FLAUNAY_API const int32_t* flaunay_voronoi_cells(const flaunay_voronoi* voronoi);
 /// n values: 1 for points on the hull and for all points of a set on one line, otherwise 0.
 FLAUNAY_API const uint8_t* flaunay_voronoi_unbounded(const flaunay_voronoi* voronoi);
+/// n values on the sphere: the areas of cells, rounded by some 1e-15, and if all points are within an angle
+/// r, by that divided by r^2. Those of a set sum to 4 pi.
+FLAUNAY_API const double* flaunay_voronoi_areas(const flaunay_voronoi* voronoi);
 
 /// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
 FLAUNAY_API flaunay_status flaunay_device_voronoi_create(flaunay_device_voronoi** voronoi);
@@ -1264,8 +1299,15 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
 /// but for that are one vertex, so that polygons are simple, and tile. The triangulation must have
 /// neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
 /// message that names a corner. The caller destroys the result.
+///
+/// weights: NULL, or of one set of points with weights: the cells are power cells, of each point the places
+/// whose squared distance less the weight is least for it; decisions are rounded, too. On a torus,
+/// coordinates, n, weights and corners are not read: cells are around their points' places, so that some
+/// reach beyond the period, and the areas of a set's cells sum to that of the period. A cylinder, where cells
+/// have no end, and the sphere are FLAUNAY_ERROR_USAGE.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
-                                                size_t n, const flaunay_triangulation* triangulation,
+                                                const double* weights, size_t n,
+                                                const flaunay_triangulation* triangulation,
                                                 const double* corners, size_t corner_count,
                                                 flaunay_clipped_voronoi** cells);
 /// Frees the arrays.
@@ -1404,20 +1446,19 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// Makes a locator for a triangulation of these points, which must have neighbours. offsets and sets: as for
 /// flaunay_triangulate. The locator copies what it needs, about 80 bytes of device memory per point. It may
 /// outlive the triangulator. O(n log n) work.
+///
+/// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read, and the
+/// triangulation must be of one set. Queries are any places of the plane, and on the sphere given as the
+/// points were; they are in host memory.
+///
+/// A triangulation with constraints must be of one set, too. coordinates: of its points and after them those
+/// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points
+/// are those of all points. Natural neighbours are those that can be seen without crossing a constraint
+/// (docs/constrained.md).
 FLAUNAY_API flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator,
                                                   const double* coordinates, size_t n, const size_t* offsets,
                                                   size_t sets, const flaunay_triangulation* triangulation,
                                                   flaunay_locator** locator);
-/// Makes a locator for a triangulation with constraints, of one set. coordinates: of its points and after
-/// them those that were added, n together. triangulation: made by flaunay_triangulation_create of the arrays
-/// of its flaunay_constrained_mesh. constrained: that of flaunay_constrained_get_arrays. Queries in no
-/// triangle, such as those in holes, are outside; nearest points are those of all points. Natural neighbours
-/// are those that can be seen without crossing a constraint (docs/constrained.md).
-FLAUNAY_API flaunay_status flaunay_locator_create_constrained(flaunay_triangulator* triangulator,
-                                                              const double* coordinates, size_t n,
-                                                              const flaunay_triangulation* triangulation,
-                                                              const uint8_t* constrained,
-                                                              flaunay_locator** locator);
 /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
 /// neighbors, hull and representatives. The work is enqueued like that of flaunay_triangulate_device, with
 /// the same errors.
@@ -1428,29 +1469,27 @@ FLAUNAY_API flaunay_status flaunay_locator_create_device(flaunay_triangulator* t
                                                          flaunay_locator** locator);
 /// Releases its memory.
 FLAUNAY_API void flaunay_locator_destroy(flaunay_locator* locator);
+/// Makes later queries on the sphere be given so: coordinates: a flaunay_sphere_coordinates.
+/// FLAUNAY_ERROR_USAGE in other spaces.
+FLAUNAY_API flaunay_status flaunay_locator_set_coordinates(flaunay_locator* locator, int coordinates);
 
 /// Finds for each of m queries, x0 y0 x1 y1 ..., the triangle that contains it, exactly. On an edge or a
-/// vertex it is the triangle of the smallest index that contains the query; outside of the hull it is -1.
-/// triangles: m values of the caller's. If the triangulation has several sets, there must be as many sets of
-/// queries, each for the set of the same number. offsets: NULL for one set, otherwise sets + 1 offsets from 0
-/// to m. FLAUNAY_ERROR_INPUT for a query that is not finite, or whose coordinates are too fine for exact
-/// arithmetic in doubles. About O(log n) per query.
+/// vertex it is the triangle of the smallest index that contains the query, on a torus always the same one;
+/// outside of the hull, beyond the ends of a cylinder, and beyond a set that lies within a hemisphere it is
+/// -1. triangles: m values of the caller's. If the triangulation has several sets, there must be as many sets
+/// of queries, each for the set of the same number. offsets: NULL for one set, otherwise sets + 1 offsets
+/// from 0 to m. FLAUNAY_ERROR_INPUT for a query that is not finite, or whose coordinates are too fine for
+/// exact arithmetic in doubles. About O(log n) per query.
 FLAUNAY_API flaunay_status flaunay_locator_locate(flaunay_locator* locator, const double* queries, size_t m,
                                                   const size_t* offsets, size_t sets, int32_t* triangles);
 /// Finds for each query the index of the nearest point, by exact comparisons. If several points are nearest,
-/// it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n) per query
-/// is expected, except at a vertex with very many neighbours that are all about as near and not cocircular.
-/// points: m values of the caller's. The other arguments and the errors are those of flaunay_locator_locate.
+/// it is the first of them in the order of x, then y, on a torus as they lie around the query's place, and on
+/// the sphere the south pole, or else the smallest place. It is -1 if the set is empty. About O(log n) per
+/// query is expected, except at a vertex with very many neighbours that are all about as near and not
+/// cocircular. points: m values of the caller's. The other arguments and the errors are those of
+/// flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_nearest(flaunay_locator* locator, const double* queries, size_t m,
                                                    const size_t* offsets, size_t sets, int32_t* points);
-/// Computes for each query the linear interpolation of the values at the corners of its triangle, rounded; at
-/// a vertex exactly the value of that vertex, and outside of the hull NaN. values: one per input point; for
-/// duplicates, the value of their representative is used. results: m values of the caller's. The other
-/// arguments and the errors are those of flaunay_locator_locate.
-FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
-                                                       const double* queries, size_t m, const size_t* offsets,
-                                                       size_t sets, double* results);
-
 /// flaunay_locator_locate for queries in device memory, enqueued like flaunay_triangulate_device. *triangles:
 /// the caller's buffer, int32, 4 m bytes. If *triangles is NULL, it receives a new buffer, which the caller
 /// releases; it stays NULL if the call fails or if there are no queries.
@@ -1461,13 +1500,6 @@ FLAUNAY_API flaunay_status flaunay_locator_locate_device(flaunay_locator* locato
 FLAUNAY_API flaunay_status flaunay_locator_nearest_device(flaunay_locator* locator,
                                                           const flaunay_device_points* queries,
                                                           const flaunay_enqueue* enqueue, cl_mem* points);
-/// flaunay_locator_interpolate for queries in device memory; see flaunay_locator_locate_device. values:
-/// double, 8 n bytes; *results: double, 8 m bytes.
-FLAUNAY_API flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_mem values,
-                                                              const flaunay_device_points* queries,
-                                                              const flaunay_enqueue* enqueue,
-                                                              cl_mem* results);
-
 /// Points arranged for queries for the nearest ones of them.
 typedef struct flaunay_point_tree flaunay_point_tree;
 /// Makes a tree of n points in host memory, x0 y0 x1 y1 ..., which needs no triangulation. It shares threads
@@ -1475,6 +1507,16 @@ typedef struct flaunay_point_tree flaunay_point_tree;
 FLAUNAY_API flaunay_status flaunay_point_tree_create(flaunay_triangulator* triangulator,
                                                      const double* coordinates, size_t n,
                                                      flaunay_point_tree** tree);
+/// Makes a tree of one set of points on a torus, a cylinder or the sphere. On a torus and a cylinder, queries
+/// are any places of the plane, and each point counts once, as it lies nearest. On the sphere, queries are
+/// given as the points were, distances, also the largest one, are angles in radians, and of points that are
+/// as near the south pole is first, or else the one with the smallest place. FLAUNAY_ERROR_USAGE for several
+/// sets and for the plane. O(n log n).
+FLAUNAY_API flaunay_status flaunay_point_tree_create_in_space(flaunay_triangulator* triangulator,
+                                                              const flaunay_triangulation* triangulation,
+                                                              flaunay_point_tree** tree);
+/// As flaunay_locator_set_coordinates.
+FLAUNAY_API flaunay_status flaunay_point_tree_set_coordinates(flaunay_point_tree* tree, int coordinates);
 /// Destroys a tree. O(1).
 FLAUNAY_API void flaunay_point_tree_destroy(flaunay_point_tree* tree);
 /// Finds for each of m queries the `count` nearest points, the nearest first, by exact comparisons. Of points
@@ -1485,337 +1527,28 @@ FLAUNAY_API void flaunay_point_tree_destroy(flaunay_point_tree* tree);
 FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries,
                                                       size_t m, size_t count, double max_distance,
                                                       int32_t* points, double* distances);
-// ---- Points on a sphere
-
-/// How points of the unit sphere are given.
-typedef enum flaunay_sphere_coordinates {
-  FLAUNAY_SPHERE_DIRECTIONS = 0,  ///< x y z: any finite vector but 0; its length does not count
-  FLAUNAY_SPHERE_DEGREES = 1      ///< longitude to the east, any number, and latitude, -90 to 90
-} flaunay_sphere_coordinates;
-
-/// The Delaunay triangulations of sets of points on the unit sphere: their convex hulls in space.
-typedef struct flaunay_spherical flaunay_spherical;
-/// Triangulates n points of the sphere. coordinates: one of flaunay_sphere_coordinates. offsets and sets: as
-/// for flaunay_triangulate. Errors are those of flaunay_triangulate; the direction 0 and a latitude beyond a
-/// pole are FLAUNAY_ERROR_INPUT, too. The caller destroys the result. O(n log n) work.
-FLAUNAY_API flaunay_status flaunay_spherical_create(flaunay_triangulator* triangulator, const double* points,
-                                                    size_t n, const size_t* offsets, size_t sets,
-                                                    int coordinates, flaunay_spherical** spherical);
-/// Frees the arrays.
-FLAUNAY_API void flaunay_spherical_destroy(flaunay_spherical* spherical);
-/// n, the number of points.
-FLAUNAY_API size_t flaunay_spherical_point_count(const flaunay_spherical* spherical);
-/// t, the number of triangles: 2 n - 4 for each set of n > 2 different points.
-FLAUNAY_API size_t flaunay_spherical_triangle_count(const flaunay_spherical* spherical);
-/// 2 n values: where the line from the south pole through a point meets the plane of the equator; infinite
-/// for the south pole. Rounded once; this is what the point is, and it lies on the sphere exactly.
-FLAUNAY_API const double* flaunay_spherical_places(const flaunay_spherical* spherical);
-/// 3 t values, counter-clockwise as seen from outside, smallest index first.
-FLAUNAY_API const int32_t* flaunay_spherical_triangles(const flaunay_spherical* spherical);
-/// 3 t values: the triangle opposite to each corner. There is always one.
-FLAUNAY_API const int32_t* flaunay_spherical_neighbors(const flaunay_spherical* spherical);
-/// n values: the smallest index of a point of the set with the same place.
-FLAUNAY_API const int32_t* flaunay_spherical_representatives(const flaunay_spherical* spherical);
-/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_spherical_triangle_offsets(const flaunay_spherical* spherical);
-/// Writes the unit vectors of points, rounded. directions: room for 3 n values.
-FLAUNAY_API flaunay_status flaunay_spherical_directions(const flaunay_spherical* spherical,
-                                                        double* directions);
-/// Checks exactly that this is the canonical triangulation of these points; if not, it is
-/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. points, coordinates: as it was made from. O(n
-/// log n).
-FLAUNAY_API flaunay_status flaunay_spherical_verify(const flaunay_spherical* spherical, const double* points,
-                                                    int coordinates);
-
-/// The arrays of triangulations on the sphere in device memory, as bits, with their types and their sizes in
-/// bytes for n points.
-typedef enum flaunay_spherical_part {
-  FLAUNAY_SPHERICAL_PLACES = 1,          ///< double2, 16 n
-  FLAUNAY_SPHERICAL_TRIANGLES = 2,       ///< int32, 24 n
-  FLAUNAY_SPHERICAL_NEIGHBORS = 4,       ///< int32, 24 n
-  FLAUNAY_SPHERICAL_REPRESENTATIVES = 8  ///< int32, 4 n
-} flaunay_spherical_part;
-/// Triangulations of sets of points on the unit sphere, in device memory.
-typedef struct flaunay_device_spherical flaunay_device_spherical;
-/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
-FLAUNAY_API flaunay_status flaunay_device_spherical_create(flaunay_device_spherical** spherical);
-/// Releases its buffers; what is enqueued with them goes on.
-FLAUNAY_API void flaunay_device_spherical_destroy(flaunay_device_spherical* spherical);
-/// Makes later calls write one part, one bit of flaunay_spherical_part, to the caller's buffer. Its size must
-/// be that given there. Otherwise see flaunay_device_triangulation_set_buffer.
-FLAUNAY_API flaunay_status flaunay_device_spherical_set_buffer(flaunay_device_spherical* spherical,
-                                                               unsigned part, cl_mem memory);
-/// The buffer of one part; see flaunay_device_triangulation_buffer.
-FLAUNAY_API cl_mem flaunay_device_spherical_buffer(const flaunay_device_spherical* spherical, unsigned part);
-/// The number of triangles.
-FLAUNAY_API size_t flaunay_device_spherical_triangle_count(const flaunay_device_spherical* spherical);
-/// Sets + 1 values in host memory: set s has the triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_device_spherical_triangle_offsets(
-    const flaunay_device_spherical* spherical);
-/// Triangulates points of the sphere in device memory, whose buffer has per point the numbers that the
-/// coordinates, one of flaunay_sphere_coordinates, have. All arrays stay there; the host reads what is around
-/// the south pole, and computes all if a point is there. The work is enqueued like that of
-/// flaunay_triangulate_device. Errors are those of that and of flaunay_spherical_create.
-FLAUNAY_API flaunay_status flaunay_spherical_compute_device(flaunay_triangulator* triangulator,
-                                                            const flaunay_device_points* points,
-                                                            int coordinates, const flaunay_enqueue* enqueue,
-                                                            flaunay_device_spherical* result);
-
-/// The Voronoi cells of points on the unit sphere.
-typedef struct flaunay_spherical_voronoi flaunay_spherical_voronoi;
-/// Computes the dual. The caller destroys the result. O(n).
-FLAUNAY_API flaunay_status flaunay_spherical_voronoi_create(flaunay_triangulator* triangulator,
-                                                            const flaunay_spherical* spherical,
-                                                            flaunay_spherical_voronoi** voronoi);
-/// Frees the arrays.
-FLAUNAY_API void flaunay_spherical_voronoi_destroy(flaunay_spherical_voronoi* voronoi);
-/// 3 t values: the centre of the empty cap whose rim passes through a triangle's corners, rounded.
-FLAUNAY_API const double* flaunay_spherical_voronoi_centres(const flaunay_spherical_voronoi* voronoi);
-/// n + 1 values: the cell of point i has corners [offsets[i], offsets[i + 1]) of cells.
-FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cell_offsets(const flaunay_spherical_voronoi* voronoi);
-/// 3 t values: the triangles whose centres are the corners of cells, counter-clockwise as seen from outside,
-/// smallest first. Points that another point represents have none, nor have sets of one or two points: the
-/// cells of these are hemispheres. If all points are on one great circle, cells are lunes with two corners
-/// (and some that coincide), opposite to each other, so that a side needs its middle to be drawn: of the cell
-/// of p that is the direction of a x (q - p), for the side that begins at the centre a of a triangle and is
-/// shared with q, the corner before p in that triangle.
-FLAUNAY_API const int32_t* flaunay_spherical_voronoi_cells(const flaunay_spherical_voronoi* voronoi);
-/// n values: the areas of cells, rounded by some 1e-15, and if all points are within an angle r, by that
-/// divided by r^2. Those of a set sum to 4 pi.
-FLAUNAY_API const double* flaunay_spherical_voronoi_areas(const flaunay_spherical_voronoi* voronoi);
-
-/// Answers queries on a sphere with one set of points. Queries are given as points are.
-typedef struct flaunay_spherical_locator flaunay_spherical_locator;
-/// Makes a locator, which copies what it needs. It may outlive the triangulator. O(n log n).
-FLAUNAY_API flaunay_status flaunay_spherical_locator_create(flaunay_triangulator* triangulator,
-                                                            const flaunay_spherical* spherical,
-                                                            flaunay_spherical_locator** locator);
-/// Releases its memory.
-FLAUNAY_API void flaunay_spherical_locator_destroy(flaunay_spherical_locator* locator);
-/// Finds for each of m queries the triangle between whose sides, which are arcs of great circles, it lies;
-/// exactly. On an arc or at a corner it is the triangle of the smallest index. It is -1 beyond a set that
-/// lies within a hemisphere. triangles: room for m values.
-FLAUNAY_API flaunay_status flaunay_spherical_locator_locate(flaunay_spherical_locator* locator,
-                                                            const double* queries, size_t m, int coordinates,
-                                                            int32_t* triangles);
-/// Finds for each of m queries the nearest point, exactly; of several the south pole, or else the one with
-/// the smallest place, x before y. It is -1 if there are no points. points: room for m values.
-FLAUNAY_API flaunay_status flaunay_spherical_locator_nearest(flaunay_spherical_locator* locator,
-                                                             const double* queries, size_t m, int coordinates,
-                                                             int32_t* points);
-/// Finds for each of m queries the `count` nearest points, the nearest first, exactly; equal points are in
-/// the order of their indices. Those whose distance is larger than max_distance (INFINITY for none) are left
-/// out. Distances are angles in radians, rounded. points, distances: room for m count values, -1 and INFINITY
-/// where there are no more points; distances may be NULL. Some O(count log count) per query.
-FLAUNAY_API flaunay_status flaunay_spherical_locator_nearest_points(flaunay_spherical_locator* locator,
-                                                                    const double* queries, size_t m,
-                                                                    int coordinates, size_t count,
-                                                                    double max_distance, int32_t* points,
-                                                                    double* distances);
-/// Computes for each of m queries the value at the place where its direction meets the triangle in space,
-/// which is linear there (Renka, 1984). values: `columns` numbers per point; results: so many per query. At a
-/// point it is that point's value; where there is no triangle, NaN.
-FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spherical_locator* locator,
-                                                                 const double* values, size_t columns,
-                                                                 const double* queries, size_t m,
-                                                                 int coordinates, double* results);
-
-// ---- Points on a torus or a cylinder
-
-/// The Delaunay triangulations of sets of points in a plane that repeats itself in x and y, or in one of
-/// them.
-typedef struct flaunay_periodic flaunay_periodic;
-/// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period; if
-/// one period is INFINITY, on a cylinder. offsets and sets: as for flaunay_triangulate. Any points do,
-/// however few. Errors are those of flaunay_triangulate; FLAUNAY_ERROR_USAGE for a period that is not from
-/// 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or more than 2^30 times the other one. The caller destroys
-/// the result. O(n log n) work.
-FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points,
-                                                   size_t n, const size_t* offsets, size_t sets,
-                                                   double period_x, double period_y,
-                                                   flaunay_periodic** periodic);
-/// Frees the arrays.
-FLAUNAY_API void flaunay_periodic_destroy(flaunay_periodic* periodic);
-/// n, the number of points.
-FLAUNAY_API size_t flaunay_periodic_point_count(const flaunay_periodic* periodic);
-/// t, the number of triangles: 2 n for each set of n different points; on a cylinder 2 n - h, if h of them
-/// are on its lowest and its highest circle.
-FLAUNAY_API size_t flaunay_periodic_triangle_count(const flaunay_periodic* periodic);
-/// Images that were triangulated besides the points.
-FLAUNAY_API size_t flaunay_periodic_image_count(const flaunay_periodic* periodic);
-/// 2 values, x and y: as given, but for the last bit, which is 0 unless the period is a power of two.
-FLAUNAY_API const double* flaunay_periodic_period(const flaunay_periodic* periodic);
-/// 2 n values: places in [0, period), rounded once to multiples of the period's last bit but one. This is
-/// what the points are. What has no period is not rounded.
-FLAUNAY_API const double* flaunay_periodic_places(const flaunay_periodic* periodic);
-/// 3 t values, counter-clockwise, smallest index first.
-FLAUNAY_API const int32_t* flaunay_periodic_triangles(const flaunay_periodic* periodic);
-/// 6 t values, x and y per corner, -1 to 1: with the first corner in its place, the corner is at its place +
-/// offset * period.
-FLAUNAY_API const int8_t* flaunay_periodic_offsets(const flaunay_periodic* periodic);
-/// 3 t values: the triangle opposite to each corner; on a cylinder -1 beyond its ends.
-FLAUNAY_API const int32_t* flaunay_periodic_neighbors(const flaunay_periodic* periodic);
-/// n values: the smallest index of a point of the set with the same place.
-FLAUNAY_API const int32_t* flaunay_periodic_representatives(const flaunay_periodic* periodic);
-/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_periodic_triangle_offsets(const flaunay_periodic* periodic);
-/// Computes the Voronoi cells, each around its point's place, so that some reach beyond the period; rounded.
-/// The areas of a set's cells sum to that of the period. A cylinder is FLAUNAY_ERROR_USAGE: cells there have
-/// no end. The caller destroys the result. O(n).
-FLAUNAY_API flaunay_status flaunay_periodic_cells(flaunay_triangulator* triangulator,
-                                                  const flaunay_periodic* periodic,
-                                                  flaunay_clipped_voronoi** cells);
-
-/// Makes a tree of the places of one set on a torus or a cylinder for flaunay_point_tree_nearest: queries are
-/// then any places of the plane, and each point counts once, as it lies nearest. The caller destroys it.
-/// FLAUNAY_ERROR_USAGE for several sets. O(n log n).
-FLAUNAY_API flaunay_status flaunay_point_tree_create_periodic(flaunay_triangulator* triangulator,
-                                                              const flaunay_periodic* periodic,
-                                                              flaunay_point_tree** tree);
-
-/// Checks exactly that this is the canonical triangulation of its places; if not, it is
-/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
-FLAUNAY_API flaunay_status flaunay_periodic_verify(const flaunay_periodic* periodic);
-
-/// The arrays of a triangulation on a torus or a cylinder in device memory, as bits, with their types and the
-/// sizes in bytes that buffers need for n points.
-typedef enum flaunay_periodic_part {
-  FLAUNAY_PERIODIC_PLACES = 1,           ///< double2, 16 n
-  FLAUNAY_PERIODIC_TRIANGLES = 2,        ///< int32, 24 n
-  FLAUNAY_PERIODIC_OFFSETS = 4,          ///< char, 12 n
-  FLAUNAY_PERIODIC_NEIGHBORS = 8,        ///< int32, 24 n
-  FLAUNAY_PERIODIC_REPRESENTATIVES = 16  ///< int32, 4 n
-} flaunay_periodic_part;
-/// The triangulations of sets of points on a torus or a cylinder, in device memory.
-typedef struct flaunay_device_periodic flaunay_device_periodic;
-/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
-FLAUNAY_API flaunay_status flaunay_device_periodic_create(flaunay_device_periodic** periodic);
-/// Releases its buffers; what is enqueued with them goes on.
-FLAUNAY_API void flaunay_device_periodic_destroy(flaunay_device_periodic* periodic);
-/// Makes later calls write one part (one bit of flaunay_periodic_part) to the caller's buffer, whose size
-/// must be that given there. Otherwise see flaunay_device_triangulation_set_buffer.
-FLAUNAY_API flaunay_status flaunay_device_periodic_set_buffer(flaunay_device_periodic* periodic,
-                                                              unsigned part, cl_mem memory);
-/// The buffer of one part; see flaunay_device_triangulation_buffer.
-FLAUNAY_API cl_mem flaunay_device_periodic_buffer(const flaunay_device_periodic* periodic, unsigned part);
-/// t, as of flaunay_periodic_triangle_count. This and the following values are in host memory, and known when
-/// the call returns.
-FLAUNAY_API size_t flaunay_device_periodic_triangle_count(const flaunay_device_periodic* periodic);
-/// See flaunay_periodic_image_count.
-FLAUNAY_API size_t flaunay_device_periodic_image_count(const flaunay_device_periodic* periodic);
-/// See flaunay_periodic_period.
-FLAUNAY_API const double* flaunay_device_periodic_period(const flaunay_device_periodic* periodic);
-/// See flaunay_periodic_triangle_offsets.
-FLAUNAY_API const size_t* flaunay_device_periodic_triangle_offsets(const flaunay_device_periodic* periodic);
-/// flaunay_periodic_create for points in device memory, into device memory: the same bytes. The host joins
-/// what meets at the border, about the square root of n triangles. Otherwise the work is enqueued like that
-/// of flaunay_triangulate_device, with the same errors. Devices without fp64 leave it to the host.
-FLAUNAY_API flaunay_status flaunay_periodic_compute_device(flaunay_triangulator* triangulator,
-                                                           const flaunay_device_points* points,
-                                                           double period_x, double period_y,
-                                                           const flaunay_enqueue* enqueue,
-                                                           flaunay_device_periodic* result);
-
-/// Answers queries on a torus or a cylinder with one set of points. Queries are any places of the plane.
-typedef struct flaunay_periodic_locator flaunay_periodic_locator;
-/// Makes a locator, which copies what it needs: as a flaunay_locator does, for points and images around the
-/// box; on a cylinder for three times as many. It may outlive the triangulator. O(n log n).
-FLAUNAY_API flaunay_status flaunay_periodic_locator_create(flaunay_triangulator* triangulator,
-                                                           const flaunay_periodic* periodic,
-                                                           flaunay_periodic_locator** locator);
-/// Releases its memory.
-FLAUNAY_API void flaunay_periodic_locator_destroy(flaunay_periodic_locator* locator);
-/// Finds for each of m queries a triangle that contains it, exactly; on an edge or at a corner always the
-/// same one. It is -1 beyond the ends of a cylinder, and if there are no triangles. triangles: room for m
-/// values.
-FLAUNAY_API flaunay_status flaunay_periodic_locator_locate(flaunay_periodic_locator* locator,
-                                                           const double* queries, size_t m,
-                                                           int32_t* triangles);
-/// Finds for each of m queries the nearest point, exactly; of several the first one in the order of x, then
-/// y, as they lie around the query's place. It is -1 if there are no points. points: room for m values.
-FLAUNAY_API flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_locator* locator,
-                                                            const double* queries, size_t m, int32_t* points);
-/// Interpolates as flaunay_locator_interpolate_with does: values: options->columns numbers per point;
-/// results: as many per query. options: NULL for the defaults. Without triangles, results are options->fill.
-/// It is FLAUNAY_ERROR_USAGE for Clough-Tocher, and on a cylinder for natural neighbours; FLAUNAY_ERROR_INPUT
-/// for natural neighbours of so few points that a circle without points is wider than the shorter period.
-FLAUNAY_API flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator,
-                                                                const double* values, const double* queries,
-                                                                size_t m,
-                                                                const flaunay_interpolation_options* options,
-                                                                double* results);
-
-// ---- Weighted points
-
-/// The regular triangulations of sets of weighted points: the lower hulls of the points at height x^2 + y^2 -
-/// weight.
-typedef struct flaunay_weighted flaunay_weighted;
-/// Computes the regular triangulation of n points, x0 y0 x1 y1 ..., with n weights, which are squared lengths
-/// of any sign. offsets and sets: as for flaunay_triangulate. The result is exact and canonical, and with
-/// equal weights the Delaunay triangulation. Errors are those of flaunay_triangulate; FLAUNAY_ERROR_INPUT
-/// also for a weight that is not finite, or beyond the squares of what coordinates may be. The caller
-/// destroys the result. O(n log n) work.
-FLAUNAY_API flaunay_status flaunay_weighted_create(flaunay_triangulator* triangulator, const double* points,
-                                                   const double* weights, size_t n, const size_t* offsets,
-                                                   size_t sets, flaunay_weighted** weighted);
-/// Frees the arrays.
-FLAUNAY_API void flaunay_weighted_destroy(flaunay_weighted* weighted);
-/// n, the number of points.
-FLAUNAY_API size_t flaunay_weighted_point_count(const flaunay_weighted* weighted);
-/// t, the number of triangles.
-FLAUNAY_API size_t flaunay_weighted_triangle_count(const flaunay_weighted* weighted);
-/// The number of hull vertices over all sets.
-FLAUNAY_API size_t flaunay_weighted_hull_vertex_count(const flaunay_weighted* weighted);
-/// The number of hidden points.
-FLAUNAY_API size_t flaunay_weighted_hidden_count(const flaunay_weighted* weighted);
-/// 3 t values, counter-clockwise, smallest index first.
-FLAUNAY_API const int32_t* flaunay_weighted_triangles(const flaunay_weighted* weighted);
-/// 3 t values: the triangle opposite to each corner, -1 beyond the hull.
-FLAUNAY_API const int32_t* flaunay_weighted_neighbors(const flaunay_weighted* weighted);
-/// The hull's vertices, as of flaunay_triangulation_hull, without hidden points.
-FLAUNAY_API const int32_t* flaunay_weighted_hull(const flaunay_weighted* weighted);
-/// n values: the smallest index of a point of the set with the same coordinates and weight.
-FLAUNAY_API const int32_t* flaunay_weighted_representatives(const flaunay_weighted* weighted);
-/// The points without a power cell, ascending, but those that another one represents.
-FLAUNAY_API const int32_t* flaunay_weighted_hidden(const flaunay_weighted* weighted);
-/// Sets + 1 values: set s has the triangles [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_weighted_triangle_offsets(const flaunay_weighted* weighted);
-/// Sets + 1 values: set s has the hull vertices [offsets[s], offsets[s + 1]).
-FLAUNAY_API const size_t* flaunay_weighted_hull_offsets(const flaunay_weighted* weighted);
-/// Finds for each hidden point the triangle that hides it: the one of the smallest index that has it inside
-/// or on its border; -1 in a set without triangles. points: those that were triangulated. triangles: room for
-/// one value per hidden point.
-FLAUNAY_API flaunay_status flaunay_weighted_hiding_triangles(flaunay_triangulator* triangulator,
-                                                             const flaunay_weighted* weighted,
-                                                             const double* points, int32_t* triangles);
-/// Checks exactly that this is the canonical regular triangulation of these points; if not, it is
-/// FLAUNAY_ERROR_INTERNAL, whose message says what is wrong. O(n log n).
-FLAUNAY_API flaunay_status flaunay_weighted_verify(const flaunay_weighted* weighted, const double* points,
-                                                   const double* weights);
-/// Computes the power cells of one set, clipped to a convex polygon, as flaunay_voronoi_clip does without
-/// weights: of each point the places whose squared distance less the weight is least for it.
-/// Decisions are rounded, too. points, weights: those that were triangulated. The caller destroys the result.
-FLAUNAY_API flaunay_status flaunay_weighted_cells(flaunay_triangulator* triangulator,
-                                                  const flaunay_weighted* weighted, const double* points,
-                                                  const double* weights, const double* corners,
-                                                  size_t corner_count, flaunay_clipped_voronoi** cells);
-
 // ---- Interpolation
 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
-/// every method gives exactly that point's values; for duplicates, those of their representative are used.
-/// The other arguments and the errors are those of flaunay_locator_locate.
-FLAUNAY_API flaunay_status flaunay_locator_interpolate_with(flaunay_locator* locator, const double* values,
-                                                            const double* queries, size_t m,
-                                                            const size_t* offsets, size_t sets,
-                                                            const flaunay_interpolation_options* options,
-                                                            double* results);
-/// flaunay_locator_interpolate_with for values and queries in device memory; see
+/// every method gives exactly that point's values; for duplicates, those of their representative are used. On
+/// a torus there is no Clough-Tocher, on a cylinder neither that nor natural neighbours, and on the sphere
+/// linear interpolation alone: the value where the direction of the query meets the triangle in space (Renka,
+/// 1984). Natural neighbours of so few points on a torus that a circle without points is wider than the
+/// shorter period are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
+/// flaunay_locator_locate.
+FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
+                                                       const double* queries, size_t m, const size_t* offsets,
+                                                       size_t sets,
+                                                       const flaunay_interpolation_options* options,
+                                                       double* results);
+/// flaunay_locator_interpolate for values and queries in device memory; see
 /// flaunay_locator_locate_device. values and *results: double, 8 bytes per number.
-FLAUNAY_API flaunay_status flaunay_locator_interpolate_with_device(
-    flaunay_locator* locator, cl_mem values, const flaunay_device_points* queries,
-    const flaunay_interpolation_options* options, const flaunay_enqueue* enqueue, cl_mem* results);
+FLAUNAY_API flaunay_status flaunay_locator_interpolate_device(flaunay_locator* locator, cl_mem values,
+                                                              const flaunay_device_points* queries,
+                                                              const flaunay_interpolation_options* options,
+                                                              const flaunay_enqueue* enqueue,
+                                                              cl_mem* results);
 /// The natural neighbours of queries and their weights.
 typedef struct flaunay_natural_weights flaunay_natural_weights;
 /// Computes the weights by which FLAUNAY_INTERPOLATION_SIBSON or _LAPLACE interpolates any values at m

@@ -113,31 +113,113 @@ struct Statistics {
   std::string note;
 };
 
+/// Where the plane begins again, in x and in y.
+struct Period {
+  /// From 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and at most 2^30 times the other. If one is infinite,
+  /// the plane does not repeat itself in that direction: it is a cylinder.
+  double x = 1;
+  double y = 1;  ///< see x
+};
+
+/// How points of the unit sphere are given.
+enum class SphereCoordinates {
+  directions,  ///< x y z: any finite vector but 0; its length does not count
+  degrees,     ///< longitude to the east, any number, and latitude, -90 to 90
+};
+
+/// The kinds of spaces that points lie in.
+enum class SpaceKind {
+  plane,   ///< the Euclidean plane
+  torus,   ///< a plane that repeats itself in x and y, or a cylinder, which repeats itself in one of them
+  sphere,  ///< the unit sphere
+};
+
+/// The space that points lie in, and their weights: Space::plane(), Space::torus({2, 3}), and others.
+struct Space {
+  /// The plane.
+  static Space plane() noexcept { return Space(SpaceKind::plane); }
+  /// A torus; a cylinder, if one of the periods is infinite.
+  static Space torus(const Period& period) noexcept {
+    Space space(SpaceKind::torus);
+    space.period = period;
+    return space;
+  }
+  /// The unit sphere.
+  static Space sphere(SphereCoordinates coordinates) noexcept {
+    Space space(SpaceKind::sphere);
+    space.coordinates = coordinates;
+    return space;
+  }
+  /// This space, for points with weights, one per point: squared lengths of any sign; of circles, the squared
+  /// radii. The array belongs to the caller.
+  Space with_weights(const double* given) const noexcept {
+    Space space = *this;
+    space.weights = given;
+    return space;
+  }
+
+  SpaceKind kind;                                                 ///< the kind of space
+  Period period;                                                  ///< of a torus
+  SphereCoordinates coordinates = SphereCoordinates::directions;  ///< on a sphere, how points are given
+  const double* weights = nullptr;                                ///< null: points have no weights
+
+ private:
+  explicit Space(SpaceKind given) noexcept : kind(given) {}
+};
+
 /// The triangulations of one or more point sets. Points and triangles are numbered over all sets.
 struct Triangulation {
-  /// 3 per triangle, counter-clockwise, smallest index first.
+  /// The space of the points, without their weights. The period is as given, but for the last bit of a
+  /// double, which is 0 unless the period is a power of two.
+  Space space = Space::plane();
+  /// x and y per point on a torus, a cylinder and the sphere; empty in the plane. A point's place is rounded
+  /// once, and is then what the point is. On a torus it is the point in [0, period), a multiple of the
+  /// period's last bit but one, or of the last bit if the period is a power of two; so every image of a point
+  /// is exact. What has no period is not rounded. On the sphere it is where the line from the south pole
+  /// through the point meets the plane of the equator; infinite for the south pole. Every pair of numbers is
+  /// a point that lies on the sphere exactly.
+  std::vector<double> places;
+  /// 3 per triangle, counter-clockwise, on the sphere as seen from outside, smallest index first. n different
+  /// points on a torus have 2 n, on a cylinder 2 n - h, if h of them are on its lowest and its highest
+  /// circle, and on the sphere 2 n - 4 for n > 2. Points on one circle of the sphere have the two sides of a
+  /// polygon.
   std::vector<std::int32_t> triangles;
-  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull. Empty unless
-  /// Options::neighbors.
+  /// 3 per triangle: the triangle opposite to each vertex, -1 beyond the hull or the end of a cylinder. Empty
+  /// unless Options::neighbors.
   std::vector<std::int32_t> neighbors;
   /// 3 per triangle. Halfedge 3t + k goes from vertex k of triangle t to its next vertex. Entry 3t + k is the
   /// opposite halfedge, in the adjacent triangle, or -1 on the hull. This is the convention of delaunator.
   /// Empty unless Options::halfedges.
   std::vector<std::int32_t> halfedges;
+  /// 6 per triangle on a torus and a cylinder: x and y per corner, in periods. With the first corner in its
+  /// place, a corner is at its place + offset * period. The first corner has 0, 0; the others -1, 0 or 1.
+  /// They tell apart corners that are the same point, as few points have them.
+  std::vector<std::int8_t> corner_offsets;
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
-  /// point. Collinear sets: the distinct points in lexicographic order.
+  /// point. Collinear sets: the distinct points in lexicographic order. Empty except in the plane.
   std::vector<std::int32_t> hull;
-  /// One per input point: the smallest index of a point of its set with the same coordinates.
+  /// One per input point: the smallest index of a point of its set with the same coordinates, or the same
+  /// place, and the same weight.
   std::vector<std::int32_t> representatives;
+  /// Of points with weights those without a power cell, in ascending order: they lie on or above what other
+  /// points of their set span, and are in no triangle. Points that another point represents are not among
+  /// them.
+  std::vector<std::int32_t> hidden;
   /// One per triangle: its area, rounded to the nearest double, ties to even, whatever the coordinates: 0 up
   /// to 2^-1075, infinite from about 2^1024. Otherwise it is positive, since triangles are counter-clockwise.
   /// Empty unless Options::areas.
   std::vector<double> areas;
   /// sets + 1 values: set s has triangles [triangle_offsets[s], triangle_offsets[s + 1]).
   std::vector<std::size_t> triangle_offsets;
-  /// sets + 1 values: set s has hull vertices [hull_offsets[s], hull_offsets[s + 1]).
+  /// sets + 1 values: set s has hull vertices [hull_offsets[s], hull_offsets[s + 1]). Empty except in the
+  /// plane.
   std::vector<std::size_t> hull_offsets;
-  Statistics statistics;  ///< what the call did and how long it took
+  /// sets + 1 values, except in the plane: set s has points [point_offsets[s], point_offsets[s + 1]).
+  std::vector<std::size_t> point_offsets;
+  /// On a torus and a cylinder, images that were triangulated besides the points, because empty circles reach
+  /// across the border.
+  std::size_t images = 0;
+  Statistics statistics;  ///< what the call did and how long it took; elsewhere, its last step in the plane
 };
 
 /// An OpenCL device, or the host, for which most members are empty.
@@ -193,11 +275,12 @@ FLAUNAY_API const Enqueue& own_queue() noexcept;
 /// Returns Parts{}: the triangles alone. O(1).
 FLAUNAY_API const Parts& triangles_alone() noexcept;
 
-/// The dual of a triangulation of n points. Where more than three points are cocircular, circumcentres
-/// coincide.
+/// The dual of a triangulation of n points, in the plane or on the sphere. Where more than three points are
+/// cocircular, circumcentres coincide.
 struct Voronoi {
   /// x and y per triangle. They are rounded; which cells are adjacent was decided by exact predicates. Those
-  /// that coincide but for rounding are equal, so that bounded cells do not cross themselves.
+  /// that coincide but for rounding are equal, so that bounded cells do not cross themselves. On the sphere x
+  /// y z: the centre of the empty cap whose rim passes through the triangle's corners.
   std::vector<double> circumcentres;
   /// n + 1 values: the cell of point i has corners [cell_offsets[i], cell_offsets[i + 1]) of cells.
   std::vector<std::int32_t> cell_offsets;
@@ -205,10 +288,19 @@ struct Voronoi {
   /// point and begin with the smallest index. In an unbounded cell they begin at the hull edge that leaves
   /// the point and end at the hull edge that arrives at it; from the first and the last corner, a ray
   /// perpendicular to that edge goes outwards. Points that another point represents, and points on one line,
-  /// have no corners.
+  /// have no corners. On the sphere, cells are counter-clockwise as seen from outside, and a set of one or
+  /// two points has no corners: the cells of two points are hemispheres. If all points are on one great
+  /// circle, cells are lunes with two corners (and some that coincide), opposite to each other, so that a
+  /// side needs its middle to be drawn: of the cell of p that is the direction of a x (q - p), for the side
+  /// that begins at the centre a of a triangle and is shared with q, the corner before p in that triangle.
   std::vector<std::int32_t> cells;
-  /// n values: 1 for points on the hull and for all points of a set on one line, otherwise 0.
+  /// n values in the plane: 1 for points on the hull and for all points of a set on one line, otherwise 0.
   std::vector<std::uint8_t> unbounded;
+  /// n values on the sphere: the areas of the cells, of which those of a set sum to 4 pi; rounded by some
+  /// 1e-15, and if all points are within an angle r, by that divided by r^2; of points within some 1e-15 of
+  /// each other a sum can rarely be another multiple of 4 pi. Points that another one represents have 0, two
+  /// points a hemisphere each, and a point alone the sphere.
+  std::vector<double> areas;
 };
 
 /// The Voronoi cells of n points, clipped to a convex polygon.
@@ -293,6 +385,36 @@ class FLAUNAY_API Triangulator {
   /// coordinates converted to double.
   Triangulation triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                             const Options& options = {});
+
+  /// Triangulates one set of n points of a space: in the plane x0 y0 x1 y1 ..., with weights or without; on a
+  /// torus or a cylinder any finite numbers, which are taken into the period; on the sphere as
+  /// Space::coordinates says. Results are exact, and functions of the set of places and weights.
+  ///
+  /// With weights it is the regular triangulation: the lower hull of the points at height x^2 + y^2 - weight;
+  /// with equal weights the Delaunay triangulation, to the byte. Where more than three lifted points are on a
+  /// plane, those that are no corners of their hull there are hidden; the others' polygon is triangulated as
+  /// the farthest-point Delaunay triangulation, and where these are cocircular, as a fan from the
+  /// lexicographically smallest one. It runs on the host's cores.
+  ///
+  /// On a torus or a cylinder it is the Delaunay triangulation of all images of all points, of which it has
+  /// each triangle once, however few points there are. Where more than three points are cocircular, their
+  /// polygon is a fan from its lexicographically smallest vertex. Triangles are in the order that they have
+  /// in the plane, which the number of points given has a part in.
+  ///
+  /// On the sphere it is the convex hull of the points in space: the triangulation of their places, and
+  /// around the south pole what is beyond the hull there, which is the farthest-point Delaunay triangulation
+  /// of the hull (Brown, 1979). Where more than three points are cocircular, their polygon is a fan from the
+  /// first of them: the south pole, or else the smallest place, x before y.
+  ///
+  /// Throws what the call for the plane throws; Error(usage) also for a period that is none, for weights
+  /// except in the plane, and for half-edges and areas on a torus or the sphere, which have neighbours
+  /// always; Error(input) also for a weight that is not finite or beyond the squares of what coordinates may
+  /// be, for the direction 0, and for a latitude beyond a pole. O(n log n) work.
+  Triangulation triangulate(const double* points, std::size_t n, const Space& space,
+                            const Options& options = {});
+  /// Triangulates many sets at once. Set s has points [offsets[s], offsets[s + 1]).
+  Triangulation triangulate(const double* points, const std::vector<std::size_t>& offsets, const Space& space,
+                            const Options& options = {});
   /// Does not compile: research::triangulate takes these options, which this would ignore.
   template <typename Coordinate, typename Size>
   Triangulation triangulate(const Coordinate* coordinates, const Size& size,
@@ -361,6 +483,9 @@ class FLAUNAY_API Triangulator {
   /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
   /// takes as many steps as the point has triangles.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
+  /// Computes the dual of a triangulation on the sphere. Throws Error(usage) for another space and for arrays
+  /// that do not fit each other. O(n).
+  Voronoi voronoi(const Triangulation& triangulation);
   /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
   Voronoi voronoi(const double* coordinates, std::size_t n,
                   const ConstrainedTriangulation& triangulation) = delete;
@@ -379,6 +504,20 @@ class FLAUNAY_API Triangulator {
   /// magnitudes. O(n log m) work for m corners, and O(m) for each Voronoi edge across the polygon's border.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation,
                                  const double* corners, std::size_t corner_count);
+  /// Computes the power cells of one set of n points with weights, clipped to a convex polygon: of each point
+  /// the places whose power, the squared distance less the weight, is least for it. Vertices, areas and
+  /// centroids are rounded; polygons are simple, and tile. Points without a cell in the polygon, such as
+  /// hidden ones, have no vertices. Errors are those above; Error(usage) for several sets, too. O(n k) for k
+  /// corners, but for points with very many neighbours.
+  ClippedVoronoi clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
+                                 const Triangulation& triangulation, const double* corners,
+                                 std::size_t corner_count);
+  /// Computes the Voronoi cells on a torus, each around its point's place, so that some reach beyond the
+  /// period. Vertices are rounded to the units of the period, so that their images are exact; polygons are
+  /// simple, and tile the torus. The areas of a set's cells sum to that of the period. Throws Error(usage)
+  /// for another space, for arrays that do not fit each other, and for a cylinder, where cells have no end.
+  /// O(n).
+  ClippedVoronoi clipped_voronoi(const Triangulation& triangulation);
   /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n,
                                  const ConstrainedTriangulation& triangulation, const double* corners,
@@ -472,6 +611,14 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
+  /// Makes a locator for a triangulation of one set on a torus, a cylinder or the sphere; it copies what it
+  /// needs. On a torus or a cylinder, queries are any places of the plane, and are rounded to places as
+  /// points are. They are answered in the plane, with images of points around the box; on a cylinder with
+  /// three times as many points. On the sphere, queries are given as the points were, and are rounded to
+  /// places as these: of the points' places a locator in the plane finds one near the query's, from which an
+  /// exact walk goes on over the sphere. Throws Error(usage) for several sets, for the plane, and for arrays
+  /// that do not fit each other. O(n log n).
+  Locator(Triangulator& triangulator, const Triangulation& triangulation);
   /// Makes a locator for a triangulation with constraints, which must have neighbours and be of one set, such
   /// as a map. coordinates: those of the n points that were triangulated; values and answers are of the
   /// points that were added, too. Queries in no triangle, such as those in holes, are outside. Nearest points
@@ -494,9 +641,13 @@ class FLAUNAY_API Locator {
   /// to.
   Locator& operator=(Locator&&) noexcept;
 
+  /// Makes later queries on the sphere be given so. Throws Error(usage) in other spaces.
+  void set_coordinates(SphereCoordinates coordinates);
+
   /// Finds for each of m queries, x0 y0 x1 y1 ..., the triangle that contains it, exactly. On an edge or a
-  /// vertex it is the triangle of the smallest index that contains the query; outside of the hull it is -1.
-  /// About O(log n) per query.
+  /// vertex it is the triangle of the smallest index that contains the query, on a torus always the same one;
+  /// outside of the hull, beyond the ends of a cylinder, and beyond a set that lies within a hemisphere it is
+  /// -1. On the sphere, triangles are between arcs of great circles. About O(log n) per query.
   std::vector<std::int32_t> locate(const double* queries, std::size_t m);
   /// Answers several sets of queries, one per set of the triangulation: set s has queries [offsets[s],
   /// offsets[s + 1]). Throws Error(usage) if the number of sets differs.
@@ -506,11 +657,11 @@ class FLAUNAY_API Locator {
   void locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue = own_queue());
 
   /// Finds for each of m queries the index of the nearest point, by exact comparisons. If several points are
-  /// nearest, it is the first of them in the order of x, then y. It is -1 if the set is empty. About O(log n)
-  /// per query is expected, except at a vertex with very many neighbours that are all about as near and not
-  /// cocircular. On meshes where some walks are long (points on a curve, vertices
-  /// with very many neighbours), the first call with such a query takes up to half as long as making the
-  /// locator did, once.
+  /// nearest, it is the first of them in the order of x, then y, on a torus as they lie around the query's
+  /// place, and on the sphere the south pole, or else the smallest place. It is -1 if the set is empty. About
+  /// O(log n) per query is expected, except at a vertex with very many neighbours that are all about as near
+  /// and not cocircular. On meshes where some walks are long (points on a curve, vertices with very many
+  /// neighbours), the first call with such a query takes up to half as long as making the locator did, once.
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m);
   /// Answers several sets of queries; see locate.
   std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
@@ -528,10 +679,13 @@ class FLAUNAY_API Locator {
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const Enqueue& enqueue = own_queue());
 
-  /// Interpolates by any method, several numbers per point at once. values: one row of options.columns
-  /// numbers per input point; the result has one row per query. At a point, every method gives exactly that
-  /// point's values; for duplicates, those of their representative are used. Throws Error(usage) if
-  /// options.columns is 0.
+  /// Interpolates by any method, several numbers per point at once. On a torus there is no Clough-Tocher, on
+  /// a cylinder neither that nor natural neighbors, and on the sphere linear interpolation alone: the value
+  /// where the direction of the query meets the triangle in space (Renka, 1984). Natural neighbors of so few
+  /// points on a torus that a circle without points is wider than the shorter period are Error(input).
+  /// values: one row of options.columns numbers per input point; the result has one row per query. At a
+  /// point, every method gives exactly that point's values; for duplicates, those of their representative are
+  /// used. Throws Error(usage) if options.columns is 0.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
                                   const InterpolationOptions& options);
   /// Answers several sets of queries; see locate. values: one row per input point, over all sets.

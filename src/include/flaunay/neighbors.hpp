@@ -12,8 +12,6 @@
 
 namespace flaunay {
 
-struct PeriodicTriangulation;  // see flaunay/periodic.hpp
-
 /// The options of a query for nearest points.
 struct NeighborOptions {
   std::size_t count = 1;  ///< how many points
@@ -37,10 +35,13 @@ class FLAUNAY_API PointTree {
   /// Makes a tree of n points, x0 y0 x1 y1 ..., which may be equal. Throws Error(input) as a triangulation of
   /// them. O(n log n) work; 30 bytes per point.
   PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n);
-  /// Makes a tree of the places of one set of points on a torus or a cylinder, with their images up to half a
-  /// period away. Queries are then any places of the plane, and each point counts once, as it lies nearest.
-  /// Throws Error(usage) for several sets and for arrays that are none's. O(n log n) work.
-  PointTree(Triangulator& triangulator, const PeriodicTriangulation& triangulation);
+  /// Makes a tree of the places of one set of points on a torus, a cylinder or the sphere. On a torus and a
+  /// cylinder it has their images up to half a period away: queries are any places of the plane, and each
+  /// point counts once, as it lies nearest. On the sphere, queries are given as the points were, distances,
+  /// also the largest one, are angles in radians, rounded, and of points that are as near the south pole is
+  /// first, or else the one with the smallest place. Throws Error(usage) for several sets, for the plane, and
+  /// for arrays that are none's. O(n log n) work.
+  PointTree(Triangulator& triangulator, const Triangulation& triangulation);
   /// Releases its memory.
   ~PointTree();
   /// A tree that was moved from can only be destroyed or assigned to.
@@ -49,6 +50,8 @@ class FLAUNAY_API PointTree {
   /// to.
   PointTree& operator=(PointTree&&) noexcept;
 
+  /// Makes later queries on the sphere be given so. Throws Error(usage) in other spaces.
+  void set_coordinates(SphereCoordinates coordinates);
   /// Finds for each of m queries the nearest points, in their order by exact comparisons. Throws Error(usage)
   /// for no points per query and a distance that is NaN or negative; Error(input) as Locator. About
   /// O(log n + count log count) per query is expected, but all points that are exactly as near are looked at.

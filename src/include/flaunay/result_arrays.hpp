@@ -66,35 +66,12 @@
   X(double, areas, point, 1)                \
   X(double, centroids, point, 2)
 
-/// The arrays of triangulations on the sphere, in the order of the bits of flaunay_spherical_part: as above.
-#define FLAUNAY_SPHERICAL_ARRAYS(X)       \
-  X(double, places, point, 2)             \
-  X(std::int32_t, triangles, triangle, 3) \
-  X(std::int32_t, neighbors, triangle, 3) \
-  X(std::int32_t, representatives, point, 1)
-
-/// The arrays of flaunay::SphericalVoronoi: as above.
-#define FLAUNAY_SPHERICAL_VORONOI_ARRAYS(X)      \
-  X(double, centres, triangle, 3)                \
-  X(std::int32_t, cell_offsets, point_offset, 1) \
-  X(std::int32_t, cells, corner, 1)              \
-  X(double, areas, point, 1)
-
-/// The arrays of triangulations on a torus or a cylinder, in the order of the bits of flaunay_periodic_part:
-/// as above.
-#define FLAUNAY_PERIODIC_ARRAYS(X)        \
-  X(double, places, point, 2)             \
-  X(std::int32_t, triangles, triangle, 3) \
-  X(std::int8_t, offsets, triangle, 6)    \
-  X(std::int32_t, neighbors, triangle, 3) \
-  X(std::int32_t, representatives, point, 1)
-
-/// The arrays of flaunay::WeightedTriangulation, besides offsets: as above.
-#define FLAUNAY_WEIGHTED_ARRAYS(X)           \
-  X(std::int32_t, triangles, triangle, 3)    \
-  X(std::int32_t, neighbors, triangle, 3)    \
-  X(std::int32_t, hull, hull_vertex, 1)      \
-  X(std::int32_t, representatives, point, 1) \
+/// The arrays that flaunay::Triangulation has besides, in other spaces than the plane or with weights: as
+/// above. The first two follow those of FLAUNAY_TRIANGULATION_ARRAYS in the order of the bits of
+/// flaunay_part.
+#define FLAUNAY_SPACE_ARRAYS(X)               \
+  X(double, places, point, 2)                 \
+  X(std::int8_t, corner_offsets, triangle, 6) \
   X(std::int32_t, hidden, hidden, 1)
 
 /// The arrays of flaunay::DeviceRows, in the order of the bits of flaunay_rows_part: as above.

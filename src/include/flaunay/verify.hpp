@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "flaunay/constrained.hpp"
-#include "flaunay/periodic.hpp"
-#include "flaunay/sphere.hpp"
-#include "flaunay/weighted.hpp"
+#include "flaunay/flaunay.hpp"
 
 namespace flaunay {
 
@@ -22,10 +20,11 @@ namespace flaunay {
 FLAUNAY_API std::string verify(const double* coordinates, const std::vector<std::size_t>& offsets,
                                const Triangulation& triangulation);
 
-/// Checks a regular triangulation in the same way, and its hidden points.
-FLAUNAY_API std::string verify(const double* coordinates, const double* weights,
-                               const std::vector<std::size_t>& offsets,
-                               const WeightedTriangulation& triangulation);
+/// Checks a triangulation of points of any space in the same way, with the space of the call: of weighted
+/// points also which are hidden; on a torus, a cylinder and the sphere also that places are those of the
+/// points. Their places are computed as those of Triangulator::triangulate are.
+FLAUNAY_API std::string verify(const double* points, const std::vector<std::size_t>& offsets,
+                               const Space& space, const Triangulation& triangulation);
 
 /// Checks a constrained triangulation, refined or not, by the definitions in docs/constrained.md: that
 /// segments are edges or chains of edges; that other edges are Delaunay, and canonical; that just those
@@ -43,15 +42,5 @@ FLAUNAY_API std::string verify(const double* coordinates, const std::vector<std:
 /// polygons a triangle is given to.
 FLAUNAY_API std::string verify(const Polygons& polygons, const PolygonOptions& options,
                                const ConstrainedTriangulation& triangulation);
-
-/// Checks a triangulation on a torus or a cylinder: that its places are in the period and rounded, and that
-/// it is the canonical Delaunay triangulation of all of their images.
-FLAUNAY_API std::string verify(const PeriodicTriangulation& triangulation);
-
-/// Checks a triangulation on the sphere: that places are those of the points, that triangles and neighbours
-/// are those of the hull, with the canonical choice at ties, and that its other arrays fit. Places are
-/// computed as those of triangulate_sphere are.
-FLAUNAY_API std::string verify(const double* points, const std::vector<std::size_t>& offsets,
-                               SphereCoordinates coordinates, const SphericalTriangulation& triangulation);
 
 }  // namespace flaunay

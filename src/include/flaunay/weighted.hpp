@@ -1,39 +1,13 @@
-// Weighted points: regular triangulations and power diagrams.
+// Weighted points: which triangles hide them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay {
-
-/// The regular triangulations of one or more sets of weighted points: the lower hulls of the points at height
-/// x^2 + y^2 - weight. Its representatives are of points that have the same coordinates and weight.
-struct WeightedTriangulation : Triangulation {
-  /// The points without a power cell, in ascending order: they lie on or above what other points of their set
-  /// span, and are in no triangle. Those that another point represents are not among them.
-  std::vector<std::int32_t> hidden;
-};
-
-/// Computes the regular triangulation of n points, x0 y0 x1 y1 ..., whose weights are squared lengths, of any
-/// sign: of circles, the squared radii. The result is exact, a function of the set of weighted points, and
-/// with equal weights the Delaunay triangulation, to the byte. Where more than three lifted points are on a
-/// plane, those that are no corners of their hull there are hidden; the others' polygon is triangulated as
-/// the farthest-point Delaunay triangulation, and where these are cocircular, as a fan from the
-/// lexicographically smallest one. Runs on the host's cores. Throws what Triangulator::triangulate throws;
-/// Error(input) also for a weight that is not finite, or beyond the squares of what coordinates may be.
-/// O(n log n) work.
-FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
-                                                       const double* weights, std::size_t n,
-                                                       const Options& options = {});
-/// Triangulates many sets at once. Set s has points [offsets[s], offsets[s + 1]).
-FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
-                                                       const double* weights,
-                                                       const std::vector<std::size_t>& offsets,
-                                                       const Options& options = {});
 
 /// Returns for each hidden point the triangle that hides it, exactly: the one of the smallest index that has
 /// it inside or on its border. -1 in a set without triangles. points, offsets: those that were triangulated.
@@ -41,17 +15,6 @@ FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulato
 /// O(n + h log n) for h hidden points.
 FLAUNAY_API std::vector<std::int32_t> hiding_triangles(Triangulator& triangulator, const double* points,
                                                        const std::vector<std::size_t>& offsets,
-                                                       const WeightedTriangulation& triangulation);
-
-/// Computes the power cells of n points, clipped to a convex polygon: of each point the places whose power,
-/// the squared distance less the weight, is least for it. Vertices, areas and centroids are rounded; polygons
-/// are simple, and tile. Points without a cell in the polygon, such as hidden ones, have no vertices.
-/// corners: as of Triangulator::clipped_voronoi, with its errors. The triangulation is of one set, with
-/// neighbours; throws Error(usage) for arrays that do not fit each other. O(n k) for k corners, but for
-/// points with very many neighbours.
-FLAUNAY_API ClippedVoronoi power_cells(Triangulator& triangulator, const double* points,
-                                       const double* weights, std::size_t n,
-                                       const WeightedTriangulation& triangulation, const double* corners,
-                                       std::size_t corner_count);
+                                                       const Triangulation& triangulation);
 
 }  // namespace flaunay

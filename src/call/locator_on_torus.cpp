@@ -1,4 +1,4 @@
-// The public class PeriodicLocator.
+// Queries on a torus or a cylinder.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,18 +7,50 @@
 #include <utility>
 
 #include "call/periodic.hpp"
+#include "call/spaces.hpp"
 #include "call/triangulate.hpp"
 #include "derived/periodic/fold.hpp"
 
 namespace flaunay {
 
-struct PeriodicLocator::Implementation {
-  Implementation(Triangulator& used, const PeriodicTriangulation& mesh)
-      : owner(TriangulatorAccess::shared(used)), period{mesh.period.x, mesh.period.y} {
+namespace {
+
+class TorusLocator : public call::SpaceLocator {
+ public:
+  TorusLocator(Triangulator& used, const Triangulation& mesh)
+      : owner(TriangulatorAccess::shared(used)), period{mesh.space.period.x, mesh.space.period.y} {
     call::take_turn(*owner, [&] { make(used, mesh); });
   }
 
-  void make(Triangulator& used, const PeriodicTriangulation& mesh) {
+  std::vector<std::int32_t> locate(const double* queries, std::size_t m) override {
+    return answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
+      std::vector<std::int32_t> found = locator->locate(places, m);
+      for (std::int32_t& t : found) {
+        if (t >= 0) t = numbers[static_cast<std::size_t>(t)];
+      }
+      return found;
+    });
+  }
+
+  std::vector<std::int32_t> nearest(const double* queries, std::size_t m) override {
+    return answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
+      std::vector<std::int32_t> found = locator->nearest(places, m);
+      for (std::int32_t& v : found) v = static_cast<std::int32_t>(plane->image(v).point);
+      return found;
+    });
+  }
+
+  std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
+                                  const InterpolationOptions& options) override {
+    check(options);
+    return answer(queries, m, options.columns, options.fill, [&](const double* places) {
+      check_array(values, check_columns(options.columns, plane->points()), "values", kMostCountable);
+      return locator->interpolate(with_images(values, options.columns).data(), places, m, options);
+    });
+  }
+
+ private:
+  void make(Triangulator& used, const Triangulation& mesh) {
     call::check_with_places(mesh);
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
@@ -39,7 +71,7 @@ struct PeriodicLocator::Implementation {
 
   /// Returns whether the margin is large enough: so that triangles that touch the box are images of those of
   /// the mesh, and the nearest points of places in the box are near enough.
-  bool make_within(const periodic::Box& box, Triangulator& used, const PeriodicTriangulation& mesh) {
+  bool make_within(const periodic::Box& box, Triangulator& used, const Triangulation& mesh) {
     host::Runtime& runtime = owner->native().runtime;
     plane = periodic::plane_of(runtime, mesh.places, box);
     const double* const places = plane->coordinates.data();
@@ -105,38 +137,11 @@ struct PeriodicLocator::Implementation {
   std::optional<Locator> locator;     // in the plane; none without points
 };
 
-PeriodicLocator::PeriodicLocator(Triangulator& triangulator, const PeriodicTriangulation& triangulation)
-    : implementation_(std::make_unique<Implementation>(triangulator, triangulation)) {}
-PeriodicLocator::~PeriodicLocator() = default;
-PeriodicLocator::PeriodicLocator(PeriodicLocator&&) noexcept = default;
-PeriodicLocator& PeriodicLocator::operator=(PeriodicLocator&&) noexcept = default;
+}  // namespace
 
-std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::size_t m) {
-  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
-    std::vector<std::int32_t> found = implementation_->locator->locate(places, m);
-    for (std::int32_t& t : found) {
-      if (t >= 0) t = implementation_->numbers[static_cast<std::size_t>(t)];
-    }
-    return found;
-  });
-}
-
-std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::size_t m) {
-  return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
-    std::vector<std::int32_t> found = implementation_->locator->nearest(places, m);
-    for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
-    return found;
-  });
-}
-
-std::vector<double> PeriodicLocator::interpolate(const double* values, const double* queries, std::size_t m,
-                                                 const InterpolationOptions& options) {
-  Implementation& self = *implementation_;
-  self.check(options);
-  return self.answer(queries, m, options.columns, options.fill, [&](const double* places) {
-    check_array(values, check_columns(options.columns, self.plane->points()), "values", kMostCountable);
-    return self.locator->interpolate(self.with_images(values, options.columns).data(), places, m, options);
-  });
+std::unique_ptr<call::SpaceLocator> call::make_locator_on_torus(Triangulator& triangulator,
+                                                                const Triangulation& triangulation) {
+  return std::make_unique<TorusLocator>(triangulator, triangulation);
 }
 
 }  // namespace flaunay

@@ -1,0 +1,163 @@
+// What holds in device memory in every space: results have the bytes of the call for host memory, wherever
+// points, sets and results lie, and errors name the point.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "flaunay/device_memory.hpp"
+#include "tests/spaces/spaces.hpp"
+#include "tests/support/embedded.hpp"
+#include "tests/support/errors.hpp"
+#include "tests/support/same.hpp"
+
+namespace flaunay::testing::spaces {
+namespace {
+
+constexpr Parts kWanted{true, true, false, true, true, false};
+
+class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
+ protected:
+  // Points of the space, whose coordinates are in this buffer.
+  DevicePoints points_in(const Memory& memory, std::size_t count) const {
+    DevicePoints points;
+    points.memory = memory.get();
+    points.count = count;
+    points.space = space_.space;
+    return points;
+  }
+
+  static Enqueue on_own() {
+    Enqueue enqueue;
+    enqueue.queue = embedder().queue();
+    return enqueue;
+  }
+
+  template <typename T>
+  static void expect_array(const DeviceBuffer& buffer, const std::vector<T>& values) {
+    EXPECT_TRUE(same(embedder().download<T>(buffer.memory(), values.size()), values));
+  }
+
+  // That a call writes what a call for host memory returns, twice: the second has the memory of the first.
+  void expect_same(const DevicePoints& points, const Numbers& numbers, const Offsets& offsets) const {
+    const Triangulation expected = space_.triangulate(triangulator(), numbers, offsets);
+    DeviceTriangulation found;
+    for (int call = 0; call < 2; ++call) {
+      embedded().triangulate(points, found, kWanted, on_own());
+      EXPECT_EQ(found.points, offsets.back());
+      EXPECT_EQ(found.images, expected.images);
+      EXPECT_EQ(found.space.period.x, expected.space.period.x);
+      EXPECT_EQ(found.space.period.y, expected.space.period.y);
+      EXPECT_EQ(found.point_offsets, offsets);
+      EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+      EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+      EXPECT_TRUE(found.parts.triangles && found.parts.neighbors && found.parts.representatives);
+      expect_array(found.places, expected.places);
+      expect_array(found.triangles, expected.triangles);
+      expect_array(found.corner_offsets, expected.corner_offsets);
+      expect_array(found.neighbors, expected.neighbors);
+      expect_array(found.hull, expected.hull);
+      expect_array(found.representatives, expected.representatives);
+    }
+  }
+
+  const TestSpace space_ = GetParam();
+  const std::vector<Case> cases_ = cases(space_.width);
+};
+std::vector<TestSpace> spaces_without_weights() {
+  std::vector<TestSpace> spaces = all_spaces();
+  std::erase_if(spaces, [](const TestSpace& space) { return space.has_weights; });
+  return spaces;
+}
+INSTANTIATE_TEST_SUITE_P(SmallSpaces, DeviceLaws, ::testing::ValuesIn(spaces_without_weights()),
+                         [](const auto& of) { return of.param.name; });
+
+TEST_P(DeviceLaws, ResultsAreThoseOfTheHost) {
+  for (const Case& given : cases_) {
+    SCOPED_TRACE(given.name);
+    const std::size_t n = given.numbers.size() / space_.width;
+    const Memory memory = embedder().upload(given.numbers);
+    expect_same(points_in(memory, n), given.numbers, {0, n});
+  }
+}
+
+TEST_P(DeviceLaws, PointsOfSetsBeginAnywhereInEitherPrecision) {
+  constexpr std::size_t kFirst = 3;
+  Offsets offsets;
+  const Numbers points = joined(cases_, space_.width, offsets);
+  const std::vector<std::int32_t> ids(offsets.begin(), offsets.end());
+  const Memory device_offsets = embedder().upload(ids);
+  const auto expect_in = [&](const auto& numbers, Precision precision) {
+    using T = typename std::decay_t<decltype(numbers)>::value_type;
+    std::vector<T> all(kFirst * space_.width, std::numeric_limits<T>::quiet_NaN());
+    all.insert(all.end(), numbers.begin(), numbers.end());
+    const Memory memory = embedder().upload(all);
+    for (const bool are_on_device : {false, true}) {
+      DevicePoints given = points_in(memory, offsets.back());
+      given.precision = precision;
+      given.first = kFirst;
+      if (are_on_device) {
+        given.device_offsets = device_offsets.get();
+        given.sets = offsets.size() - 1;
+      } else {
+        given.offsets = offsets;
+      }
+      expect_same(given, Numbers(numbers.begin(), numbers.end()), offsets);
+    }
+  };
+  expect_in(points, Precision::float64);
+  expect_in(std::vector<float>(points.begin(), points.end()), Precision::float32);
+}
+
+TEST_P(DeviceLaws, ResultsGoToTheCallersBuffers) {
+  const Numbers& numbers = cases_[6].numbers;
+  const std::size_t n = numbers.size() / space_.width;
+  const Memory memory = embedder().upload(numbers);
+  const Triangulation expected = space_.triangulate(triangulator(), numbers, {0, n});
+  DeviceTriangulation found;
+  struct Wanted {
+    DeviceBuffer* buffer;
+    std::size_t bytes;
+  };
+  std::vector<Wanted> wanted = {{&found.triangles, 24}, {&found.neighbors, 24}, {&found.representatives, 4}};
+  if (!expected.places.empty()) wanted.push_back({&found.places, 16});
+  if (!expected.corner_offsets.empty()) wanted.push_back({&found.corner_offsets, 12});
+  for (const auto& [buffer, bytes] : wanted) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
+  const auto run = [&] { embedded().triangulate(points_in(memory, n), found, kWanted, on_own()); };
+  run();
+  expect_array(found.triangles, expected.triangles);
+  expect_array(found.neighbors, expected.neighbors);
+  for (const auto& [buffer, bytes] : wanted) {
+    const DeviceBuffer kept = *buffer;
+    *buffer = DeviceBuffer(embedder().make_buffer(bytes * n - 1).get());
+    expect_error(ErrorKind::usage, "too small", run);
+    *buffer = kept;
+  }
+  found.neighbors = found.triangles;
+  expect_error(ErrorKind::usage, "two things", run);
+}
+
+TEST_P(DeviceLaws, ErrorsNameThePoint) {
+  Numbers numbers = cases_[6].numbers;
+  const std::size_t n = numbers.size() / space_.width;
+  numbers[13 * space_.width + 1] = std::numeric_limits<double>::infinity();
+  numbers[16 * space_.width] = std::nan("");
+  const Memory memory = embedder().upload(numbers);
+  cl_event done = reinterpret_cast<cl_event>(8);
+  Enqueue enqueue = on_own();
+  enqueue.event = &done;
+  DeviceTriangulation found;
+  expect_error(ErrorKind::input, "point 13 is not finite: (",
+               [&] { embedded().triangulate(points_in(memory, n), found, kWanted, enqueue); });
+  EXPECT_EQ(done, nullptr);
+  expect_error(ErrorKind::usage, "too small",
+               [&] { embedded().triangulate(points_in(memory, n + 1), found, kWanted, on_own()); });
+}
+
+}  // namespace
+}  // namespace flaunay::testing::spaces
