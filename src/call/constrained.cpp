@@ -10,6 +10,7 @@
 #include "call/groups.hpp"
 #include "call/triangulate.hpp"
 #include "constrained/carry.hpp"
+#include "constrained/crossings/first_crossing.hpp"
 #include "constrained/crossings/lines.hpp"
 #include "constrained/crossings/split.hpp"
 #include "constrained/inside.hpp"
@@ -21,6 +22,7 @@
 #include "host/memory/system_memory.hpp"
 #include "host/opencl/device.hpp"
 #include "points/query_range.hpp"
+#include "statistics/phases.hpp"
 
 namespace flaunay {
 namespace {
@@ -60,7 +62,7 @@ void end_phase(const char* name, double begin, Statistics& statistics) {
 }
 
 // The options of the triangulation into which segments are inserted.
-Options plain_options(const ConstrainedOptions& options) {
+Options plain_options(const Options& options) {
   Options plain = options;
   plain.neighbors = true;
   plain.halfedges = plain.areas = false;
@@ -113,32 +115,134 @@ std::optional<ConstrainedTriangulation> constrain_small(
   return result;
 }
 
-// Triangulates sets with segments. All triangles are kept, without labels; there are neighbours.
-// may_be_small: whether constrain_small has not been tried.
-ConstrainedTriangulation constrain(call::Implementation& self, const double* coordinates,
-                                   const std::vector<std::size_t>& offsets, const Constraints& constraints,
-                                   const ConstrainedOptions& options, bool may_be_small = true) {
-  const Options plain = plain_options(options);
+// What the stages before refinement have made.
+struct Staged {
+  ConstrainedTriangulation result;
+  Ids seeds{};               // per triangle that of its region, or -1; empty if there are none
+  bool has_domains = false;  // whether domains were applied
+  double domains_begin = 0;
+};
+
+bool needs_domains(const Constraints& constraints, const call::DomainRequest& request) {
+  return request.needs_depths() || constraints.hole_count > 0 || constraints.seed_count > 0;
+}
+
+// Tells some errors before segments are inserted.
+void check_first(const double* coordinates, const std::vector<std::size_t>& offsets,
+                 const Constraints& constraints) {
+  // So many are inserted in less time than it takes to look for them.
+  constexpr std::size_t kFewSegments = 500;
+  if (constraints.segment_count <= kFewSegments) return;
+  constrained::check_first_segments(coordinates, offsets, constraints.segments, constraints.segment_count);
+}
+
+// The engine that finds holes and seeds.
+call::Engine& for_places(call::Implementation& self, call::Engine& engine, const Constraints& constraints) {
+  return constraints.hole_count > 0 || constraints.seed_count > 0 ? self.with_doubles(engine) : engine;
+}
+
+// Makes segments edges of a triangulation on an engine, and applies domains unless request is null.
+// triangulates: whether the engine makes the triangulation, too; it has doubles then.
+geometry::Fitted<geometry::Done> constrain_on(call::Engine& engine, call::Engine& with_doubles,
+                                              bool triangulates, const double* coordinates,
+                                              const std::vector<std::size_t>& offsets,
+                                              const Constraints& constraints, const Options& options,
+                                              const call::DomainRequest* request, Staged& staged) {
+  ConstrainedTriangulation& result = staged.result;
+  call::Left left;
+  call::Frame call(engine, options.profile, true);
+  const auto points = call.points(call::HostPoints{coordinates, nullptr, offsets.back()});
+  const points::DeviceMesh mesh =
+      triangulates ? call::triangulate_stage(call, points, offsets, plain_options(options), result)
+                   : call::mesh_to_constrain(call, points, offsets, result);
+  const statistics::Phases phases(options);
+  const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                [&] { phases.interrupt("compiling kernels"); });
+  const double begin = host::now();
+  if (triangulates) check_first(coordinates, offsets, constraints);
+  const auto inserted = call::insert_segments(call, mesh, constraints, options.halfedges, result);
+  if (!inserted) return inserted.too_wide();
+  staged.has_domains = request != nullptr;
+  if (!staged.has_domains) call.end();
+  end_phase("constrain", begin, result.statistics);
+  if (staged.has_domains) {
+    staged.domains_begin = host::now();
+    call::apply_domains(call, with_doubles, *inserted, coordinates, offsets, constraints, *request, result,
+                        left);
+    call.end();
+    staged.seeds = call::take_left(constraints, left, result);
+  }
+  result.edge_segments = constrained::first_pieces(inserted->edges, result.piece_edges);
+  return geometry::Done();
+}
+
+// Triangulates sets with segments, with neighbours. If the engine that has the mesh can do that, applies
+// domains, too. request: null if they must not be applied. may_be_small: whether constrain_small has not been
+// tried.
+Staged constrain(call::Implementation& self, const double* coordinates,
+                 const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                 const ConstrainedOptions& options, const call::DomainRequest* request, bool may_be_small) {
+  Staged staged;
   if (may_be_small && are_small(self, offsets, constraints, options)) {
     ConstrainedOptions wanted = options;
     wanted.neighbors = true;
-    if (auto small = constrain_small(self, coordinates, offsets, constraints, wanted, {}))
-      return *std::move(small);
+    if (auto small = constrain_small(self, coordinates, offsets, constraints, wanted, {})) {
+      staged.result = *std::move(small);
+      return staged;
+    }
   }
-  ConstrainedTriangulation result;
-  static_cast<Triangulation&>(result) =
-      call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain);
+  if (request != nullptr && !needs_domains(constraints, *request)) request = nullptr;
+  const bool stays_here = self.stays_here(offsets.back() + constraints.segment_count, options.profile);
+  call::Engine& engine = stays_here ? call::Engine::of_thread() : self.for_host_memory();
+  const bool triangulates =
+      !stays_here && engine.has_doubles() && offsets.back() > 0 && call::groups_of(engine, offsets).empty();
+  if (triangulates) {
+    engine.check_size(offsets.back());
+  } else {
+    static_cast<Triangulation&>(staged.result) =
+        call::triangulate(self, {coordinates, nullptr, offsets.back()}, offsets, plain_options(options));
+    check_first(coordinates, offsets, constraints);
+  }
+  const auto on = [&](call::Engine& used) {
+    return constrain_on(used, for_places(self, used, constraints), triangulates, coordinates, offsets,
+                        constraints, options, request, staged);
+  };
+  Statistics& statistics = staged.result.statistics;
+  if (stays_here) {
+    *on(engine);
+    return staged;
+  }
+  call::in_fixed_point_or(
+      [&] {
+        const auto done = on(engine);
+        if (done) call::add_accounts(engine, statistics);
+        return done;
+      },
+      [&](const std::string& reason) {
+        call::Engine& other = self.with_doubles(engine);
+        if (statistics.host_points == 0)
+          call::add_note(engine, other, reason, "segments inserted", statistics);
+        const auto done = on(other);
+        call::add_accounts(other, statistics);
+        return done;
+      });
+  return staged;
+}
 
-  const double begin = host::now();
-  call::insert_segments(self, coordinates, offsets, constraints, options, result);
-  end_phase("constrain", begin, result.statistics);
-  return result;
+// Applies domains to a triangulation in host memory, which has neighbours; see call::apply_domains_on.
+Ids apply_domains(call::Implementation& self, const double* coordinates,
+                  const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                  const call::DomainRequest& request, ConstrainedTriangulation& result) {
+  if (!needs_domains(constraints, request)) return {};
+  call::Engine& engine = self.for_points(result.triangles.size() / 6);  // about two triangles per point
+  return call::apply_domains_on(engine, for_places(self, engine, constraints), coordinates, offsets,
+                                constraints, request, result);
 }
 
 // Triangulates all points with the pieces as segments, and then numbers the added points after all others.
-ConstrainedTriangulation constrain_split(call::Implementation& self, const double* coordinates,
-                                         const std::vector<std::size_t>& offsets,
-                                         const Constraints& constraints, const ConstrainedOptions& options) {
+Staged constrain_split(call::Implementation& self, const double* coordinates,
+                       const std::vector<std::size_t>& offsets, const Constraints& constraints,
+                       const ConstrainedOptions& options, const call::DomainRequest& request) {
   // Memory for each piece while segments are split and pieces triangulated; a segment with one place on it
   // has two pieces.
   constexpr std::size_t kBytesPerPiece = 320;
@@ -151,16 +255,17 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   constrained::Split split = constrained::split(
       coordinates, offsets, {constraints.segments, constraints.segments + 2 * constraints.segment_count},
       limits);
-  ConstrainedTriangulation result;
+  Staged staged;
   const auto end_split = [&](double seconds) {
-    result.statistics.seconds += seconds;
-    result.statistics.phases.insert(result.statistics.phases.begin(), {"split", seconds});
+    Statistics& statistics = staged.result.statistics;
+    statistics.seconds += seconds;
+    statistics.phases.insert(statistics.phases.begin(), {"split", seconds});
   };
   if (split.is_as_it_was()) {
     const double seconds = host::now() - begin;
-    result = constrain(self, coordinates, offsets, constraints, options);
+    staged = constrain(self, coordinates, offsets, constraints, options, &request, true);
     end_split(seconds);
-    return result;
+    return staged;
   }
   const constrained::AllPoints all = constrained::join_added(coordinates, offsets, split);
   for (std::int32_t& v : split.pieces) v = all.place[v];
@@ -169,10 +274,10 @@ ConstrainedTriangulation constrain_split(call::Implementation& self, const doubl
   Constraints pieces = constraints;
   pieces.segments = split.pieces.data();
   pieces.segment_count = split.pieces.size() / 2;
-  result = constrain(self, all.coordinates.data(), all.offsets, pieces, options);
-  constrained::carry_split(all, std::move(split), result);
+  staged = constrain(self, all.coordinates.data(), all.offsets, pieces, options, nullptr, true);
+  constrained::carry_split(all, std::move(split), staged.result);
   end_split(seconds);
-  return result;
+  return staged;
 }
 
 // Makes half-edges and areas, or leaves out neighbours, as the options say, and counts the triangles.
@@ -232,11 +337,12 @@ ConstrainedTriangulation constrain_group(call::Implementation& self, const doubl
   auto small = constrain_small(self, points, group.offsets, own, options, of_group);
   if (!small) {
     call::Engine& engine = call::Engine::of_thread();
-    static_cast<Triangulation&>(small.emplace()) =
+    Staged staged;
+    static_cast<Triangulation&>(staged.result) =
         call::triangulate_small({points, nullptr, n}, group.offsets, plain_options(options));
-    *call::insert_segments_on(engine, points, group.offsets, own, options, *small);
-    if (request.needs_depths())
-      call::apply_domains_on(engine, engine, points, group.offsets, own, of_group, *small);
+    *constrain_on(engine, engine, false, points, group.offsets, own, options,
+                  request.needs_depths() ? &of_group : nullptr, staged);
+    small = std::move(staged.result);
   }
   end_small(self, points, own, n, options, *small);
   return *std::move(small);
@@ -301,15 +407,16 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
     at_once = constrain_by_groups(self, coordinates, offsets, constraints, first, request);
   }
   if (at_once && !is_refined) return *std::move(at_once);
-  ConstrainedTriangulation result =
-      at_once  ? *std::move(at_once)
-      : splits ? constrain_split(self, coordinates, offsets, constraints, first)
-               : constrain(self, coordinates, offsets, constraints, first, !is_small);
-  double begin = host::now();
+  Staged staged = at_once  ? Staged{*std::move(at_once)}
+                  : splits ? constrain_split(self, coordinates, offsets, constraints, first, request)
+                           : constrain(self, coordinates, offsets, constraints, first, &request, !is_small);
+  ConstrainedTriangulation& result = staged.result;
+  double begin = staged.has_domains ? staged.domains_begin : host::now();
   std::vector<double> all = with_added(coordinates, offsets.back(), result.added_points);
   const auto points = [&] { return all.empty() ? coordinates : all.data(); };
-  Ids seeds;
-  if (!at_once) seeds = call::apply_domains(self, points(), offsets, constraints, request, result);
+  Ids& seeds = staged.seeds;
+  if (!at_once && !staged.has_domains)
+    seeds = apply_domains(self, points(), offsets, constraints, request, result);
   std::vector<double> areas;
   if (mesh != nullptr) areas = mesh->leave(points(), result, seeds);
   if (is_refined) {
@@ -320,7 +427,7 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
   constrained::carry_markers(constraints, offsets.back(), result);
   finish(self, points(), options, result);
   end_phase(is_refined ? "refine" : "domains", begin, result.statistics);
-  return result;
+  return std::move(result);
 }
 
 }  // namespace

@@ -1,33 +1,34 @@
 // Constrained triangulations of points in host memory, and their stages: inserting segments, labelling
-// domains and leaving some out, refining the rest. Each stage runs on the calling thread or on an engine.
+// domains and leaving some out, refining the rest. Between stages of one Frame, the mesh stays where the
+// engine has it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "call/implementation.hpp"
+#include "call/frame.hpp"
 #include "constrained/domains/domain.hpp"
 #include "constrained/domains/map.hpp"
 #include "flaunay/constrained.hpp"
 #include "geometry/magnitudes.hpp"
+#include "points/device_mesh.hpp"
 
 namespace flaunay::call {
 
 // ---- Segments
 
-/// Makes the segments edges of the result, which is what call::triangulate returned, with neighbours. Each
-/// segment is one piece, and no points are added. Small sets stay on the calling thread if no device was
-/// named. Throws what constrained::constrain throws.
-void insert_segments(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
-                     const Constraints& constraints, const Options& options,
-                     ConstrainedTriangulation& result);
+/// The triangulation of points in host memory, with neighbours, for insert_segments. coordinates: those of
+/// the points.
+points::DeviceMesh mesh_to_constrain(Frame& call, const Buffer<cl_double>& coordinates,
+                                     const std::vector<std::size_t>& offsets, Triangulation& result);
 
-/// Makes them edges on this engine. If points do not fit fixed point, nothing is changed.
-geometry::Fitted<geometry::Done> insert_segments_on(Engine& engine, const double* coordinates,
-                                                    const std::vector<std::size_t>& offsets,
-                                                    const Constraints& constraints, const Options& options,
-                                                    ConstrainedTriangulation& result);
+/// Makes segments edges of a triangulation with neighbours, whose arrays are those of the result after the
+/// end of the call. Each segment is one piece, and no points are added. The caller writes edge_segments. If
+/// points do not fit fixed point, nothing is changed. Throws what constrained::constrain throws.
+geometry::Fitted<constrained::DomainMesh> insert_segments(Frame& call, const points::DeviceMesh& mesh,
+                                                          const Constraints& constraints, bool halfedges,
+                                                          ConstrainedTriangulation& result);
 
 // ---- Domains
 
@@ -46,17 +47,27 @@ struct DomainRequest {
 /// The rules of the options. are_closed: whether segments are known to be closed curves.
 DomainRequest request_of(const ConstrainedOptions& options, bool are_closed);
 
-/// Labels a triangulation, which must have neighbours, leaves out what the request and the holes say, and
-/// writes the attributes of triangles if there are seeds: on the engine for host memory or, if it is small
-/// and no device was named, on the calling thread. coordinates: of all points, those that splitting added
-/// too; offsets: without those. Returns for each triangle that is left the seed of its region, or -1; nothing
-/// if there are no seeds.
-std::vector<std::int32_t> apply_domains(Implementation& self, const double* coordinates,
-                                        const std::vector<std::size_t>& offsets,
-                                        const Constraints& constraints, const DomainRequest& request,
-                                        ConstrainedTriangulation& result);
-/// Applies the domains on an engine. with_doubles: finds holes and seeds; another engine if the first one
-/// computes in fixed point.
+/// The triangles that are left, if some are left out.
+struct Left {
+  std::vector<std::int32_t> triangles, neighbors;
+  std::vector<std::uint8_t> constrained;
+  std::vector<std::size_t> triangle_offsets;
+  std::vector<std::int32_t> seeds;  ///< per triangle that of its region, or -1; empty if there are no seeds
+};
+
+/// Labels the triangles of a mesh, and leaves out what the request and the holes say. with_doubles: finds
+/// holes and seeds; another engine if the call's computes in fixed point. coordinates: of all points, those
+/// that splitting added too; offsets: without those; left: must have been declared before the call.
+void apply_domains(Frame& call, Engine& with_doubles, const constrained::DomainMesh& mesh,
+                   const double* coordinates, const std::vector<std::size_t>& offsets,
+                   const Constraints& constraints, const DomainRequest& request,
+                   ConstrainedTriangulation& result, Left& left);
+/// After the end of the call: takes what is left, and writes the attributes of triangles if there are seeds.
+/// Returns the seeds of triangles.
+std::vector<std::int32_t> take_left(const Constraints& constraints, Left& left,
+                                    ConstrainedTriangulation& result);
+/// Applies domains to a triangulation in host memory, which must have neighbours, in a call of its own.
+/// Returns the seeds of triangles.
 std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
                                            const std::vector<std::size_t>& offsets,
                                            const Constraints& constraints, const DomainRequest& request,

@@ -8,14 +8,6 @@
 namespace flaunay::call {
 namespace {
 
-// The triangles that are left.
-struct Left {
-  std::vector<std::int32_t> triangles, neighbors;
-  std::vector<std::uint8_t> constrained;
-  std::vector<std::size_t> triangle_offsets;
-  std::vector<std::int32_t> seeds;  // per triangle, or -1
-};
-
 // The part of the mesh that finds the triangles of places.
 constrained::DomainMesh triangles_of(Frame& call, const double* coordinates,
                                      const std::vector<std::size_t>& offsets,
@@ -45,9 +37,11 @@ constrained::DomainMesh mesh_of(Frame& call, const double* coordinates,
 }
 
 // Labels regions by the polygons that curves bound.
-void find_polygons(host::Runtime& runtime, const double* coordinates, const Constraints& constraints,
+void find_polygons(Frame& call, const double* coordinates, const Constraints& constraints,
                    const DomainRequest& request, const ConstrainedTriangulation& result,
                    constrained::Regions& regions) {
+  host::Runtime& runtime = call.runtime;
+  call.fetch();  // what earlier stages have made of the result
   constrained::MapLabels labels = constrained::label_map(
       coordinates, result, points::download(runtime, regions.of_triangles, result.triangles.size() / 3),
       regions.count, constraints.segments, *request.curves, request.rules.fill, request.overlaps);
@@ -69,6 +63,7 @@ std::vector<std::int32_t> find_places(Frame& call, Engine& with_doubles, const c
     return constrained::find_places(runtime, of, places, coordinates, offsets, result.added_offsets);
   };
   if (&with_doubles == &call.engine) return find(call.runtime, mesh);
+  call.fetch();  // what earlier stages have made of the result
   Frame other(with_doubles);
   return find(other.runtime, triangles_of(other, coordinates, offsets, result));
 }
@@ -86,7 +81,12 @@ void label_seeds(host::Runtime& runtime, const std::vector<std::int32_t>& triang
 
 // Writes the triangles that are left, if some are left out. numbers: gets the regions of these triangles.
 void leave(Frame& call, const constrained::DomainMesh& mesh, const constrained::LeftPlaces& places,
-           const Buffer<cl_int>& numbers, constrained::Regions& regions, Left& left) {
+           const Buffer<cl_int>& numbers, constrained::Regions& regions,
+           const ConstrainedTriangulation& result, Left& left) {
+  call.drop(result.triangles);
+  call.drop(result.neighbors);
+  call.drop(result.halfedges);
+  call.drop(result.constrained);
   const std::size_t corners = 3 * places.triangle_offsets.back();
   left.triangle_offsets = places.triangle_offsets;
   write_left(call.runtime, mesh, places,
@@ -103,28 +103,14 @@ DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
   return {{options.fill_rule, options.outside, are_closed}, options.labels};
 }
 
-std::vector<std::int32_t> apply_domains(Implementation& self, const double* coordinates,
-                                        const std::vector<std::size_t>& offsets,
-                                        const Constraints& constraints, const DomainRequest& request,
-                                        ConstrainedTriangulation& result) {
-  const bool has_places = constraints.hole_count > 0 || constraints.seed_count > 0;
-  if (!request.needs_depths() && !has_places) return {};
-  Engine& engine = self.for_points(result.triangles.size() / 6);  // about two triangles per point
-  Engine& with_doubles = has_places ? self.with_doubles(engine) : engine;
-  return apply_domains_on(engine, with_doubles, coordinates, offsets, constraints, request, result);
-}
-
-std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
-                                           const std::vector<std::size_t>& offsets,
-                                           const Constraints& constraints, const DomainRequest& request,
-                                           ConstrainedTriangulation& result) {
-  Left left;
-  Frame call(engine);
+void apply_domains(Frame& call, Engine& with_doubles, const constrained::DomainMesh& mesh,
+                   const double* coordinates, const std::vector<std::size_t>& offsets,
+                   const Constraints& constraints, const DomainRequest& request,
+                   ConstrainedTriangulation& result, Left& left) {
   host::Runtime& runtime = call.runtime;
-  const constrained::DomainMesh mesh = mesh_of(call, coordinates, offsets, constraints, result);
   constrained::Regions regions = find_regions(runtime, mesh);
   if (request.needs_depths() && request.curves != nullptr) {
-    find_polygons(runtime, coordinates, constraints, request, result, regions);
+    find_polygons(call, coordinates, constraints, request, result, regions);
   } else if (request.needs_depths()) {
     find_depths(runtime, mesh, request.rules, regions);
   }
@@ -151,7 +137,7 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
   const auto numbers = request.labels ? call.out<cl_int>(result.regions, triangles)
                                       : runtime.arena().allocate<cl_int>(triangles);
   if (!are_all_left) {
-    leave(call, mesh, places, numbers, regions, left);
+    leave(call, mesh, places, numbers, regions, result, left);
   } else if (request.labels) {
     runtime.copy(regions.of_triangles, 0, numbers, 0, triangles);
   }
@@ -162,18 +148,34 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
   if (request.labels) write(regions.depths, result.depths);
   if (request.polygons) write(regions.polygons, result.polygons);
   if (constraints.seed_count > 0) write(regions.seeds, left.seeds);
-  call.end();
+}
+
+std::vector<std::int32_t> take_left(const Constraints& constraints, Left& left,
+                                    ConstrainedTriangulation& result) {
   if (constraints.seed_attributes != nullptr) {
     for (const std::int32_t seed : left.seeds) {
       result.triangle_attributes.push_back(seed < 0 ? 0 : constraints.seed_attributes[seed]);
     }
   }
-  if (are_all_left) return std::move(left.seeds);
-  result.triangles = std::move(left.triangles);
-  result.neighbors = std::move(left.neighbors);
-  result.constrained = std::move(left.constrained);
-  result.triangle_offsets = std::move(left.triangle_offsets);
+  if (!left.triangle_offsets.empty()) {
+    result.triangles = std::move(left.triangles);
+    result.neighbors = std::move(left.neighbors);
+    result.constrained = std::move(left.constrained);
+    result.triangle_offsets = std::move(left.triangle_offsets);
+  }
   return std::move(left.seeds);
+}
+
+std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles, const double* coordinates,
+                                           const std::vector<std::size_t>& offsets,
+                                           const Constraints& constraints, const DomainRequest& request,
+                                           ConstrainedTriangulation& result) {
+  Left left;
+  Frame call(engine);
+  apply_domains(call, with_doubles, mesh_of(call, coordinates, offsets, constraints, result), coordinates,
+                offsets, constraints, request, result, left);
+  call.end();
+  return take_left(constraints, left, result);
 }
 
 }  // namespace flaunay::call

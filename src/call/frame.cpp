@@ -67,9 +67,12 @@ Buffer<T> caller_points(const DevicePoints& points) {
 
 }  // namespace
 
-Frame::Frame(Engine& used, bool profile) : engine(used), runtime(used.runtime), place_{used} {
+Frame::Frame(Engine& used, bool profile, bool has_stages)
+    : engine(used), runtime(used.runtime), place_{used} {
   engine.begin_call(profile);
   scope_.emplace(runtime.arena());
+  // Only modes that go level by level have something else there.
+  if (has_stages) stages_.emplace(engine.even);
   settled_.emplace(runtime);
 }
 
@@ -157,9 +160,14 @@ void Frame::check_size(std::size_t n) const {
   if (place_.device != &engine) engine.check_size(n);
 }
 
-void Frame::end() {
+void Frame::fetch() {
   for (const Transfer& transfer : transfers_) transfer.run(*this, transfer);
-  if (place_.device == nullptr) return runtime.finish();
+  runtime.finish();
+}
+
+void Frame::end() {
+  if (place_.device == nullptr) return fetch();
+  for (const Transfer& transfer : transfers_) transfer.run(*this, transfer);
   queued_->end();
 }
 

@@ -73,8 +73,9 @@ class Output;
 /// in host memory must have been declared before it.
 class Frame {
  public:
-  /// A call on host memory, with the engine's own memory and queue.
-  explicit Frame(Engine& engine, bool profile = false);
+  /// A call on host memory, with the engine's own memory and queue. has_stages: whether results of a stage
+  /// stay in the engine's memory for later stages, whatever scopes of the arena they are made in.
+  explicit Frame(Engine& engine, bool profile = false, bool has_stages = false);
   /// A call on device memory. Checks the queue and the events; those are waited for by begin(), and checks
   /// that need no array go between.
   Frame(Implementation& self, const Place& place, const Enqueue& enqueue);
@@ -125,6 +126,7 @@ class Frame {
   /// The coordinates in double precision. Those in device memory must have been checked.
   Buffer<cl_double> points(const HostPoints& points);
   Buffer<cl_double> points(const DevicePoints& points);
+  static const Buffer<cl_double>& points(const Buffer<cl_double>& there) { return there; }
   /// The offsets of sets; see checked_offsets.
   std::vector<std::size_t> offsets(const DevicePoints& points);
 
@@ -144,6 +146,14 @@ class Frame {
   void check_distinct(const std::vector<cl_mem>& others = {});
   /// Throws Error if the engine cannot take arrays of n points out of device memory.
   void check_size(std::size_t n) const;
+  /// Transfers results in host memory before the end, as they are now, and waits for them.
+  void fetch();
+  /// Leaves out the transfer of a result in host memory, after a later stage has written another one.
+  template <typename T>
+  void drop(const std::vector<T>& values) {
+    const auto is_dropped = [&](const Transfer& transfer) { return transfer.values.get() == &values; };
+    transfers_.erase(std::remove_if(transfers_.begin(), transfers_.end(), is_dropped), transfers_.end());
+  }
   /// Transfers the results, and waits for them if they are in host memory; otherwise sets the caller's event.
   void end();
 
@@ -209,7 +219,7 @@ class Frame {
   std::vector<ReadBack> read_;
   std::vector<Transfer> transfers_;
   std::vector<cl_mem> memories_;  // of the caller's arrays
-  std::optional<host::Arena::Scope> scope_;
+  std::optional<host::Arena::Scope> scope_, stages_;
   std::optional<QueuedCall> queued_;
   std::optional<host::Runtime::Settled> settled_;  // of calls on host memory
 };
@@ -233,7 +243,9 @@ class Output {
     if (values_ == nullptr) return there_;
     frame_->runtime.resize(*values_, count, most_ / 2 > count ? count : most_);
     if (values_->capacity() / 2 > count) values_->shrink_to_fit();
-    const Buffer<T> made = frame_->runtime.output(*values_);
+    const bool stays = frame_->stages_ && frame_->runtime.sizes().in_host_memory == 0;
+    const Buffer<T> made =
+        stays ? frame_->engine.even.template allocate<T>(count) : frame_->runtime.output(*values_);
     if (frame_->transfers_.empty()) frame_->transfers_.reserve(Frame::kUsualTransfers);
     frame_->transfers_.push_back({made.kept_memory(), there_.kept_memory(), values_, count, Frame::fetch<T>});
     return made;

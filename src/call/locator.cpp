@@ -332,9 +332,10 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates, std::siz
   call::take_turn(*self.owner, [&] {
     constrained::WholeMesh whole = constrained::fill(
         coordinates, n, triangulation,
-        [&](const std::vector<double>& points, const Constraints& constraints) -> Triangulation {
+        [&](const std::vector<double>& points, const Constraints& constraints) {
           ConstrainedOptions options;
-          options.neighbors = true;
+          options.neighbors = options.labels = true;
+          options.fill_rule = FillRule::even_odd;
           return call::constrain_and_leave(*self.owner, points.data(), {0, points.size() / 2}, constraints,
                                            options, call::request_of(options, false));
         });

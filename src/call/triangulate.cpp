@@ -68,24 +68,24 @@ class Arrays {
 
 // Triangulates points of a call, at least one. Writes the result's offsets and statistics.
 template <typename Points, typename Result>
-geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
-                                         const std::vector<std::size_t>& offsets, const Arrays& arrays,
-                                         statistics::Phases& phases, Result& result,
-                                         const ScaledWeights* weights = nullptr) {
+geometry::Fitted<points::DeviceMesh> compute(Frame& call, const Points& points,
+                                             const std::vector<std::size_t>& offsets, const Arrays& arrays,
+                                             statistics::Phases& phases, Result& result,
+                                             const ScaledWeights* weights = nullptr) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
+  const auto representatives = arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
+                                                                  : engine.persistent.allocate<cl_int>(n);
   points::Weights by_point;
   if (weights != nullptr) by_point = {call.in(weights->values), weights->range, weights->solver};
-  geometry::Fitted<blocks::Outcome> run = blocks::run(
-      engine.runtime, engine.persistent, offsets,
-      {[&] { return call.points(points); },
-       arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
-                                          : engine.persistent.allocate<cl_int>(n),
-       arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-       [&] { arrays.reserve(engine.runtime); }, weights != nullptr ? &by_point : nullptr},
-      phases);
+  geometry::Fitted<blocks::Outcome> run =
+      blocks::run(engine.runtime, engine.persistent, offsets,
+                  {[&] { return call.points(points); }, representatives, arrays.have_links(),
+                   [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
+                   [&] { arrays.reserve(engine.runtime); }, weights != nullptr ? &by_point : nullptr},
+                  phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
   if (arrays.areas.is_wanted()) {
@@ -96,18 +96,44 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
                                                .triangles = mesh.triangles,
                                                .areas = arrays.areas.buffer(triangles).as<cl_ulong>()});
   }
-  call.end();
   outcome.write(n, result.statistics);
   if (weights != nullptr) weights->hidden = std::move(outcome.hidden);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
-  return geometry::Done();
+  mesh.representatives = representatives;
+  mesh.point_offsets = offsets;
+  mesh.triangle_offsets = result.triangle_offsets;
+  mesh.hull_offsets = result.hull_offsets;
+  return mesh;
 }
 
 HostPoints part_of(const HostPoints& points, const Group& group) {
   const std::size_t first = 2 * group.first_point;
   return {points.wide == nullptr ? nullptr : points.wide + first,
           points.narrow == nullptr ? nullptr : points.narrow + first, group.offsets.back()};
+}
+
+// The mesh of at least one point. ends: whether the call has no other stages.
+template <typename Points>
+geometry::Fitted<points::DeviceMesh> triangulate_in(Frame& call, const Points& points,
+                                                    const std::vector<std::size_t>& offsets,
+                                                    const Options& options, Triangulation& result, bool ends,
+                                                    const ScaledWeights* weights = nullptr) {
+  Engine& engine = call.engine;
+  const std::size_t n = offsets.back();
+  statistics::Phases phases(options, [&engine] { return engine.runtime.working_clock(); });
+  const host::Runtime::BeforeCompiling announce(engine.runtime,
+                                                [&] { phases.interrupt("compiling kernels"); });
+  engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
+                      result);
+  const auto mesh = compute(call, points, offsets, arrays, phases, result, weights);
+  if (!mesh) return mesh;
+  if (ends) call.end();
+  phases.end("output");
+  phases.write(result.statistics);
+  phases.progress("output", 1);
+  return mesh;
 }
 
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
@@ -117,20 +143,11 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
   const std::size_t n = points.count, sets = offsets.size() - 1;
   Triangulation result = empty_result(engine, sets);
   if (n == 0) return result;
-  statistics::Phases phases(options, [&engine] { return engine.runtime.working_clock(); });
-  const host::Runtime::BeforeCompiling announce(engine.runtime,
-                                                [&] { phases.interrupt("compiling kernels"); });
   Frame call(engine, options.profile);
   if (engine.workspace != nullptr) engine.provide_memory(n, sets);
-  engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
-  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
-                      result);
-  const auto done = compute(call, points, offsets, arrays, phases, result, weights);
-  if (!done) return done.too_wide();
-  phases.end("output");
+  const auto mesh = triangulate_in(call, points, offsets, options, result, true, weights);
+  if (!mesh) return mesh.too_wide();
   engine.write_accounts(result.statistics);
-  phases.write(result.statistics);
-  phases.progress("output", 1);
   return result;
 }
 
@@ -170,8 +187,9 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
     }
     const Options unheard;
     statistics::Phases phases(unheard);
-    const auto done = compute(call, points, offsets, arrays, phases, result);
-    if (!done) return done;
+    const auto mesh = compute(call, points, offsets, arrays, phases, result);
+    if (!mesh) return mesh.too_wide();
+    call.end();
     if (place.is_apart()) {
       phases.end("output");
       phases.write(result.statistics);
@@ -258,6 +276,15 @@ Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, con
                                    const std::vector<std::size_t>& offsets, const Options& options) {
   engine.check_size(points.count);
   return *triangulate_on(engine, points, offsets, options, &weights);
+}
+
+points::DeviceMesh triangulate_stage(Frame& call, const Buffer<cl_double>& coordinates,
+                                     const std::vector<std::size_t>& offsets, const Options& options,
+                                     Triangulation& result) {
+  result = empty_result(call.engine, offsets.size() - 1);
+  points::DeviceMesh mesh = *triangulate_in(call, coordinates, offsets, options, result, false);
+  mesh.coordinates = coordinates;
+  return mesh;
 }
 
 Triangulation triangulate(Implementation& self, const HostPoints& points,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "call/frame.hpp"
+#include "points/device_mesh.hpp"
 #include "points/distribute.hpp"
 
 namespace flaunay::call {
@@ -26,6 +27,12 @@ void write_areas(const HostPoints& points, Triangulation& result);
 /// named, others on the triangulator's engine for host memory. The offsets must have been checked.
 Triangulation triangulate(Implementation& self, const HostPoints& points,
                           const std::vector<std::size_t>& offsets, const Options& options);
+
+/// Triangulates points of sets, at least one, as the first stage of a call on an engine that has doubles. The
+/// arrays of the result are those of the mesh after the end of the call.
+points::DeviceMesh triangulate_stage(Frame& call, const Buffer<cl_double>& coordinates,
+                                     const std::vector<std::size_t>& offsets, const Options& options,
+                                     Triangulation& result);
 
 /// Whether sets are triangulated on the calling thread: they stay there, and each is one block.
 bool are_small(Implementation& self, const std::vector<std::size_t>& offsets, bool profile);

@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
-#include "geometry/sort.hpp"
 #include "mesh/corners.hpp"
-#include "mesh/rows.hpp"
+#include "mesh/join_sides.hpp"
 
 namespace flaunay::constrained {
 namespace {
@@ -43,74 +39,98 @@ void check(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
   }
 }
 
+// The predicates of points by their indices.
+struct Plane {
+  explicit Plane(const std::vector<double>& all)
+      : coordinates(all.data()),
+        scaling(geometry::scaling_for(coordinates, 0, all.size() / 2,
+                                      geometry::inspect(coordinates, 0, all.size() / 2))) {}
+  geometry::Point at(std::int32_t v) const { return kernel::scaled_point(v, coordinates, scaling.powers()); }
+  int orient(std::int32_t a, std::int32_t b, std::int32_t c) const {
+    return predicates.orient(at(a), at(b), at(c));
+  }
+
+  const double* coordinates;
+  geometry::Scaling scaling;
+  geometry::Predicates predicates{scaling.bounds};
+};
+
 // Whether the triangles of a mesh are all up to the convex hull: by Euler's formula for the inside of its
 // hull. Rounding may have made the hull turn to the right.
-bool is_whole(const WholeMesh& filled, const ConstrainedTriangulation& mesh) {
+bool is_whole(const Plane& plane, const Triangulation& mesh) {
   const Ids& hull = mesh.hull;
   std::size_t vertices = 0;
   for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
     vertices += mesh.representatives[i] == static_cast<std::int32_t>(i);
   }
   if (mesh.triangles.size() / 3 + 2 + hull.size() != 2 * vertices) return false;
-  const double* const coordinates = filled.coordinates.data();
-  const std::size_t n = filled.coordinates.size() / 2;
-  const geometry::Scaling scaling =
-      geometry::scaling_for(coordinates, 0, n, geometry::inspect(coordinates, 0, n));
-  const geometry::Predicates predicates{scaling.bounds};
-  const auto at = [&](std::size_t i) {
-    return kernel::scaled_point(hull[i % hull.size()], coordinates, scaling.powers());
-  };
+  const auto at = [&](std::size_t i) { return hull[i % hull.size()]; };
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    if (predicates.orient(at(i), at(i + 1), at(i + 2)) < 0) return false;
+    if (plane.orient(at(i), at(i + 1), at(i + 2)) < 0) return false;
   }
   return !mesh.triangles.empty();
 }
 
-// The edges that the whole mesh must have: constraints and the border.
-Ids walls(const ConstrainedTriangulation& mesh) {
-  Ids segments;
+// Throws unless triangles turn to the left, and none has the corner beyond an edge in its circle, unless the
+// edge is a constraint.
+void check_triangles(const Plane& plane, const ConstrainedTriangulation& mesh) {
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    const std::int32_t beyond = mesh.neighbors[c];
-    if (beyond >= 0 && (mesh.constrained[c] == 0 || static_cast<std::size_t>(beyond) < c / 3)) continue;
-    const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
-    segments.insert(segments.end(), {from, to});
+    const std::size_t t = c / 3;
+    const std::int32_t* const row = &mesh.triangles[3 * t];
+    if (c % 3 == 0 && plane.orient(row[0], row[1], row[2]) <= 0) refuse(t);
+    const auto own = static_cast<std::int32_t>(t), beyond = mesh.neighbors[c];
+    if (beyond < own || mesh.constrained[c] != 0) continue;
+    const std::size_t back = 3 * static_cast<std::size_t>(beyond);
+    std::size_t k = 0;
+    while (k < 3 && mesh.neighbors[back + k] != own) ++k;
+    if (k == 3) refuse(t);
+    const auto at = [&](std::int32_t v) { return plane.at(v); };
+    if (plane.predicates.circle(at(row[0]), at(row[1]), at(row[2]), at(mesh.triangles[back + k])) > 0)
+      refuse(t);
   }
-  return segments;
 }
 
-// Triangles in the order of their first edges; no two have the same. Triangles have their smallest corner
-// first.
-std::vector<geometry::Keyed> by_edge(const Ids& triangles) {
-  std::vector<geometry::Keyed> sorted(triangles.size() / 3);
-  for (std::size_t t = 0; t < sorted.size(); ++t) {
-    sorted[t] = {
-        static_cast<std::uint64_t>(triangles[3 * t]) << 32 | static_cast<std::uint32_t>(triangles[3 * t + 1]),
-        static_cast<std::int32_t>(t)};
-  }
-  geometry::sort_by_key(sorted);
-  return sorted;
-}
-
-// Moves the triangles of `mesh` to the front in `whole`, in their order.
-void reorder(const ConstrainedTriangulation& mesh, Triangulation& whole) {
-  const std::size_t all = whole.triangles.size() / 3;
-  const std::vector<geometry::Keyed> of_whole = by_edge(whole.triangles);
-  Ids place(all, -1);
-  auto from = of_whole.begin();
-  for (const auto& [edge, t] : by_edge(mesh.triangles)) {
-    while (from != of_whole.end() && from->key < edge) ++from;
-    const auto corners = mesh.triangles.begin() + 3 * std::ptrdiff_t{t};
-    if (from == of_whole.end() || place[static_cast<std::size_t>(from->index)] >= 0 ||
-        !std::equal(corners, corners + 3, whole.triangles.begin() + 3 * std::ptrdiff_t{from->index})) {
-      refuse(static_cast<std::size_t>(t));
+// The points on the border of a mesh, and those that are in no triangle, with the border as segments.
+struct Border {
+  Border(const ConstrainedTriangulation& mesh, const std::vector<double>& all) {
+    std::vector<bool> is_inside(all.size() / 2, false);
+    for (const std::int32_t v : mesh.triangles) is_inside[v] = true;
+    for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+      if (mesh.neighbors[c] >= 0) continue;
+      const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
+      is_inside[from] = is_inside[to] = false;
+      segments.insert(segments.end(), {from, to});
     }
-    place[static_cast<std::size_t>(from->index)] = t;
+    Ids places(is_inside.size());
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      if (is_inside[v]) continue;
+      places[v] = static_cast<std::int32_t>(points.size());
+      points.push_back(static_cast<std::int32_t>(v));
+      coordinates.insert(coordinates.end(), {all[2 * v], all[2 * v + 1]});
+    }
+    for (std::int32_t& v : segments) v = places[v];
   }
+  Ids points;    // their indices in the mesh
+  Ids segments;  // by indices here
+  std::vector<double> coordinates;
+};
+
+// Adds the triangles that are outside of the border, which have depth 0, to the triangles of a mesh.
+void add_outside(const ConstrainedTriangulation& all, const Border& border, Triangulation& mesh) {
   auto next = static_cast<std::int32_t>(mesh.triangles.size() / 3);
-  for (std::int32_t& t : place) t = t < 0 ? next++ : t;
-  mesh::permute(place, 3, whole.triangles);
-  mesh::permute(place, 3, whole.neighbors);
-  for (std::int32_t& t : whole.neighbors) t = t < 0 ? t : place[static_cast<std::size_t>(t)];
+  Ids numbers(all.depths.size(), -1);
+  for (std::size_t t = 0; t < numbers.size(); ++t) {
+    if (all.depths[t] == 0) numbers[t] = next++;
+  }
+  for (std::size_t c = 0; c < all.triangles.size(); ++c) {
+    if (numbers[c / 3] < 0) continue;
+    mesh.triangles.push_back(border.points[all.triangles[c]]);
+    mesh.neighbors.push_back(all.neighbors[c] < 0 ? -1 : numbers[all.neighbors[c]]);
+  }
+  mesh.triangle_offsets = {0, mesh.triangles.size() / 3};
+  mesh.hull.clear();
+  for (const std::int32_t v : all.hull) mesh.hull.push_back(border.points[v]);
+  mesh.hull_offsets = {0, mesh.hull.size()};
 }
 
 }  // namespace
@@ -123,16 +143,20 @@ WholeMesh fill(const double* coordinates, std::size_t n, const ConstrainedTriang
   filled.coordinates.insert(filled.coordinates.end(), mesh.added_points.begin(), mesh.added_points.end());
   check(filled, mesh);
   filled.constrained = mesh.constrained;
-  if (is_whole(filled, mesh)) {
-    filled.mesh = mesh;
-    return filled;
-  }
-  const Ids segments = walls(mesh);
+  filled.mesh = mesh;
+  const Plane plane(filled.coordinates);
+  if (is_whole(plane, mesh)) return filled;
+  check_triangles(plane, mesh);
+  const Border border(mesh, filled.coordinates);
   Constraints constraints;
-  constraints.segments = segments.data();
-  constraints.segment_count = segments.size() / 2;
-  filled.mesh = constrain(filled.coordinates, constraints);
-  reorder(mesh, filled.mesh);
+  constraints.segments = border.segments.data();
+  constraints.segment_count = border.segments.size() / 2;
+  add_outside(constrain(border.coordinates, constraints), border, filled.mesh);
+  const auto twice = mesh::join_sides(filled.mesh.triangles, filled.mesh.neighbors);
+  if (twice) refuse(static_cast<std::size_t>(twice->first) / 3);
+  if (!filled.mesh.triangles.empty() && !is_whole(plane, filled.mesh)) {
+    throw Error(ErrorKind::input, "a triangle of the constrained triangulation has a point in it");
+  }
   return filled;
 }
 

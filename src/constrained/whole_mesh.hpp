@@ -18,13 +18,15 @@ struct WholeMesh {
   std::vector<std::uint8_t> constrained;
 };
 
-/// Triangulates points with constraints, of one set. The result has neighbours.
-using Constrain = std::function<Triangulation(const std::vector<double>& coordinates, const Constraints&)>;
+/// Triangulates points with constraints, of one set. The result has neighbours, and the depths of the
+/// even-odd rule.
+using Constrain =
+    std::function<ConstrainedTriangulation(const std::vector<double>& coordinates, const Constraints&)>;
 
 /// Fills the holes of a mesh with constraints, and the area between its border and the convex hull. The mesh
 /// has one set of n points, and the points that it added. Throws Error(usage) for several sets and for arrays
 /// of wrong lengths, Error(input) if the mesh is no constrained triangulation of these points. If the mesh is
-/// convex, O(n); otherwise its points are triangulated with its edges.
+/// convex, O(n); otherwise the points on its border and those in no triangle are triangulated, too.
 WholeMesh fill(const double* coordinates, std::size_t n, const ConstrainedTriangulation& mesh,
                const Constrain& constrain);
 

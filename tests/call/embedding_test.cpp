@@ -22,6 +22,7 @@
 #include "flaunay/result_arrays.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/embedded.hpp"
+#include "tests/support/environment.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/opencl_calls.hpp"
@@ -1056,6 +1057,57 @@ TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
   expect_usage_error({"two things"}, [&] {
     embedded().clipped_voronoi(points, on_device, corners.data(), 4, result, on_own());
   });
+}
+
+// A ring of `count` segments about a point, of points that are added.
+void add_ring(Coordinates& points, std::vector<std::int32_t>& segments, double x, double y, double radius,
+              std::int32_t count) {
+  const auto first = static_cast<std::int32_t>(points.size() / 2);
+  for (std::int32_t i = 0; i < count; ++i) {
+    const double angle = 2 * std::acos(-1.0) * i / count;
+    points.insert(points.end(), {x + radius * std::cos(angle), y + radius * std::sin(angle)});
+    segments.insert(segments.end(), {first + i, first + (i + 1) % count});
+  }
+}
+
+// Between triangulation, segments and domains the mesh stays on a device that has memory of its own.
+TEST(Embedding, ConstraintsAndDomainsSendTheInputOnce) {
+  Coordinates points = make_fixture("uniform", 20000, 3);
+  std::vector<std::int32_t> segments;
+  add_ring(points, segments, 0.5, 0.5, 0.4, 900);
+  add_ring(points, segments, 0.4, 0.5, 0.1, 300);
+  const std::size_t n = points.size() / 2, count = segments.size() / 2;
+  const double hole[] = {0.4, 0.5}, seed[] = {0.7, 0.5};
+  const Coordinates corners(points.end() - 2400, points.end());
+  const Polygons polygons = {corners.data(), {0, 900, 1200}, {0, 1, 2}};
+  const ScopedEnvironment tuning("FLAUNAY_TUNING", "in_host_memory=0");
+  Triangulator device(embedder().context(), embedder().device());
+  Triangulator host("host");
+  for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
+    Constraints constraints;
+    constraints.segments = segments.data();
+    constraints.segment_count = count;
+    ConstrainedOptions options;
+    options.outside = outside;
+    options.neighbors = options.halfedges = true;
+    options.labels = outside == Outside::holes;
+    if (outside == Outside::hull) {
+      constraints.holes = hole;
+      constraints.seeds = seed;
+      constraints.seed_attributes = seed;
+      constraints.hole_count = constraints.seed_count = 1;
+    }
+    opencl_calls().reset();
+    const auto found = device.constrained(points.data(), n, constraints, options);
+    if (device.device().fp64) {
+      EXPECT_EQ(opencl_calls().bytes_to_device, found.statistics.bytes_to_device);
+      EXPECT_LE(found.statistics.bytes_to_device, (n * 16 + count * 8) * 11 / 10);
+    }
+    expect_same_arrays(found, host.constrained(points.data(), n, constraints, options));
+  }
+  PolygonOptions options;
+  options.map = options.labels = true;
+  expect_same_arrays(device.polygons(polygons, options), host.polygons(polygons, options));
 }
 
 // Rows of points, and a segment through each row, in both directions.

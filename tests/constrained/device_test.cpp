@@ -141,12 +141,7 @@ TEST(SmallInsertion, CavitiesThatStop) {
   const std::vector<std::size_t> offsets = {0, points.size() / 2};
   ConstrainedTriangulation mesh;
   static_cast<Triangulation&>(mesh) = delaunay_of(points, offsets);
-  Constraints constraints;
-  constraints.segments = segments.data();
-  constraints.segment_count = segments.size() / 2;
-  Options options;
-  options.profile = true;
-  *call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
+  *insert_on(engine, points, offsets, segments, false, mesh, true);
   EXPECT_EQ(engine.runtime.kernel_times().count("fill_filtered"), 1u);
 }
 

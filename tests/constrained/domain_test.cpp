@@ -15,6 +15,7 @@
 
 #include "tests/constrained/domains.hpp"
 #include "tests/constrained/sequential/domains.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/integer_points.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/shared_triangulator.hpp"
@@ -491,6 +492,44 @@ TEST(Domains, Queries) {
   const double middle[] = {21, 20};
   EXPECT_EQ(locator.nearest(middle, 1), std::vector<std::int32_t>{10});
   EXPECT_THROW(Locator(triangulator, all.data(), all.size() / 2, mesh), Error);
+}
+
+// Triangles that are none of these points: turned ones, the other diagonal, each twice, and a point in one.
+TEST(SmallDomains, QueriesInOtherTriangles) {
+  Coordinates points = {0, 0, 6, 0, 6, 5, 0, 4, 9, 2};
+  const Segments segments = {1, 2};
+  const double hole[] = {7, 2};
+  Constraints constraints;
+  constraints.segments = segments.data();
+  constraints.segment_count = constraints.hole_count = 1;
+  constraints.holes = hole;
+  ConstrainedOptions options;
+  options.neighbors = true;
+  Triangulator triangulator;
+  const ConstrainedTriangulation right = triangulator.constrained(points.data(), 5, constraints, options);
+  ASSERT_EQ(right.triangles, (std::vector<std::int32_t>{0, 1, 3, 1, 2, 3}));
+  const auto expect_refused = [&](const ConstrainedTriangulation& wrong, const char* part) {
+    testing::expect_error(ErrorKind::input, {part},
+                          [&] { Locator(triangulator, points.data(), points.size() / 2, wrong); });
+  };
+  ConstrainedTriangulation wrong = right;
+  std::swap(wrong.triangles[4], wrong.triangles[5]);
+  expect_refused(wrong, "triangle 1 is not that of a constrained triangulation");
+  wrong = right;
+  wrong.triangles = {0, 1, 2, 0, 2, 3};
+  wrong.neighbors = {-1, 1, -1, -1, -1, 0};
+  expect_refused(wrong, "triangle 0 is not that of a constrained triangulation");
+  wrong = right;
+  for (std::size_t c = 0; c < 6; ++c) {
+    wrong.triangles.push_back(right.triangles[c]);
+    wrong.neighbors.push_back(right.neighbors[c] < 0 ? -1 : right.neighbors[c] + 2);
+    wrong.constrained.push_back(right.constrained[c]);
+  }
+  expect_refused(wrong, "triangle 0 is not that of a constrained triangulation");
+  wrong = right;
+  points.insert(points.end(), {1, 1});
+  wrong.representatives.push_back(5);
+  expect_refused(wrong, "has a point in it");
 }
 
 TEST(Domains, NestedRings) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "call/constrained.hpp"
+#include "constrained/crossings/lines.hpp"
 #include "host/opencl/device.hpp"
 #include "tests/support/runtimes.hpp"
 
@@ -26,13 +27,19 @@ inline std::unique_ptr<call::Engine> make_tuned_engine(const std::string& tuning
 inline geometry::Fitted<geometry::Done> insert_on(call::Engine& engine, const std::vector<double>& points,
                                                   const std::vector<std::size_t>& offsets,
                                                   const std::vector<std::int32_t>& segments,
-                                                  bool with_halfedges, ConstrainedTriangulation& mesh) {
+                                                  bool with_halfedges, ConstrainedTriangulation& mesh,
+                                                  bool profile = false) {
   Constraints constraints;
   constraints.segments = segments.data();
   constraints.segment_count = segments.size() / 2;
-  Options options;
-  options.halfedges = with_halfedges;
-  return call::insert_segments_on(engine, points.data(), offsets, constraints, options, mesh);
+  call::Frame call(engine, profile, true);
+  const auto coordinates = call.points(call::HostPoints{points.data(), nullptr, offsets.back()});
+  const auto made = call::insert_segments(call, call::mesh_to_constrain(call, coordinates, offsets, mesh),
+                                          constraints, with_halfedges, mesh);
+  if (!made) return made.too_wide();
+  call.end();
+  mesh.edge_segments = constrained::first_pieces(made->edges, mesh.piece_edges);
+  return geometry::Done();
 }
 
 inline ConstrainedTriangulation insert(const std::vector<double>& points,

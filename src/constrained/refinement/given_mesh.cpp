@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
+#include <numeric>
 #include <utility>
 
+#include "constrained/edges_by_ends.hpp"
 #include "geometry/arguments.hpp"
 #include "mesh/corners.hpp"
+#include "mesh/join_sides.hpp"
 #include "mesh/rows.hpp"
 
 namespace flaunay::constrained {
@@ -17,20 +19,6 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 using geometry::Point;
-
-std::uint64_t directed(std::int32_t from, std::int32_t to) {
-  return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to);
-}
-
-// The number of a directed edge: that opposite to a corner, with its triangle on the left, or its twin.
-std::uint64_t edge_at(const Ids& triangles, std::size_t c) {
-  const auto [from, to] = mesh::edge_opposite(triangles, c);
-  return directed(from, to);
-}
-std::uint64_t twin_at(const Ids& triangles, std::size_t c) {
-  const auto [from, to] = mesh::edge_opposite(triangles, c);
-  return directed(to, from);
-}
 
 // Leaves out triangles of a result.
 void leave_only(const std::vector<bool>& is_left, ConstrainedTriangulation& result) {
@@ -95,22 +83,15 @@ void GivenMesh::turn_left() {
 }
 
 void GivenMesh::find_neighbors() {
-  std::unordered_map<std::uint64_t, std::size_t> sides(triangles_.size());
-  for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto [side, is_new] = sides.emplace(edge_at(triangles_, c), c);
-    if (is_new) continue;
+  neighbors_.assign(triangles_.size(), -1);
+  if (const auto twice = mesh::join_sides(triangles_, neighbors_)) {
     throw Error(ErrorKind::input,
                 fmt::format("triangles {} and {} of the mesh that is to be refined lie on each other",
-                            side->second / 3, c / 3));
+                            twice->first / 3, twice->second / 3));
   }
-  neighbors_.assign(triangles_.size(), -1);
   first_corner_.assign(points_.size() + 1, 0);
-  for (std::size_t c = 0; c < triangles_.size(); ++c) {
-    const auto beyond = sides.find(twin_at(triangles_, c));
-    if (beyond != sides.end()) neighbors_[c] = static_cast<std::int32_t>(beyond->second / 3);
-    ++first_corner_[static_cast<std::size_t>(triangles_[c]) + 1];
-  }
-  for (std::size_t v = 0; v < points_.size(); ++v) first_corner_[v + 1] += first_corner_[v];
+  for (const std::int32_t v : triangles_) ++first_corner_[static_cast<std::size_t>(v) + 1];
+  std::partial_sum(first_corner_.begin(), first_corner_.end(), first_corner_.begin());
   Ids next(first_corner_.begin(), first_corner_.end() - 1);
   corners_at_.resize(triangles_.size());
   for (std::size_t c = 0; c < triangles_.size(); ++c) {
@@ -145,10 +126,18 @@ void GivenMesh::add_segments(const Constraints& constraints) {
 // For each triangle of a result one of the mesh in the same region, or -1: from the border on, regions are
 // filled.
 Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulation& result) const {
-  std::unordered_map<std::uint64_t, std::int32_t> sides;  // directed, with the triangle on the left
+  // The triangles on both sides of each constraint edge: its left one, and its right one.
+  Ids beside(result.constraint_edges.size(), -1);
+  const EdgesByEnds edges(result.constraint_edges, result.representatives.size());
+  const auto edge_at = [&](std::size_t c) {
+    const auto [from, to] = mesh::edge_opposite(result.triangles, c);
+    return static_cast<std::size_t>(edges.number(from, to));
+  };
   for (std::size_t c = 0; c < result.triangles.size(); ++c) {
-    if (result.constrained[c] == 0 && result.neighbors[c] >= 0) continue;
-    sides.emplace(edge_at(result.triangles, c), static_cast<std::int32_t>(c / 3));
+    if (result.constrained[c] == 0) continue;
+    const std::size_t left = 2 * edge_at(c);
+    const bool is_forward = result.constraint_edges[left] == mesh::edge_opposite(result.triangles, c).first;
+    beside[is_forward ? left : left + 1] = static_cast<std::int32_t>(c / 3);
   }
   Ids labels(result.triangles.size() / 3, -1), open;
   const auto label = [&](std::int32_t t, std::int32_t of) {
@@ -161,7 +150,7 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
                               labels[t], of));
     }
   };
-  std::unordered_map<std::uint64_t, bool> is_border;  // directed
+  std::vector<bool> is_border(beside.size() / 2, false);
   const std::size_t first = constraints_.segment_count - border_.size();
   for (std::size_t i = 0; i < border_.size(); ++i) {
     const auto c = static_cast<std::size_t>(border_[i]);
@@ -170,13 +159,11 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
     const bool is_turned = kernel::comes_before(point(coordinates, to), point(coordinates, from));
     for (std::int32_t p = result.piece_offsets[first + i]; p < result.piece_offsets[first + i + 1]; ++p) {
       for (std::int32_t e = result.piece_edges[2 * p]; e < result.piece_edges[2 * p + 1]; ++e) {
-        const std::int32_t u = result.constraint_edges[2 * e], v = result.constraint_edges[2 * e + 1];
-        const std::uint64_t forward = directed(u, v), back = directed(v, u);
-        is_border[forward] = is_border[back] = true;
-        const auto left = sides.find(is_turned ? back : forward),
-                   right = sides.find(is_turned ? forward : back);
-        if (left != sides.end()) label(left->second, border_[i] / 3);
-        if (right != sides.end() && neighbors_[c] >= 0) label(right->second, neighbors_[c]);
+        is_border[e] = true;
+        const std::int32_t left = beside[is_turned ? 2 * e + 1 : 2 * e],
+                           right = beside[is_turned ? 2 * e : 2 * e + 1];
+        if (left >= 0) label(left, border_[i] / 3);
+        if (right >= 0 && neighbors_[c] >= 0) label(right, neighbors_[c]);
       }
     }
   }
@@ -185,7 +172,7 @@ Ids GivenMesh::labels_of(const double* coordinates, const ConstrainedTriangulati
     open.pop_back();
     for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
       if (result.neighbors[c] < 0) continue;
-      if (result.constrained[c] != 0 && is_border.count(edge_at(result.triangles, c)) > 0) continue;
+      if (result.constrained[c] != 0 && is_border[edge_at(c)]) continue;
       label(result.neighbors[c], labels[t]);
     }
   }
