@@ -22,7 +22,7 @@ flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const
   });
 }
 
-static_assert(sizeof(Period) == 2 * sizeof(double));
+static_assert(sizeof(Period) == 3 * sizeof(double));
 FLAUNAY_ACCESSOR(size_t, periodic, point_count, handle.cpp.representatives.size())
 FLAUNAY_ACCESSOR(size_t, periodic, triangle_count, handle.cpp.triangles.size() / 3)
 FLAUNAY_ACCESSOR(size_t, periodic, image_count, handle.cpp.images)

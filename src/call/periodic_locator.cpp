@@ -14,7 +14,7 @@ namespace flaunay {
 
 struct PeriodicLocator::Implementation {
   Implementation(Triangulator& used, const PeriodicTriangulation& mesh)
-      : owner(TriangulatorAccess::shared(used)), period{mesh.period.x, mesh.period.y} {
+      : owner(TriangulatorAccess::shared(used)), lattice(periodic::lattice_of(mesh.period)) {
     call::take_turn(*owner, [&] { make(used, mesh); });
   }
 
@@ -23,11 +23,11 @@ struct PeriodicLocator::Implementation {
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
     if (n == 0) return;
-    periodic::Box box = periodic::box_of(mesh.places.data(), 0, n, period);
+    periodic::Box box = periodic::box_of(mesh.places.data(), 0, n, lattice);
     constexpr double kWhole = std::numeric_limits<double>::infinity();
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
-    const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
+    const bool is_torus = periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1);
     gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
     box.margin = std::max(periodic::first_margin(box, n), gap);
     for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
@@ -61,7 +61,7 @@ struct PeriodicLocator::Implementation {
       check_queries(queries, m);
       const std::size_t results = check_columns(columns, m);
       const std::vector<double> places =
-          periodic::to_places(owner->native().runtime, queries, m, period, "query");
+          periodic::to_places(owner->native().runtime, queries, m, lattice, "query");
       if (!locator) return std::vector<T>(results, none);
       const call::WithinTurn within(*owner);
       return work(places.data());
@@ -88,9 +88,9 @@ struct PeriodicLocator::Implementation {
                      options.device_gradients == nullptr,
                  "values on a torus or a cylinder are interpolated without gradients");
     if (options.method != Interpolation::sibson && options.method != Interpolation::laplace) return;
-    call::expect(!std::isinf(period[0]) && !std::isinf(period[1]),
+    call::expect(periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1),
                  "values on a cylinder are not interpolated by natural neighbors; those on a torus are");
-    if (locator && gap > std::min(period[0], period[1]))
+    if (locator && gap > std::min(lattice.period[0], lattice.period[1]))
       throw Error(
           ErrorKind::input,
           "these points have no natural neighbors on their torus: a circle without points is wider than "
@@ -98,7 +98,7 @@ struct PeriodicLocator::Implementation {
   }
 
   std::shared_ptr<call::Implementation> owner;
-  periodic::Pair<double> period;
+  periodic::Lattice lattice;
   double gap = 0;  // of a torus: the width of the widest circle without points, or more
   std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh

@@ -41,6 +41,7 @@ Enqueue on_own() {
 void expect_same(const DevicePeriodicTriangulation& found, const PeriodicTriangulation& expected) {
   EXPECT_EQ(found.period.x, expected.period.x);
   EXPECT_EQ(found.period.y, expected.period.y);
+  EXPECT_EQ(found.period.shear, expected.period.shear);
   EXPECT_EQ(found.images, expected.images);
   EXPECT_EQ(found.point_offsets, expected.point_offsets);
   EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
@@ -91,7 +92,7 @@ TEST(SmallPeriodicOnDevice, IsThatOfTheHost) {
   std::size_t count = 0;
   for (const std::size_t n : {1u, 2u, 3u, 30u}) {
     for (const Coordinates& points : periodic_points(n)) {
-      for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}}) {
+      for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}, {0.7, 0.5, 0.3}}) {
         SCOPED_TRACE(std::to_string(n) + " " + std::to_string(period.x) + " " + std::to_string(period.y));
         DevicePeriodicTriangulation found;
         count += expect_that_of_the_host(points, period, found);
@@ -112,7 +113,7 @@ TEST(PeriodicOnDevice, LargerIsThatOfTheHost) {
   inputs.push_back(gap);
   DevicePeriodicTriangulation found;
   for (const Coordinates& points : inputs) {
-    for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}}) {
+    for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}, {0.7, 1.3, 0.25}}) {
       if (!expect_that_of_the_host(points, period, found)) continue;
       EXPECT_EQ(found.statistics.triangles, found.triangle_offsets.back());
       // Less than places alone take.
@@ -150,7 +151,7 @@ TEST(SmallPeriodicOnDevice, SetsOfFloatsThatBeginAnywhere) {
   const std::vector<std::int32_t> ids(offsets.begin(), offsets.end());
   const Memory memory = embedder().upload(all), device_offsets = embedder().upload(ids);
   for (const bool are_on_device : {false, true}) {
-    for (const Period& period : {Period{}, {1, HUGE_VAL}}) {
+    for (const Period& period : {Period{}, {1, HUGE_VAL}, {1, 1, 0.5}}) {
       DevicePoints points = points_in(memory, offsets.back());
       points.precision = Precision::float32;
       points.first = 3;

@@ -70,7 +70,7 @@ class Laws : public ::testing::Test {
  protected:
   const std::vector<Case> cases_ = cases(Space::kWidth);
 };
-using Spaces = ::testing::Types<Plane, Weighted, Torus, Cylinder, UprightCylinder, Sphere>;
+using Spaces = ::testing::Types<Plane, Weighted, Torus, ShearedTorus, Cylinder, UprightCylinder, Sphere>;
 TYPED_TEST_SUITE(Laws, Spaces, );
 
 TYPED_TEST(Laws, ResultsAreProven) {

@@ -68,10 +68,12 @@ struct Weighted {
   }
 };
 
-template <int kAcross, int kUp>
+template <int kAcross, int kUp, int kShear = 0>
 struct Periodic {
   static constexpr std::size_t kWidth = 2;
-  static Period period() { return {kAcross > 0 ? kAcross * 0.75 : HUGE_VAL, kUp > 0 ? kUp * 1.0 : HUGE_VAL}; }
+  static Period period() {
+    return {kAcross > 0 ? kAcross * 0.75 : HUGE_VAL, kUp > 0 ? kUp * 1.0 : HUGE_VAL, kShear * 0.25};
+  }
   static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
     return triangulate_periodic(triangulator, points.data(), offsets, period());
   }
@@ -88,6 +90,7 @@ struct Periodic {
   }
 };
 using Torus = Periodic<1, 1>;
+using ShearedTorus = Periodic<1, 1, 1>;
 using Cylinder = Periodic<1, 0>;
 using UprightCylinder = Periodic<0, 1>;
 

@@ -13,28 +13,36 @@
 
 namespace flaunay {
 
-/// Where the plane begins again, in x and in y.
+/// Where the plane begins again: a place x farther along x, and a place y farther along y and `shear` along
+/// x.
 struct Period {
   /// From 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and at most 2^30 times the other. If one is infinite,
   /// the plane does not repeat itself in that direction: it is a cylinder.
   double x = 1;
   double y = 1;  ///< see x
+  /// Any finite number, which is reduced by multiples of x. On a cylinder it must be 0. If it is not a
+  /// multiple of x, then x may be at most 64 times y.
+  double shear = 0;
 };
 
 /// The Delaunay triangulations of one or more sets of points on a torus or a cylinder.
 struct PeriodicTriangulation {
-  /// As given, but for the last bit of a double, which is 0 unless the period is a power of two.
+  /// As given, but for the last bit of a double, which is 0 unless the period is a power of two. The shear is
+  /// more than -x / 2 and at most x / 2, a multiple of what x of places is. With a shear, y is a multiple of
+  /// 2^-52 times the first power of two that is at least y + x / 2.
   Period period;
   /// x and y per point: its place in [0, period), a multiple of the period's last bit but one, or of the last
-  /// bit if it is a power of two. They are rounded once, to half of that, and are then what the point is: so
-  /// every image of a point is exact. What has no period is not rounded.
+  /// bit if it is a power of two; with a shear, y as that of the period. They are rounded once, to half of
+  /// that, and are then what the point is: so every image of a point is exact. What has no period is not
+  /// rounded.
   std::vector<double> places;
   /// 3 per triangle, counter-clockwise, smallest index first. n different points on a torus have 2 n, and on
   /// a cylinder 2 n - h, if h of them are on its lowest and its highest circle: none if all are on one.
   std::vector<std::int32_t> triangles;
-  /// 6 per triangle: x and y per corner, in periods. With the first corner's in its place, the corner is at
-  /// its place + offset * period. The first corner has 0, 0; the others -1, 0 or 1. They tell apart corners
-  /// that are the same point, as few points have them.
+  /// 6 per triangle: i and j per corner. If the first corner is in its place, the corner is i (x, 0) +
+  /// j (shear, y) away from its place. The first corner has 0, 0; the others -1, 0 or 1. With a shear they
+  /// are from -2 to 2 if x is at most y, and otherwise |j| < 2 + x / y and |i| < 2 + |j| / 2. They tell apart
+  /// corners that are the same point, as few points have them.
   std::vector<std::int8_t> offsets;
   /// 3 per triangle: the triangle opposite to each corner. There is always one on a torus; -1 is beyond the
   /// ends of a cylinder.
