@@ -1394,7 +1394,7 @@ static void test_periodic(void) {
     places[2 * i + 1] = (double)(i / SIDE) * 2 - 40;
   }
   flaunay_periodic *periodic = NULL, *none = NULL;
-  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, SIDE, 2 * SIDE, &periodic));
+  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, SIDE, 2 * SIDE, 0, &periodic));
   const size_t triangles = flaunay_periodic_triangle_count(periodic);
   REQUIRE(flaunay_periodic_point_count(periodic) == COUNT && triangles == 2 * COUNT);
   CHECK(flaunay_periodic_image_count(periodic) > 0);
@@ -1404,7 +1404,7 @@ static void test_periodic(void) {
   }
   CHECK(flaunay_periodic_places(periodic)[1] == 8 && flaunay_periodic_representatives(periodic)[7] == 7);
   CHECK(flaunay_periodic_triangle_offsets(periodic)[1] == triangles);
-  CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE);
+  CHECK(flaunay_periodic_period(periodic)[1] == 2 * SIDE && flaunay_periodic_period(periodic)[2] == 0);
   OK(flaunay_periodic_verify(periodic));
   flaunay_point_tree* periodic_tree = NULL;
   OK(flaunay_point_tree_create_periodic(triangulator, periodic, &periodic_tree));
@@ -1434,10 +1434,11 @@ static void test_periodic(void) {
   flaunay_clipped_voronoi_destroy(cells);
   flaunay_periodic_locator_destroy(locator);
   flaunay_periodic_destroy(periodic);
-  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, &periodic));
+  OK(flaunay_periodic_create(triangulator, places, COUNT, NULL, 0, INFINITY, 2 * SIDE, 0, &periodic));
   CHECK(flaunay_periodic_triangle_count(periodic) == 2 * COUNT - 2 * SIDE);
   REFUSED(flaunay_periodic_cells(triangulator, periodic, &cells), "cylinder");
-  REFUSED(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, &none), "period");
+  REFUSED(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 0, 1, 0, &none), "period");
+  REFUSED(flaunay_periodic_create(triangulator, places, 3, NULL, 0, 1, INFINITY, 0.5, &none), "shear");
   flaunay_periodic_destroy(periodic);
 }
 
@@ -1655,7 +1656,7 @@ static void test_periodic_on_device(void) {
   for (size_t i = 0; i < 2 * COUNT; ++i) places[i] = fmod(0.618034 * (double)(i * i), 1);
   flaunay_periodic* expected = NULL;
   const size_t offsets[] = {0, 10, COUNT};
-  OK(flaunay_periodic_create(triangulator, places, COUNT, offsets, 2, 1, 0.75, &expected));
+  OK(flaunay_periodic_create(triangulator, places, COUNT, offsets, 2, 1, 0.75, 0.25, &expected));
   flaunay_device_points given = {
       .memory = make_buffer(context, sizeof places, places), .count = COUNT, .offsets = offsets, .sets = 2};
   const flaunay_enqueue enqueue = {.queue = queue};
@@ -1664,13 +1665,14 @@ static void test_periodic_on_device(void) {
   CHECK(flaunay_device_periodic_triangle_count(periodic) == 0);
   cl_mem own = make_buffer(context, 12 * COUNT, NULL), small = make_buffer(context, 12 * COUNT - 1, NULL);
   OK(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, own));
-  OK(flaunay_periodic_compute_device(triangulator, &given, 1, 0.75, &enqueue, periodic));
+  OK(flaunay_periodic_compute_device(triangulator, &given, 1, 0.75, 1.25, &enqueue, periodic));
   const size_t triangles = flaunay_periodic_triangle_count(expected);
   CHECK(flaunay_device_periodic_triangle_count(periodic) == triangles);
   CHECK(flaunay_device_periodic_triangle_offsets(periodic)[1] ==
         flaunay_periodic_triangle_offsets(expected)[1]);
   CHECK(flaunay_device_periodic_image_count(periodic) == flaunay_periodic_image_count(expected));
   CHECK(flaunay_device_periodic_period(periodic)[1] == 0.75);
+  CHECK(flaunay_device_periodic_period(periodic)[2] == 0.25);
   const struct {
     unsigned part;
     const void* values;
@@ -1686,9 +1688,9 @@ static void test_periodic_on_device(void) {
   }
   CHECK(flaunay_device_periodic_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS) == own);
   CHECK(flaunay_device_periodic_buffer(periodic, 3) == NULL);
-  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 0, 1, &enqueue, periodic), "period");
+  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 0, 1, 0, &enqueue, periodic), "period");
   OK(flaunay_device_periodic_set_buffer(periodic, FLAUNAY_PERIODIC_OFFSETS, small));
-  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 1, 1, &enqueue, periodic), "too small");
+  REFUSED(flaunay_periodic_compute_device(triangulator, &given, 1, 1, 0, &enqueue, periodic), "too small");
   flaunay_device_periodic_destroy(periodic);
   flaunay_periodic_destroy(expected);
 }
@@ -1953,9 +1955,9 @@ static void test_chunks_with_a_period(void) {
                                       .representatives = make_indices(kPoints)};
   flaunay_mesh_files files = {.neighbors = neighbors_path, .offsets = offsets_path};
   flaunay_chunk_report* report = NULL;
-  OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, &arrays, &files, &kSmallChunks, &report));
+  OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, 0, &arrays, &files, &kSmallChunks, &report));
   flaunay_periodic* expected = NULL;
-  OK(flaunay_periodic_create(triangulator, points, kPoints, NULL, 0, 0.7, INFINITY, &expected));
+  OK(flaunay_periodic_create(triangulator, points, kPoints, NULL, 0, 0.7, INFINITY, 0, &expected));
   const size_t count = flaunay_periodic_triangle_count(expected);
   const flaunay_chunk_statistics* const statistics = flaunay_chunk_report_statistics(report);
   CHECK(statistics->triangles == count && statistics->points == kPoints && statistics->hull_vertices == 0);
@@ -1971,7 +1973,7 @@ static void test_chunks_with_a_period(void) {
     sums[1] += flaunay_periodic_offsets(expected)[k] * (k % 2 == 0 ? 1 : 1000);
   }
   CHECK(sums[0] == sums[1]);
-  double period[] = {0.7, INFINITY};
+  double period[] = {0.7, INFINITY, 0};
   double* const places = make_doubles(2 * kPoints);
   memcpy(places, points, 2 * kPoints * sizeof *places);
   OK(flaunay_take_to_places(period, places, kPoints));
@@ -1980,10 +1982,10 @@ static void test_chunks_with_a_period(void) {
   flaunay_chunk_report_destroy(report);
 
   report = NULL;
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 0, 1, NULL, NULL, NULL, &report), "period");
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 0, 1, 0, NULL, NULL, NULL, &report), "period");
   const flaunay_mesh_arrays hull = {.hull = arrays.representatives}, own = {.offsets = offsets};
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, &hull, NULL, NULL, &report), "hull");
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, &own, &files, NULL, &report),
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &hull, NULL, NULL, &report), "hull");
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &own, &files, NULL, &report),
           "offsets are wanted");
   REFUSED(flaunay_triangulate_chunks(points, 4, &own, NULL, &report), "no period");
   REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), "no period");

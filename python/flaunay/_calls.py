@@ -1113,18 +1113,18 @@ def _strided_points(points: FloatArray) -> _declarations.StridedPoints:
     )
 
 
-def take_to_places(period: tuple[float, float], places: _Doubles) -> tuple[float, float]:
+def take_to_places(period: tuple[float, ...], places: _Doubles) -> tuple[float, ...]:
     """Takes points, which are contiguous, into the period. Returns that as it is rounded."""
     lengths = np.array(period)
     check(library.take_to_places(lengths.ctypes.data, places.ctypes.data, places.size // 2))
-    return float(lengths[0]), float(lengths[1])
+    return tuple(lengths.tolist())
 
 
 def triangulate_chunks(
     points: FloatArray,
     wanted: dict[str, Optional[bytes]],
     wide: bool,
-    period: Optional[tuple[float, float]],
+    period: Optional[tuple[float, ...]],
     chunks: Chunks,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
@@ -1591,14 +1591,14 @@ class Periodic(_Surface):
         self,
         triangulator: Triangulator,
         points: _Doubles,
-        period: tuple[float, float],
+        period: tuple[float, ...],
         offsets: Optional[_Offsets],
     ) -> None:
         super().__init__("periodic", triangulator, [points], offsets, *period)
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         arrays = super().arrays()
-        arrays["period"] = _view(self, self.read("period"), (2,), _FLOAT64)
+        arrays["period"] = _view(self, self.read("period"), (3,), _FLOAT64)
         arrays["offsets"] = arrays["offsets"].reshape(-1, 3, 2)
         return arrays
 

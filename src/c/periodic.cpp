@@ -16,9 +16,9 @@ FLAUNAY_HANDLE(periodic_locator, PeriodicLocator)
 
 flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points, size_t n,
                                        const size_t* offsets, size_t sets, double period_x, double period_y,
-                                       flaunay_periodic** periodic) {
+                                       double shear, flaunay_periodic** periodic) {
   return c::make(triangulator, periodic, [&](Triangulator& cpp) {
-    return triangulate_periodic(cpp, points, c::to_offsets(offsets, sets, n), {period_x, period_y});
+    return triangulate_periodic(cpp, points, c::to_offsets(offsets, sets, n), {period_x, period_y, shear});
   });
 }
 
@@ -60,11 +60,11 @@ FLAUNAY_ACCESSOR(const size_t*, device_periodic, triangle_offsets, c::elements(h
 
 flaunay_status flaunay_periodic_compute_device(flaunay_triangulator* triangulator,
                                                const flaunay_device_points* points, double period_x,
-                                               double period_y, const flaunay_enqueue* enqueue,
+                                               double period_y, double shear, const flaunay_enqueue* enqueue,
                                                flaunay_device_periodic* result) {
   return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
-    triangulate_periodic(cpp, c::to_points(points), {period_x, period_y}, required(result, "the result").cpp,
-                         queued);
+    triangulate_periodic(cpp, c::to_points(points), {period_x, period_y, shear},
+                         required(result, "the result").cpp, queued);
   });
 }
 

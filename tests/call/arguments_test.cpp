@@ -82,7 +82,7 @@ void make(flaunay_spherical_locator** made) {
   flaunay_spherical_destroy(mesh);
 }
 void make(flaunay_periodic** made) {
-  flaunay_periodic_create(triangulator(), kPoints, kCount, nullptr, 0, 8, 8, made);
+  flaunay_periodic_create(triangulator(), kPoints, kCount, nullptr, 0, 8, 8, 1, made);
 }
 void make(flaunay_periodic_locator** made) {
   flaunay_periodic* mesh = nullptr;
@@ -456,7 +456,7 @@ TEST(SmallArguments, OfStreamsAndChunks) {
              none.index_type = FLAUNAY_INT64;
              flaunay_chunk_report* report = nullptr;
              throw_error_of(
-                 flaunay_triangulate_periodic_chunks(&points, 8, 8, &none, nullptr, nullptr, &report));
+                 flaunay_triangulate_periodic_chunks(&points, 8, 8, 1, &none, nullptr, nullptr, &report));
            }},
           {"values",
            [&](std::size_t count) {

@@ -1194,12 +1194,16 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
 /// of flaunay_periodic_create, and the representatives, too. There is no hull. Points are read at least three
 /// times; the images of those near the border are in memory, 48 bytes for each. Further errors:
 /// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
-FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(
-    const flaunay_strided_points* points, double period_x, double period_y, const flaunay_mesh_arrays* arrays,
-    const flaunay_mesh_files* files, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points,
+                                                               double period_x, double period_y, double shear,
+                                                               const flaunay_mesh_arrays* arrays,
+                                                               const flaunay_mesh_files* files,
+                                                               const flaunay_chunk_options* options,
+                                                               flaunay_chunk_report** report);
 /// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_periodic_create and
-/// flaunay_triangulate_periodic_chunks do. period: x and y, which become the rounded ones. Errors are
-/// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite. O(n).
+/// flaunay_triangulate_periodic_chunks do. period: x, y and the shear, which become the rounded ones. Errors
+/// are FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite.
+/// O(n).
 FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);
@@ -1626,13 +1630,14 @@ FLAUNAY_API flaunay_status flaunay_spherical_locator_interpolate(flaunay_spheric
 /// them.
 typedef struct flaunay_periodic flaunay_periodic;
 /// Triangulates n points on a torus, x0 y0 x1 y1 ..., any finite numbers, which are taken into the period; if
-/// one period is INFINITY, on a cylinder. offsets and sets: as for flaunay_triangulate. Any points do,
-/// however few. Errors are those of flaunay_triangulate; FLAUNAY_ERROR_USAGE for a period that is not from
-/// 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or more than 2^30 times the other one. The caller destroys
-/// the result. O(n log n) work.
+/// one period is INFINITY, on a cylinder. shear: how far the period in y moves places along x; any finite
+/// number, and 0 on a cylinder. offsets and sets: as for flaunay_triangulate. Any points do, however few.
+/// Errors are those of flaunay_triangulate; FLAUNAY_ERROR_USAGE for a period that is not from 2^-900 to 2^900
+/// (about 1.2e-271 to 8.4e270), or more than 2^30 times the other one, and with a shear that is not a
+/// multiple of x if x is more than 64 times y. The caller destroys the result. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_periodic_create(flaunay_triangulator* triangulator, const double* points,
                                                    size_t n, const size_t* offsets, size_t sets,
-                                                   double period_x, double period_y,
+                                                   double period_x, double period_y, double shear,
                                                    flaunay_periodic** periodic);
 /// Frees the arrays.
 FLAUNAY_API void flaunay_periodic_destroy(flaunay_periodic* periodic);
@@ -1643,7 +1648,8 @@ FLAUNAY_API size_t flaunay_periodic_point_count(const flaunay_periodic* periodic
 FLAUNAY_API size_t flaunay_periodic_triangle_count(const flaunay_periodic* periodic);
 /// Images that were triangulated besides the points.
 FLAUNAY_API size_t flaunay_periodic_image_count(const flaunay_periodic* periodic);
-/// 2 values, x and y: as given, but for the last bit, which is 0 unless the period is a power of two.
+/// 3 values, x, y and the shear: as given, but for the last bit, which is 0 unless the period is a power of
+/// two, and with the shear in (-x / 2, x / 2].
 FLAUNAY_API const double* flaunay_periodic_period(const flaunay_periodic* periodic);
 /// 2 n values: places in [0, period), rounded once to multiples of the period's last bit but one. This is
 /// what the points are. What has no period is not rounded.
@@ -1712,7 +1718,7 @@ FLAUNAY_API const size_t* flaunay_device_periodic_triangle_offsets(const flaunay
 /// of flaunay_triangulate_device, with the same errors. Devices without fp64 leave it to the host.
 FLAUNAY_API flaunay_status flaunay_periodic_compute_device(flaunay_triangulator* triangulator,
                                                            const flaunay_device_points* points,
-                                                           double period_x, double period_y,
+                                                           double period_x, double period_y, double shear,
                                                            const flaunay_enqueue* enqueue,
                                                            flaunay_device_periodic* result);
 
