@@ -45,6 +45,7 @@ ARRAYS = ["triangles", "neighbors", "hull", "duplicates"]
 # Per space the options of the command, and what there is in place of a hull.
 SPACES = {
     "torus": (["--period", "1.5,2"], ["offsets"]),
+    "sheared": (["--period", "1.5,2,0.625"], ["offsets"]),
     "cylinder": (["--period", "inf,2"], ["offsets"]),
     "weighted": (["--weighted"], ["hull", "hidden"]),
     "sphere": (["--sphere"], []),

@@ -1492,6 +1492,9 @@ static void test_periodic(void) {
   CHECK(flaunay_triangulation_mesh(torus)->triangle_count == 2 * COUNT - 2 * SIDE);
   REFUSED(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, torus, NULL, 0, &cells), "cylinder");
   REFUSED(triangulate_in(on_torus(0, 1), places, 3, NULL, 0, &none), "period");
+  flaunay_space sheared = on_torus(1, INFINITY);
+  sheared.shear = 0.5;
+  REFUSED(triangulate_in(sheared, places, 3, NULL, 0, &none), "shear");
   const flaunay_options with_areas = {.parts = FLAUNAY_PART_AREAS, .space = &space};
   REFUSED(flaunay_triangulate(triangulator, places, COUNT, NULL, 0, &with_areas, &none), "areas");
   flaunay_triangulation_destroy(torus);
@@ -1720,6 +1723,7 @@ static void test_periodic_on_device(void) {
   double places[2 * COUNT];
   for (size_t i = 0; i < 2 * COUNT; ++i) places[i] = fmod(0.618034 * (double)(i * i), 1);
   flaunay_space space = on_torus(1, 0.75);
+  space.shear = 1.25;
   flaunay_triangulation* host = NULL;
   const size_t offsets[] = {0, 10, COUNT};
   OK(triangulate_in(space, places, COUNT, offsets, 2, &host));
@@ -1739,6 +1743,7 @@ static void test_periodic_on_device(void) {
   const size_t triangles = expected->triangle_count;
   CHECK(mesh->triangle_count == triangles && mesh->triangle_offsets[1] == expected->triangle_offsets[1]);
   CHECK(mesh->image_count == expected->image_count && mesh->space->period_y == 0.75);
+  CHECK(mesh->space->shear == 0.25);
   const struct {
     unsigned part;
     const void* values;
@@ -2026,7 +2031,7 @@ static void test_chunks_with_a_period(void) {
                                       .representatives = make_indices(kPoints)};
   flaunay_mesh_files files = {.neighbors = neighbors_path, .offsets = offsets_path};
   flaunay_chunk_report* report = NULL;
-  OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, &arrays, &files, &kSmallChunks, &report));
+  OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, 0, &arrays, &files, &kSmallChunks, &report));
   flaunay_triangulation* cylinder = NULL;
   OK(triangulate_in(on_torus(0.7, INFINITY), points, kPoints, NULL, 0, &cylinder));
   const flaunay_mesh* const expected = flaunay_triangulation_mesh(cylinder);
@@ -2045,7 +2050,7 @@ static void test_chunks_with_a_period(void) {
     sums[1] += expected->corner_offsets[k] * (k % 2 == 0 ? 1 : 1000);
   }
   CHECK(sums[0] == sums[1]);
-  double period[] = {0.7, INFINITY};
+  double period[] = {0.7, INFINITY, 0};
   double* const places = make_doubles(2 * kPoints);
   memcpy(places, points, 2 * kPoints * sizeof *places);
   OK(flaunay_take_to_places(period, places, kPoints));
@@ -2054,10 +2059,10 @@ static void test_chunks_with_a_period(void) {
   flaunay_chunk_report_destroy(report);
 
   report = NULL;
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 0, 1, NULL, NULL, NULL, &report), "period");
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 0, 1, 0, NULL, NULL, NULL, &report), "period");
   const flaunay_mesh_arrays hull = {.hull = arrays.representatives}, own = {.offsets = offsets};
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, &hull, NULL, NULL, &report), "hull");
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, &own, &files, NULL, &report),
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &hull, NULL, NULL, &report), "hull");
+  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &own, &files, NULL, &report),
           "offsets are wanted");
   REFUSED(flaunay_triangulate_chunks(points, 4, &own, NULL, &report), "no period");
   REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), "no period");

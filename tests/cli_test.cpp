@@ -204,6 +204,7 @@ TEST_F(CommandUsageTest, OtherSurfacesRefuseWhatTheyDoNotHave) {
   refused("--period", "1", {"--period", "1"});
   const std::string points = write("points.xy", "0 0\n1 0\n0 100\n");
   expect_error(kUsage, {"the period 0 x 1"}, {"triangulate", points, "--period", "0,1"});
+  expect_error(kUsage, {"no shear"}, {"triangulate", points, "--period", "1,inf,1"});
   expect_error(kUsage, {"or one of them infinite"}, {"triangulate", points, "--period", "inf,inf"});
   expect_error(kBadInput, {"points.xy", "point 2", "latitude 100"}, {"triangulate", points, "--sphere"});
 }
@@ -410,6 +411,10 @@ TEST_F(CommandVerifyTest, OtherSpaces) {
   const Arguments torus = {points, path("t.npy"), "--offsets", path("o.npy"), "--period"};
   expect_right(joined(torus, {"5,inf"}));
   expect_wrong({}, joined(torus, {"5,5"}));
+  run_well(
+      {"triangulate", points, "--period", "5,6,2", "--triangles", path("t.npy"), "--offsets", path("o.npy")});
+  expect_right(joined(torus, {"5,6,2"}));
+  expect_wrong({}, joined(torus, {"5,6,-2"}));
   // On a line, triangles do not say which points are hidden.
   const std::string none = write_rows("none.npy", {});
   expect_right({write("line.txt", "0 0 0\n1 1 9\n2 2 0\n"), none, "--weighted"});

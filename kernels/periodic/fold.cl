@@ -15,13 +15,13 @@
 #ifndef FIXED_POINT
 
 // What is at a place of the plane. Places below `own` are those of the points with these numbers.
-static inline uint image_at(int v, int own, global const uint* images) {
+static inline uint64 image_at(int v, int own, global const uint64* images) {
   return v < own ? image_of(v, 0, 0) : images[v];
 }
 
 // n points, with arguments as of unroll.cl. planar: representatives in the plane. missing: per set, of two triangles a
 // point.
-kernel void fold_representatives(int n, int sets, global const int* restrict offsets,
+kernel void fold_representatives(int n, periodic_lattice lattice, int sets, global const int* restrict offsets,
                                  global const unrolled_set* restrict all, global const uint* restrict counts,
                                  global const double* restrict coordinates, global const int* restrict planar,
                                  global int* restrict representatives, global volatile uint* restrict missing) {
@@ -36,7 +36,7 @@ kernel void fold_representatives(int n, int sets, global const int* restrict off
     if (back == 0) {
       const periodic_box box = all[k].box;
       const double2 p = vload2(at, coordinates);
-      fewer = (uint)(ends_at(p.x, &box, 0) + ends_at(p.y, &box, 1));
+      fewer = (uint)(ends_at(p.x, 0, &lattice, &box) + ends_at(p.y, 1, &lattice, &box));
     }
     if (fewer > 0) atomic_add(&missing[k], fewer);
   }
@@ -44,7 +44,7 @@ kernel void fold_representatives(int n, int sets, global const int* restrict off
 
 // n triangles. Their rows begin with the smallest number, and points come before images: a smallest corner that is in
 // its place is the first one.
-kernel void keep_triangles(int n, int own, global const int* restrict triangles, global const uint* restrict images,
+kernel void keep_triangles(int n, int own, global const int* restrict triangles, global const uint64* restrict images,
                            global uint* restrict kept) {
   const int t = get_global_id(0);
   if (t < n) {
@@ -52,7 +52,7 @@ kernel void keep_triangles(int n, int own, global const int* restrict triangles,
     if (max(max(a, b), c) < own) {
       kept[t] = 1;
     } else {
-      const uint first = image_at(a, own, images);
+      const uint64 first = image_at(a, own, images);
       kept[t] = (uint)(is_in_place(first) && first < image_at(b, own, images) && first < image_at(c, own, images));
     }
   }
@@ -74,7 +74,7 @@ kernel void find_seams(int n, global const int* restrict neighbors, global const
 // n of the triangles. seams: 3 for each.
 kernel void list_seams(int n, int own, global const int* restrict list, global const int* restrict triangles,
                        global const int* restrict neighbors, global const uint* restrict ranks,
-                       global const uint* restrict images, global const double* restrict coordinates,
+                       global const uint64* restrict images, global const double* restrict coordinates,
                        global seam_record* restrict seams) {
   const int i = get_global_id(0);
   if (i < n) {
@@ -108,12 +108,12 @@ kernel void link_seams(int n, global const int2* restrict links, global int* res
 }
 
 // n triangles in the plane from `first` on, of sets from offsets on. shifts: from ranks to rows, or NOT_WRITTEN. folded
-// begins at a row; periods: 3 per row, x and y per corner, relative to the first one. One work-item after the other may
-// write to the arrays that it reads, if no row is behind its triangle.
+// begins at a row; periods: 3 per row, x and y per corner, of vectors of the lattice, relative to the first one. One
+// work-item after the other may write to the arrays that it reads, if no row is behind its triangle.
 kernel void write_folded(int n, int first, int begin, int sets, global const int* restrict offsets,
                          global const int* restrict shifts, int own, global const int* triangles,
                          global const int* neighbors, global const uint* restrict ranks,
-                         global const uint* restrict images, global int* folded, global uchar2* restrict periods,
+                         global const uint64* restrict images, global int* folded, global uchar2* restrict periods,
                          global int* folded_neighbors) {
   const int t = first + get_global_id(0);
   if (t < first + n && is_kept(t, ranks)) {
@@ -129,9 +129,9 @@ kernel void write_folded(int n, int first, int begin, int sets, global const int
         folded[3 * to + k] = corner[k];
         periods[3 * row + k] = VECTOR(uchar2, 0, 0);
       } else {
-        const uint image = image_at(corner[k], own, images);
-        folded[3 * to + k] = point_of(image);
-        periods[3 * row + k] = VECTOR(uchar2, (uchar)periods_across(image), (uchar)periods_up(image));
+        const uint64 image = image_at(corner[k], own, images);
+        folded[3 * to + k] = (int)point_of(image);
+        periods[3 * row + k] = VECTOR(uchar2, (uchar)vectors_across(image), (uchar)vectors_up(image));
       }
     }
   }

@@ -11,12 +11,11 @@
 #ifndef FIXED_POINT
 
 // bad: the first point that is not finite.
-kernel void find_places(int n, periodic_axes axes, global const double* restrict input, global double* restrict places,
-                        global volatile int* restrict bad) {
+kernel void find_places(int n, periodic_lattice lattice, global const double* restrict input,
+                        global double* restrict places, global volatile int* restrict bad) {
   const int i = get_global_id(0);
   if (i < n) {
-    const double2 p = vload2(i, input);
-    const double2 place = VECTOR(double2, place_of(p.x, axes.x), place_of(p.y, axes.y));
+    const double2 place = place_in(vload2(i, input), &lattice);
     vstore2(place, i, places);
     if (!(fabs(place.x) < INFINITY && fabs(place.y) < INFINITY)) atomic_min(bad, i);
   }
@@ -45,8 +44,9 @@ static inline int is_far_inside(double2 p, global const periodic_box* box) {
 }
 
 // n points of sets, which have the points from offsets on.
-kernel void count_images(int n, int sets, global const int* restrict offsets, global const unrolled_set* restrict all,
-                         global const double* restrict places, global uint* restrict counts) {
+kernel void count_images(int n, periodic_lattice lattice, int sets, global const int* restrict offsets,
+                         global const unrolled_set* restrict all, global const double* restrict places,
+                         global uint* restrict counts) {
   const int i = get_global_id(0);
   if (i < n) {
     const int k = segment_near(i, sets, offsets);
@@ -54,8 +54,14 @@ kernel void count_images(int n, int sets, global const int* restrict offsets, gl
     counts[i] = 0;
     if (is_far_inside(p, &all[k].box)) return;
     const periodic_box box = all[k].box;
-    const image_range to = images_around(p.x, p.y, &box);
+    const image_range to = images_around(p, &lattice, &box);
     counts[i] = (uint)((to.high[0] - to.low[0] + 1) * (to.high[1] - to.low[1] + 1) - 1);
+    if (!is_sheared(&lattice)) return;
+    uint count = 0;
+    for (int across = to.low[0]; across <= to.high[0]; ++across) {
+      for (int up = to.low[1]; up <= to.high[1]; ++up) count += (uint)is_image(p, across, up, &lattice, &box);
+    }
+    counts[i] = count;
   }
 }
 
@@ -68,9 +74,10 @@ kernel void read_totals(int n, global const int* restrict offsets, global const 
 
 // counts: scanned. images: what is at each place of the plane. own: how many of the first points need none.
 // are_there: whether coordinates are the places, behind which images go.
-kernel void write_images(int n, int sets, int own, int are_there, global const int* restrict offsets,
-                         global const unrolled_set* restrict all, global const double* places,
-                         global const uint* restrict counts, global double* coordinates, global uint* restrict images) {
+kernel void write_images(int n, periodic_lattice lattice, int sets, int own, int are_there,
+                         global const int* restrict offsets, global const unrolled_set* restrict all,
+                         global const double* places, global const uint* restrict counts, global double* coordinates,
+                         global uint64* restrict images) {
   const int i = get_global_id(0);
   if (i < n && !(are_there && counts[i + 1] == counts[i])) {
     const int k = segment_near(i, sets, offsets);
@@ -80,13 +87,12 @@ kernel void write_images(int n, int sets, int own, int are_there, global const i
     if (i >= own) images[at] = image_of(point, 0, 0);
     if (counts[i + 1] == counts[i]) return;
     const periodic_box box = all[k].box;
-    const image_range to = images_around(p.x, p.y, &box);
+    const image_range to = images_around(p, &lattice, &box);
     int next = offsets[k + 1] + (int)counts[i];
     for (int across = to.low[0]; across <= to.high[0]; ++across) {
       for (int up = to.low[1]; up <= to.high[1]; ++up) {
-        if (across == 0 && up == 0) continue;
-        const double2 image = VECTOR(double2, moved(p.x, across, box.period[0]), moved(p.y, up, box.period[1]));
-        vstore2(image, next, coordinates);
+        if (!is_image(p, across, up, &lattice, &box)) continue;
+        vstore2(moved(p, across, up, &lattice), next, coordinates);
         images[next++] = image_of(point, across, up);
       }
     }

@@ -337,16 +337,19 @@ SPACE_KINDS = _declarations.SPACE_KIND
 
 def space_of(
     kind: str,
-    period: tuple[float, float] = (0, 0),
+    period: tuple[float, ...] = (0, 0),
     coordinates: int = 0,
     weights: Optional[_Doubles] = None,
 ) -> _declarations.Space:
-    """A flaunay_space. kind: "plane", "torus" or "sphere"."""
+    """A flaunay_space. kind: "plane", "torus" or "sphere". period: in x and y, and perhaps the shear."""
     numbers = {"kind": SPACE_KINDS[kind], "coordinates": coordinates}
-    space: _declarations.Space = _struct(
-        _declarations.Space, **numbers, period_x=period[0], period_y=period[1], weights=weights
-    )
+    lengths = dict(zip(("period_x", "period_y", "shear"), period))
+    space: _declarations.Space = _struct(_declarations.Space, **numbers, **lengths, weights=weights)
     return space
+
+
+def _period_of(space: Any) -> tuple[float, float, float]:
+    return space[0].period_x, space[0].period_y, space[0].shear
 
 
 def _parts_of(wanted: set[str]) -> int:
@@ -1039,9 +1042,8 @@ class DeviceTriangulation(_DeviceArrays):
         return self.copied("hull_offsets", self._sets + 1, _INT64)
 
     @property
-    def period(self) -> tuple[float, float]:
-        space = self.read("space")[0]
-        return space.period_x, space.period_y
+    def period(self) -> tuple[float, float, float]:
+        return _period_of(self.read("space"))
 
     def arrays_in_space(self, *names: str) -> _Places:
         """The arrays that there are in another space than the plane, and these."""
@@ -1153,18 +1155,18 @@ def _strided_points(points: FloatArray) -> _declarations.StridedPoints:
     )
 
 
-def take_to_places(period: tuple[float, float], places: _Doubles) -> tuple[float, float]:
+def take_to_places(period: tuple[float, ...], places: _Doubles) -> tuple[float, ...]:
     """Takes points, which are contiguous, into the period. Returns that as it is rounded."""
     lengths = np.array(period)
     check(library.take_to_places(lengths.ctypes.data, places.ctypes.data, places.size // 2))
-    return float(lengths[0]), float(lengths[1])
+    return tuple(lengths.tolist())
 
 
 def triangulate_chunks(
     points: FloatArray,
     wanted: dict[str, Optional[bytes]],
     wide: bool,
-    period: Optional[tuple[float, float]],
+    period: Optional[tuple[float, ...]],
     chunks: Chunks,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
@@ -1611,9 +1613,8 @@ class InSpace(_Triangulation):
     def arrays(self) -> Made:
         return Made(self, {"neighbors"}, self._mesh)
 
-    def period(self) -> tuple[float, float]:
-        space = self._mesh[0].space[0]
-        return space.period_x, space.period_y
+    def period(self) -> tuple[float, float, float]:
+        return _period_of(self._mesh[0].space)
 
     def verify(self) -> None:
         points, starts, space = self._given

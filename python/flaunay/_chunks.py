@@ -27,7 +27,7 @@ from flaunay._arrays import (
     summary,
 )
 from flaunay._errors import InputError, UsageError
-from flaunay._periodic import as_lengths
+from flaunay._periodic import as_lengths, as_period
 
 Indices = Union[npt.NDArray[np.int32], npt.NDArray[np.int64]]
 Result = Union[None, bool, str, "os.PathLike[str]"]
@@ -83,7 +83,7 @@ class ChunkedTriangulation:
     representatives: Optional[Indices]
     areas: Optional[FloatArray]
     corner_offsets: Optional[npt.NDArray[np.int8]]
-    period: Optional[tuple[float, float]]
+    period: Optional[tuple[float, ...]]
     statistics: dict[str, Any]
 
     def __repr__(self) -> str:
@@ -184,7 +184,7 @@ def triangulate_chunks(
     representatives: Result = None,
     areas: Result = None,
     corner_offsets: Result = None,
-    period: Optional[tuple[Optional[float], Optional[float]]] = None,
+    period: Optional[Sequence[Optional[float]]] = None,
     memory: Union[None, int, str] = None,
     scratch: Union[None, str, os.PathLike[str]] = None,
     devices: Union[None, str, Sequence[str]] = None,
@@ -211,7 +211,7 @@ def triangulate_chunks(
         what was there before stays. Without any, the call finds the numbers alone.
     corner_offsets : path, bool or None
         As those, with a period alone.
-    period : (float or None, float or None), optional
+    period : sequence of float or None, optional
         As of `periodic`: triangulates on a torus or a cylinder, with the triangles of that. There is no hull.
         Images of points near the border are in memory, 48 bytes each.
     memory : int or str, optional
@@ -300,7 +300,7 @@ def triangulate_chunks(
         stored = in_memory[name.removeprefix("corner_")] if path is None else np.load(path, mmap_mode="r")
         arrays[name] = stored.reshape(-1, 3, 2) if name == "corner_offsets" else stored
     if lengths is not None:
-        lengths = _calls.take_to_places(lengths, np.empty(0))
+        lengths = as_period(_calls.take_to_places(lengths, np.empty(0)))
     return ChunkedTriangulation(**arrays, period=lengths, statistics=statistics)
 
 

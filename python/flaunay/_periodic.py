@@ -50,7 +50,8 @@ class PeriodicDelaunay(WithLocator):
         The points as they were given.
     period : tuple of float
         Where the plane begins again, in x and in y; infinite if it does not. As given, but for the last bit
-        of a double, which is 0 unless the period is a power of two.
+        of a double, which is 0 unless the period is a power of two. The shear is third, if there is one, and
+        more than -x / 2 and at most x / 2.
     places : ndarray of float64, shape (npoints, 2)
         The points in [0, period), rounded once to multiples of the period's last bit but one: this is what
         they are. What has no period is not rounded.
@@ -58,8 +59,9 @@ class PeriodicDelaunay(WithLocator):
         The corners of triangles, counter-clockwise. A set of n different points has 2 n, and on a cylinder
         2 n - h, if h of them are on its lowest and its highest circle.
     corner_offsets : ndarray of int8, shape (nsimplex, 3, 2)
-        In which period each corner is, if the first one is at its place: -1, 0 or 1. They tell apart corners
-        that are the same point, as few points have them.
+        In which period each corner is, if the first one is at its place: -1, 0 or 1, and with a shear from -2
+        to 2 unless x is longer than y. They tell apart corners that are the same point, as few points have
+        them.
     neighbors : ndarray of int32, shape (nsimplex, 3)
         The triangle opposite to each corner; -1 beyond the ends of a cylinder.
     representatives : ndarray of int32, shape (npoints,)
@@ -71,7 +73,7 @@ class PeriodicDelaunay(WithLocator):
     def __init__(
         self,
         points: Doubles,
-        period: tuple[float, float],
+        period: tuple[float, ...],
         offsets: Optional[npt.NDArray[np.int64]],
         device: Optional[str],
     ) -> None:
@@ -80,7 +82,7 @@ class PeriodicDelaunay(WithLocator):
         self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
         made = self._handle.arrays()
         self.points = points
-        self.period: tuple[float, float] = self._handle.period()
+        self.period: tuple[float, ...] = as_period(self._handle.period())
         self.places: Doubles = frozen(made["places"])
         self.simplices: Indices = frozen(made["triangles"])
         self.corner_offsets: npt.NDArray[np.int8] = frozen(made["corner_offsets"].reshape(-1, 3, 2))
@@ -108,7 +110,7 @@ class PeriodicDelaunay(WithLocator):
         >>> sorted(set(map(tuple, cells.polygon(0).tolist())))
         [(0.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 1.0)]
         """
-        across, up = self.period
+        across, up = self.period[:2]
         box = np.array([[0, 0], [across, 0], [across, up], [0, up]])
         return ClippedVoronoi(**self._handle.clipped_cells(self._triangulator), bounds=box)
 
@@ -125,8 +127,9 @@ class PeriodicDelaunay(WithLocator):
         >>> ((a * d - b * c) / 2).sum().round(12).item()
         1.0
         """
-        steps = np.where(np.isfinite(self.period), self.period, 0)
-        return frozen(self.places[self.simplices] + self.corner_offsets * steps)
+        across, up, shear = [*self.period, 0.0][:3]
+        vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
+        return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
     def verify(self) -> None:
         """Checks exactly that this is the canonical triangulation of its places.
@@ -210,19 +213,25 @@ class PeriodicDelaunay(WithLocator):
         return self._interpolate(values, _as_queries(xi), ask)
 
 
-def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, float]:
-    """Two lengths; None is infinite."""
-    if not isinstance(period, (Sequence, np.ndarray)) or len(period) != 2:
+def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, ...]:
+    """Two lengths, of which None is infinite, and a shear."""
+    if not isinstance(period, (Sequence, np.ndarray)) or len(period) not in (2, 3):
         raise UsageError(
-            f"period must be two lengths, in x and y, of which None is for no period; not {period!r}"
+            "period must be two lengths, in x and y, of which None is for no period, and perhaps a shear; "
+            f"not {period!r}"
         )
     given = [np.inf if length is None else length for length in period]
-    lengths = np.asarray(as_floats(given, "period"), np.float64)
-    return float(lengths[0]), float(lengths[1])
+    lengths = np.asarray(as_floats([*given, 0.0][:3], "period"), np.float64)
+    return tuple(lengths.tolist())
+
+
+def as_period(lengths: Sequence[float]) -> tuple[float, ...]:
+    """Without a shear that is 0."""
+    return tuple(lengths if lengths[2] else lengths[:2])
 
 
 def to_places(
-    points: ArrayLike, period: tuple[Optional[float], Optional[float]]
+    points: ArrayLike, period: Sequence[Optional[float]]
 ) -> npt.NDArray[np.float64]:
     """Takes points into a period, as `periodic` and `triangulate_chunks` do.
 
@@ -230,7 +239,7 @@ def to_places(
     ----------
     points : array_like, shape (..., 2)
         Any points.
-    period : (float or None, float or None)
+    period : sequence of float or None
         As of `periodic`.
 
     Returns
@@ -260,7 +269,7 @@ def to_places(
 
 def periodic(
     points: ArrayLike,
-    period: tuple[Optional[float], Optional[float]],
+    period: Sequence[Optional[float]],
     offsets: Optional[npt.ArrayLike] = None,
     *,
     device: Optional[str] = None,
@@ -271,9 +280,10 @@ def periodic(
     ----------
     points : array_like, shape (n, 2)
         Any points, which are taken into the period.
-    period : (float or None, float or None)
+    period : sequence of float or None
         Where the plane begins again, in x and in y: from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and
-        neither more than 2^30 times the other. None, or infinity, for one of them: it does not.
+        neither more than 2^30 times the other. None, or infinity, for one of them: it does not. A third number
+        is a shear: the period in y moves places along x by it. Then x is at most 64 times y.
     offsets : array_like of int, optional
         Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
         are one set.
@@ -343,7 +353,7 @@ class DevicePeriodic:
     corner_offsets: pyopencl.array.Array
     neighbors: pyopencl.array.Array
     representatives: pyopencl.array.Array
-    period: tuple[float, float]
+    period: tuple[float, ...]
     simplex_offsets: npt.NDArray[np.int64]
     event: pyopencl.Event
 
@@ -354,7 +364,7 @@ class DevicePeriodic:
 
 def periodic_device(
     points: pyopencl.array.Array,
-    period: tuple[Optional[float], Optional[float]],
+    period: Sequence[Optional[float]],
     queue: Optional[pyopencl.CommandQueue] = None,
     offsets: Offsets = None,
     wait_for: Optional[Sequence[pyopencl.Event]] = None,
@@ -365,7 +375,7 @@ def periodic_device(
     ----------
     points : pyopencl.array.Array, shape (n, 2)
         As of `triangulate_device`.
-    period : (float or None, float or None)
+    period : sequence of float or None
         As of `periodic`.
     queue, offsets, wait_for : optional
         As of `triangulate_device`.
@@ -401,7 +411,7 @@ def periodic_device(
         corner_offsets=views.pop("corner_offsets").reshape(triangles, 3, 2),
         **views,
         points=points,
-        period=made.period,
+        period=as_period(made.period),
         simplex_offsets=made.triangle_offsets,
         event=event,
     )

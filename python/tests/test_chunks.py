@@ -480,7 +480,7 @@ def test_of_a_margin_that_was_too_small_the_files_end_in_time(random, tmp_path):
     "options, message",
     [
         ({"period": (1, 0)}, "period"),
-        ({"period": (1, 2, 3)}, "two lengths"),
+        ({"period": (1, 2, 3, 4)}, "two lengths"),
         ({"corner_offsets": True}, "no period"),
         ({"hull": "hull.npy", "period": (1, 1)}, "hull"),
     ],

@@ -252,7 +252,7 @@ def check_surface(result, expected, *names):
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-@pytest.mark.parametrize("period", [(0.7, 2), (1, None)])
+@pytest.mark.parametrize("period", [(0.7, 2), (1, None), (0.7, 2, 0.3)])
 @pytest.mark.parametrize("offsets", [None, [0, 1, 1, 300, 1000]])
 def test_points_on_a_torus_or_a_cylinder(random, queue, dtype, period, offsets):
     points = (random.random((1000, 2)) * 3).astype(dtype)
@@ -284,7 +284,7 @@ def test_surfaces_without_points_and_wrong_input(random, queue):
     check_surface(flaunay.spherical_device(none), flaunay.spherical(none.get()))
     points = random.random((20, 2))
     given = cl_array.to_device(queue, points)
-    for period in (0, 1), (1, -1), (None, None), (np.nan, 1), (1, 1, 1):
+    for period in (0, 1), (1, -1), (None, None), (np.nan, 1), (1, 1, 1, 1):
         with pytest.raises(flaunay.UsageError, match="period"):
             flaunay.periodic_device(given, period)
     with pytest.raises(TypeError, match="points must be a pyopencl.array.Array"):

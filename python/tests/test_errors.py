@@ -101,7 +101,7 @@ TRI = flaunay.Delaunay(FOUR)
     [
         (lambda: flaunay.periodic(FOUR, 10), "period must be two lengths, in x and y, .* not 10"),
         (lambda: flaunay.periodic(FOUR, "ab"), "period must be real numbers"),
-        (lambda: flaunay.to_places(FOUR, (1, 2, 3)), r"two lengths, .* not \(1, 2, 3\)"),
+        (lambda: flaunay.to_places(FOUR, (1, 2, 3, 4)), r"two lengths, .* not \(1, 2, 3, 4\)"),
         (lambda: flaunay.triangulate_chunks(FOUR, triangles=True, period=10), "two lengths"),
         (lambda: flaunay.periodic(FOUR.T, (1, 1)), "take points.T"),
         (lambda: flaunay.weighted(FOUR[:, 0], FOUR[:, 1]), "numpy.column_stack"),

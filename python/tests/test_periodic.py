@@ -33,6 +33,35 @@ def test_triangles_and_cells(random):
     assert len(tri.cells.polygons()) == 300 and tri.cells.bounds[2].tolist() == list(PERIOD)
 
 
+def test_sheared_boxes(random):
+    points = random.uniform(0, PERIOD, (300, 2))
+    tri = flaunay.periodic(points, (*PERIOD, 4.75))
+    tri.verify()
+    assert tri.period == (2, 3, 0.75) and tri.nsimplex == 600
+    vectors = np.array([[2, 0], [0.75, 3]])
+    np.testing.assert_array_equal(tri.corners, tri.places[tri.simplices] + tri.corner_offsets @ vectors)
+    assert (np.abs(tri.corners[:, 1:] - tri.corners[:, :1]) < 1).all()
+    assert abs(tri.cells.areas.sum() - 6) < 1e-12
+    moved = points + random.integers(-5, 6, (300, 2)) @ vectors
+    np.testing.assert_allclose(flaunay.to_places(moved, tri.period), tri.places, atol=1e-13)
+    np.testing.assert_array_equal(tri.nearest(moved), np.arange(300))
+    again = pickle.loads(pickle.dumps(tri))
+    np.testing.assert_array_equal(again.find_simplex(moved), tri.find_simplex(moved))
+    assert flaunay.periodic(points, (*PERIOD, 4)).period == PERIOD
+    chunks = flaunay.triangulate_chunks(
+        points, triangles=True, corner_offsets=True, period=tri.period, chunk_points=50
+    )
+    assert chunks.period == tri.period
+    np.testing.assert_array_equal(
+        np.sort(np.hstack([chunks.triangles, chunks.corner_offsets.reshape(-1, 6)]), axis=0),
+        np.sort(np.hstack([tri.simplices, tri.corner_offsets.reshape(-1, 6)]), axis=0),
+    )
+    with pytest.raises(flaunay.UsageError, match="no shear"):
+        flaunay.periodic(points, (2, None, 1))
+    with pytest.raises(flaunay.UsageError, match="perhaps a shear"):
+        flaunay.periodic(points, (2, 3, 1, 1))
+
+
 def test_one_point_has_two_triangles():
     tri = flaunay.periodic([[7.5, -1]], PERIOD)
     assert tri.simplices.tolist() == [[0, 0, 0], [0, 0, 0]]

@@ -255,12 +255,13 @@ flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points*
 }
 
 flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points, double period_x,
-                                                   double period_y, const flaunay_mesh_arrays* arrays,
+                                                   double period_y, double shear,
+                                                   const flaunay_mesh_arrays* arrays,
                                                    const flaunay_mesh_files* files,
                                                    const flaunay_chunk_options* options,
                                                    flaunay_chunk_report** report) {
   return create(report, [&] {
-    const Period period{period_x, period_y};
+    const Period period{period_x, period_y, shear};
     return to_files(points, &period, arrays, files, options);
   });
 }
@@ -268,9 +269,10 @@ flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points*
 flaunay_status flaunay_take_to_places(double* period, double* points, size_t n) {
   return guarded([&] {
     required(period, "the period");
-    const Period rounded = take_to_places({period[0], period[1]}, points, n);
+    const Period rounded = take_to_places({period[0], period[1], period[2]}, points, n);
     period[0] = rounded.x;
     period[1] = rounded.y;
+    period[2] = rounded.shear;
   });
 }
 

@@ -143,6 +143,7 @@ flaunay_space view_of(const Space& space) {
   if (space.kind == SpaceKind::torus) {
     view.period_x = space.period.x;
     view.period_y = space.period.y;
+    view.shear = space.period.shear;
   }
   return view;
 }
@@ -153,7 +154,7 @@ Space to_space(const flaunay_space* given) {
   Space space = Space::plane().with_weights(given->weights);
   space.kind = to_enum<flaunay_space_kind, SpaceKind>(given->kind);
   space.coordinates = to_enum<flaunay_sphere_coordinates, SphereCoordinates>(given->coordinates);
-  space.period = {given->period_x, given->period_y};
+  space.period = {given->period_x, given->period_y, given->shear};
   return space;
 }
 

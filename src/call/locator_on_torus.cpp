@@ -18,7 +18,7 @@ namespace {
 class TorusLocator : public call::SpaceLocator {
  public:
   TorusLocator(Triangulator& used, const Triangulation& mesh)
-      : owner(TriangulatorAccess::shared(used)), period{mesh.space.period.x, mesh.space.period.y} {
+      : owner(TriangulatorAccess::shared(used)), lattice(periodic::lattice_of(mesh.space.period)) {
     call::take_turn(*owner, [&] { make(used, mesh); });
   }
 
@@ -55,11 +55,11 @@ class TorusLocator : public call::SpaceLocator {
     call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
     const std::size_t n = mesh.places.size() / 2;
     if (n == 0) return;
-    periodic::Box box = periodic::box_of(mesh.places.data(), 0, n, period);
+    periodic::Box box = periodic::box_of(mesh.places.data(), 0, n, lattice);
     constexpr double kWhole = std::numeric_limits<double>::infinity();
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
-    const bool is_torus = periodic::repeats(box, 0) && periodic::repeats(box, 1);
+    const bool is_torus = periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1);
     gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
     box.margin = std::max(periodic::first_margin(box, n), gap);
     for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
@@ -93,7 +93,7 @@ class TorusLocator : public call::SpaceLocator {
       check_queries(queries, m);
       const std::size_t results = check_columns(columns, m);
       const std::vector<double> places =
-          periodic::to_places(owner->native().runtime, queries, m, period, "query");
+          periodic::to_places(owner->native().runtime, queries, m, lattice, "query");
       if (!locator) return std::vector<T>(results, none);
       const call::WithinTurn within(*owner);
       return work(places.data());
@@ -120,9 +120,9 @@ class TorusLocator : public call::SpaceLocator {
                      options.device_gradients == nullptr,
                  "values on a torus or a cylinder are interpolated without gradients");
     if (options.method != Interpolation::sibson && options.method != Interpolation::laplace) return;
-    call::expect(!std::isinf(period[0]) && !std::isinf(period[1]),
+    call::expect(periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1),
                  "values on a cylinder are not interpolated by natural neighbors; those on a torus are");
-    if (locator && gap > std::min(period[0], period[1]))
+    if (locator && gap > std::min(lattice.period[0], lattice.period[1]))
       throw Error(
           ErrorKind::input,
           "these points have no natural neighbors on their torus: a circle without points is wider than "
@@ -130,7 +130,7 @@ class TorusLocator : public call::SpaceLocator {
   }
 
   std::shared_ptr<call::Implementation> owner;
-  periodic::Pair<double> period;
+  periodic::Lattice lattice;
   double gap = 0;  // of a torus: the width of the widest circle without points, or more
   std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh

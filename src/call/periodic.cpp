@@ -27,6 +27,14 @@ void call::check(const Period& period) {
                      "to 8.4e270), or "
                      "one of them infinite; scale points and period",
                      period.x, period.y));
+  expect(std::isfinite(period.shear), fmt::format("the shear {} is not finite", period.shear));
+  const bool is_sheared = period.shear != 0 && std::remainder(period.shear, period.x) != 0;
+  expect(period.shear == 0 || std::isfinite(period.x + period.y),
+         fmt::format("a cylinder has no shear, but {} is given", period.shear));
+  constexpr double kMostSheared = 64;
+  expect(!is_sheared || period.x <= kMostSheared * period.y,
+         fmt::format("the period {} x {} is not possible with a shear: x is more than 64 times as long as y",
+                     period.x, period.y));
   constexpr double kMostUnequal = 1 << 30;
   expect(
       std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) || std::isinf(period.x) ||
@@ -50,14 +58,11 @@ void call::check_on_torus(const Triangulation& mesh) {
 
 void call::check_with_places(const Triangulation& mesh) {
   check_on_torus(mesh);
-  const Period& period = mesh.space.period;
-  const kernel::periodic_axes axes = periodic::axes_of({period.x, period.y});
-  const auto is_place = [](double x, const auto& axis) {
-    return std::isfinite(x) && kernel::place_of(x, axis) == x;
-  };
+  const periodic::Lattice lattice = periodic::lattice_of(mesh.space.period);
   for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
     const double x = mesh.places[2 * i], y = mesh.places[2 * i + 1];
-    if (is_place(x, axes.x) && is_place(y, axes.y)) continue;
+    const geometry::Point place = kernel::place_in({x, y}, &lattice);
+    if (std::isfinite(x) && std::isfinite(y) && place.x == x && place.y == y) continue;
     throw Error(
         ErrorKind::usage,
         fmt::format("place {} of the triangulation on a torus or a cylinder is none: ({}, {})", i, x, y));
@@ -73,15 +78,15 @@ using host::Buffer;
 template <typename Result>
 class Rounds {
  public:
-  Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places, Result& result)
+  Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places,
+         const periodic::Lattice& lattice, Result& result)
       : self_(self),
         call_(call),
         engine_(call.engine),
         places_(places),
         result_(result),
         offsets_(result.point_offsets),
-        boxes_(periodic::find_boxes(call.runtime, places, offsets_,
-                                    {result.space.period.x, result.space.period.y})) {}
+        boxes_(periodic::find_boxes(call.runtime, places, offsets_, lattice)) {}
 
   // The other arrays of the result.
   void run(const call::Output<cl_int>& triangles, const call::Output<cl_char>& periods,
@@ -208,8 +213,8 @@ template <typename Points, typename Result>
 void compute(call::Implementation& self, call::Frame& call, const Points& points,
              const std::vector<std::size_t>& offsets, const Period& period, Result& result) {
   const std::size_t n = points.count, most = blocks::kMostTrianglesPerPoint * n;
-  const periodic::Pair<double> lengths = periodic::rounded(period);
-  result.space = Space::torus({lengths[0], lengths[1]});
+  const periodic::Lattice lattice = periodic::lattice_of(period);
+  result.space = Space::torus(periodic::period_of(lattice));
   result.point_offsets = offsets;
   result.triangle_offsets.assign(offsets.size(), 0);
   result.images = 0;
@@ -224,9 +229,9 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
   if (n > 0) {
     {
       Arena::Scope scope(call.runtime.arena());
-      periodic::find_places(call.runtime, call.points(points), n, lengths, places);
+      periodic::find_places(call.runtime, call.points(points), n, lattice, places);
     }
-    Rounds<Result>(self, call, places, result).run(triangles, periods, neighbors, representatives);
+    Rounds<Result>(self, call, places, lattice, result).run(triangles, periods, neighbors, representatives);
   }
   call.end();
 }
@@ -280,14 +285,15 @@ std::string call::problem_on_torus(const double* points, const std::vector<std::
   check(period);
   check_on_torus(mesh);
   if (offsets != mesh.point_offsets) return "the sets have other points";
-  const periodic::Pair<double> lengths = periodic::rounded(period);
-  if (mesh.space.period.x != lengths[0] || mesh.space.period.y != lengths[1])
-    return "the period is another one";
+  const periodic::Lattice lattice = periodic::lattice_of(period);
   check_points(points, offsets.back());
   std::string problem = prove::find_problem(mesh);
   if (!problem.empty()) return problem;
+  const Period rounded = periodic::period_of(lattice), made = mesh.space.period;
+  if (made.x != rounded.x || made.y != rounded.y || made.shear != rounded.shear)
+    return "the period is another one";
   const std::vector<double> places =
-      periodic::to_places(Engine::of_thread().runtime, points, offsets.back(), lengths, "point");
+      periodic::to_places(Engine::of_thread().runtime, points, offsets.back(), lattice, "point");
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] != mesh.places[k]) return fmt::format("point {} has another place", k / 2);
   }

@@ -35,13 +35,13 @@ constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 18;
 // The places of points, piece by piece.
 class Places {
  public:
-  Places(PointSource& points, const Pair<double>& period, const ChunkOptions& options)
-      : points_(points), period_(period), options_(options) {}
+  Places(PointSource& points, const periodic::Lattice& lattice, const ChunkOptions& options)
+      : points_(points), lattice_(lattice), options_(options) {}
 
   std::uint64_t size() const { return points_.size(); }
   void read(std::uint64_t first, std::size_t count, double* places) const {
     points_.read(first, count, places);
-    periodic::take_into(period_, places, count, first, "point", places);
+    periodic::take_into(lattice_, places, count, first, "point", places);
   }
   // Calls visit(i, place) for each point.
   template <typename Visit>
@@ -58,14 +58,14 @@ class Places {
 
  private:
   PointSource& points_;
-  Pair<double> period_;
+  periodic::Lattice lattice_;
   const ChunkOptions& options_;
 };
 
-Box box_of(const Places& places, const Pair<double>& period) {
-  Box box = periodic::box_of(nullptr, 0, 0, period);
-  if (periodic::repeats(box, 0) && periodic::repeats(box, 1)) return box;
-  const std::size_t axis = periodic::repeats(box, 0) ? 1 : 0;
+Box box_of(const Places& places, const periodic::Lattice& lattice) {
+  Box box = periodic::box_of(nullptr, 0, 0, lattice);
+  if (periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1)) return box;
+  const std::size_t axis = periodic::repeats(lattice, 0) ? 1 : 0;
   box.low[axis] = HUGE_VAL;
   box.high[axis] = -HUGE_VAL;
   places.for_each([&](std::uint64_t, Point p) {
@@ -87,7 +87,7 @@ class UnrolledPlane : public PointSource {
     places.for_each([&](std::uint64_t i, Point p) {
       periodic::for_each_image(box, p, [&](const Pair<int>& at, Point place) {
         if (images_.size() == most) throw too_many(memory);
-        images_.push_back({place, (i << kBits) + static_cast<std::uint64_t>((at[0] + 1) * 4 + at[1] + 1)});
+        images_.push_back({place, kernel::image_of(static_cast<std::int64_t>(i), at[0], at[1])});
       });
     });
   }
@@ -97,9 +97,7 @@ class UnrolledPlane : public PointSource {
   Image image(std::int64_t v) const {
     const auto k = static_cast<std::uint64_t>(v);
     if (k < places_.size()) return {v, {}};
-    const std::uint64_t code = images_[k - places_.size()].code;
-    return {static_cast<std::int64_t>(code >> kBits),
-            {static_cast<int>(code >> 2 & 3) - 1, static_cast<int>(code & 3) - 1}};
+    return periodic::image_of(images_[k - places_.size()].image);
   }
 
   std::uint64_t size() const override { return places_.size() + images(); }
@@ -116,9 +114,8 @@ class UnrolledPlane : public PointSource {
  private:
   struct Stored {
     Point place;
-    std::uint64_t code;  // the point, and so many periods + 1, in two bits each
+    std::uint64_t image;
   };
-  static constexpr int kBits = 4;
 
   Error too_many(std::uint64_t memory) const {
     return Error(ErrorKind::input,
@@ -267,9 +264,9 @@ PeriodicMeshSink::~PeriodicMeshSink() = default;
 Period take_to_places(const Period& period, double* points, std::size_t n) {
   check_array(points, n, "points", kMostPointsInChunks);
   call::check(period);
-  const Pair<double> lengths = periodic::rounded(period);
-  periodic::take_into(lengths, points, n, 0, "point", points);
-  return {lengths[0], lengths[1]};
+  const periodic::Lattice lattice = periodic::lattice_of(period);
+  periodic::take_into(lattice, points, n, 0, "point", points);
+  return periodic::period_of(lattice);
 }
 
 ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& period, PeriodicMeshSink& sink,
@@ -279,9 +276,9 @@ ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& p
     check_count(points.size(), "points", kMostPointsInChunks);
     expect(!sink.wants(MeshArray::hull), "a torus or a cylinder has no hull");
     const double begin = host::now();
-    const Pair<double> lengths = periodic::rounded(period);
-    const Places places(points, lengths, options);
-    Box box = box_of(places, lengths);
+    const periodic::Lattice lattice = periodic::lattice_of(period);
+    const Places places(points, lattice, options);
+    Box box = box_of(places, lattice);
     box.margin = periodic::first_margin(box, places.size());
     for (;; periodic::widen(box, 0)) {
       if (places.size() == 0) return ChunkStatistics();

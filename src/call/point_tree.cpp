@@ -47,15 +47,14 @@ struct PointTree::Implementation {
     return result;
   }
 
-  // Each point once. At most nine images of one are in the tree, but mostly only one of them is near.
+  // Each point once. Several images of one are in the tree, but mostly only one of them is near.
   Neighbors find_on_torus(const double* queries, std::size_t m, const NeighborOptions& options) const {
-    constexpr std::size_t kMostImages = 9;
     const std::vector<double> places =
-        periodic::to_places(owner->native().runtime, queries, m, *period, "query");
+        periodic::to_places(owner->native().runtime, queries, m, *lattice, "query");
     Neighbors result = find(places.data(), m, options);
     if (has_repeated(result, options.count)) {
       NeighborOptions of_images = options;
-      of_images.count = kMostImages * options.count;
+      of_images.count = most_copies * options.count;
       Neighbors images = find(places.data(), m, of_images);
       result.points.assign(m * options.count, -1);
       result.distances.assign(m * options.count, std::numeric_limits<double>::infinity());
@@ -94,9 +93,10 @@ struct PointTree::Implementation {
   std::shared_ptr<call::Implementation> owner;
   nearest::PointTree tree;
   std::optional<call::SphereLocator> on_sphere;  // answers all queries there
-  std::optional<periodic::Pair<double>> period;  // none in the plane
-  std::size_t points = 0;                        // with a period: in front of their images
-  std::vector<std::int32_t> originals;           // of these
+  std::optional<periodic::Lattice> lattice;  // none in the plane
+  std::size_t points = 0;                    // with a period: in front of their images
+  std::vector<std::int32_t> originals;       // of these
+  std::size_t most_copies = 1;               // of one point: itself and its images
 };
 
 PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n)
@@ -110,19 +110,23 @@ PointTree::PointTree(Triangulator& triangulator, const Triangulation& mesh)
         if (mesh.space.kind == SpaceKind::sphere) return std::make_unique<Implementation>(triangulator, mesh);
         call::check_with_places(mesh);
         call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
-        const periodic::Pair<double> period{mesh.space.period.x, mesh.space.period.y};
-        periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, period);
-        box.margin = 0;
-        for (const double length : period) {
+        const periodic::Lattice lattice = periodic::lattice_of(mesh.space.period);
+        periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, lattice);
+        for (const double length : lattice.reach) {
           if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
         }
         const periodic::Plane plane = periodic::plane_of(call::Engine::of_thread().runtime, mesh.places, box);
         auto self = std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
                                                      plane.coordinates.data(), plane.coordinates.size() / 2);
-        self->period = period;
+        self->lattice = lattice;
         self->points = plane.points();
-        for (const periodic::Image& image : plane.images)
-          self->originals.push_back(static_cast<std::int32_t>(image.point));
+        std::size_t copies = 0;  // of one point, whose images follow each other
+        for (const periodic::Image& image : plane.images) {
+          const auto point = static_cast<std::int32_t>(image.point);
+          copies = self->originals.empty() || self->originals.back() != point ? 2 : copies + 1;
+          self->most_copies = std::max(self->most_copies, copies);
+          self->originals.push_back(point);
+        }
         return self;
       })) {}
 
@@ -145,7 +149,7 @@ Neighbors PointTree::nearest(const double* queries, std::size_t m, const Neighbo
   }
   return call::take_turn(*self.owner, [&] {
     check_queries(queries, m);
-    return self.period ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);
+    return self.lattice ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);
   });
 }
 

@@ -33,8 +33,7 @@ class PeriodicProof : RowsProof {
       : RowsProof({mesh.triangles, mesh.neighbors, mesh.representatives, mesh.point_offsets,
                    mesh.triangle_offsets}),
         mesh_(mesh),
-        period_{mesh.space.period.x, mesh.space.period.y},
-        scaled_period_(period_) {}
+        lattice_(periodic::lattice_of(mesh.space.period)) {}
 
   void run() {
     check_places();
@@ -43,12 +42,14 @@ class PeriodicProof : RowsProof {
   }
 
  private:
-  bool repeats(std::size_t axis) const { return std::isfinite(period_[axis]); }
+  bool repeats(std::size_t axis) const { return periodic::repeats(lattice_, axis); }
 
   void check_places() const {
-    require(periodic::rounded(mesh_.space.period) == period_, "the period is not rounded");
+    const Period &given = mesh_.space.period, rounded = periodic::period_of(lattice_);
+    require(rounded.x == given.x && rounded.y == given.y && rounded.shear == given.shear,
+            "the period is not rounded");
     std::vector<double> places(mesh_.places.size());
-    periodic::take_into(period_, mesh_.places.data(), places.size() / 2, 0, "place", places.data());
+    periodic::take_into(lattice_, mesh_.places.data(), places.size() / 2, 0, "place", places.data());
     const auto wrong = std::mismatch(places.begin(), places.end(), mesh_.places.begin()).first;
     require(wrong == places.end(), "place {} is not in the period, or not rounded",
             (wrong - places.begin()) / 2);
@@ -57,29 +58,34 @@ class PeriodicProof : RowsProof {
   // Scales by a power of two, so that differences of images do not overflow.
   void scale() {
     places_ = mesh_.places;
-    for (const double length : period_) places_.push_back(std::isfinite(length) ? 2 * length : 0);
+    const Period& period = mesh_.space.period;
+    for (const double length : {period.x, period.y}) {
+      const double most = period.shear == 0 ? length : 2 * std::max(period.x, period.y);
+      places_.push_back(std::isfinite(length) ? 2 * most : 0);
+    }
     const geometry::Scaling scaling = geometry::scaling_for(
         places_.data(), 0, places_.size() / 2, geometry::inspect(places_.data(), 0, places_.size() / 2));
     for (double& x : places_) x = std::ldexp(x, scaling.shift);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      if (repeats(axis)) scaled_period_[axis] = places_[places_.size() - 2 + axis] / 2;
-    }
     places_.resize(places_.size() - 2);
+    const auto scaled = [&](double x) { return std::ldexp(x, scaling.shift); };
+    lattice_ = periodic::lattice_of({scaled(period.x), scaled(period.y), scaled(period.shear)});
   }
 
   Image corner(std::size_t c) const {
     return {mesh_.triangles[c], {mesh_.corner_offsets[2 * c], mesh_.corner_offsets[2 * c + 1]}};
   }
   // Relative to the origin's image in a direction that has a period. No edge of a Delaunay triangulation is
-  // longer than a period, so a mesh with rounded differences is wrong anyway.
+  // longer than neighbors can be apart, so a mesh with rounded differences is wrong anyway.
   TorusPlace place(const Image& image, const Image& origin) const {
+    const geometry::Point step =
+        kernel::moved({0, 0}, image.at[0] - origin.at[0], image.at[1] - origin.at[1], &lattice_);
+    const TorusPlace steps{step.x, step.y};
     TorusPlace at;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       at[axis] = places_[2 * index(image.point) + axis];
       if (!repeats(axis)) continue;
-      at[axis] = at[axis] - places_[2 * index(origin.point) + axis] +
-                 (image.at[axis] - origin.at[axis]) * scaled_period_[axis];
-      require(std::fabs(at[axis]) <= scaled_period_[axis], "points {} and {} are too far apart", origin.point,
+      at[axis] = at[axis] - places_[2 * index(origin.point) + axis] + steps[axis];
+      require(std::fabs(at[axis]) <= lattice_.reach[axis], "points {} and {} are too far apart", origin.point,
               image.point);
     }
     return at;
@@ -88,7 +94,7 @@ class PeriodicProof : RowsProof {
   void check_set(std::size_t s) {
     enter(s);
     check_representatives([&](std::size_t i) { return std::pair(places_[2 * i], places_[2 * i + 1]); });
-    const Box box = periodic::box_of(places_.data(), first_, last_, scaled_period_);
+    const Box box = periodic::box_of(places_.data(), first_, last_, lattice_);
     std::size_t expected = 0;
     for (std::size_t i = first_; i < last_; ++i) {
       if (!represents_itself(i)) continue;
@@ -137,7 +143,7 @@ class PeriodicProof : RowsProof {
             "the edge between the triangles {} and {} is not Delaunay, or not canonical", c / 3, other / 3);
   }
 
-  /// The number of periods by which a triangle must move so that the edge opposite to its corner d ends at b.
+  /// The number of vectors by which a triangle must move so that the edge opposite to its corner d ends at b.
   Pair<int> step_to(const Image& b, std::size_t d) const {
     const Image end = corner(after(after(d)));
     return {b.at[0] - end.at[0], b.at[1] - end.at[1]};
@@ -155,7 +161,7 @@ class PeriodicProof : RowsProof {
   }
 
   const Triangulation& mesh_;
-  Pair<double> period_, scaled_period_;
+  periodic::Lattice lattice_;   // after check_places scaled
   std::vector<double> places_;  // scaled
   ExactPredicates predicates_;
 };

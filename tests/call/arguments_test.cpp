@@ -423,7 +423,7 @@ TEST(SmallArguments, OfStreamsAndChunks) {
              none.index_type = FLAUNAY_INT64;
              flaunay_chunk_report* report = nullptr;
              throw_error_of(
-                 flaunay_triangulate_periodic_chunks(&points, 8, 8, &none, nullptr, nullptr, &report));
+                 flaunay_triangulate_periodic_chunks(&points, 8, 8, 1, &none, nullptr, nullptr, &report));
            }},
           {"values",
            [&](std::size_t count) {

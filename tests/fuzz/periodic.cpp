@@ -55,8 +55,8 @@ class PeriodicFuzzer : public Fuzzer {
     sets_ += offsets.size() - 1;
     points_ += points.size() / 2;
     if (problem.empty()) return true;
-    fmt::print("{}: {}; period {:a} x {:a}; points of sets {}:\n", case_name(), problem, period.x, period.y,
-               fmt::join(offsets, ", "));
+    fmt::print("{}: {}; period {:a} x {:a}, {:a}; points of sets {}:\n", case_name(), problem, period.x,
+               period.y, period.shear, fmt::join(offsets, ", "));
     for (std::size_t i = 0; i < points.size(); i += 2) fmt::print("{:a} {:a}\n", points[i], points[i + 1]);
     return false;
   }
@@ -77,6 +77,7 @@ class PeriodicFuzzer : public Fuzzer {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     if (kind == 0) period.x = kNone;
     if (kind == 1) period.y = kNone;
+    if (kind > 3) period.shear = period.x * static_cast<double>(random.integer(-8, 8)) / (kind == 4 ? 8 : 7);
     return period;
   }
 

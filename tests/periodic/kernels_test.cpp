@@ -1,6 +1,7 @@
 // Kernels for a torus and a cylinder against plain loops.
 //
 // Suites named Small... have tiny inputs, for devices and sanitizers.
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,12 +22,18 @@ namespace flaunay::locate {
 namespace {
 
 // The place of x, by the C library's remainder.
-double place_of_twin(double x, double period) {
+double place_of_twin(double x, double period, double whole) {
   if (!std::isfinite(period)) return x + 0.0;
-  const double power = std::ldexp(1.0, std::ilogb(period)), unit = (power < period ? 2 : 1) * power * 0x1p-52;
+  const double unit = whole * 0x1p-52;
   const double rest = std::remainder(x, period), near = rest < period / 2 ? rest : rest - period;
   const double place = std::nearbyint(near / unit) * unit;
   return place < 0 ? place + period : place + 0.0;
+}
+
+mpq_class floor_of(const mpq_class& x) {
+  mpz_class result;
+  mpz_fdiv_q(result.get_mpz_t(), x.get_num_mpz_t(), x.get_den_mpz_t());
+  return result;
 }
 
 // Numbers of all magnitudes, and what lies close to multiples of half a period.
@@ -48,18 +55,33 @@ Coordinates numbers(double period, std::size_t n, std::uint64_t seed) {
 TEST(SmallPeriodicKernels, Places) {
   for (const std::string& tuning : tunings()) {
     Runtime& runtime = Runtimes::get(tuning);
-    for (const Period& given :
-         {Period{}, {0.7, 1e-3}, {3e8, HUGE_VAL}, {0x1p-900, 0x1.8p-890}, {1e200, 3e200}}) {
+    for (const Period& given : {Period{},
+                                {0.7, 1e-3},
+                                {3e8, HUGE_VAL},
+                                {0x1p-900, 0x1.8p-890},
+                                {1e200, 3e200},
+                                {1, 1, 0.5},
+                                {0.7, 0.9, -0.3},
+                                {3, 0.125, 7e100},
+                                {1e-200, 1e-195, 1e-201}}) {
       host::Arena::Scope scope(runtime.arena());
-      const periodic::Pair<double> period = periodic::rounded(given);
+      const periodic::Lattice lattice = periodic::lattice_of(given);
+      const Period period = periodic::period_of(lattice);
       Coordinates points;
-      const Coordinates x = numbers(period[0], 120, 3), y = numbers(period[1], 120, 4);
+      const Coordinates x = numbers(period.x, 120, 3), y = numbers(period.y, 120, 4);
       for (std::size_t i = 0; i < x.size(); ++i) points.insert(points.end(), {x[i], y[i]});
       const auto places = guarded<cl_double>(runtime, points.size());
-      periodic::find_places(runtime, upload(runtime, points), x.size(), period, places);
+      periodic::find_places(runtime, upload(runtime, points), x.size(), lattice, places);
       Coordinates expected;
-      for (std::size_t c = 0; c < points.size(); ++c)
-        expected.push_back(place_of_twin(points[c], period[c % 2]));
+      for (std::size_t c = 0; c < points.size(); c += 2) {
+        expected.push_back(place_of_twin(points[c], period.x, lattice.whole[0]));
+        expected.push_back(place_of_twin(points[c + 1], period.y, lattice.whole[1]));
+        if (period.shear == 0) continue;
+        // Both are rounded, so this is the nearest number of periods.
+        const mpq_class periods = mpq_class(points[c + 1] - mpq_class(expected[c + 1])) / period.y;
+        const mpq_class along = expected[c] - floor_of(periods + mpq_class(1, 2)) * mpq_class(period.shear);
+        expected[c] = mpq_class(along - floor_of(along / period.x) * mpq_class(period.x)).get_d();
+      }
       const Coordinates found = download(runtime, places, points.size());
       EXPECT_TRUE(same(found, expected)) << given.x;
       EXPECT_TRUE(
@@ -68,7 +90,7 @@ TEST(SmallPeriodicKernels, Places) {
       points[2 * 77] = -std::numeric_limits<double>::infinity();
       points[2 * 78] = std::nan("");
       try {
-        periodic::find_places(runtime, upload(runtime, points), x.size(), period, places);
+        periodic::find_places(runtime, upload(runtime, points), x.size(), lattice, places);
         ADD_FAILURE() << "no error";
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find("point 77 is not finite: (-inf, "), 0u) << error.what();
@@ -78,19 +100,20 @@ TEST(SmallPeriodicKernels, Places) {
 }
 
 TEST(SmallPeriodicKernels, ImagesHaveTheOrderOfPointAndPeriods) {
-  std::vector<cl_uint> all;
-  for (const int point : {0, 1, 7, std::numeric_limits<int>::max() / 6}) {
-    for (int across = -1; across <= 1; ++across) {
-      for (int up = -1; up <= 1; ++up) {
+  std::vector<std::uint64_t> all;
+  for (const std::int64_t point : {std::int64_t{0}, std::int64_t{1}, (std::int64_t{1} << 48) - 1}) {
+    for (int across = -128; across <= 127; across += 51) {
+      for (int up = -128; up <= 127; up += 64) {
         all.push_back(kernel::image_of(point, across, up));
         EXPECT_EQ(kernel::point_of(all.back()), point);
-        EXPECT_EQ(kernel::periods_across(all.back()), across);
-        EXPECT_EQ(kernel::periods_up(all.back()), up);
-        EXPECT_EQ(kernel::is_in_place(all.back()), across == 0 && up == 0);
+        EXPECT_EQ(kernel::vectors_across(all.back()), across);
+        EXPECT_EQ(kernel::vectors_up(all.back()), up);
+        EXPECT_EQ(kernel::is_in_place(all.back()), 0);
       }
     }
   }
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+  EXPECT_TRUE(kernel::is_in_place(kernel::image_of(5, 0, 0)));
 }
 
 // Sets with gaps between them that belong to none, some on a lattice.
@@ -98,7 +121,7 @@ struct Sets {
   Coordinates places;
   Offsets first, last, all{0};
 
-  Sets(const periodic::Pair<double>& period, const std::vector<std::size_t>& sizes) {
+  Sets(const Period& period, const std::vector<std::size_t>& sizes) {
     FixtureRandom random(sizes.size());
     for (const std::size_t n : sizes) {
       const bool is_lattice = first.size() % 2 == 1;
@@ -106,7 +129,8 @@ struct Sets {
       first.push_back(places.size() / 2);
       for (std::size_t c = 0; c < 2 * n; ++c) {
         const double x = is_lattice ? std::floor(4 * random.unit()) / 4 : random.unit();
-        places.push_back(x * (std::isfinite(period[c % 2]) ? period[c % 2] : 1));
+        const double length = c % 2 == 0 ? period.x : period.y;
+        places.push_back(x * (std::isfinite(length) ? length : 1));
       }
       last.push_back(places.size() / 2);
       all.push_back(all.back() + n);
@@ -123,15 +147,15 @@ TEST(SmallPeriodicKernels, BoxesOfSets) {
     Runtime& runtime = Runtimes::get(tuning);
     const Coordinates places = make_fixture("uniform", 50, 2);
     const Offsets offsets{0, 0, 1, 20, 50, 50};
-    for (const periodic::Pair<double>& period :
-         {periodic::Pair<double>{2, HUGE_VAL}, {HUGE_VAL, 2}, {2, 2}}) {
+    for (const Period& period : {Period{2, HUGE_VAL}, {HUGE_VAL, 2}, {2, 2}, {2, 2, 0.5}}) {
       host::Arena::Scope scope(runtime.arena());
+      const periodic::Lattice lattice = periodic::lattice_of(period);
       const std::vector<periodic::Box> found =
-          periodic::find_boxes(runtime, upload(runtime, places), offsets, period);
+          periodic::find_boxes(runtime, upload(runtime, places), offsets, lattice);
       for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
-        const periodic::Box expected = periodic::box_of(places.data(), offsets[s], offsets[s + 1], period);
+        const periodic::Box expected = periodic::box_of(places.data(), offsets[s], offsets[s + 1], lattice);
         for (int axis = 0; axis < 2; ++axis) {
-          EXPECT_EQ(found[s].period[axis], period[axis]);
+          EXPECT_EQ(found[s].lattice.period[axis], lattice.period[axis]);
           EXPECT_EQ(found[s].low[axis], expected.low[axis]) << s;
           EXPECT_EQ(found[s].high[axis], expected.high[axis]) << s;
         }
@@ -195,15 +219,15 @@ struct Twin {
 
 // What the kernels make of all sets, as plain loops make it of each: images, and then triangles, or that the
 // margin was too small.
-void expect_sets_of_the_twin(Runtime& runtime, const periodic::Pair<double>& period, const Sets& sets,
-                             double margin) {
+void expect_sets_of_the_twin(Runtime& runtime, const Period& period, const Sets& sets, double margin) {
   host::Arena::Scope scope(runtime.arena());
   host::Arena arena(runtime.memory());
   std::vector<periodic::Box> boxes;
   std::vector<Twin> twins;
   Coordinates coordinates;
   for (std::size_t k = 0; k < sets.first.size(); ++k) {
-    boxes.push_back(periodic::box_of(sets.places.data(), sets.first[k], sets.last[k], period));
+    boxes.push_back(
+        periodic::box_of(sets.places.data(), sets.first[k], sets.last[k], periodic::lattice_of(period)));
     boxes[k].margin = k % 2 == 0 ? margin : margin / 2;
     twins.emplace_back(sets.of(k), boxes[k]);
     const Coordinates& of_set = twins[k].plane.coordinates;
@@ -264,14 +288,14 @@ void expect_sets_of_the_twin(Runtime& runtime, const periodic::Pair<double>& per
     EXPECT_TRUE(same(part(beyond, 3 * row, 3 * last, row), expected.neighbors)) << k;
     EXPECT_TRUE(same(std::vector<std::int32_t>(periods.begin() + static_cast<std::ptrdiff_t>(6 * row),
                                                periods.begin() + static_cast<std::ptrdiff_t>(6 * last)),
-                     expected.offsets));
+                     expected.corner_offsets));
   }
 }
 
 TEST(SmallPeriodicKernels, SetsAreThoseOfTheTwin) {
   for (const std::string& tuning : tunings()) {
-    for (const periodic::Pair<double>& period :
-         {periodic::Pair<double>{1, 1}, {2, 0.75}, {1, HUGE_VAL}, {HUGE_VAL, 1}}) {
+    for (const Period& period :
+         {Period{1, 1}, {2, 0.75}, {1, HUGE_VAL}, {HUGE_VAL, 1}, {1, 1, 0.375}, {2, 0.75, 0.625}}) {
       for (const double margin : {0.0, 0.5, 2.0}) {
         expect_sets_of_the_twin(Runtimes::get(tuning), period, {period, {1, 2, 3, 12, 9}}, margin);
         expect_sets_of_the_twin(Runtimes::get(tuning), period, {period, {20}}, margin);
@@ -285,6 +309,7 @@ TEST(PeriodicKernels, LargerSetsAreThoseOfTheTwin) {
     for (const double margin : {0.02, 0.06, 0.2}) {
       expect_sets_of_the_twin(Runtimes::get(tuning), {1, 1}, {{1, 1}, {3000, 500, 1, 4000}}, margin);
       expect_sets_of_the_twin(Runtimes::get(tuning), {1, HUGE_VAL}, {{1, HUGE_VAL}, {8000}}, margin);
+      expect_sets_of_the_twin(Runtimes::get(tuning), {1, 1, 0.25}, {{1, 1}, {2000, 300, 1}}, margin);
     }
   }
 }

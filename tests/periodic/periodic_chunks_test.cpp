@@ -134,7 +134,7 @@ Numbers uniform(std::size_t n, const Period& period, std::uint64_t seed) {
 }
 
 const std::vector<Period>& periods() {
-  static const std::vector<Period> all{{1, 1}, {0.1, 0.3}, {1, 16}, {1, kNone}, {kNone, 0.7}};
+  static const std::vector<Period> all{{1, 1}, {0.1, 0.3}, {1, 16}, {1, kNone}, {kNone, 0.7}, {1, 0.7, 0.4}};
   return all;
 }
 
@@ -169,7 +169,8 @@ TEST(PeriodicChunks, OfTies) {
     for (const Period& period : {Period{size * 0.5, size * 1.0},
                                  {size * 0.5, kNone},
                                  {kNone, size * 1.0},
-                                 {size * 0.25, size * 2.0}}) {
+                                 {size * 0.25, size * 2.0},
+                                 {size * 0.5, size * 1.0, 1.5}}) {
       SCOPED_TRACE(size);
       compare(points, period, in_chunks_of(30));
       compare(once, period, in_chunks_of(500));

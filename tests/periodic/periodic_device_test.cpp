@@ -47,6 +47,7 @@ void triangulate_on_torus(DevicePoints points, const Period& period, DeviceTrian
 void expect_same(const DeviceTriangulation& found, const Triangulation& expected) {
   EXPECT_EQ(found.space.period.x, expected.space.period.x);
   EXPECT_EQ(found.space.period.y, expected.space.period.y);
+  EXPECT_EQ(found.space.period.shear, expected.space.period.shear);
   EXPECT_EQ(found.images, expected.images);
   EXPECT_EQ(found.point_offsets, expected.point_offsets);
   EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
@@ -96,7 +97,7 @@ TEST(SmallPeriodicOnDevice, IsThatOfTheHost) {
   std::size_t count = 0;
   for (const std::size_t n : {1u, 2u, 3u, 30u}) {
     for (const Coordinates& points : periodic_points(n)) {
-      for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}}) {
+      for (const Period& period : {Period{}, {0.7, 0.3}, {1, HUGE_VAL}, {HUGE_VAL, 0.6}, {0.7, 0.5, 0.3}}) {
         SCOPED_TRACE(std::to_string(n) + " " + std::to_string(period.x) + " " + std::to_string(period.y));
         DeviceTriangulation found;
         count += expect_that_of_the_host(points, period, found);
@@ -117,7 +118,7 @@ TEST(PeriodicOnDevice, LargerIsThatOfTheHost) {
   inputs.push_back(gap);
   DeviceTriangulation found;
   for (const Coordinates& points : inputs) {
-    for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}}) {
+    for (const Period& period : {Period{}, {0.7, 1.3}, {1, HUGE_VAL}, {0.7, 1.3, 0.25}}) {
       if (!expect_that_of_the_host(points, period, found)) continue;
       EXPECT_EQ(found.statistics.triangles, found.triangle_offsets.back());
       // Less than places alone take.

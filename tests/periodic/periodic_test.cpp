@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
@@ -83,8 +84,10 @@ void expect_exact(const Triangulation& mesh, const Period& given, std::size_t n)
     ASSERT_NEAR(1, period.x / given.x, 0x1p-52);
   }
   if (is_up) {
-    ASSERT_NEAR(1, period.y / given.y, 0x1p-52);
+    ASSERT_NEAR(1, period.y / given.y, given.shear == 0 ? 0x1p-52 : 0x1p-49);
   }
+  const double shear = is_across ? std::remainder(given.shear, given.x) : 0;
+  ASSERT_NEAR(0, std::remainder(period.shear - shear, given.x), is_across ? given.x * 0x1p-51 : 0);
   std::set<std::pair<double, double>> different;
   for (std::size_t i = 0; i < n; ++i) {
     const double x = mesh.places[2 * i], y = mesh.places[2 * i + 1];
@@ -96,7 +99,7 @@ void expect_exact(const Triangulation& mesh, const Period& given, std::size_t n)
   ASSERT_EQ(2 * mesh.triangles.size(), mesh.corner_offsets.size());
   const auto image = [&](std::size_t v, int across, int up) {
     Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
-    if (is_across) place.x += across * mpq_class(period.x);
+    if (is_across) place.x += across * mpq_class(period.x) + up * mpq_class(period.shear);
     if (is_up) place.y += up * mpq_class(period.y);
     return place;
   };
@@ -110,7 +113,7 @@ void expect_exact(const Triangulation& mesh, const Period& given, std::size_t n)
   for (const double x : mesh.places) scale = std::max(scale, std::fabs(x));
   for (std::size_t v = 0; v < n; ++v) {
     // Few points have circles that are wider than the period.
-    const int most = n < 20 ? 3 : 1;
+    const int most = (n < 20 ? 3 : 1) + (period.shear != 0 ? 2 : 0);
     for (int across = is_across ? -most : 0; across <= (is_across ? most : 0); ++across) {
       for (int up = is_up ? -most : 0; up <= (is_up ? most : 0); ++up)
         images.push_back(rounded(image(v, across, up)));
@@ -208,6 +211,107 @@ std::set<std::array<int, 9>> sorted_triangles(const Triangulation& mesh) {
   return all;
 }
 
+TEST(Periodic, ShearedTrianglesAreThoseOfAllImages) {
+  for (const Period& period :
+       {Period{1, 1, 0.5}, {1, 1, -0.3}, {0.1, 0.3, 0.7}, {3, 1, 1.1}, {1, 7, 0.4}, {2, 1, 1e-9}}) {
+    SCOPED_TRACE(::testing::Message() << period.x << " x " << period.y << ", " << period.shear);
+    testing::FixtureRandom random(4);
+    for (const std::size_t n : {1, 2, 3, 4, 5, 9, 14, 40, 120}) {
+      SCOPED_TRACE(n);
+      Numbers coarse;
+      for (std::size_t i = 0; i < 2 * n; ++i)
+        coarse.push_back(std::floor(4 * random.unit()) / 4 * (i % 2 == 0 ? period.x : period.y));
+      expect_exact(triangulated(uniform(n, period, n), period), period, n);
+      expect_exact(triangulated(coarse, period), period, n);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+/// Corners at most so many vectors away.
+int most_offset(const Triangulation& mesh, std::size_t axis) {
+  int most = 0;
+  for (std::size_t c = axis; c < mesh.corner_offsets.size(); c += 2)
+    most = std::max(most, std::abs(mesh.corner_offsets[c]));
+  return most;
+}
+
+TEST(Periodic, ShearsMayBeReduced) {
+  const Period period{0.75, 1.25, 0.3125};
+  const Numbers points = uniform(200, period, 12);
+  const Triangulation mesh = triangulated(points, period);
+  EXPECT_EQ(0.3125, mesh.space.period.shear);
+  for (const double times : {1.0, -1.0, 3.0, 1024.0}) {
+    const Triangulation other = triangulated(points, {0.75, 1.25, 0.3125 + times * 0.75});
+    EXPECT_EQ(mesh.space.period.shear, other.space.period.shear);
+    EXPECT_EQ(mesh.places, other.places);
+    EXPECT_EQ(mesh.triangles, other.triangles);
+    EXPECT_EQ(mesh.corner_offsets, other.corner_offsets);
+  }
+  EXPECT_EQ(0.375, triangulated(points, {0.75, 1.25, -0.375}).period.shear);
+  const Triangulation none = triangulated(points, {0.75, 1.25, 7.5});
+  EXPECT_EQ(0, none.period.shear);
+  EXPECT_EQ(triangulated(points, {0.75, 1.25}).triangles, none.triangles);
+  // Of two boxes one above the other, which are a box without a shear.
+  Numbers twice = points;
+  for (std::size_t i = 0; i < points.size(); i += 2)
+    twice.insert(twice.end(), {points[i] + 0.375, points[i + 1] + 1.25});
+  std::multiset<std::array<double, 6>> half, whole;
+  const auto sides = [](const Triangulation& of) {
+    std::multiset<std::array<double, 6>> all;
+    for (std::size_t t = 0; t < of.triangles.size(); t += 3) {
+      std::array<std::array<double, 2>, 3> p{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = 2 * static_cast<std::size_t>(of.triangles[t + k]);
+        const double across = of.offsets[2 * (t + k)], up = of.offsets[2 * (t + k) + 1];
+        p[k] = {of.places[v] + across * of.period.x + up * of.period.shear,
+                of.places[v + 1] + up * of.period.y};
+      }
+      std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
+      all.insert({p[1][0] - p[0][0], p[1][1] - p[0][1], p[2][0] - p[1][0], p[2][1] - p[1][1]});
+    }
+    return all;
+  };
+  half = sides(triangulated(points, {0.75, 1.25, 0.375}));
+  for (const auto& triangle : std::multiset<std::array<double, 6>>(half)) half.insert(triangle);
+  whole = sides(triangulated(twice, {0.75, 2.5}));
+  ASSERT_EQ(half.size(), whole.size());
+  for (auto a = half.begin(), b = whole.begin(); a != half.end(); ++a, ++b) {
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR((*a)[k], (*b)[k], 1e-12);
+  }
+}
+
+TEST(Periodic, ShearedBoxesMayBeFlat) {
+  int most = 0;
+  for (const double shear : {1.0, 0.25, 20.0, 26.1, 32.0, 1e-12}) {
+    for (const std::size_t n : {1, 2, 5, 30, 700}) {
+      SCOPED_TRACE(shear);
+      const Period period{64, 1, shear};
+      const Triangulation mesh = triangulated(uniform(n, period, n), period);
+      ASSERT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh)) << n;
+      ASSERT_EQ(6 * n, mesh.triangles.size());
+      most = std::max(most, most_offset(mesh, 1));
+      ASSERT_LE(most_offset(mesh, 1), 65);
+      ASSERT_LE(most_offset(mesh, 0), 34);
+    }
+  }
+  EXPECT_GE(most, 20);
+  for (const Period& period : {Period{1, 1, 0.5}, {1, 1, 0.37}, {1, 9, 0.1}}) {
+    for (std::size_t n = 1; n < 9; ++n) {
+      const Triangulation mesh = triangulated(uniform(n, period, n), period);
+      ASSERT_LE(std::max(most_offset(mesh, 0), most_offset(mesh, 1)), 2);
+    }
+  }
+  // Of all magnitudes.
+  for (const Period& period : {Period{0x1p-900, 0x1p-900, 0x1p-901},
+                               {0x1p900, 0x1p900, -0x1.1p898},
+                               {0x1p-895, 0x1p-900, 0x1p900},
+                               {0x1p-900, 0x1p-870, 0x1.3p-901}}) {
+    const Numbers points = uniform(60, period, 4);
+    EXPECT_EQ("", verify(triangulated(points, period).places.data(), triangulated(points, period).point_offsets, triangulated(points, period).space, triangulated(points, period)));
+  }
+}
+
 TEST(Periodic, LatticesAreFans) {
   for (const int size : {5, 8, 12}) {
     Numbers points;
@@ -289,17 +393,34 @@ TEST(Periodic, ShiftsByPeriodsChangeNothing) {
   EXPECT_EQ(first.places, second.places);
 }
 
+TEST(Periodic, ShiftsByShearedPeriodsChangeNothing) {
+  const Period period{0.75, 1.25, 0.21875};
+  Numbers points = uniform(150, period, 9);
+  for (double& x : points) x = std::ldexp(std::nearbyint(std::ldexp(x, 30)), -30);
+  const Triangulation first = triangulated(points, period);
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    const double up = static_cast<double>(i * 13 % 300) - 150;
+    points[i] += 1000 * period.x + up * period.shear;
+    points[i + 1] += up * period.y;
+  }
+  const Triangulation second = triangulated(points, period);
+  EXPECT_EQ(first.triangles, second.triangles);
+  EXPECT_EQ(first.corner_offsets, second.corner_offsets);
+  EXPECT_EQ(first.places, second.places);
+}
+
 Place image_of(const Triangulation& mesh, std::size_t v, int across, int up) {
   Place place{mpq_class(mesh.places[2 * v]), mpq_class(mesh.places[2 * v + 1])};
-  if (std::isfinite(mesh.space.period.x)) place.x += across * mpq_class(mesh.space.period.x);
+  if (std::isfinite(mesh.space.period.x))
+    place.x += across * mpq_class(mesh.space.period.x) + up * mpq_class(mesh.space.period.shear);
   if (std::isfinite(mesh.space.period.y)) place.y += up * mpq_class(mesh.space.period.y);
   return place;
 }
 
 /// The values at the corners of a triangle, interpolated at q; NaN if no image of the triangle contains it.
 double value_in(const Triangulation& mesh, std::size_t t, const Place& q, const Numbers& values) {
-  for (int across = -2; across <= 2; ++across) {
-    for (int up = -2; up <= 2; ++up) {
+  for (int across = -4; across <= 4; ++across) {
+    for (int up = -4; up <= 4; ++up) {
       std::array<Place, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k;
@@ -322,8 +443,9 @@ double value_in(const Triangulation& mesh, std::size_t t, const Place& q, const 
 
 mpq_class distance_to(const Triangulation& mesh, std::size_t v, const Place& q) {
   mpq_class least = -1;
-  for (int across = -1; across <= 1; ++across) {
-    for (int up = -1; up <= 1; ++up) {
+  const int most = mesh.space.period.shear == 0 ? 1 : 3;
+  for (int across = -most; across <= most; ++across) {
+    for (int up = -most; up <= most; ++up) {
       const Place p = image_of(mesh, v, across, up);
       const mpq_class square = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
       if (least < 0 || square < least) least = square;
@@ -340,7 +462,10 @@ void expect_answers(const Triangulation& mesh, const Numbers& queries) {
   for (std::size_t i = 0; i < n; ++i) values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
   for (std::size_t i = 0; i < m; ++i) {
     if (std::isfinite(mesh.space.period.x)) elsewhere[2 * i] -= 3 * mesh.space.period.x;
-    if (std::isfinite(mesh.space.period.y)) elsewhere[2 * i + 1] += 2 * mesh.space.period.y;
+    if (std::isfinite(mesh.space.period.y)) {
+      elsewhere[2 * i] += 2 * mesh.space.period.shear;
+      elsewhere[2 * i + 1] += 2 * mesh.space.period.y;
+    }
   }
   const auto triangles = locator.locate(queries.data(), m), points = locator.nearest(queries.data(), m);
   const Numbers found = locator.interpolate(values.data(), queries.data(), m);
@@ -376,7 +501,8 @@ void expect_answers(const Triangulation& mesh, const Numbers& queries) {
 TEST(Periodic, QueriesAreWrapped) {
   testing::FixtureRandom random(21);
   for (const std::size_t n : {1, 2, 3, 7, 30, 150}) {
-    for (const Period& period : {Period{}, {0.75, 3}, {2, HUGE_VAL}, {HUGE_VAL, 4}}) {
+    for (const Period& period :
+         {Period{}, {0.75, 3}, {2, HUGE_VAL}, {HUGE_VAL, 4}, {1, 1, 0.5}, {2, 0.75, 0.6875}}) {
       for (const bool is_coarse : {false, true}) {
         SCOPED_TRACE(::testing::Message() << n << " points, " << period.x << " x " << period.y);
         const auto some = [&](std::size_t count, double least, double most) {
@@ -430,7 +556,7 @@ TEST(Periodic, QueriesOfManyPoints) {
 }
 
 TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
-  for (const Period& period : {Period{1, 1}, {0.3, 0.7}, {1, 4}}) {
+  for (const Period& period : {Period{1, 1}, {0.3, 0.7}, {1, 4}, {1, 1, 0.375}, {1, 0.5, 0.5}}) {
     for (const std::size_t n : {40, 300}) {
       SCOPED_TRACE(n);
       Numbers points = uniform(n, period, n + 7);
@@ -448,8 +574,8 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       for (int across = -2; across <= 2; ++across) {
         for (int up = -2; up <= 2; ++up) {
           for (std::size_t i = 0; i < mesh.places.size(); i += 2) {
-            copies.insert(copies.end(),
-                          {mesh.places[i] + across * period.x, mesh.places[i + 1] + up * period.y});
+            copies.insert(copies.end(), {mesh.places[i] + across * period.x + up * period.shear,
+                                         mesh.places[i + 1] + up * period.y});
             of_copies.insert(of_copies.end(), {values[i], values[i + 1]});
           }
         }
@@ -461,7 +587,8 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
                     testing::triangulator().triangulate(copies.data(), count, options));
       Numbers elsewhere;
       for (std::size_t q = 0; q < queries.size(); q += 2)
-        elsewhere.insert(elsewhere.end(), {queries[q] - 3 * period.x, queries[q + 1] + 2 * period.y});
+        elsewhere.insert(elsewhere.end(),
+                         {queries[q] - 3 * period.x + 2 * period.shear, queries[q + 1] + 2 * period.y});
       InterpolationOptions wanted;
       wanted.columns = 2;
       for (const Interpolation method : {Interpolation::sibson, Interpolation::laplace}) {
@@ -502,7 +629,7 @@ TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
 }
 
 TEST(Periodic, VerifyFindsWhatIsWrong) {
-  for (const Period& period : {Period{}, Period{1, HUGE_VAL}}) {
+  for (const Period& period : {Period{}, {1, HUGE_VAL}, {1, 1, 0.375}}) {
     Numbers points = uniform(80, {}, 2);
     points.insert(points.end(), points.begin(), points.begin() + 2);
     const Triangulation right = triangulated(points, period);
@@ -541,6 +668,10 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
       mesh.corner_offsets.resize(2 * mesh.triangles.size());
       mesh.triangle_offsets[1] = mesh.triangles.size() / 3;
     });
+    if (std::isfinite(period.y)) {
+      expect_problem("not rounded", [](Mesh& mesh) { mesh.space.period.shear += 2; });
+      EXPECT_NE("", problem_of([](Mesh& mesh) { mesh.space.period.shear = 0.25; }));
+    }
     // A point moves into the circle of a triangle beside it.
     EXPECT_NE("", problem_of([](Mesh& mesh) { mesh.places[6] = mesh.places[6] < 0.5 ? 0.75 : 0.25; }));
   }
@@ -554,8 +685,8 @@ TEST(Periodic, VerifyFindsWhatIsWrong) {
 
 // Against the diagram of nine copies in the plane.
 TEST(Periodic, CellsAreThoseOfThePlane) {
-  const Period period{2, 0.75};
-  for (const std::size_t n : {1, 2, 3, 40, 700}) {
+  for (const std::size_t n : {1, 2, 3, 40, 700, 41, 6}) {
+    const Period period{2, 0.75, n == 41 ? 0.3125 : n == 6 ? -0.875 : 0};
     SCOPED_TRACE(n);
     Numbers points = uniform(n, period, n);
     points.insert(points.end(), {points[0], points[1]});  // has no cell
@@ -566,7 +697,7 @@ TEST(Periodic, CellsAreThoseOfThePlane) {
       copies.insert(copies.end(), {mesh.places[2 * i], mesh.places[2 * i + 1]});
     for (int k = 0; k < 25; ++k) {
       for (std::size_t i = 0; i < n && k != 12; ++i) {
-        copies.insert(copies.end(), {mesh.places[2 * i] + (k / 5 - 2) * period.x,
+        copies.insert(copies.end(), {mesh.places[2 * i] + (k / 5 - 2) * period.x + (k % 5 - 2) * period.shear,
                                      mesh.places[2 * i + 1] + (k % 5 - 2) * period.y});
       }
     }
@@ -628,6 +759,10 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
   testing::expect_error(ErrorKind::usage, "not those of a triangulation",
                         [&] { Locator(testing::triangulator(), mesh); });
   testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulated(few, {1, 0x1p31}); });
+  testing::expect_error(ErrorKind::usage, "has no shear", [&] { triangulated(few, {1, HUGE_VAL, 0.5}); });
+  testing::expect_error(ErrorKind::usage, "64 times", [&] { triangulated(few, {65, 1, 0.5}); });
+  testing::expect_error(ErrorKind::usage, "not finite", [&] { triangulated(few, {1, 1, HUGE_VAL}); });
+  EXPECT_EQ("", verify(triangulated(few, {65, 1, 130}).places.data(), triangulated(few, {65, 1, 130}).point_offsets, triangulated(few, {65, 1, 130}).space, triangulated(few, {65, 1, 130})));
   EXPECT_TRUE(triangulated({}, {}).triangles.empty());
 }
 

@@ -72,6 +72,7 @@ inline std::vector<TestSpace> all_spaces() {
   return {{"plane", 2, Space::plane()},
           {"weighted", 3, Space::plane(), true},
           {"torus", 2, Space::torus({0.75, 1})},
+          {"sheared_torus", 2, Space::torus({0.75, 1, 0.25})},
           {"cylinder", 2, Space::torus({0.75, kWhole})},
           {"upright_cylinder", 2, Space::torus({kWhole, 1})},
           {"sphere", 3, Space::sphere(SphereCoordinates::directions)}};

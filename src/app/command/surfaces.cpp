@@ -49,11 +49,12 @@ void unfold(const Period& period, const std::vector<std::int32_t>& offsets, io::
     const auto [place, is_new] = images.emplace(image, static_cast<std::int32_t>(points.size()));
     if (is_new) {
       // An infinite period has offsets of 0 only.
-      const auto moved = [&](std::size_t axis, double length) {
-        const double x = points.coordinates[2 * static_cast<std::size_t>(image[0]) + axis];
-        return image[1 + axis] == 0 ? x : x + image[1 + axis] * length;
-      };
-      points.coordinates.insert(points.coordinates.end(), {moved(0, period.x), moved(1, period.y)});
+      const auto moved = [](int times, double length) { return times == 0 ? 0 : times * length; };
+      const std::size_t v = 2 * static_cast<std::size_t>(image[0]);
+      points.coordinates.insert(
+          points.coordinates.end(),
+          {points.coordinates[v] + (moved(image[1], period.x) + moved(image[2], period.shear)),
+           points.coordinates[v + 1] + moved(image[2], period.y)});
     }
     mesh.triangles[c] = place->second;
   }
@@ -72,13 +73,23 @@ io::Points in_space(const std::vector<double>& places) {
 
 }  // namespace
 
-void add_surface_options(CLI::App* command, SurfaceRequest& request) {
-  command
-      ->add_option("--period", request.period,
-                   "The plane repeats itself after LX in x and LY in y; inf: not in that direction")
+void add_period(CLI::App* command, std::vector<double>& period, const std::string& description) {
+  command->add_option("--period", period, description)
       ->delimiter(',')
-      ->expected(2)
-      ->type_name("LX,LY");
+      ->expected(2, 3)
+      ->allow_extra_args(false)
+      ->type_name("LX,LY[,SHEAR]");
+}
+
+Period period_of(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0};
+}
+
+void add_surface_options(CLI::App* command, SurfaceRequest& request) {
+  add_period(
+      command, request.period,
+      "The plane repeats itself after LX in x and LY in y, there moved by SHEAR in x; inf: not in that "
+      "direction");
   add_path(
       command, "--offsets", request.offsets,
       "With --period: in which period corners are, x and y for each, if the first one is at its place: .npy");
@@ -145,7 +156,7 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
     mesh = completed(std::move(found), n);
   } else {
     Triangulation found = named([&] {
-      return triangulator.triangulate(coordinates, n, Space::torus({request.period[0], request.period[1]}));
+      return triangulator.triangulate(coordinates, n, Space::torus(period_of(request.period)));
     });
     offsets.assign(found.corner_offsets.begin(), found.corner_offsets.end());
     period = found.space.period;

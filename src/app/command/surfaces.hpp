@@ -7,14 +7,19 @@
 #include <vector>
 
 #include "app/command/results.hpp"
+#include "flaunay/periodic.hpp"
 
 namespace flaunay::cli {
 
 struct SurfaceRequest {
-  std::vector<double> period;  ///< x and y; empty without --period
+  std::vector<double> period;  ///< x, y and perhaps a shear; empty without --period
   bool is_sphere = false;
   std::string offsets;  ///< the file for the corners' periods
 };
+
+/// Adds --period, whose numbers are a period.
+void add_period(CLI::App* command, std::vector<double>& period, const std::string& description);
+Period period_of(const std::vector<double>& numbers);
 
 /// Adds --period, --offsets and --sphere.
 void add_surface_options(CLI::App* command, SurfaceRequest& request);

@@ -247,7 +247,7 @@ void add_triangulate(CLI::App& app, Action& action) {
     action = [request] { return triangulate(*request); };
     request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->is_on_surface && request->in_chunks) {
-      request->chunks.period = Period{request->surface.period[0], request->surface.period[1]};
+      request->chunks.period = period_of(request->surface.period);
       request->chunks.offsets = request->surface.offsets;
     }
     if (request->is_on_surface || asks_for_weighted(*command, request->weighted)) return;

@@ -20,6 +20,7 @@
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
+#include "app/command/surfaces.hpp"
 #include "app/command/weighted.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/map.hpp"
@@ -42,7 +43,7 @@ namespace {
 
 struct VerifyRequest {
   bool is_weighted = false, is_sphere = false;
-  std::vector<double> period;  // x and y; empty: none
+  std::vector<double> period;  // x, y and perhaps a shear; empty: none
   std::string offsets;         // of corners, with a period
   std::string points;
   io::Columns columns;
@@ -235,7 +236,7 @@ std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progr
   mesh.places = io::read_points(request.points, request.columns).coordinates;
   n = mesh.places.size() / 2;
   mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {
-    return take_to_places({request.period[0], request.period[1]}, mesh.places.data(), n);
+    return take_to_places(period_of(request.period), mesh.places.data(), n);
   }));
   mesh.corner_offsets = io::read_corner_offsets(request.offsets);
   read_rows(request, n, mesh);
@@ -371,12 +372,8 @@ void add_verify(CLI::App& app, Action& action) {
   command->add_flag(
       "--sphere", request->is_sphere,
       "The points are longitudes and latitudes in degrees: check the triangulation on the sphere");
-  command
-      ->add_option("--period", request->period,
-                   "Check the triangulation of a plane that repeats itself after LX in x and LY in y, or inf")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("LX,LY");
+  add_period(command, request->period,
+             "Check the triangulation of a plane that repeats itself, as that of triangulate");
   add_path(command, "--offsets", request->offsets,
            "With --period: the corners' periods, as triangulate writes them: .npy");
   add_domain_options(command, request->constraints);

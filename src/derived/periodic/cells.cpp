@@ -33,7 +33,7 @@ double determinant(double a, double b, double a2, double b2) {
 // Corners of triangles, 3 t + k, and what is around them.
 class Corners {
  public:
-  explicit Corners(const Triangulation& mesh) : mesh_(mesh) {}
+  Corners(const Triangulation& mesh, const Lattice& lattice) : mesh_(mesh), lattice_(lattice) {}
 
   std::int32_t point(std::int32_t c) const { return mesh_.triangles[index(c)]; }
   // The same point's corner in the next triangle, counter-clockwise; -1 if the arrays are no triangulation's.
@@ -59,17 +59,17 @@ class Corners {
   Point place(std::int32_t v) const { return {mesh_.places[2 * index(v)], mesh_.places[2 * index(v) + 1]}; }
 
  private:
-  // So many periods from one corner of a triangle to another one.
+  // So many vectors of the lattice from one corner of a triangle to another one.
   int step(std::int32_t from, std::int32_t to, std::size_t axis) const {
     return mesh_.corner_offsets[2 * index(to) + axis] - mesh_.corner_offsets[2 * index(from) + axis];
   }
   Point seen(std::int32_t from, std::int32_t to) const {
     const Point p = place(point(from)), q = place(point(to));
-    return {(q.x + step(from, to, 0) * mesh_.space.period.x) - p.x,
-            (q.y + step(from, to, 1) * mesh_.space.period.y) - p.y};
+    return kernel::moved(q, step(from, to, 0), step(from, to, 1), &lattice_) - p;
   }
 
   const Triangulation& mesh_;
+  const Lattice& lattice_;
 };
 
 }  // namespace
@@ -87,11 +87,10 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
   }
   std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
   cells.vertices.resize(2 * mesh.triangles.size());
-  const Corners corners(mesh);
+  const Lattice lattice = lattice_of(mesh.space.period);
+  const Corners corners(mesh, lattice);
   // Within the period and rounded to its units, so that images are exact and cells have the same corners.
   // From the first corner by place, whatever the order of the points.
-  const Pair<double> period = {mesh.space.period.x, mesh.space.period.y};
-  const kernel::periodic_axes axes = axes_of(period);
   std::vector<Point> centres(mesh.triangles.size() / 3);
   for_each(runtime, centres.size(), [&](std::size_t t) {
     auto lowest = static_cast<std::int32_t>(3 * t);
@@ -100,11 +99,8 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
         lowest = c;
     }
     const Point p = corners.place(corners.point(lowest)), q = corners.centre(lowest);
-    centres[t] = {kernel::place_of(p.x + q.x, axes.x), kernel::place_of(p.y + q.y, axes.y)};
+    centres[t] = kernel::place_in({p.x + q.x, p.y + q.y}, &lattice);
   });
-  const auto image_near = [](double x, double place, double length) {
-    return place + length * std::round((x - place) / length);
-  };
   // In the order of corners, those of a cell are near each other in memory.
   for_each(runtime, mesh.triangles.size(), [&](std::size_t at) {
     const auto begin = static_cast<std::int32_t>(at);
@@ -116,9 +112,9 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
     for (std::int32_t i = cells.offsets[index(v)]; i < cells.offsets[index(v) + 1] && c >= 0; ++i) {
       const Point q = corners.centre(c);
       polygon.push_back(q);
-      const Point place = centres[index(c / 3)];
-      cells.vertices[2 * index(i)] = image_near(p.x + q.x, place.x, period[0]);
-      cells.vertices[2 * index(i) + 1] = image_near(p.y + q.y, place.y, period[1]);
+      const Point vertex = voronoi::image_near({p.x + q.x, p.y + q.y}, centres[index(c / 3)], lattice);
+      cells.vertices[2 * index(i)] = vertex.x;
+      cells.vertices[2 * index(i) + 1] = vertex.y;
       c = corners.next(c);
     }
     expect(c == begin, "the arrays are not those of a triangulation on a torus or a cylinder");
@@ -128,7 +124,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
     cells.centroids[2 * index(v) + 1] = p.y + moments.centroid.y;
   });
   voronoi::Cells rounded{std::move(cells.offsets), std::move(cells.vertices)};
-  voronoi::mend(runtime, mesh.point_offsets, mesh.places.data(), {}, period, rounded);
+  voronoi::mend(runtime, mesh.point_offsets, mesh.places.data(), {}, lattice, rounded);
   cells.offsets = std::move(rounded.offsets);
   cells.vertices = std::move(rounded.vertices);
   return cells;

@@ -28,20 +28,15 @@ void read_totals_later(host::Runtime& runtime, const Buffer<cl_uint>& sums, cons
   runtime.read_later(totals, 0, to.size(), to.data());
 }
 
-Image image_of(cl_uint image) {
-  if (image == NO_IMAGE) return {-1, {}};
-  return {kernel::point_of(image), {kernel::periods_across(image), kernel::periods_up(image)}};
-}
-
 }  // namespace
 
 void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::size_t n,
-                 const Pair<double>& period, const Buffer<cl_double>& places) {
+                 const Lattice& lattice, const Buffer<cl_double>& places) {
   Arena::Scope scope(runtime.arena());
   constexpr cl_int kNone = std::numeric_limits<cl_int>::max();
   const auto first_bad = runtime.upload(runtime.arena(), std::vector<cl_int>{kNone});
-  runtime.map(
-      n, kernels::find_places{.axes = axes_of(period), .input = points, .places = places, .bad = first_bad});
+  runtime.map(n,
+              kernels::find_places{.lattice = lattice, .input = points, .places = places, .bad = first_bad});
   const cl_int bad = runtime.read_one(first_bad, 0);
   if (bad == kNone) return;
   const auto at = static_cast<std::size_t>(bad);
@@ -50,16 +45,16 @@ void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::s
 }
 
 std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& places,
-                            const std::vector<std::size_t>& offsets, const Pair<double>& period) {
+                            const std::vector<std::size_t>& offsets, const Lattice& lattice) {
   std::vector<Box> boxes;
-  if (std::isfinite(period[0]) && std::isfinite(period[1])) {
-    boxes.resize(offsets.size() - 1, box_of(nullptr, 0, 0, period));
+  if (repeats(lattice, 0) && repeats(lattice, 1)) {
+    boxes.resize(offsets.size() - 1, box_of(nullptr, 0, 0, lattice));
     return boxes;
   }
   if (runtime.threads() == 1) {
     const auto* const all = reinterpret_cast<const double*>(host::address_of(places.memory()));
     for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
-      boxes.push_back(box_of(all, offsets[s], offsets[s + 1], period));
+      boxes.push_back(box_of(all, offsets[s], offsets[s + 1], lattice));
     return boxes;
   }
   Arena::Scope scope(runtime.arena());
@@ -80,7 +75,7 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
   runtime.read(found, 0, ends.size(), ends.data());
   // Of a piece the lowest and the highest place.
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
-    boxes.push_back(box_of(ends.data(), 2 * set_pieces[s], 2 * set_pieces[s + 1], period));
+    boxes.push_back(box_of(ends.data(), 2 * set_pieces[s], 2 * set_pieces[s + 1], lattice));
   return boxes;
 }
 
@@ -88,19 +83,21 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
                            const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
                            std::vector<Box> boxes, const MakeRoom& make_room)
     : boxes_(std::move(boxes)), first_(first.front()) {
+  const Lattice& lattice = boxes_.front().lattice;
   std::vector<kernel::unrolled_set> records;
   std::vector<std::size_t> point_offsets{0};
   for (std::size_t k = 0; k < sets(); ++k) {
     counts_.push_back(last[k] - first[k]);
     point_offsets.push_back(point_offsets.back() + counts_[k]);
-    const bool has_ends = !repeats(boxes_[k], 0) || !repeats(boxes_[k], 1);
+    const bool has_ends = !repeats(lattice, 0) || !repeats(lattice, 1);
     records.push_back({boxes_[k], static_cast<cl_int>(first[k]), has_ends});
   }
   points_ = point_offsets.back();
   point_offsets_ = runtime.upload(arena, integers(point_offsets));
   records_ = runtime.upload(arena, std::move(records));
   image_counts_ = arena.allocate<cl_uint>(points_ + 1);
-  runtime.map(points_, kernels::count_images{.sets = sets(),
+  runtime.map(points_, kernels::count_images{.lattice = lattice,
+                                             .sets = sets(),
                                              .offsets = point_offsets_,
                                              .all = records_,
                                              .places = places,
@@ -120,8 +117,9 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
   check_size(offsets_.back());
   const std::size_t count = offsets_.back();
   coordinates_ = make_room ? make_room(count) : arena.allocate<cl_double>(2 * count);
-  at_ = arena.allocate<cl_uint>(offsets_.back());
-  runtime.map(points_, kernels::write_images{.sets = sets(),
+  at_ = arena.allocate<cl_ulong>(offsets_.back());
+  runtime.map(points_, kernels::write_images{.lattice = lattice,
+                                             .sets = sets(),
                                              .own = own(),
                                              .are_there = static_cast<bool>(make_room),
                                              .offsets = point_offsets_,
@@ -139,7 +137,7 @@ Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const 
   const UnrolledSets set(runtime, arena, runtime.view(places.data(), 2 * n), {0}, {n}, {box});
   Plane plane{box, std::vector<double>(2 * set.offsets().back()), {}};
   runtime.read(set.coordinates(), 0, plane.coordinates.size(), plane.coordinates.data());
-  for (const cl_uint image : points::download(runtime, set.at_, n, set.images(0)))
+  for (const cl_ulong image : points::download(runtime, set.at_, n, set.images(0)))
     plane.images.push_back(image_of(image));
   return plane;
 }
@@ -154,7 +152,8 @@ FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets&
   const std::size_t sets = plane.sets(), count = mesh.triangle_count();
   const auto missing = arena.allocate<cl_uint>(sets);
   runtime.fill(missing, sets, cl_uint{0});
-  runtime.map(plane.points_, kernels::fold_representatives{.sets = sets,
+  runtime.map(plane.points_, kernels::fold_representatives{.lattice = plane.boxes_.front().lattice,
+                                                           .sets = sets,
                                                            .offsets = plane.point_offsets_,
                                                            .all = plane.records_,
                                                            .counts = plane.image_counts_,

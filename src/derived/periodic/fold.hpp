@@ -16,12 +16,12 @@ using host::Buffer;
 
 /// Takes points into the periods; see take_into. Waits once. O(n).
 void find_places(host::Runtime& runtime, const Buffer<cl_double>& points, std::size_t n,
-                 const Pair<double>& period, const Buffer<cl_double>& places);
+                 const Lattice& lattice, const Buffer<cl_double>& places);
 
 /// The boxes of sets, without margins, which have the places from offsets on. Waits once for a cylinder.
 /// O(n).
 std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& places,
-                            const std::vector<std::size_t>& offsets, const Pair<double>& period);
+                            const std::vector<std::size_t>& offsets, const Lattice& lattice);
 
 /// Some sets of points as they are triangulated in the plane, one after the other: of each first the points,
 /// then their images in ascending order.
@@ -30,9 +30,9 @@ class UnrolledSets {
   /// Makes room for this many points and images in the array of places, which has those of the set alone.
   using MakeRoom = std::function<Buffer<cl_double>(std::size_t)>;
 
-  /// first, last: per set its points, at least one. arena: where results come from; that of the runtime must
-  /// be another one. make_room: null, or natively for a set that is alone, whose coordinates are then the
-  /// places themselves. Waits once. O(n).
+  /// first, last: per set its points, at least one; all boxes have one lattice. arena: where results come
+  /// from; that of the runtime must be another one. make_room: null, or natively for a set that is alone,
+  /// whose coordinates are then the places themselves. Waits once. O(n).
   UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
                const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
                std::vector<Box> boxes, const MakeRoom& make_room = nullptr);
@@ -57,7 +57,7 @@ class UnrolledSets {
   Buffer<kernel::unrolled_set> records_;
   Buffer<cl_uint> image_counts_;  // scanned
   Buffer<cl_double> coordinates_{};
-  Buffer<cl_uint> at_;  // per place in the plane what is there
+  Buffer<cl_ulong> at_;  // per place in the plane what is there
 };
 
 /// One set of places in host memory, unrolled natively.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "geometry/for_each.hpp"
 
@@ -28,51 +29,95 @@ double whole_of(double period) {
   return power < period ? 2 * power : power;
 }
 
+// The width of the widest circle without a point of the lattice, rounded upwards.
+double widest_circle(double across, double shear, double up) {
+  constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
+  const double scale = std::ldexp(1, -std::ilogb(std::max(across, up)));
+  Point a{scale * across, 0}, b{scale * shear, scale * up};
+  const double area = a.x * b.y;
+  const auto product = [](Point p, Point q) { return p.x * q.x + p.y * q.y; };
+  // The two shortest vectors that span it (Gauss).
+  for (double times = 1; times != 0;) {
+    if (product(b, b) < product(a, a)) std::swap(a, b);
+    times = std::nearbyint(product(a, b) / product(a, a));
+    b = {b.x - times * a.x, b.y - times * a.y};
+  }
+  // The circle around a triangle that has no obtuse angle.
+  if (product(a, b) < 0) b = -b;
+  const Point c = b - a;
+  return kSpare * std::sqrt(product(a, a)) * std::sqrt(product(b, b)) * std::sqrt(product(c, c)) / area /
+         scale;
+}
+
 }  // namespace
 
-Pair<double> rounded(const Period& period) {
-  const auto one = [](double length) {
-    if (!std::isfinite(length)) return length;
-    return (length + whole_of(length)) - whole_of(length);
+Lattice lattice_of(const Period& period) {
+  Lattice lattice{};
+  // Multiples of its unit up to 2 (length + more) are doubles.
+  const auto take = [&](std::size_t axis, double length, double more) {
+    lattice.period[axis] = lattice.reach[axis] = length;
+    if (!std::isfinite(length)) return;
+    const double rounded = kernel::in_units(length, whole_of(length + more));
+    lattice.period[axis] = lattice.reach[axis] = rounded;
+    lattice.whole[axis] = whole_of(rounded + more);
+    lattice.most[axis] = 1;
   };
-  return {one(period.x), one(period.y)};
+  take(0, period.x, 0);
+  const double across = lattice.period[0];
+  double shear = 0;
+  if (period.shear != 0) {
+    shear = kernel::in_units(std::remainder(period.shear, period.x), lattice.whole[0]);
+    if (shear > across / 2) shear -= across;
+    if (shear <= -across / 2) shear += across;
+  }
+  // Images above and below a sheared box are less than x + y away from it.
+  take(1, period.y, shear != 0 ? across / 2 : 0);
+  if (repeats(lattice, 0)) {
+    const double unit = kernel::unit_across(&lattice);
+    lattice.across[0] = static_cast<std::int64_t>(across / unit);
+    lattice.across[1] = static_cast<std::int64_t>(shear / unit);
+  }
+  if (shear != 0) {
+    const double up = lattice.period[1];
+    lattice.reach[1] = widest_circle(across, shear, up);
+    lattice.most[1] = 1 + static_cast<int>(lattice.reach[1] / up);
+    lattice.most[0] = 2 + lattice.most[1] / 2;
+  }
+  return lattice;
 }
 
-kernel::periodic_axes axes_of(const Pair<double>& period) {
-  const auto one = [](double length) {
-    return kernel::periodic_axis{length, std::isfinite(length) ? whole_of(length) : 0};
-  };
-  return {one(period[0]), one(period[1])};
+Period period_of(const Lattice& lattice) {
+  return {lattice.period[0], lattice.period[1],
+          static_cast<double>(lattice.across[1]) * kernel::unit_across(&lattice)};
 }
 
-void take_into(const Pair<double>& period, const double* points, std::size_t n, std::uint64_t first,
+void take_into(const Lattice& lattice, const double* points, std::size_t n, std::uint64_t first,
                const char* what, double* places) {
-  const kernel::periodic_axes axes = axes_of(period);
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = kernel::place_of(points[2 * i], axes.x), y = kernel::place_of(points[2 * i + 1], axes.y);
-    if (!std::isfinite(x) || !std::isfinite(y)) {
+    const Point place = kernel::place_in({points[2 * i], points[2 * i + 1]}, &lattice);
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) {
       throw Error(ErrorKind::input, fmt::format("{} {} is not finite: ({}, {})", what, first + i,
                                                 points[2 * i], points[2 * i + 1]));
     }
-    places[2 * i] = x;
-    places[2 * i + 1] = y;
+    places[2 * i] = place.x;
+    places[2 * i + 1] = place.y;
   }
 }
 
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
-                              const Pair<double>& period, const char* what) {
+                              const Lattice& lattice, const char* what) {
   std::vector<double> places;
   runtime.resize(places, 2 * n);
   for_each_run(&runtime, n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    take_into(period, points + 2 * begin, end - begin, begin, what, places.data() + 2 * begin);
+    take_into(lattice, points + 2 * begin, end - begin, begin, what, places.data() + 2 * begin);
   });
   return places;
 }
 
-Box box_of(const double* places, std::size_t first, std::size_t last, const Pair<double>& period) {
-  Box box{{period[0], period[1]}, {}, {period[0], period[1]}, 0};
+Box box_of(const double* places, std::size_t first, std::size_t last, const Lattice& lattice) {
+  Box box{{{}, {lattice.period[0], lattice.period[1]}, 0}, lattice};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (std::isfinite(period[axis]) || first == last) continue;
+    if (repeats(lattice, axis) || first == last) continue;
     box.low[axis] = box.high[axis] = places[2 * first + axis];
     for (std::size_t i = first; i < last; ++i) {
       box.low[axis] = std::min(box.low[axis], places[2 * i + axis]);
@@ -88,7 +133,7 @@ double first_margin(const Box& box, std::size_t n) {
   const double share = std::sqrt(std::log(count) / (kPi * count));
   double margin = kSpare * share * std::sqrt(box.high[0] - box.low[0]) * std::sqrt(box.high[1] - box.low[1]);
   // In a narrow box, points are as on a line.
-  for (const double period : box.period) {
+  for (const double period : box.lattice.period) {
     if (std::isfinite(period)) margin = std::max(margin, period * std::log(count) / count);
   }
   return margin;
@@ -105,8 +150,10 @@ void check_size(std::size_t points_and_images) {
 }
 
 bool is_whole(const Box& box) {
-  return (!repeats(box, 0) || box.margin >= box.period[0]) &&
-         (!repeats(box, 1) || box.margin >= box.period[1]);
+  const auto reaches = [&](std::size_t axis) {
+    return !repeats(box.lattice, axis) || box.margin >= box.lattice.reach[axis];
+  };
+  return reaches(0) && reaches(1);
 }
 
 void widen(Box& box, std::size_t s) {
@@ -131,8 +178,8 @@ Point in_box(const Box& box, Point p) {
 
 // Whether an edge is on an end of a direction that has no period.
 bool is_at_end(const Box& box, Point a, Point b) {
-  return (a.x == b.x && kernel::ends_at(a.x, &box, 0) > 0) ||
-         (a.y == b.y && kernel::ends_at(a.y, &box, 1) > 0);
+  return (a.x == b.x && kernel::ends_at(a.x, 0, &box.lattice, &box) > 0) ||
+         (a.y == b.y && kernel::ends_at(a.y, 1, &box.lattice, &box) > 0);
 }
 
 }  // namespace
@@ -182,6 +229,7 @@ double widest_gap(host::Runtime& runtime, const Triangulation& mesh) {
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
   // With periods near 1, the squares of lengths are doubles.
   const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.space.period.x, mesh.space.period.y)));
+  const Lattice lattice = lattice_of(mesh.space.period);
   const std::size_t count = mesh.triangles.size() / 3;
   std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
   runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
@@ -190,8 +238,9 @@ double widest_gap(host::Runtime& runtime, const Triangulation& mesh) {
       std::array<Point, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
-        p[k] = {scale * (mesh.places[v] + mesh.corner_offsets[2 * c] * mesh.space.period.x),
-                scale * (mesh.places[v + 1] + mesh.corner_offsets[2 * c + 1] * mesh.space.period.y)};
+        p[k] = kernel::moved({mesh.places[v], mesh.places[v + 1]}, mesh.corner_offsets[2 * c],
+                             mesh.corner_offsets[2 * c + 1], &lattice);
+        p[k] = {scale * p[k].x, scale * p[k].y};
       }
       std::array<double, 3> opposite;
       for (std::size_t k = 0; k < 3; ++k) {

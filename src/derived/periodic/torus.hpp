@@ -19,30 +19,33 @@ namespace flaunay::periodic {
 template <typename T>
 using Pair = std::array<T, 2>;
 
-/// The periods, rounded to multiples of their units.
-Pair<double> rounded(const Period& period);
-
-/// The periods with their units.
-kernel::periodic_axes axes_of(const Pair<double>& period);
+/// The lattice of images. Its vectors are rounded to multiples of their units, with the shear in
+/// (-x / 2, x / 2]; rounded periods remain as they are.
+using Lattice = kernel::periodic_lattice;
+Lattice lattice_of(const Period& period);
+/// The rounded period.
+Period period_of(const Lattice& lattice);
+inline bool repeats(const Lattice& lattice, std::size_t axis) { return std::isfinite(lattice.period[axis]); }
 
 /// Takes points into the periods, rounded to multiples of their units. The result is the same on every
 /// machine. Throws Error(input) for one that is not finite, with what: the name of a point. first: the number
 /// of the first one. places: may be the points. O(n).
-void take_into(const Pair<double>& period, const double* points, std::size_t n, std::uint64_t first,
+void take_into(const Lattice& lattice, const double* points, std::size_t n, std::uint64_t first,
                const char* what, double* places);
 /// As a vector.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
-                              const Pair<double>& period, const char* what);
+                              const Lattice& lattice, const char* what);
 
 /// The box of one set, and a margin around it. All images of points within the margin are triangulated in the
 /// plane, and those of points within the margin of an end of the direction that has no period. No coordinate
-/// is farther away than two periods, so no image is rounded.
-using Box = kernel::periodic_box;
-inline bool repeats(const Box& box, std::size_t axis) { return std::isfinite(box.period[axis]); }
+/// is farther away than Lattice::reach, so no image is rounded.
+struct Box : kernel::periodic_box {
+  Lattice lattice{};
+};
 /// Whether a point and all its neighbours are within the margin, whatever the points are.
 bool is_whole(const Box& box);
 /// Without a margin.
-Box box_of(const double* places, std::size_t first, std::size_t last, const Pair<double>& period);
+Box box_of(const double* places, std::size_t first, std::size_t last, const Lattice& lattice);
 
 /// How wide the gaps of so many uniform points may be, with some to spare.
 double first_margin(const Box& box, std::size_t n);
@@ -57,21 +60,24 @@ void check_size(std::size_t points_and_images);
 /// Calls visit(at, place) for each image of a point that has this place, in ascending order.
 template <typename Visit>
 void for_each_image(const Box& box, geometry::Point p, const Visit& visit) {
-  const kernel::image_range to = kernel::images_around(p.x, p.y, &box);
+  const kernel::image_range to = kernel::images_around(p, &box.lattice, &box);
   for (int across = to.low[0]; across <= to.high[0]; ++across) {
     for (int up = to.low[1]; up <= to.high[1]; ++up) {
-      if (across == 0 && up == 0) continue;
-      visit(Pair<int>{across, up}, geometry::Point{kernel::moved(p.x, across, box.period[0]),
-                                                   kernel::moved(p.y, up, box.period[1])});
+      if (kernel::is_image(p, across, up, &box.lattice, &box) != 0)
+        visit(Pair<int>{across, up}, kernel::moved(p, across, up, &box.lattice));
     }
   }
 }
 
-/// An image of a point, so many periods away from its place.
+/// An image of a point, so many vectors of the lattice away from its place.
 struct Image {
   std::int64_t point;
   Pair<int> at;
 };
+inline Image image_of(std::uint64_t image) {
+  if (image == NO_IMAGE) return {-1, {}};
+  return {kernel::point_of(image), {kernel::vectors_across(image), kernel::vectors_up(image)}};
+}
 inline bool operator==(const Image& a, const Image& b) { return a.point == b.point && a.at == b.at; }
 inline bool operator<(const Image& a, const Image& b) {
   return a.point < b.point || (a.point == b.point && a.at < b.at);

@@ -202,10 +202,10 @@ class Mender {
  public:
   // can_join: whether cells can become parts of others.
   Mender(host::Runtime& runtime, const double* sites, const std::vector<double>& fixed,
-         const std::array<double, 2>& period, bool can_join, Cells& cells)
+         const kernel::periodic_lattice& lattice, bool can_join, Cells& cells)
       : runtime_(runtime.is_native() ? &runtime : nullptr),
         sites_(sites),
-        period_(period),
+        lattice_(lattice),
         can_join_(can_join),
         cells_(cells) {
     for (std::size_t i = 0; i < fixed.size(); i += 2) fixed_.push_back({fixed[i] + 0.0, fixed[i + 1] + 0.0});
@@ -280,17 +280,9 @@ class Mender {
   }
   // The image in the period.
   Point key(Point p) const {
-    const auto reduced = [](double x, double period) {
-      return std::isinf(period) ? x + 0.0 : x - period * std::floor(x / period);
-    };
-    return {reduced(p.x, period_[0]), reduced(p.y, period_[1])};
-  }
-  // The image of a place that is nearest to p.
-  Point image(Point p, Point place) const {
-    const auto nearest = [](double x, double goal, double period) {
-      return std::isinf(period) ? goal : goal + period * std::round((x - goal) / period);
-    };
-    return {nearest(p.x, place.x, period_[0]), nearest(p.y, place.y, period_[1])};
+    p = kernel::moved(p, 0, -vectors(std::floor(p.y / lattice_.period[1])), &lattice_);
+    p = kernel::moved(p, -vectors(std::floor(p.x / lattice_.period[0])), 0, &lattice_);
+    return {p.x + 0.0, p.y + 0.0};
   }
 
   template <typename T>
@@ -589,7 +581,7 @@ class Mender {
     for (std::size_t k = begins_[cell]; k < begins_[cell] + index(sizes_[cell]); ++k) {
       const std::int32_t to = std::as_const(*this).root(ring_[k]);
       if (to == ring_[k]) continue;
-      const Point at = image(vertex(k), places_[index(to)].at);
+      const Point at = image_near(vertex(k), places_[index(to)].at, lattice_);
       cells_.vertices[2 * k] = at.x;
       cells_.vertices[2 * k + 1] = at.y;
       ring_[k] = to;
@@ -632,7 +624,8 @@ class Mender {
       for (std::size_t c = 1; c + 1 < n; ++c) {
         const Point at = thin[c].at;
         best.push_back(
-            {image({at.x + shift.x, at.y + shift.y}, places_[index(thin[c].place)].at), thin[c].place});
+            {image_near({at.x + shift.x, at.y + shift.y}, places_[index(thin[c].place)].at, lattice_),
+             thin[c].place});
       }
     }
     if (to < 0) return;
@@ -666,14 +659,14 @@ class Mender {
 
   // Whether a is as many periods from b as c is from d.
   bool is_one_image(Point a, Point b, Point c, Point d) const {
-    return std::fabs((a.x - b.x) - (c.x - d.x)) < period_[0] / 2 &&
-           std::fabs((a.y - b.y) - (c.y - d.y)) < period_[1] / 2;
+    return std::fabs((a.x - b.x) - (c.x - d.x)) < lattice_.period[0] / 2 &&
+           std::fabs((a.y - b.y) - (c.y - d.y)) < lattice_.period[1] / 2;
   }
 
   host::Runtime* runtime_;
   const double* sites_;
   std::vector<Point> fixed_;
-  std::array<double, 2> period_;
+  kernel::periodic_lattice lattice_;
   bool can_join_;
   Cells& cells_;
   // For all sets. A cell has corners in cells_.vertices, and in ring_ their places if it is open.
@@ -696,8 +689,8 @@ class Mender {
 }  // namespace
 
 void mend(host::Runtime& runtime, const std::vector<std::size_t>& sets, const double* sites,
-          const std::vector<double>& fixed, const std::array<double, 2>& period, Cells& cells) {
-  Mender mender(runtime, sites, fixed, period, true, cells);
+          const std::vector<double>& fixed, const kernel::periodic_lattice& lattice, Cells& cells) {
+  Mender mender(runtime, sites, fixed, lattice, true, cells);
   for (std::size_t s = 0; s + 1 < sets.size(); ++s) mender.run(sets[s], sets[s + 1]);
   mender.close_up();
 }

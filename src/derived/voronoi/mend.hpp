@@ -1,7 +1,6 @@
 // Rounded polygons of cells, made valid.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 
 #include "host/launch/vector_operations.hpp"
 #include "host/runtime.hpp"
+#include "periodic/torus.h"
 #include "points/device_mesh.hpp"
 #include "points/download.hpp"
 
@@ -20,7 +20,18 @@ struct Cells {
   std::vector<double> vertices;       ///< x and y of each corner, counter-clockwise
 };
 
-constexpr std::array<double, 2> kNoPeriod = {HUGE_VAL, HUGE_VAL};
+/// The plane, which does not repeat itself.
+constexpr kernel::periodic_lattice kNoPeriod{{HUGE_VAL, HUGE_VAL}, {}, {}, {}, {}};
+
+/// The number of vectors of the lattice; none if it is not that of a cell's corner.
+inline int vectors(double number) { return std::fabs(number) < 128 ? static_cast<int>(number) : 0; }
+
+/// The image of a place that is nearest to p along y, and of these along x.
+inline kernel::double2 image_near(kernel::double2 p, kernel::double2 place,
+                                  const kernel::periodic_lattice& lattice) {
+  place = kernel::moved(place, 0, vectors(std::round((p.y - place.y) / lattice.period[1])), &lattice);
+  return kernel::moved(place, vectors(std::round((p.x - place.x) / lattice.period[0])), 0, &lattice);
+}
 
 /// Makes polygons valid: afterwards each is simple and counter-clockwise, which is decided exactly, or empty.
 /// Corners that coincide (CORNERS_COINCIDE) become one in all cells that have them. Where a polygon crosses
@@ -30,11 +41,10 @@ constexpr std::array<double, 2> kNoPeriod = {HUGE_VAL, HUGE_VAL};
 /// left alone. The result of a set depends on nothing else, nor on the order of its cells. runtime: its
 /// threads are used if it is native. sets: set s has the cells sets[s] up to sets[s + 1]. sites: the cells'
 /// points, 2 coordinates each. fixed: places that stay, such as the corners of the polygon to which cells are
-/// clipped. period: how far the images of a corner are apart, which must be exact; infinite without. O(n) if
-/// few cells are in doubt. A polygon of d corners that is not convex takes O(d log d) and its crossings, each
-/// time it changes.
+/// clipped. lattice: of the images of a corner, which must be exact. O(n) if few cells are in doubt. A
+/// polygon of d corners that is not convex takes O(d log d) and its crossings, each time it changes.
 void mend(host::Runtime& runtime, const std::vector<std::size_t>& sets, const double* sites,
-          const std::vector<double>& fixed, const std::array<double, 2>& period, Cells& cells);
+          const std::vector<double>& fixed, const kernel::periodic_lattice& lattice, Cells& cells);
 
 /// As mend, of cells whose corners are numbers of centres: these are moved. Unbounded cells do not count, and
 /// those with long edges alone stay as they are. doubts: as doubts_of finds them; sets without any are left

@@ -116,8 +116,10 @@ typedef enum flaunay_part {
   /// the period's last bit but one; what has no period is not rounded. On the sphere it is where the line
   /// from the south pole through the point meets the plane of the equator; infinite for the south pole.
   FLAUNAY_PART_PLACES = 64,
-  /// int8, 6 per triangle on a torus and a cylinder, always computed there: x and y per corner, -1 to 1. With
-  /// the first corner in its place, a corner is at its place + offset * period.
+  /// int8, 6 per triangle on a torus and a cylinder, always computed there: i and j per corner. If the first
+  /// corner is in its place, the corner is i (x, 0) + j (shear, y) away from its place. The first corner has
+  /// 0, 0; the others -1, 0 or 1. With a shear they are from -2 to 2 if x is at most y, and otherwise |j| < 2
+  /// + x / y and |i| < 2 + |j| / 2.
   FLAUNAY_PART_CORNER_OFFSETS = 128
 } flaunay_part;
 
@@ -142,6 +144,10 @@ typedef struct flaunay_space {
   /// most 2^30 times the other period. If one is INFINITY, it is a cylinder.
   double period_x;
   double period_y;  ///< see period_x
+  /// On a torus, how far the period in y moves places along x: any finite number, which is reduced by
+  /// multiples of period_x. On a cylinder it must be 0. If it is not a multiple of period_x, then period_x may
+  /// be at most 64 times period_y.
+  double shear;
   /// In the plane, one per point: squared lengths of any sign; of circles, the squared radii. NULL: none.
   const double* weights;
   uintptr_t reserved[4];  ///< 0
@@ -516,8 +522,8 @@ typedef struct flaunay_mesh {
   const size_t* hull_offsets;            ///< sets + 1 values
   const flaunay_statistics* statistics;  ///< what the call did and how long it took
   const double* areas;                   ///< t values; NULL if not asked for
-  /// Where the points lie, without their weights; NULL: in the plane. The period is as given, but for the
-  /// last bit of a double, which is 0 unless the period is a power of two.
+  /// Where the points lie, without their weights; NULL: in the plane. The period is as given, but for the last
+  /// bit of a double, which is 0 unless the period is a power of two, and with the shear in (-x / 2, x / 2].
   const flaunay_space* space;
   const double* places;          ///< 2 n values on a torus, a cylinder and the sphere; NULL in the plane
   const int8_t* corner_offsets;  ///< 6 t values on a torus and a cylinder
@@ -1221,12 +1227,16 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
 /// of flaunay_triangulate, and the representatives, too. There is no hull. Points are read at least three
 /// times; the images of those near the border are in memory, 48 bytes for each. Further errors:
 /// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
-FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(
-    const flaunay_strided_points* points, double period_x, double period_y, const flaunay_mesh_arrays* arrays,
-    const flaunay_mesh_files* files, const flaunay_chunk_options* options, flaunay_chunk_report** report);
+FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points,
+                                                               double period_x, double period_y, double shear,
+                                                               const flaunay_mesh_arrays* arrays,
+                                                               const flaunay_mesh_files* files,
+                                                               const flaunay_chunk_options* options,
+                                                               flaunay_chunk_report** report);
 /// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_triangulate and
-/// flaunay_triangulate_periodic_chunks do. period: x and y, which become the rounded ones. Errors are
-/// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite. O(n).
+/// flaunay_triangulate_periodic_chunks do. period: x, y and the shear, which become the rounded ones. Errors
+/// are FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite.
+/// O(n).
 FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);

@@ -113,12 +113,16 @@ struct Statistics {
   std::string note;
 };
 
-/// Where the plane begins again, in x and in y.
+/// Where the plane begins again: a place x farther along x, and a place y farther along y and `shear` along
+/// x.
 struct Period {
   /// From 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), and at most 2^30 times the other. If one is infinite,
   /// the plane does not repeat itself in that direction: it is a cylinder.
   double x = 1;
   double y = 1;  ///< see x
+  /// Any finite number, which is reduced by multiples of x. On a cylinder it must be 0. If it is not a
+  /// multiple of x, then x may be at most 64 times y.
+  double shear = 0;
 };
 
 /// How points of the unit sphere are given.
@@ -170,12 +174,14 @@ struct Space {
 /// The triangulations of one or more point sets. Points and triangles are numbered over all sets.
 struct Triangulation {
   /// The space of the points, without their weights. The period is as given, but for the last bit of a
-  /// double, which is 0 unless the period is a power of two.
+  /// double, which is 0 unless the period is a power of two. The shear is more than -x / 2 and at most x / 2,
+  /// a multiple of what x of places is. With a shear, y is a multiple of 2^-52 times the first power of two
+  /// that is at least y + x / 2.
   Space space = Space::plane();
   /// x and y per point on a torus, a cylinder and the sphere; empty in the plane. A point's place is rounded
   /// once, and is then what the point is. On a torus it is the point in [0, period), a multiple of the
-  /// period's last bit but one, or of the last bit if the period is a power of two; so every image of a point
-  /// is exact. What has no period is not rounded. On the sphere it is where the line from the south pole
+  /// period's last bit but one, or of the last bit if the period is a power of two; with a shear, y as that
+  /// of the period. So every image of a point is exact. What has no period is not rounded. On the sphere it is where the line from the south pole
   /// through the point meets the plane of the equator; infinite for the south pole. Every pair of numbers is
   /// a point that lies on the sphere exactly.
   std::vector<double> places;
@@ -191,9 +197,10 @@ struct Triangulation {
   /// opposite halfedge, in the adjacent triangle, or -1 on the hull. This is the convention of delaunator.
   /// Empty unless Options::halfedges.
   std::vector<std::int32_t> halfedges;
-  /// 6 per triangle on a torus and a cylinder: x and y per corner, in periods. With the first corner in its
-  /// place, a corner is at its place + offset * period. The first corner has 0, 0; the others -1, 0 or 1.
-  /// They tell apart corners that are the same point, as few points have them.
+  /// 6 per triangle on a torus and a cylinder: i and j per corner. If the first corner is in its place, the
+  /// corner is i (x, 0) + j (shear, y) away from its place. The first corner has 0, 0; the others -1, 0 or 1.
+  /// With a shear they are from -2 to 2 if x is at most y, and otherwise |j| < 2 + x / y and |i| < 2 + |j| /
+  /// 2. They tell apart corners that are the same point, as few points have them.
   std::vector<std::int8_t> corner_offsets;
   /// The convex hull with the points on its edges, counter-clockwise from the lexicographically smallest
   /// point. Collinear sets: the distinct points in lexicographic order. Empty except in the plane.
