@@ -66,25 +66,41 @@ class Arrays {
   Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
 };
 
+// The weights of a call's points, if they have any, and the array of hidden points.
+template <typename Values, typename Hidden>
+std::optional<points::Weights> weights_in(Frame& call, std::size_t n,
+                                          const GivenWeights<Values, Hidden>* given) {
+  if (given == nullptr || n == 0) return std::nullopt;
+  const auto hidden = call.output<cl_int>(given->hidden, n, "hidden");
+  return points::Weights{call.in<cl_double>(given->values, n, "weights"), given->solver,
+                         [given, hidden](std::size_t count) {
+                           if (given->hidden_count != nullptr) *given->hidden_count = count;
+                           return hidden.buffer(count);
+                         }};
+}
+
+// Bytes of the persistent arena per point. Weights take a scaled copy, those of vertices, and links.
+std::size_t persistent_bytes(bool has_weights) {
+  return blocks::kPersistentBytesPerPoint + (has_weights ? 2 * sizeof(cl_double) + sizeof(cl_int) : 0);
+}
+
 // Triangulates points of a call, at least one. Writes the result's offsets and statistics.
 template <typename Points, typename Result>
 geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
                                          const std::vector<std::size_t>& offsets, const Arrays& arrays,
-                                         statistics::Phases& phases, Result& result,
-                                         const ScaledWeights* weights = nullptr) {
+                                         const std::optional<points::Weights>& weights,
+                                         statistics::Phases& phases, Result& result) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
-  points::Weights by_point;
-  if (weights != nullptr) by_point = {call.in(weights->values), weights->range, weights->solver};
   geometry::Fitted<blocks::Outcome> run = blocks::run(
       engine.runtime, engine.persistent, offsets,
       {[&] { return call.points(points); },
        arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
                                           : engine.persistent.allocate<cl_int>(n),
        arrays.have_links(), [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-       [&] { arrays.reserve(engine.runtime); }, weights != nullptr ? &by_point : nullptr},
+       [&] { arrays.reserve(engine.runtime); }, weights ? &*weights : nullptr},
       phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
@@ -98,7 +114,6 @@ geometry::Fitted<geometry::Done> compute(Frame& call, const Points& points,
   }
   call.end();
   outcome.write(n, result.statistics);
-  if (weights != nullptr) weights->hidden = std::move(outcome.hidden);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
   return geometry::Done();
@@ -112,8 +127,7 @@ HostPoints part_of(const HostPoints& points, const Group& group) {
 
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
                                                const std::vector<std::size_t>& offsets,
-                                               const Options& options,
-                                               const ScaledWeights* weights = nullptr) {
+                                               const Options& options, const HostWeights* weights = nullptr) {
   const std::size_t n = points.count, sets = offsets.size() - 1;
   Triangulation result = empty_result(engine, sets);
   if (n == 0) return result;
@@ -121,11 +135,11 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
   Frame call(engine, options.profile);
-  if (engine.workspace != nullptr) engine.provide_memory(n, sets);
-  engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+  if (engine.workspace != nullptr && weights == nullptr) engine.provide_memory(n, sets);
+  engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
   const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
                       result);
-  const auto done = compute(call, points, offsets, arrays, phases, result, weights);
+  const auto done = compute(call, points, offsets, arrays, weights_in(call, n, weights), phases, result);
   if (!done) return done.too_wide();
   phases.end("output");
   engine.write_accounts(result.statistics);
@@ -138,7 +152,8 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
 geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Place& place,
                                                 const std::string& reason, const DevicePoints& points,
                                                 DeviceTriangulation& result, const Parts& parts,
-                                                const Enqueue& enqueue) {
+                                                const Enqueue& enqueue,
+                                                const DeviceWeights* weights = nullptr) {
   Engine& device = *place.device;
   Frame call(self, place, enqueue);
   if ((parts.neighbors || parts.halfedges || parts.areas) && !parts.triangles) {
@@ -151,6 +166,7 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   std::vector<std::size_t> offsets = call.offsets(points);
   const std::size_t n = points.count, sets = offsets.size() - 1;
   const Arrays arrays(call, parts, n, result);
+  const std::optional<points::Weights> by_point = weights_in(call, n, weights);
   call.check_distinct({device.workspace.get()});
   result.statistics = {};
   result.statistics.device = call.runtime.name();
@@ -163,14 +179,14 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   result.hull_offsets.assign(sets + 1, 0);
   if (n > 0) {
     call.check_size(n);
-    if (place.is_apart()) {
-      call.engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+    if (place.is_apart() || weights != nullptr) {
+      call.engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
     } else {
       device.provide_memory(n, sets);
     }
     const Options unheard;
     statistics::Phases phases(unheard);
-    const auto done = compute(call, points, offsets, arrays, phases, result);
+    const auto done = compute(call, points, offsets, arrays, by_point, phases, result);
     if (!done) return done;
     if (place.is_apart()) {
       phases.end("output");
@@ -254,10 +270,14 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   return result;
 }
 
-Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, const ScaledWeights& weights,
-                                   const std::vector<std::size_t>& offsets, const Options& options) {
+Triangulation triangulate(Implementation& self, const HostPoints& points, const HostWeights& weights,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  Engine& asked = self.is_named() ? self.for_host_memory() : self.native();
+  Engine& engine = self.with_doubles(asked);
   engine.check_size(points.count);
-  return *triangulate_on(engine, points, offsets, options, &weights);
+  Triangulation result = *triangulate_on(engine, points, offsets, options, &weights);
+  add_note(asked, engine, "weights", "triangulated", result.statistics);
+  return result;
 }
 
 Triangulation triangulate(Implementation& self, const HostPoints& points,
@@ -288,6 +308,12 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
         add_note(engine, other, reason, "triangulated", result.statistics);
         return result;
       });
+}
+
+void triangulate(Implementation& self, const DevicePoints& points, const DeviceWeights& weights,
+                 DeviceTriangulation& result, const Parts& parts, const Enqueue& enqueue) {
+  const Place place = with_doubles(self, self.on_device());
+  (void)*triangulate_on(self, place, "weights", points, result, parts, enqueue, &weights);
 }
 
 void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,

@@ -20,6 +20,7 @@
 #include "flaunay/periodic.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/result_arrays.hpp"
+#include "flaunay/weighted.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/embedded.hpp"
 #include "tests/support/errors.hpp"
@@ -574,6 +575,8 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
   const auto clipped = std::make_shared<DeviceClippedVoronoi>();
   const auto relaxed = std::make_shared<DeviceBuffer>();
   const auto periodic = std::make_shared<DevicePeriodicTriangulation>();
+  const auto weighted = std::make_shared<DeviceWeightedTriangulation>();
+  const Memory weights = embedder().upload(std::vector<double>(n));
   const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
   const DevicePoints points = points_in(memory, n);
   return {
@@ -597,6 +600,10 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
       {"periodic on device",
        [=, &t, &enqueue] { triangulate_periodic(t, points, Period(), *periodic, enqueue); }},
+      {"weighted on device",
+       [=, &t, &enqueue] {
+         triangulate_weighted(t, points, weights.get(), *weighted, triangles_alone(), enqueue);
+       }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
       {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},
@@ -1360,6 +1367,13 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
     DevicePeriodicTriangulation result;
     triangulate_periodic(kept, points_in(memory, n), Period(), result, on_own());
     EXPECT_EQ(result.triangle_offsets.back(), 2 * n);
+  });
+  const std::vector<double> heavier(n, 1);
+  const Memory weights = embedder().upload(heavier);
+  attack("weights", [&] {
+    DeviceWeightedTriangulation result;
+    triangulate_weighted(kept, points_in(memory, n), weights.get(), result, kAll, on_own());
+    expect_same(result, expected);
   });
   attack("a locator", [&] {
     Locator locator(kept, coordinates.data(), n, expected);

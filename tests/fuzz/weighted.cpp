@@ -92,7 +92,7 @@ class WeightedFuzzer : public Fuzzer {
   }
 
   Triangulator& host_ = testing::triangulator_with("cpu");
-  Triangulator& small_blocks_ = testing::triangulator_with("cpu,block_points=6");
+  Triangulator& small_blocks_ = testing::triangulator_with("gpu:32,block_points=6");
   std::size_t sets_ = 0, points_ = 0, hidden_ = 0, refused_ = 0;
 };
 

@@ -457,11 +457,22 @@ void sphere(Triangulator& triangulator, std::size_t n, Arrays& results) {
   }
 }
 
+std::vector<double> weights_of(const Coordinates& points) {
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < points.size() / 2; ++k) weights.push_back(static_cast<double>(k % 5) / 64);
+  return weights;
+}
+
 void weighted(Triangulator& triangulator, std::size_t n, Arrays& results) {
+  // Enough for merges of blocks.
+  const Coordinates many = points_of("uniform", 8 * n);
+  const WeightedTriangulation merged =
+      triangulate_weighted(triangulator, many.data(), weights_of(many).data(), many.size() / 2, all_arrays());
+  add(results, "many", static_cast<const Triangulation&>(merged));
+  results.add("many hidden", merged.hidden);
   for (const std::string& input : kTameInputs) {
     const Coordinates points = points_of(input, n);
-    std::vector<double> weights;
-    for (std::size_t k = 0; k < points.size() / 2; ++k) weights.push_back(static_cast<double>(k % 5) / 64);
+    const std::vector<double> weights = weights_of(points);
     const WeightedTriangulation mesh =
         triangulate_weighted(triangulator, points.data(), weights.data(), weights.size(), all_arrays());
     add(results, input, static_cast<const Triangulation&>(mesh));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay {
@@ -23,9 +24,9 @@ struct WeightedTriangulation : Triangulation {
 /// with equal weights the Delaunay triangulation, to the byte. Where more than three lifted points are on a
 /// plane, those that are no corners of their hull there are hidden; the others' polygon is triangulated as
 /// the farthest-point Delaunay triangulation, and where these are cocircular, as a fan from the
-/// lexicographically smallest one. Runs on the host's cores. Throws what Triangulator::triangulate throws;
-/// Error(input) also for a weight that is not finite, or beyond the squares of what coordinates may be.
-/// O(n log n) work.
+/// lexicographically smallest one. Runs on the device that was named, if it has double precision; otherwise
+/// on the host's cores. Throws what Triangulator::triangulate throws; Error(input) also for a weight that is
+/// not finite, or beyond the squares of what coordinates may be. O(n log n) work.
 FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulator, const double* points,
                                                        const double* weights, std::size_t n,
                                                        const Options& options = {});
@@ -34,6 +35,21 @@ FLAUNAY_API WeightedTriangulation triangulate_weighted(Triangulator& triangulato
                                                        const double* weights,
                                                        const std::vector<std::size_t>& offsets,
                                                        const Options& options = {});
+
+/// A WeightedTriangulation in device memory.
+struct DeviceWeightedTriangulation : DeviceTriangulation {
+  DeviceBuffer hidden;           ///< WeightedTriangulation::hidden, int32; a caller's buffer has 4 n bytes
+  std::size_t hidden_count = 0;  ///< number of hidden points, known when the call returns
+};
+
+/// Triangulates points in device memory, in one or more sets, into device memory: the same bytes. weights:
+/// double, 8 bytes per point to use. The host waits about twice as often as for Triangulator::triangulate;
+/// otherwise the work is enqueued like that of triangulate for device memory, with the same errors, but in
+/// memory of the triangulator's own. Devices without double precision leave it to the host.
+FLAUNAY_API void triangulate_weighted(Triangulator& triangulator, const DevicePoints& points, cl_mem weights,
+                                      DeviceWeightedTriangulation& result,
+                                      const Parts& parts = triangles_alone(),
+                                      const Enqueue& enqueue = own_queue());
 
 /// Returns for each hidden point the triangle that hides it, exactly: the one of the smallest index that has
 /// it inside or on its border. -1 in a set without triangles. points, offsets: those that were triangulated.
