@@ -50,6 +50,11 @@ static inline int periods_across(uint image) { return (int)(image % 9 / 3) - 1; 
 static inline int periods_up(uint image) { return (int)(image % 3) - 1; }
 static inline int is_in_place(uint image) { return image % 9 == 4; }
 
+// What is at a place of the plane. Places below `own` are those of the points with these numbers.
+static inline uint image_at(int v, int own, GLOBAL const uint* images) {
+  return v < own ? image_of(v, 0, 0) : images[v];
+}
+
 // How many periods images are away: from low to high, in x and in y.
 typedef struct {
   int low[2], high[2];

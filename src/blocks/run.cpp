@@ -66,6 +66,11 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
 
 points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
                        const Buffer<cl_double>& coordinates, Arena& results) {
+  return run(runtime, persistent, offsets, coordinates, results, nullptr);
+}
+
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results, const points::Weights* weights) {
   const std::size_t n = offsets.back();
   points::DeviceMesh mesh;
   mesh.point_offsets = offsets;
@@ -74,8 +79,12 @@ points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vec
   mesh.neighbors = results.allocate<cl_int>(3 * kMostTrianglesPerPoint * n);
   mesh.hull = results.allocate<cl_int>(n);
   mesh.representatives = results.allocate<cl_int>(n);
-  const Exchange exchange{[&] { return coordinates; }, mesh.representatives, true,
-                          [&](const MeshSizes&) { return mesh; }};
+  const Exchange exchange{[&] { return coordinates; },
+                          mesh.representatives,
+                          true,
+                          [&](const MeshSizes&) { return mesh; },
+                          [] {},
+                          weights};
   const Options unheard;
   statistics::Phases phases(unheard);
   MeshSizes sizes = (*run(runtime, persistent, offsets, exchange, phases)).sizes;

@@ -51,5 +51,8 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
 /// Triangulates points in device memory, whose arrays come from `results`; otherwise as above.
 points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
                        const Buffer<cl_double>& coordinates, Arena& results);
+/// weights: null if points have none.
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results, const points::Weights* weights);
 
 }  // namespace flaunay::blocks

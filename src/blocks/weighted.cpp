@@ -21,7 +21,7 @@ using namespace points;
 
 namespace {
 
-Error wrong_weight(cl_int point, double weight, double scaled) {
+Error wrong_weight(std::size_t point, double weight, double scaled) {
   if (!std::isfinite(weight)) {
     return Error(ErrorKind::input,
                  fmt::format("point {} has a weight that is not finite: {}", point, weight));
@@ -56,8 +56,9 @@ Weights scale_weights(Workspace& work, const Weights& given, const std::vector<s
   runtime.read_later(device_ranges, 0, ranges.size(), ranges.data());
   const cl_int wrong = runtime.read_one(bad, 0);
   if (wrong != kernel::NO_BAD) {
-    throw wrong_weight(wrong, runtime.read_one(given.by_point, wrong),
-                       runtime.read_one(scaled.by_point, wrong));
+    const auto at = static_cast<std::size_t>(wrong);
+    throw wrong_weight(given.number ? given.number(at) : at, runtime.read_one(given.by_point, at),
+                       runtime.read_one(scaled.by_point, at));
   }
   double least = HUGE_VAL, greatest = -HUGE_VAL;
   for (const cl_double2& range : ranges) {

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -16,6 +18,7 @@
 #include "derived/periodic/fold.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
 
 namespace flaunay {
@@ -71,10 +74,13 @@ using host::Buffer;
 template <typename Result>
 class Rounds {
  public:
-  Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places, Result& result)
+  // weights: null if points have none.
+  Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places,
+         const points::Weights* weights, Result& result)
       : self_(self),
         call_(call),
         engine_(call.engine),
+        weights_(weights),
         places_(places),
         result_(result),
         offsets_(result.point_offsets),
@@ -89,12 +95,23 @@ class Rounds {
       boxes_[s].margin = periodic::first_margin(boxes_[s], offsets_[s + 1] - offsets_[s]);
       waiting.push_back(s);
     }
+    const Arena::Scope hidden_scope(engine_.odd);
+    if (weights_ != nullptr) {
+      hidden_.by_point = engine_.odd.allocate<cl_uchar>(offsets_.back());
+      call_.runtime.fill<cl_uchar>(hidden_.by_point, offsets_.back(), 0);
+    }
     for (bool is_first = true; !waiting.empty(); is_first = false) {
       Arena::Scope scope(engine_.even), scratch_scope(call_.runtime.arena());
       const periodic::UnrolledSets plane = unroll(waiting);
       const points::DeviceMesh mesh = triangulate(plane, result_);
-      const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives);
-      if (is_first) {
+      const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives,
+                                        weights_ != nullptr ? &hidden_ : nullptr);
+      if (weights_ != nullptr && !are_done(folded, waiting.size())) {
+        // How many triangles there are is known when all sets are done.
+        widened(waiting, plane, folded);
+        continue;
+      }
+      if (is_first || weights_ != nullptr) {
         count_triangles(waiting, folded);
         const std::size_t count = result_.triangle_offsets.back();
         periods_ = periods.buffer(6 * count);
@@ -115,6 +132,7 @@ class Rounds {
       }
       waiting = widened(waiting, plane, folded);
     }
+    if (weights_ != nullptr) write_hidden();
   }
 
  private:
@@ -142,17 +160,51 @@ class Rounds {
     return {call_.runtime, engine_.even, places_, first, last, std::move(boxes), make_room(result_)};
   }
 
-  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DevicePeriodicTriangulation&) const {
+  static bool are_done(const periodic::FoldedSets& folded, std::size_t sets) {
+    for (std::size_t k = 0; k < sets; ++k) {
+      if (!folded.is_done(k)) return false;
+    }
+    return true;
+  }
+  void write_hidden() {
+    Arena::Scope scope(call_.runtime.arena());
+    const auto [hidden, count] = host::pack_positions(call_.runtime, hidden_.by_point, offsets_.back(), 1);
+    call_.runtime.copy(hidden, 0, weights_->hidden(count), 0, count);
+  }
+
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DevicePeriodicTriangulation&) {
     const std::size_t count = plane.offsets().back();
     engine_.check_size(count);
     engine_.persistent.reserve(blocks::workspace_bytes(call_.runtime, count, plane.sets()).persistent);
+    points::Weights weights;
+    if (weights_ != nullptr) {
+      weights = {plane.weights(call_.runtime, engine_.even, weights_->by_point), weights_->solver,
+                 [&](std::size_t hidden) {
+                   hidden_.count = hidden;
+                   return hidden_.in_plane = engine_.even.allocate<cl_int>(hidden);
+                 },
+                 numbers_in(plane)};
+    }
     Arena::Scope scope(engine_.persistent), scratch_scope(call_.runtime.arena());
-    return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even);
+    return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even,
+                       weights_ != nullptr ? &weights : nullptr);
   }
   points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, PeriodicTriangulation& result) {
     const auto* const coordinates =
         reinterpret_cast<const double*>(host::address_of(plane.coordinates().memory()));
-    planar_ = call::triangulate(self_, {coordinates, nullptr, plane.offsets().back()}, plane.offsets(), {});
+    const call::HostPoints points{coordinates, nullptr, plane.offsets().back()};
+    if (weights_ != nullptr) {
+      const auto weights = plane.weights(call_.runtime, engine_.even, weights_->by_point);
+      const auto* const values = reinterpret_cast<const double*>(host::address_of(weights.memory()));
+      planar_ = call::triangulate(
+          self_, points,
+          call::HostWeights{values, weights_->solver, planar_hidden_, nullptr, numbers_in(plane)},
+          plane.offsets(), {});
+      hidden_.in_plane = call_.in(planar_hidden_);
+      hidden_.count = planar_hidden_.size();
+    } else {
+      planar_ = call::triangulate(self_, points, plane.offsets(), {});
+    }
     result.statistics = std::move(planar_.statistics);
     points::DeviceMesh mesh;
     mesh.triangle_offsets = planar_.triangle_offsets;
@@ -160,6 +212,10 @@ class Rounds {
     mesh.neighbors = call_.in(planar_.neighbors);
     mesh.representatives = call_.in(planar_.representatives);
     return mesh;
+  }
+  // The numbers of points by their places in the plane.
+  static std::function<std::size_t(std::size_t)> numbers_in(const periodic::UnrolledSets& plane) {
+    return [&plane](std::size_t v) { return plane.number(v); };
   }
   void take_rows(DevicePeriodicTriangulation&) {}
   void take_rows(PeriodicTriangulation& result) {
@@ -192,18 +248,23 @@ class Rounds {
   call::Implementation& self_;
   call::Frame& call_;
   call::Engine& engine_;
+  const points::Weights* weights_;
   Buffer<cl_double> places_;
   Result& result_;
   const std::vector<std::size_t>& offsets_;
   std::vector<periodic::Box> boxes_;
   Triangulation planar_;  // in host memory
+  std::vector<cl_int> planar_hidden_;
+  periodic::HiddenPoints hidden_;  // if points have weights
   Buffer<cl_int> triangles_{}, neighbors_{};
   Buffer<cl_char> periods_{};
 };
 
-template <typename Points, typename Result>
+// weights: null if points have none.
+template <typename Points, typename Result, typename Weights>
 void compute(call::Implementation& self, call::Frame& call, const Points& points,
-             const std::vector<std::size_t>& offsets, const Period& period, Result& result) {
+             const std::vector<std::size_t>& offsets, const Period& period, Result& result,
+             const Weights* weights) {
   const std::size_t n = points.count, most = blocks::kMostTrianglesPerPoint * n;
   const periodic::Pair<double> lengths = periodic::rounded(period);
   result.period = {lengths[0], lengths[1]};
@@ -217,13 +278,15 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
   const auto periods = call.template output<cl_char>(result.offsets, 6 * most, "offsets");
   const auto neighbors = call.template output<cl_int>(result.neighbors, 3 * most, "neighbors");
   const auto representatives = call.template out<cl_int>(result.representatives, n, "representatives");
+  const std::optional<points::Weights> by_point = call::weights_in(call, n, weights);
   call.check_distinct();
   if (n > 0) {
     {
       Arena::Scope scope(call.runtime.arena());
       periodic::find_places(call.runtime, call.points(points), n, lengths, places);
     }
-    Rounds<Result>(self, call, places, result).run(triangles, periods, neighbors, representatives);
+    Rounds<Result>(self, call, places, by_point ? &*by_point : nullptr, result)
+        .run(triangles, periods, neighbors, representatives);
   }
   call.end();
 }
@@ -237,20 +300,33 @@ PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const dou
 
 PeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
                                            const std::vector<std::size_t>& offsets, const Period& period) {
-  call::Implementation& self = TriangulatorAccess::implementation(triangulator);
-  return call::take_turn(self, [&] {
+  PeriodicTriangulation result;
+  call::triangulate_periodic(triangulator, points, offsets, period, nullptr, result);
+  return result;
+}
+
+void call::triangulate_periodic(Triangulator& triangulator, const double* points,
+                                const std::vector<std::size_t>& offsets, const Period& period,
+                                const HostWeights* weights, PeriodicTriangulation& result) {
+  Implementation& self = TriangulatorAccess::implementation(triangulator);
+  take_turn(self, [&] {
     check_offsets(offsets);
-    call::check(period);
+    check(period);
     check_points(points, offsets.back());
-    PeriodicTriangulation result;
-    call::Frame call(self.native_for(offsets.back()));
-    compute(self, call, call::HostPoints{points, nullptr, offsets.back()}, offsets, period, result);
-    return result;
+    if (weights != nullptr) check_array(weights->values, offsets.back(), "weights");
+    Frame call(self.native_for(offsets.back()));
+    compute(self, call, HostPoints{points, nullptr, offsets.back()}, offsets, period, result, weights);
   });
 }
 
 void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, const Period& period,
                           DevicePeriodicTriangulation& result, const Enqueue& enqueue) {
+  call::triangulate_periodic(triangulator, points, period, nullptr, result, enqueue);
+}
+
+void call::triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, const Period& period,
+                                const DeviceWeights* weights, DevicePeriodicTriangulation& result,
+                                const Enqueue& enqueue) {
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   call::take_turn(self, enqueue, [&] {
     call::check(period);
@@ -261,7 +337,7 @@ void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points
     call.check_size(points.count);
     call.begin();
     const double begin = place.device->runtime.working_clock();
-    compute(self, call, points, call.offsets(points), period, result);
+    compute(self, call, points, call.offsets(points), period, result, weights);
     Statistics& statistics = result.statistics;
     statistics.device = call.runtime.name();
     statistics.points = points.count;
@@ -273,18 +349,23 @@ void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points
 }
 
 ClippedVoronoi periodic_cells(Triangulator& triangulator, const PeriodicTriangulation& mesh) {
+  return call::periodic_cells(triangulator, nullptr, mesh);
+}
+
+ClippedVoronoi call::periodic_cells(Triangulator& triangulator, const double* weights,
+                                    const PeriodicTriangulation& mesh) {
   call::Implementation& self = TriangulatorAccess::implementation(triangulator);
   return call::take_turn(self, [&] {
     call::check_with_places(mesh);
     call::expect(std::isfinite(mesh.period.x) && std::isfinite(mesh.period.y),
                  "cells on a cylinder have no end");
-    return periodic::make_cells(self.native().runtime, mesh);
+    return periodic::make_cells(self.native().runtime, mesh, weights);
   });
 }
 
 std::string verify(const PeriodicTriangulation& mesh) {
   call::check(mesh);
-  return prove::find_problem(mesh);
+  return prove::find_problem(mesh, nullptr, {});
 }
 
 }  // namespace flaunay

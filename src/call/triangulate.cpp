@@ -66,19 +66,6 @@ class Arrays {
   Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
 };
 
-// The weights of a call's points, if they have any, and the array of hidden points.
-template <typename Values, typename Hidden>
-std::optional<points::Weights> weights_in(Frame& call, std::size_t n,
-                                          const GivenWeights<Values, Hidden>* given) {
-  if (given == nullptr || n == 0) return std::nullopt;
-  const auto hidden = call.output<cl_int>(given->hidden, n, "hidden");
-  return points::Weights{call.in<cl_double>(given->values, n, "weights"), given->solver,
-                         [given, hidden](std::size_t count) {
-                           if (given->hidden_count != nullptr) *given->hidden_count = count;
-                           return hidden.buffer(count);
-                         }};
-}
-
 // Bytes of the persistent arena per point. Weights take a scaled copy, those of vertices, and links.
 std::size_t persistent_bytes(bool has_weights) {
   return blocks::kPersistentBytesPerPoint + (has_weights ? 2 * sizeof(cl_double) + sizeof(cl_int) : 0);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "call/frame.hpp"
@@ -40,10 +42,25 @@ struct GivenWeights {
   Values values;
   const points::WeightedSolver* solver;
   Hidden& hidden;
-  std::size_t* hidden_count = nullptr;  ///< not null for device memory
+  std::size_t* hidden_count = nullptr;                  ///< not null for device memory
+  std::function<std::size_t(std::size_t)> number = {};  ///< points::Weights::number
 };
 using HostWeights = GivenWeights<const double*, std::vector<cl_int>>;
 using DeviceWeights = GivenWeights<cl_mem, DeviceBuffer>;
+
+/// The weights of a call's points, if there are any, and the array of hidden points.
+template <typename Values, typename Hidden>
+std::optional<points::Weights> weights_in(Frame& call, std::size_t n,
+                                          const GivenWeights<Values, Hidden>* given) {
+  if (given == nullptr || n == 0) return std::nullopt;
+  const auto hidden = call.output<cl_int>(given->hidden, n, "hidden");
+  return points::Weights{call.in<cl_double>(given->values, n, "weights"), given->solver,
+                         [given, hidden](std::size_t count) {
+                           if (given->hidden_count != nullptr) *given->hidden_count = count;
+                           return hidden.buffer(count);
+                         },
+                         given->number};
+}
 
 /// Computes regular triangulations of sets in host memory: on the device if one was named that has doubles.
 Triangulation triangulate(Implementation& self, const HostPoints& points, const HostWeights& weights,

@@ -10,6 +10,7 @@
 #include "arithmetic/coordinates.h"
 #include "blocks/weighted.hpp"
 #include "call/frame.hpp"
+#include "call/periodic.hpp"
 #include "call/triangulate.hpp"
 #include "derived/voronoi/clip_polygon.hpp"
 #include "derived/weighted/cells.hpp"
@@ -18,6 +19,7 @@
 #include "geometry/magnitudes.hpp"
 #include "predicates/bounds.h"
 #include "prove/arguments.hpp"
+#include "prove/periodic_proof.hpp"
 #include "prove/planar_proof.hpp"
 
 namespace flaunay {
@@ -25,11 +27,14 @@ namespace {
 
 using Ids = std::vector<std::int32_t>;
 
+void check_hidden(const Ids& hidden, std::size_t n) {
+  call::expect(are_indices(hidden, n) && std::is_sorted(hidden.begin(), hidden.end()),
+               "the hidden points are not those of these points");
+}
+
 void check(const double* points, const std::vector<std::size_t>& offsets, const WeightedTriangulation& mesh) {
   prove::check_arrays(points, offsets, mesh);
-  call::expect(
-      are_indices(mesh.hidden, offsets.back()) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
-      "the hidden points are not those of these points");
+  check_hidden(mesh.hidden, offsets.back());
   call::expect(mesh.neighbors.size() == mesh.triangles.size(), "the triangulation must have its neighbours");
 }
 
@@ -92,6 +97,43 @@ ClippedVoronoi power_cells(Triangulator& triangulator, const double* points, con
     check_array(weights, n, "weights");
     return weighted::make_cells(self.native().runtime, points, weights, n, mesh, polygon.corners);
   });
+}
+
+WeightedPeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
+                                                   const double* weights, std::size_t n,
+                                                   const Period& period) {
+  return triangulate_periodic(triangulator, points, weights, std::vector<std::size_t>{0, n}, period);
+}
+
+WeightedPeriodicTriangulation triangulate_periodic(Triangulator& triangulator, const double* points,
+                                                   const double* weights,
+                                                   const std::vector<std::size_t>& offsets,
+                                                   const Period& period) {
+  WeightedPeriodicTriangulation mesh;
+  const call::HostWeights with{weights, &blocks::kWeightedSolver, mesh.hidden};
+  call::triangulate_periodic(triangulator, points, offsets, period, &with, mesh);
+  return mesh;
+}
+
+void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, cl_mem weights,
+                          const Period& period, DeviceWeightedPeriodicTriangulation& result,
+                          const Enqueue& enqueue) {
+  const call::DeviceWeights with{weights, &blocks::kWeightedSolver, result.hidden, &result.hidden_count};
+  result.hidden_count = 0;
+  call::triangulate_periodic(triangulator, points, period, &with, result, enqueue);
+}
+
+ClippedVoronoi periodic_cells(Triangulator& triangulator, const double* weights,
+                              const WeightedPeriodicTriangulation& mesh) {
+  check_array(weights, mesh.representatives.size(), "weights");
+  return call::periodic_cells(triangulator, weights, mesh);
+}
+
+std::string verify(const double* weights, const WeightedPeriodicTriangulation& mesh) {
+  call::check(mesh);
+  check_array(weights, mesh.representatives.size(), "weights");
+  check_hidden(mesh.hidden, mesh.representatives.size());
+  return prove::find_problem(mesh, weights, mesh.hidden);
 }
 
 std::string verify(const double* points, const double* weights, const std::vector<std::size_t>& offsets,

@@ -26,6 +26,8 @@ struct Weights {
   const WeightedSolver* solver = nullptr;  ///< see blocks/weighted.hpp
   /// Returns the array for this number of hidden points.
   std::function<Buffer<cl_int>(std::size_t)> hidden{};
+  /// Returns the number of a point in error messages, by its index; empty if that is the number.
+  std::function<std::size_t(std::size_t)> number{};
   double range = 0;  ///< the largest difference of two scaled weights
 };
 

@@ -9,8 +9,11 @@
 
 namespace flaunay::prove {
 
-/// Returns the first error found; empty if all is right. call::check must have checked the mesh. O(n log n).
-std::string find_problem(const PeriodicTriangulation& mesh);
+/// Returns the first error found; empty if all is right. call::check must have checked the mesh. weights, one
+/// per point, or null; hidden: as in WeightedPeriodicTriangulation. O(n log n), but for walks to hidden
+/// points.
+std::string find_problem(const PeriodicTriangulation& mesh, const double* weights,
+                         const std::vector<std::int32_t>& hidden);
 
 /// The triangles beyond the edges opposite to corners, or -1. offsets: as in PeriodicTriangulation. If a
 /// half-edge occurs twice, either of its triangles is returned. O(t log t) for t triangles.

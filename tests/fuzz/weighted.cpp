@@ -43,6 +43,7 @@ class WeightedFuzzer : public Fuzzer {
       if (problem.empty() && (mesh.hidden != other.hidden || mesh.hull != other.hull))
         problem = "blocks differ";
       hidden_ += mesh.hidden.size();
+      if (problem.empty()) problem = problem_with_period(points, weights, offsets, random);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::input) throw;
       ++refused_;  // out of the range of magnitudes
@@ -69,6 +70,23 @@ class WeightedFuzzer : public Fuzzer {
     Options options;
     options.neighbors = true;
     return triangulate_weighted(triangulator, points.data(), weights.data(), offsets, options);
+  }
+
+  /// On a torus or a cylinder that is about as large as the points, or much smaller.
+  std::string problem_with_period(const Coordinates& points, const std::vector<double>& weights,
+                                  const std::vector<std::size_t>& offsets, FixtureRandom& random) {
+    double extent = 0;
+    for (const double x : points) extent = std::max(extent, std::fabs(x));
+    if (!(extent > 0x1p-300 && extent < 0x1p300)) return "";
+    const auto length = [&] { return std::ldexp(extent, static_cast<int>(random.integer(-2, 2))); };
+    const std::int64_t ends = random.integer(0, 3);
+    const Period period{ends == 0 ? HUGE_VAL : length(), ends == 1 ? HUGE_VAL : length()};
+    const WeightedPeriodicTriangulation mesh =
+        triangulate_periodic(host_, points.data(), weights.data(), offsets, period);
+    hidden_ += mesh.hidden.size();
+    const std::string problem = verify(weights.data(), mesh);
+    if (!problem.empty()) fmt::print("period {} x {}\n", period.x, period.y);
+    return problem;
   }
 
   /// Of one kind for a set: equal ones, few different ones, those that lift points to a plane or nearly so,

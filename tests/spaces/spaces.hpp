@@ -87,6 +87,22 @@ struct Periodic {
             tree.nearest(queries.data(), m, options)};
   }
 };
+/// Weighted points there. The third number of a point is its weight.
+template <int kAcross, int kUp>
+struct WeightedPeriodic {
+  static constexpr std::size_t kWidth = 3;
+  static auto triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) {
+    return triangulate_periodic(triangulator, Weighted::columns(points, 0, 2).data(),
+                                Weighted::columns(points, 2, 1).data(), offsets,
+                                Periodic<kAcross, kUp>::period());
+  }
+  static std::string verify(const Numbers& points, const Offsets&,
+                            const WeightedPeriodicTriangulation& mesh) {
+    return flaunay::verify(Weighted::columns(points, 2, 1).data(), mesh);
+  }
+};
+using WeightedTorus = WeightedPeriodic<1, 1>;
+using WeightedCylinder = WeightedPeriodic<1, 0>;
 using Torus = Periodic<1, 1>;
 using Cylinder = Periodic<1, 0>;
 using UprightCylinder = Periodic<0, 1>;

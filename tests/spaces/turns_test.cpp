@@ -52,6 +52,7 @@ TEST_F(Turns, TriangulationsTakeOne) {
   expect_one("refined", [&] { made_.constrained(at_, kCount, constraints, options); });
   expect_one("polygons", [&] { made_.polygons(polygons); });
   expect_one("weighted", [&] { triangulate_weighted(made_, at_, weights.data(), kCount); });
+  expect_one("weighted torus", [&] { triangulate_periodic(made_, at_, weights.data(), kCount, {}); });
   for (const Period& period : {Period{}, {1, HUGE_VAL}})
     expect_one("periodic", [&] { triangulate_periodic(made_, at_, {0, 20, 60}, period); });
   // Few points need wider margins.

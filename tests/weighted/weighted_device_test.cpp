@@ -163,6 +163,49 @@ TEST(SmallWeightedOnDevice, SetsAreEachAsOnTheHost) {
   EXPECT_GT(found.hidden_count, 100u);
 }
 
+void expect_torus_as_on_host(const WeightedPoints& points, const Offsets& offsets, const Period& period) {
+  SCOPED_TRACE(points.name + " " + std::to_string(offsets.back()));
+  const Numbers& weights = points.weights;
+  static Triangulator host("host");
+  const WeightedPeriodicTriangulation expected =
+      triangulate_periodic(host, points.coordinates.data(), weights.data(), offsets, period);
+  const Memory memory = embedder().upload(points.coordinates), given = embedder().upload(weights);
+  DeviceWeightedPeriodicTriangulation found;
+  triangulate_periodic(embedded(), points_in(memory, offsets), given.get(), period, found, on_own());
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  EXPECT_EQ(found.images, expected.images);
+  ASSERT_EQ(found.hidden_count, expected.hidden.size());
+  const auto expect_array = [](const DeviceBuffer& buffer, const auto& values, const char* name) {
+    using Element = typename std::decay_t<decltype(values)>::value_type;
+    EXPECT_TRUE(same(embedder().download<Element>(buffer.memory(), values.size()), values)) << name;
+  };
+  expect_array(found.places, expected.places, "places");
+  expect_array(found.triangles, expected.triangles, "triangles");
+  expect_array(found.offsets, expected.offsets, "offsets");
+  expect_array(found.neighbors, expected.neighbors, "neighbors");
+  expect_array(found.representatives, expected.representatives, "representatives");
+  expect_array(found.hidden, expected.hidden, "hidden");
+}
+
+TEST(SmallWeightedOnDevice, WithAPeriodIsAsOnTheHost) {
+  WeightedPoints all{"sets", {}, {}};
+  Offsets offsets{0, 0};
+  for (const std::size_t n : {1, 3, 40}) {
+    for (const WeightedPoints& points : weighted_points(n)) {
+      for (const Period& period : {Period{}, {0.5, HUGE_VAL}})
+        expect_torus_as_on_host(points, {0, n}, period);
+      all.coordinates.insert(all.coordinates.end(), points.coordinates.begin(), points.coordinates.end());
+      all.weights.insert(all.weights.end(), points.weights.begin(), points.weights.end());
+      offsets.push_back(all.weights.size());
+    }
+  }
+  expect_torus_as_on_host(all, offsets, {});
+}
+
+TEST(WeightedOnDevice, ManyPointsWithAPeriodAreAsOnTheHost) {
+  for (const WeightedPoints& points : weighted_points(6000)) expect_torus_as_on_host(points, {0, 6000}, {});
+}
+
 TEST(SmallWeightedOnDevice, FloatsThatBeginAnywhereAndFewParts) {
   const WeightedPoints points = weighted_points(40)[0];
   std::vector<float> all(6, std::nanf(""));

@@ -477,6 +477,11 @@ void weighted(Triangulator& triangulator, std::size_t n, Arrays& results) {
         triangulate_weighted(triangulator, points.data(), weights.data(), weights.size(), all_arrays());
     add(results, input, static_cast<const Triangulation&>(mesh));
     results.add(input + " hidden", mesh.hidden);
+    const WeightedPeriodicTriangulation torus =
+        triangulate_periodic(triangulator, points.data(), weights.data(), weights.size(), {2.5, 1.25});
+    add_unfolded(results, input + " on a torus", torus);
+    results.add(input + " hidden on a torus", torus.hidden);
+    add(results, input + " cells on a torus", periodic_cells(triangulator, weights.data(), torus));
     const Coordinates box = box_in(points);
     add(results, input + " cells",
         power_cells(triangulator, points.data(), weights.data(), weights.size(), mesh, box.data(),

@@ -33,7 +33,7 @@ double determinant(double a, double b, double a2, double b2) {
 // Corners of triangles, 3 t + k, and what is around them.
 class Corners {
  public:
-  explicit Corners(const PeriodicTriangulation& mesh) : mesh_(mesh) {}
+  Corners(const PeriodicTriangulation& mesh, const double* weights) : mesh_(mesh), weights_(weights) {}
 
   std::int32_t point(std::int32_t c) const { return mesh_.triangles[index(c)]; }
   // The same point's corner in the next triangle, counter-clockwise; -1 if the arrays are no triangulation's.
@@ -48,13 +48,14 @@ class Corners {
     }
     return -1;
   }
-  // The centre of the corner's triangle when the corner is at its place, as seen from there.
+  // The centre of the corner's triangle, from which its corners have the same power, when the corner is at
+  // its place, as seen from there.
   Point centre(std::int32_t c) const {
     const Point a = seen(c, turned(c, 1)), b = seen(c, turned(c, 2));
     const double twice = 2 * determinant(a.x, a.y, b.x, b.y);
-    const double a_square = a.x * a.x + a.y * a.y, b_square = b.x * b.x + b.y * b.y;
-    return {determinant(a_square, a.y, b_square, b.y) / twice,
-            determinant(a.x, a_square, b.x, b_square) / twice};
+    const double a_lift = a.x * a.x + a.y * a.y - heavier(turned(c, 1), c),
+                 b_lift = b.x * b.x + b.y * b.y - heavier(turned(c, 2), c);
+    return {determinant(a_lift, a.y, b_lift, b.y) / twice, determinant(a.x, a_lift, b.x, b_lift) / twice};
   }
   Point place(std::int32_t v) const { return {mesh_.places[2 * index(v)], mesh_.places[2 * index(v) + 1]}; }
 
@@ -69,12 +70,17 @@ class Corners {
             (q.y + step(from, to, 1) * mesh_.period.y) - p.y};
   }
 
+  double heavier(std::int32_t c, std::int32_t than) const {
+    return weights_ == nullptr ? 0 : weights_[point(c)] - weights_[point(than)];
+  }
+
   const PeriodicTriangulation& mesh_;
+  const double* weights_;
 };
 
 }  // namespace
 
-ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& mesh, const double* weights) {
   const std::size_t n = mesh.places.size() / 2;
   ClippedVoronoi cells;
   cells.areas.assign(n, 0);
@@ -87,7 +93,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const PeriodicTriangulation& m
   }
   std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
   cells.vertices.resize(2 * mesh.triangles.size());
-  const Corners corners(mesh);
+  const Corners corners(mesh, weights);
   // Within the period and rounded to its units, so that images are exact and cells have the same corners.
   // From the first corner by place, whatever the order of the points.
   const Pair<double> period = {mesh.period.x, mesh.period.y};

@@ -47,6 +47,9 @@ FLAUNAY_API std::string verify(const Polygons& polygons, const PolygonOptions& o
 /// Checks a triangulation on a torus or a cylinder: that its places are in the period and rounded, and that
 /// it is the canonical Delaunay triangulation of all of their images.
 FLAUNAY_API std::string verify(const PeriodicTriangulation& triangulation);
+/// Checks a regular triangulation there, and that just those points are hidden which are. weights: one per
+/// point.
+FLAUNAY_API std::string verify(const double* weights, const WeightedPeriodicTriangulation& triangulation);
 
 /// Checks a triangulation on the sphere: that places are those of the points, that triangles and neighbours
 /// are those of the hull, with the canonical choice at ties, and that its other arrays fit. Places are

@@ -8,6 +8,7 @@
 
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
+#include "flaunay/periodic.hpp"
 
 namespace flaunay {
 
@@ -69,5 +70,41 @@ FLAUNAY_API ClippedVoronoi power_cells(Triangulator& triangulator, const double*
                                        const double* weights, std::size_t n,
                                        const WeightedTriangulation& triangulation, const double* corners,
                                        std::size_t corner_count);
+
+/// The regular triangulations of one or more sets of weighted points on a torus or a cylinder. There are as
+/// many triangles as PeriodicTriangulation has for the points that are not hidden.
+struct WeightedPeriodicTriangulation : PeriodicTriangulation {
+  /// As WeightedTriangulation::hidden; points are hidden by images, too.
+  std::vector<std::int32_t> hidden;
+};
+
+/// Triangulates n weighted points on a torus or a cylinder: the regular triangulation of all images of all
+/// points, which have the weights of their points, as triangulate_periodic without weights does. A point's
+/// place is rounded, its weight is not. Throws what that and triangulate_weighted throw. O(n log n) work.
+FLAUNAY_API WeightedPeriodicTriangulation triangulate_periodic(Triangulator& triangulator,
+                                                               const double* points, const double* weights,
+                                                               std::size_t n, const Period& period);
+/// Triangulates many sets at once. Set s has points [offsets[s], offsets[s + 1]).
+FLAUNAY_API WeightedPeriodicTriangulation triangulate_periodic(Triangulator& triangulator,
+                                                               const double* points, const double* weights,
+                                                               const std::vector<std::size_t>& offsets,
+                                                               const Period& period);
+
+/// A WeightedPeriodicTriangulation in device memory.
+struct DeviceWeightedPeriodicTriangulation : DevicePeriodicTriangulation {
+  DeviceBuffer hidden;           ///< as of DeviceWeightedTriangulation
+  std::size_t hidden_count = 0;  ///< as of DeviceWeightedTriangulation
+};
+
+/// Triangulates points in device memory into device memory: the same bytes. See both calls for device memory
+/// that have weights or a period.
+FLAUNAY_API void triangulate_periodic(Triangulator& triangulator, const DevicePoints& points, cl_mem weights,
+                                      const Period& period, DeviceWeightedPeriodicTriangulation& result,
+                                      const Enqueue& enqueue = own_queue());
+
+/// Computes the power cells on the torus, as periodic_cells does Voronoi cells. weights: those that were
+/// triangulated. A point may lie outside of its cell. Hidden points have no vertices. O(n).
+FLAUNAY_API ClippedVoronoi periodic_cells(Triangulator& triangulator, const double* weights,
+                                          const WeightedPeriodicTriangulation& triangulation);
 
 }  // namespace flaunay
