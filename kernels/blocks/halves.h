@@ -82,26 +82,40 @@ static inline block_part part_behind(const halved_blocks* blocks, int block, int
 
 static inline int begins_before(block_part part, int end) { return part.block >= 0 && part.first + part.begin < end; }
 
+// The leaf that begins at a place, if one does, whose edges are then free. Frees the edges of a place without a vertex.
+static inline block_part begin_leaf(rings* g, const halved_blocks* blocks, int place) {
+  const int block = blocks->block_of_place[place];
+  if (block >= 0 && place >= blocks->offsets[block] + blocks->distinct[block]) {
+    free_place(g, place, blocks->offsets[block + 1]);
+  }
+  block_part part = part_behind(blocks, block, 0, place);
+  if (!begins_before(part, place + 1)) part.block = -1;
+  g->free_first = g->free_last = NO_EDGE;
+  g->unused = edge_at(place);
+  return part;
+}
+
+static inline int vertices_of_leaf(block_part part) {
+  return part_begin(part.count, part.depth, part.number + 1) - part.begin;
+}
+
+static inline void finish_leaf(rings* g, const halved_blocks* blocks, block_part part, hull_ends ends) {
+  free_unused(g, edge_at(part.first + part.begin + vertices_of_leaf(part)));
+  finish_part(g, blocks, part, ends);
+}
+
 // Makes the leaves that begin at two places, and frees the edges of places without vertices. Returns how far it is.
 static inline int make_leaves_of_cell(rings* g, const halved_blocks* blocks, int cell) {
   int state = MERGE_IS_DONE;
   const int end = min(blocks->places, 2 * cell + 2);
   for (int place = 2 * cell; place < end; ++place) {
-    const int block = blocks->block_of_place[place];
-    if (block >= 0 && place >= blocks->offsets[block] + blocks->distinct[block]) {
-      free_place(g, place, blocks->offsets[block + 1]);
-    }
-    const block_part part = part_behind(blocks, block, 0, place);
-    if (!begins_before(part, place + 1)) continue;
-    const int behind = part_begin(part.count, part.depth, part.number + 1);
-    g->free_first = g->free_last = NO_EDGE;
-    g->unused = edge_at(place);
-    const hull_ends ends = make_leaf(g, place, behind - part.begin);
+    const block_part part = begin_leaf(g, blocks, place);
+    if (part.block < 0) continue;
+    const hull_ends ends = make_leaf(g, place, vertices_of_leaf(part));
     if (HAS_STOPPED(g)) {
       state = MERGE_IS_NEW;
     } else {
-      free_unused(g, edge_at(part.first + behind));
-      finish_part(g, blocks, part, ends);
+      finish_leaf(g, blocks, part, ends);
     }
   }
   return state;

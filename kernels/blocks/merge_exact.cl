@@ -11,7 +11,7 @@
 #include "blocks/rings_account.h"
 #include "blocks/seams.h"
 #include "mesh/records.h"
-#include "operations/work_group.h"
+#include "operations/spread.h"
 #include "points/cut_tree.h"
 #include "points/records.h"
 #include "predicates/records.h"

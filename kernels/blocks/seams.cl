@@ -21,6 +21,7 @@
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "operations/limits.h"
+#include "operations/spread.h"
 #include "operations/work_group.h"
 #include "predicates/records.h"
 

@@ -30,6 +30,19 @@ typedef struct {
   double error;                  // of power determinants in the merge
 } power_rings;
 
+static inline power_rings power_rings_on(GLOBAL ring_edge* edges, GLOBAL const double2* points, GLOBAL int* vertex_edge,
+                                         filter_bounds bounds, GLOBAL const double* vertex_weights, GLOBAL int* links,
+                                         double weight_range) {
+  power_rings g;
+  g.all = rings_on(edges, points, vertex_edge, bounds);
+  g.weights = vertex_weights;
+  g.links = links;
+  g.in_doubt = NO_VERTEX;
+  g.weight_range = weight_range;
+  g.error = INFINITY;
+  return g;
+}
+
 static inline weighted_point weighted_at(const power_rings* g, int vertex) {
   const weighted_point p = {g->all.points[vertex], g->weights[vertex]};
   return p;

@@ -28,12 +28,6 @@
     return before;                                             \
   }
 
-// Where only each spread-th work-item has an element: the number of this one's, or n if it has none.
-static inline int spread_item(int n, int spread) {
-  const int i = (int)get_global_id(0) / spread;
-  return i * spread == (int)get_global_id(0) ? min(i, n) : n;
-}
-
 // How many of a tile's elements each work-item takes, if it takes consecutive ones.
 static inline int share_of(int elements) {
   const int group = get_local_size(0);

@@ -14,11 +14,6 @@
 
 #ifndef FIXED_POINT
 
-// What is at a place of the plane. Places below `own` are those of the points with these numbers.
-static inline uint64 image_at(int v, int own, global const uint64* images) {
-  return v < own ? image_of(v, 0, 0) : images[v];
-}
-
 // n points, with arguments as of unroll.cl. planar: representatives in the plane. missing: per set, of two triangles a
 // point.
 kernel void fold_representatives(int n, periodic_lattice lattice, int sets, global const int* restrict offsets,

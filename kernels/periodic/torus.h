@@ -95,6 +95,11 @@ static inline int vectors_across(uint64 image) { return (int)(image >> 8 & 255) 
 static inline int vectors_up(uint64 image) { return (int)(image & 255) - 128; }
 static inline int is_in_place(uint64 image) { return (image & 0xffff) == 0x8080; }
 
+// What is at a place of the plane. Places below `own` are those of the points with these numbers.
+static inline uint64 image_at(int v, int own, GLOBAL const uint64* images) {
+  return v < own ? image_of(v, 0, 0) : images[v];
+}
+
 // How far an image is moved along x, in units.
 static inline int64 units_across(int across, int up, const periodic_lattice* lattice) {
   return across * lattice->across[0] + up * lattice->across[1];

@@ -115,10 +115,7 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .account = rings.device_account});
 }
 
-// A block of weighted points is solved by one work-item.
-bool are_in_parallel(const Workspace& work) {
-  return work.weights == nullptr && tuning_of(work.runtime).blocks_in_parallel != 0;
-}
+bool are_in_parallel(const Workspace& work) { return tuning_of(work.runtime).blocks_in_parallel != 0; }
 
 std::size_t largest_of(const Blocks& blocks) {
   if (blocks.offsets.empty()) return blocks.largest;

@@ -2,6 +2,7 @@
 
 #include "blocks/halving.h"
 #include "blocks/limits.h"
+#include "blocks/parts.hpp"
 #include "blocks/pipeline.hpp"
 #include "blocks/records.h"
 #include "launchers/blocks/merge.cl.hpp"
@@ -16,11 +17,6 @@ using namespace points;
 
 namespace {
 
-// One of this many consecutive work-items of a launch has a merge.
-std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
-  return std::clamp<std::size_t>(tuning.merge_items / merges, 1, tuning.block_group);
-}
-
 // Without undecided predicates, no merge stops.
 bool may_stop(const Workspace& work) {
   return work.bounds.coarse == 0 && (work.bounds.orient != 0 || work.bounds.circle != 0);
@@ -28,14 +24,6 @@ bool may_stop(const Workspace& work) {
 // In fixed point, walks decide all predicates themselves (blocks/seams.cl).
 bool walks_may_stop(const Workspace& work) {
   return !work.runtime.capabilities().fixed_point && may_stop(work);
-}
-
-// The least number of vertices of a part of this height.
-std::size_t least_vertices(int height) { return std::size_t{2} << height; }
-
-// The cells of that size, in which at most one part of this height begins.
-std::size_t cells_of(const PointBlocks& blocks, int height) {
-  return (blocks.points + least_vertices(height) - 1) / least_vertices(height);
 }
 
 // A work-item sews some four vertices, but a warp is there in any case.
@@ -80,33 +68,15 @@ struct Halves {
   Seams seams{};
 };
 
-// Spreads the work-items of these merges over warps.
-template <typename Kernel>
-void launch_spread(Workspace& work, std::size_t spread, std::size_t merges, const Kernel& kernel) {
-  work.runtime.note_spread(spread);
-  work.runtime.launch(spread * merges, tuning_of(work.runtime).block_group, merges, kernel);
-}
-
-kernels::places_of_parts places_of_parts(const Halves& halves, int height) {
-  return {.height = height,
-          .places = halves.blocks.points,
-          .offsets = halves.blocks.offsets,
-          .distinct = halves.rings.device_distinct,
-          .block_of_place = halves.halved.block_of_place,
-          .axes = halves.halved.axes};
-}
-
 // kernels::merge_parts or kernels::finish_parts.
 template <typename Kernel>
 void launch_on_parts(const Halves& halves, int height) {
   const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
   const std::size_t cells = cells_of(blocks, height);
-  const Tuning& tuning = tuning_of(work.runtime);
-  const std::size_t spread =
-      std::max(spread_of(tuning, cells), height == 0 ? std::min(tuning.leaf_spread, tuning.block_group) : 1);
+  const std::size_t spread = spread_of_parts(tuning_of(work.runtime), blocks, height);
   launch_spread(work, spread, cells,
                 Kernel{.spread = spread,
-                       .places_of_parts = places_of_parts(halves, height),
+                       .places_of_parts = places_of_parts(blocks, halved, rings, height),
                        .bounds = work.bounds,
                        .points = blocks.vertices,
                        .edges = rings.edges,
@@ -125,7 +95,7 @@ void launch_on_walks(const Halves& halves, int height) {
   const std::size_t spread = spread_of(tuning_of(work.runtime), walks);
   launch_spread(work, spread, walks,
                 Kernel{.spread = spread,
-                       .places_of_parts = places_of_parts(halves, height),
+                       .places_of_parts = places_of_parts(blocks, halved, rings, height),
                        .bounds = work.bounds,
                        .points = blocks.vertices,
                        .edges = rings.edges,
@@ -165,7 +135,7 @@ void sew_seams(const Halves& halves, int height) {
       kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
   runtime.note_elements((most_pairs + group - 1) / group);
   runtime.launch(group * cells_of(blocks, height), group,
-                 kernels::sew_seams{.places_of_parts = places_of_parts(halves, height),
+                 kernels::sew_seams{.places_of_parts = places_of_parts(blocks, halved, rings, height),
                                     .points = blocks.vertices,
                                     .crossings = seams.crossings,
                                     .walks = seams.walks,
@@ -203,7 +173,10 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings) {
   Arena::Scope scope(work.scratch());
-  merge_halves(work, blocks, halve(work, blocks, representatives, rings), rings);
+  const HalvedBlocks halved = halve(work, blocks, representatives, rings);
+  if (work.weights != nullptr)
+    return work.weights->solver->merge_halves(work, blocks, halved, representatives, rings);
+  merge_halves(work, blocks, halved, rings);
 }
 
 void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "blocks/pipeline.hpp"
+#include "blocks/weighted.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/mesh.cl.hpp"
 
@@ -23,24 +24,6 @@ void write_hulls(Workspace& work, const Blocks& blocks, const Rings& rings, cons
                                                 .source = blocks.source,
                                                 .offsets = offsets,
                                                 .hull = hull});
-}
-
-// For weighted points, the number of hidden points is not known, but the number of triangles is. first_rows:
-// by vertex.
-MeshSizes weighted_mesh_sizes(const Blocks& blocks, const std::vector<cl_int>& walked,
-                              const std::vector<cl_uint>& first_rows) {
-  MeshSizes sizes;
-  sizes.triangle_offsets = sizes.hull_offsets = {0};
-  for (std::size_t s = 0; s < walked.size(); ++s) {
-    const cl_int first = blocks.offsets[blocks.set_blocks[s]],
-                 last = blocks.offsets[blocks.set_blocks[s + 1]];
-    const std::size_t triangles = first_rows[last] - first_rows[first];
-    const std::size_t vertices = first == last ? 0 : (triangles + 2 + walked[s]) / 2;
-    sizes.vertices += vertices;
-    sizes.triangle_offsets.push_back(sizes.triangle_offsets.back() + triangles);
-    sizes.hull_offsets.push_back(sizes.hull_offsets.back() + (triangles == 0 ? vertices : walked[s]));
-  }
-  return sizes;
 }
 
 }  // namespace
@@ -89,9 +72,7 @@ MeshSizes count_mesh(Workspace& work, const Blocks& blocks, const Rings& rings) 
   runtime.read_later(hull_sizes, 0, blocks.sets, walked.data());
   MeshSizes sizes;
   if (work.weights != nullptr) {
-    std::vector<cl_uint> first_rows(blocks.points + 1);
-    runtime.read(rows, 0, blocks.points + 1, first_rows.data());
-    sizes = weighted_mesh_sizes(blocks, walked, first_rows);
+    sizes = work.weights->solver->mesh_sizes(work, blocks, walked, rows);
   } else {
     const cl_uint counted = runtime.read_one(rows, blocks.points);
     sizes = mesh_sizes(blocks.set_blocks, rings.distinct, walked, counted);

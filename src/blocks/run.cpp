@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "blocks/rounds.hpp"
-#include "mesh/limits.h"
+#include "blocks/weighted.hpp"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -11,7 +11,7 @@ using namespace points;
 
 void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.points = n;
-  statistics.duplicates = n - sizes.vertices;
+  statistics.duplicates = n - sizes.vertices - hidden;
   statistics.undecided = undecided;
   statistics.rounds = rounds;
   statistics.round_points = round_points;
@@ -20,32 +20,13 @@ void Outcome::write(std::size_t n, Statistics& statistics) const {
   statistics.hull_vertices = sizes.hull_vertices();
 }
 
-namespace {
-
-// In ascending order.
-std::vector<cl_int> hidden_points(host::Runtime& runtime, const Blocks& blocks, const Rings& rings) {
-  std::vector<cl_int> edges(blocks.points), source(blocks.points), hidden;
-  runtime.read(rings.vertex_edge, 0, blocks.points, edges.data());
-  runtime.read(blocks.source, 0, blocks.points, source.data());
-  std::vector<cl_uchar> is_hidden(blocks.points);
-  for (std::size_t v = 0; v < blocks.points; ++v) {
-    is_hidden[static_cast<std::size_t>(source[v])] |= edges[v] == kernel::HIDDEN_VERTEX;
-  }
-  for (std::size_t i = 0; i < blocks.points; ++i) {
-    if (is_hidden[i] != 0) hidden.push_back(static_cast<cl_int>(i));
-  }
-  return hidden;
-}
-
-}  // namespace
-
 geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
                               const std::vector<std::size_t>& offsets, const Exchange& exchange,
                               statistics::Phases& phases) {
   if (exchange.weights == nullptr && tuning_of(runtime).round_points > 0)
     return run_rounds(runtime, persistent, offsets, exchange, phases);
   Workspace work{runtime, persistent};
-  work.weights = exchange.weights;
+  points::Weights weights;
   Rings rings;
   const host::Runtime::Settled settled(runtime);
 
@@ -57,6 +38,10 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
   }();
   if (!made) return made.too_wide();
   const Blocks& blocks = *made;
+  if (exchange.weights != nullptr) {
+    weights = exchange.weights->solver->scale(work, *exchange.weights, offsets, blocks.shifts);
+    work.weights = &weights;
+  }
   phases.end("blocks");
 
   phases.progress("triangulate", kBlocksMade);
@@ -72,15 +57,20 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
   Outcome outcome;
   outcome.sizes = count_mesh(work, blocks, rings);
   outcome.undecided = rings.undecided;
+  if (work.weights != nullptr) outcome.hidden = weights.solver->settle(work, blocks, rings, representatives);
   phases.progress("output", kMeshCounted);
   write_mesh(work, blocks, rings, outcome.sizes, exchange.mesh(outcome.sizes), &milestones);
   milestones.report();
-  if (work.weights != nullptr) outcome.hidden = hidden_points(runtime, blocks, rings);
   return outcome;
 }
 
 points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
                        const Buffer<cl_double>& coordinates, Arena& results) {
+  return run(runtime, persistent, offsets, coordinates, results, nullptr);
+}
+
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results, const points::Weights* weights) {
   const std::size_t n = offsets.back();
   points::DeviceMesh mesh;
   mesh.point_offsets = offsets;
@@ -89,8 +79,12 @@ points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vec
   mesh.neighbors = results.allocate<cl_int>(3 * kMostTrianglesPerPoint * n);
   mesh.hull = results.allocate<cl_int>(n);
   mesh.representatives = results.allocate<cl_int>(n);
-  const Exchange exchange{[&] { return coordinates; }, mesh.representatives, true,
-                          [&](const MeshSizes&) { return mesh; }};
+  const Exchange exchange{[&] { return coordinates; },
+                          mesh.representatives,
+                          true,
+                          [&](const MeshSizes&) { return mesh; },
+                          [] {},
+                          weights};
   const Options unheard;
   statistics::Phases phases(unheard);
   MeshSizes sizes = (*run(runtime, persistent, offsets, exchange, phases)).sizes;

@@ -24,8 +24,7 @@ struct Exchange {
   std::function<points::DeviceMesh(const MeshSizes&)> mesh;
   /// Called while the device computes, for work of the host that needs no results.
   std::function<void()> while_device_computes = [] {};
-  /// Not null for regular triangulations, which blocks make without rounds. Then representatives of points
-  /// that are in the place of heavier ones are complements of these.
+  /// Not null for regular triangulations, which blocks make without rounds.
   const points::Weights* weights = nullptr;
 };
 
@@ -36,7 +35,7 @@ struct Outcome {
   std::size_t rounds = 0;         ///< rounds of blocks; 0 if blocks were merged without
   std::size_t round_points = 0;   ///< points of all rounds
   std::size_t merged_points = 0;  ///< points of the round whose blocks were merged
-  std::vector<cl_int> hidden{};   ///< weighted points that are no vertices, besides those in others' places
+  std::size_t hidden = 0;         ///< weighted points that are no vertices and no duplicates
 
   /// Writes it to the statistics of a call on n points.
   void write(std::size_t n, Statistics& statistics) const;
@@ -52,5 +51,8 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
 /// Triangulates points in device memory, whose arrays come from `results`; otherwise as above.
 points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
                        const Buffer<cl_double>& coordinates, Arena& results);
+/// weights: null if points have none.
+points::DeviceMesh run(host::Runtime& runtime, Arena& persistent, const std::vector<std::size_t>& offsets,
+                       const Buffer<cl_double>& coordinates, Arena& results, const points::Weights* weights);
 
 }  // namespace flaunay::blocks

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "blocks/pipeline.hpp"
 #include "launchers/blocks/divide.cl.hpp"
@@ -23,12 +24,30 @@ struct BlocksLaunch {
 
 namespace flaunay::points {
 
-/// Launches in place of those for points without weights.
+/// What regular triangulations have in place of the stages for points without weights, or besides.
 struct WeightedSolver {
+  /// Scales weights of points that were multiplied by these powers of two: one for all sets, or one per set.
+  /// Throws Error(input) for a weight that is not finite, or beyond the squares of what coordinates may be.
+  /// Waits once.
+  Weights (*scale)(Workspace& work, const Weights& given, const std::vector<std::size_t>& offsets,
+                   const std::vector<int>& shifts);
   void (*solve)(Workspace& work, const Blocks& blocks, const Rings& rings,
                 const flaunay::blocks::BlocksLaunch& launch);
+  /// After stage `halve`.
+  void (*merge_halves)(Workspace& work, const flaunay::blocks::PointBlocks& blocks,
+                       const flaunay::blocks::HalvedBlocks& halved, const Buffer<cl_int>& representatives,
+                       const Rings& rings);
   void (*merge)(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,
                 const Rings& rings);
+  /// The size of the mesh but for MeshSizes::first_rows. walked: the walks around hulls, which are being
+  /// read; rows: the first triangle of each vertex. Waits once.
+  flaunay::blocks::MeshSizes (*mesh_sizes)(Workspace& work, const Blocks& blocks,
+                                           const std::vector<cl_int>& walked, const Buffer<cl_uint>& rows);
+  /// Writes the hidden points, of which the lighter ones of points in one place are some, and makes
+  /// representatives those of equal places and weights. Returns the number of hidden points. Waits twice; if
+  /// there are lighter points, the host names their representatives.
+  std::size_t (*settle)(Workspace& work, const Blocks& blocks, const Rings& rings,
+                        const Buffer<cl_int>& representatives);
 };
 
 }  // namespace flaunay::points

@@ -5,17 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "blocks/memory.hpp"
 #include "blocks/run.hpp"
+#include "blocks/weighted.hpp"
 #include "call/spaces.hpp"
 #include "call/triangulate.hpp"
 #include "derived/periodic/cells.hpp"
 #include "derived/periodic/fold.hpp"
 #include "geometry/arguments.hpp"
+#include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
 
 namespace flaunay {
@@ -52,7 +56,8 @@ void call::check_on_torus(const Triangulation& mesh) {
              !mesh.point_offsets.empty() &&
              are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
              are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
-             are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles, -1),
+             are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles, -1) &&
+             are_indices(mesh.hidden, n) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
          "the arrays are not those of a triangulation on a torus or a cylinder");
 }
 
@@ -78,11 +83,13 @@ using host::Buffer;
 template <typename Result>
 class Rounds {
  public:
+  // weights: null if points have none.
   Rounds(call::Implementation& self, call::Frame& call, const Buffer<cl_double>& places,
-         const periodic::Lattice& lattice, Result& result)
+         const periodic::Lattice& lattice, const points::Weights* weights, Result& result)
       : self_(self),
         call_(call),
         engine_(call.engine),
+        weights_(weights),
         places_(places),
         result_(result),
         offsets_(result.point_offsets),
@@ -97,12 +104,23 @@ class Rounds {
       boxes_[s].margin = periodic::first_margin(boxes_[s], offsets_[s + 1] - offsets_[s]);
       waiting.push_back(s);
     }
+    const Arena::Scope hidden_scope(engine_.odd);
+    if (weights_ != nullptr) {
+      hidden_.by_point = engine_.odd.allocate<cl_uchar>(offsets_.back());
+      call_.runtime.fill<cl_uchar>(hidden_.by_point, offsets_.back(), 0);
+    }
     for (bool is_first = true; !waiting.empty(); is_first = false) {
       Arena::Scope scope(engine_.even), scratch_scope(call_.runtime.arena());
       const periodic::UnrolledSets plane = unroll(waiting);
       const points::DeviceMesh mesh = triangulate(plane, result_);
-      const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives);
-      if (is_first) {
+      const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives,
+                                        weights_ != nullptr ? &hidden_ : nullptr);
+      if (weights_ != nullptr && !are_done(folded, waiting.size())) {
+        // How many triangles there are is known when all sets are done.
+        widened(waiting, plane, folded);
+        continue;
+      }
+      if (is_first || weights_ != nullptr) {
         count_triangles(waiting, folded);
         const std::size_t count = result_.triangle_offsets.back();
         periods_ = periods.buffer(6 * count);
@@ -123,6 +141,7 @@ class Rounds {
       }
       waiting = widened(waiting, plane, folded);
     }
+    if (weights_ != nullptr) write_hidden();
   }
 
  private:
@@ -150,17 +169,51 @@ class Rounds {
     return {call_.runtime, engine_.even, places_, first, last, std::move(boxes), make_room(result_)};
   }
 
-  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DeviceTriangulation&) const {
+  static bool are_done(const periodic::FoldedSets& folded, std::size_t sets) {
+    for (std::size_t k = 0; k < sets; ++k) {
+      if (!folded.is_done(k)) return false;
+    }
+    return true;
+  }
+  void write_hidden() {
+    Arena::Scope scope(call_.runtime.arena());
+    const auto [hidden, count] = host::pack_positions(call_.runtime, hidden_.by_point, offsets_.back(), 1);
+    call_.runtime.copy(hidden, 0, weights_->hidden(count), 0, count);
+  }
+
+  points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, DeviceTriangulation&) {
     const std::size_t count = plane.offsets().back();
     engine_.check_size(count);
     engine_.persistent.reserve(blocks::workspace_bytes(call_.runtime, count, plane.sets()).persistent);
+    points::Weights weights;
+    if (weights_ != nullptr) {
+      weights = {plane.weights(call_.runtime, engine_.even, weights_->by_point), weights_->solver,
+                 [&](std::size_t hidden) {
+                   hidden_.count = hidden;
+                   return hidden_.in_plane = engine_.even.allocate<cl_int>(hidden);
+                 },
+                 numbers_in(plane)};
+    }
     Arena::Scope scope(engine_.persistent), scratch_scope(call_.runtime.arena());
-    return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even);
+    return blocks::run(call_.runtime, engine_.persistent, plane.offsets(), plane.coordinates(), engine_.even,
+                       weights_ != nullptr ? &weights : nullptr);
   }
   points::DeviceMesh triangulate(const periodic::UnrolledSets& plane, Triangulation& result) {
     const auto* const coordinates =
         reinterpret_cast<const double*>(host::address_of(plane.coordinates().memory()));
-    planar_ = call::triangulate(self_, {coordinates, nullptr, plane.offsets().back()}, plane.offsets(), {});
+    const call::HostPoints points{coordinates, nullptr, plane.offsets().back()};
+    if (weights_ != nullptr) {
+      const auto weights = plane.weights(call_.runtime, engine_.even, weights_->by_point);
+      const auto* const values = reinterpret_cast<const double*>(host::address_of(weights.memory()));
+      planar_ = call::triangulate(
+          self_, points,
+          call::HostWeights{values, weights_->solver, planar_hidden_, nullptr, numbers_in(plane)},
+          plane.offsets(), {});
+      hidden_.in_plane = call_.in(planar_hidden_);
+      hidden_.count = planar_hidden_.size();
+    } else {
+      planar_ = call::triangulate(self_, points, plane.offsets(), {});
+    }
     result.statistics = std::move(planar_.statistics);
     points::DeviceMesh mesh;
     mesh.triangle_offsets = planar_.triangle_offsets;
@@ -168,6 +221,10 @@ class Rounds {
     mesh.neighbors = call_.in(planar_.neighbors);
     mesh.representatives = call_.in(planar_.representatives);
     return mesh;
+  }
+  // The numbers of points by their places in the plane.
+  static std::function<std::size_t(std::size_t)> numbers_in(const periodic::UnrolledSets& plane) {
+    return [&plane](std::size_t v) { return plane.number(v); };
   }
   void take_rows(DeviceTriangulation&) {}
   void take_rows(Triangulation& result) {
@@ -200,18 +257,23 @@ class Rounds {
   call::Implementation& self_;
   call::Frame& call_;
   call::Engine& engine_;
+  const points::Weights* weights_;
   Buffer<cl_double> places_;
   Result& result_;
   const std::vector<std::size_t>& offsets_;
   std::vector<periodic::Box> boxes_;
   Triangulation planar_;  // in host memory
+  std::vector<cl_int> planar_hidden_;
+  periodic::HiddenPoints hidden_;  // if points have weights
   Buffer<cl_int> triangles_{}, neighbors_{};
   Buffer<cl_char> periods_{};
 };
 
-template <typename Points, typename Result>
+// weights: null if points have none.
+template <typename Points, typename Result, typename Weights>
 void compute(call::Implementation& self, call::Frame& call, const Points& points,
-             const std::vector<std::size_t>& offsets, const Period& period, Result& result) {
+             const std::vector<std::size_t>& offsets, const Period& period, Result& result,
+             const Weights* weights) {
   const std::size_t n = points.count, most = blocks::kMostTrianglesPerPoint * n;
   const periodic::Lattice lattice = periodic::lattice_of(period);
   result.space = Space::torus(periodic::period_of(lattice));
@@ -225,13 +287,15 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
   const auto periods = call.template output<cl_char>(result.corner_offsets, 6 * most, "offsets");
   const auto neighbors = call.template output<cl_int>(result.neighbors, 3 * most, "neighbors");
   const auto representatives = call.template out<cl_int>(result.representatives, n, "representatives");
+  const std::optional<points::Weights> by_point = call::weights_in(call, n, weights);
   call.check_distinct();
   if (n > 0) {
     {
       Arena::Scope scope(call.runtime.arena());
       periodic::find_places(call.runtime, call.points(points), n, lattice, places);
     }
-    Rounds<Result>(self, call, places, lattice, result).run(triangles, periods, neighbors, representatives);
+    Rounds<Result>(self, call, places, lattice, by_point ? &*by_point : nullptr, result)
+        .run(triangles, periods, neighbors, representatives);
   }
   call.end();
 }
@@ -239,12 +303,14 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
 }  // namespace
 
 Triangulation call::triangulate_on_torus(Implementation& self, const HostPoints& points,
-                                         const std::vector<std::size_t>& offsets, const Period& period) {
+                                         const double* weights, const std::vector<std::size_t>& offsets,
+                                         const Period& period) {
   check(period);
   check_points(points.wide, points.count);
   Triangulation result;
+  const HostWeights with{weights, &blocks::kWeightedSolver, result.hidden};
   Frame call(self.native_for(points.count));
-  compute(self, call, points, offsets, period, result);
+  compute(self, call, points, offsets, period, result, weights != nullptr ? &with : nullptr);
   return result;
 }
 
@@ -258,7 +324,9 @@ void call::triangulate_on_torus(Implementation& self, const DevicePoints& points
   call.check_size(points.count);
   call.begin();
   const double begin = place.device->runtime.working_clock();
-  compute(self, call, points, call.offsets(points), points.space.period, result);
+  const DeviceWeights with{points.weights, &blocks::kWeightedSolver, result.hidden, &result.hidden_count};
+  compute(self, call, points, call.offsets(points), points.space.period, result,
+          points.weights != nullptr ? &with : nullptr);
   result.points = points.count;
   result.parts = kPartsInSpace;
   result.hull_offsets.clear();
@@ -271,23 +339,24 @@ void call::triangulate_on_torus(Implementation& self, const DevicePoints& points
   add_note(*place.device, call.engine, "a torus", "triangulated", statistics);
 }
 
-ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh) {
-  return call::take_turn(*implementation_, [&] {
-    call::check_with_places(mesh);
-    call::expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
-                 "cells on a cylinder have no end");
-    return periodic::make_cells(implementation_->native().runtime, mesh);
+ClippedVoronoi call::cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh) {
+  return take_turn(self, [&] {
+    check_with_places(mesh);
+    expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
+           "cells on a cylinder have no end");
+    expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
+    return periodic::make_cells(self.native().runtime, mesh, weights);
   });
 }
 
 std::string call::problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
-                                   const Period& period, const Triangulation& mesh) {
-  check(period);
+                                   const Space& space, const Triangulation& mesh) {
+  check(space.period);
   check_on_torus(mesh);
   if (offsets != mesh.point_offsets) return "the sets have other points";
-  const periodic::Lattice lattice = periodic::lattice_of(period);
+  const periodic::Lattice lattice = periodic::lattice_of(space.period);
   check_points(points, offsets.back());
-  std::string problem = prove::find_problem(mesh);
+  std::string problem = prove::find_problem(mesh, space.weights);
   if (!problem.empty()) return problem;
   const Period rounded = periodic::period_of(lattice), made = mesh.space.period;
   if (made.x != rounded.x || made.y != rounded.y || made.shear != rounded.shear)

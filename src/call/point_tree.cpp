@@ -93,10 +93,10 @@ struct PointTree::Implementation {
   std::shared_ptr<call::Implementation> owner;
   nearest::PointTree tree;
   std::optional<call::SphereLocator> on_sphere;  // answers all queries there
-  std::optional<periodic::Lattice> lattice;  // none in the plane
-  std::size_t points = 0;                    // with a period: in front of their images
-  std::vector<std::int32_t> originals;       // of these
-  std::size_t most_copies = 1;               // of one point: itself and its images
+  std::optional<periodic::Lattice> lattice;      // none in the plane
+  std::size_t points = 0;                        // with a period: in front of their images
+  std::vector<std::int32_t> originals;           // of these
+  std::size_t most_copies = 1;                   // of one point: itself and its images
 };
 
 PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n)

@@ -9,8 +9,8 @@ namespace flaunay {
 namespace {
 
 void check_weights(const Space& space) {
-  call::expect(space.weights == nullptr || space.kind == SpaceKind::plane,
-               "points on a torus, a cylinder or the sphere have no weights");
+  call::expect(space.weights == nullptr || space.kind != SpaceKind::sphere,
+               "points on the sphere have no weights");
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
     call::expect(!options.halfedges && !options.areas,
                  "triangulations on a torus, a cylinder or the sphere have neither half-edges nor areas");
     return space.kind == SpaceKind::torus
-               ? call::triangulate_on_torus(self, given, offsets, space.period)
+               ? call::triangulate_on_torus(self, given, space.weights, offsets, space.period)
                : call::triangulate_on_sphere(self, points, offsets, space.coordinates);
   });
 }
@@ -45,12 +45,17 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
   call::Implementation& self = *implementation_;
   call::take_turn(self, enqueue, [&] {
     check_enumerator(points.space.kind);
-    call::expect(points.space.weights == nullptr, "points in device memory have no weights");
+    call::expect(points.space.weights == nullptr, "points in device memory have weights there");
+    call::expect(points.weights == nullptr || points.space.kind != SpaceKind::sphere,
+                 "points on the sphere have no weights");
     result.space = points.space;
+    result.hidden_count = 0;
     if (points.space.kind == SpaceKind::torus) {
       call::triangulate_on_torus(self, points, result, enqueue);
     } else if (points.space.kind == SpaceKind::sphere) {
       call::triangulate_on_sphere(self, points, result, enqueue);
+    } else if (points.weights != nullptr) {
+      call::triangulate_with_weights(self, points, result, parts, enqueue);
     } else {
       call::triangulate(self, points, result, parts, enqueue);
     }
@@ -63,11 +68,15 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
   check_enumerator(space.kind);
   check_weights(space);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
-  if (space.kind == SpaceKind::torus) return call::problem_on_torus(points, offsets, space.period, mesh);
+  if (space.kind == SpaceKind::torus) return call::problem_on_torus(points, offsets, space, mesh);
   if (space.kind == SpaceKind::sphere)
     return call::problem_on_sphere(points, offsets, space.coordinates, mesh);
   return space.weights != nullptr ? call::problem_with_weights(points, space.weights, offsets, mesh)
                                   : verify(points, offsets, mesh);
+}
+
+ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {
+  return call::cells_on_torus(*implementation_, weights, mesh);
 }
 
 void call::SpaceLocator::set_coordinates(SphereCoordinates) {

@@ -16,7 +16,8 @@ namespace flaunay::call {
 constexpr Parts kPartsInSpace{true, true, false, false, true, false};
 
 // It is the triangulator's turn, and offsets have been checked.
-Triangulation triangulate_on_torus(Implementation& self, const HostPoints& points,
+// weights: null if points have none.
+Triangulation triangulate_on_torus(Implementation& self, const HostPoints& points, const double* weights,
                                    const std::vector<std::size_t>& offsets, const Period& period);
 void triangulate_on_torus(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
                           const Enqueue& enqueue);
@@ -26,10 +27,15 @@ void triangulate_on_sphere(Implementation& self, const DevicePoints& points, Dev
                            const Enqueue& enqueue);
 Triangulation triangulate_with_weights(Implementation& self, const HostPoints& points, const double* weights,
                                        const std::vector<std::size_t>& offsets, const Options& options);
+void triangulate_with_weights(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                              const Parts& parts, const Enqueue& enqueue);
+
+/// See Triangulator::clipped_voronoi. Takes a turn.
+ClippedVoronoi cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh);
 
 // See verify. Offsets have been checked.
 std::string problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
-                             const Period& period, const Triangulation& mesh);
+                             const Space& space, const Triangulation& mesh);
 std::string problem_on_sphere(const double* points, const std::vector<std::size_t>& offsets,
                               SphereCoordinates coordinates, const Triangulation& mesh);
 std::string problem_with_weights(const double* points, const double* weights,

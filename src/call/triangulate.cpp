@@ -66,25 +66,28 @@ class Arrays {
   Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
 };
 
+// Bytes of the persistent arena per point. Weights take a scaled copy, those of vertices, and links.
+std::size_t persistent_bytes(bool has_weights) {
+  return blocks::kPersistentBytesPerPoint + (has_weights ? 2 * sizeof(cl_double) + sizeof(cl_int) : 0);
+}
+
 // Triangulates points of a call, at least one. Writes the result's offsets and statistics.
 template <typename Points, typename Result>
 geometry::Fitted<points::DeviceMesh> compute(Frame& call, const Points& points,
                                              const std::vector<std::size_t>& offsets, const Arrays& arrays,
-                                             statistics::Phases& phases, Result& result,
-                                             const ScaledWeights* weights = nullptr) {
+                                             const std::optional<points::Weights>& weights,
+                                             statistics::Phases& phases, Result& result) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
   const auto representatives = arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
                                                                   : engine.persistent.allocate<cl_int>(n);
-  points::Weights by_point;
-  if (weights != nullptr) by_point = {call.in(weights->values), weights->range, weights->solver};
   geometry::Fitted<blocks::Outcome> run =
       blocks::run(engine.runtime, engine.persistent, offsets,
                   {[&] { return call.points(points); }, representatives, arrays.have_links(),
                    [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-                   [&] { arrays.reserve(engine.runtime); }, weights != nullptr ? &by_point : nullptr},
+                   [&] { arrays.reserve(engine.runtime); }, weights ? &*weights : nullptr},
                   phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
@@ -97,7 +100,6 @@ geometry::Fitted<points::DeviceMesh> compute(Frame& call, const Points& points,
                                                .areas = arrays.areas.buffer(triangles).as<cl_ulong>()});
   }
   outcome.write(n, result.statistics);
-  if (weights != nullptr) weights->hidden = std::move(outcome.hidden);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
   mesh.representatives = representatives;
@@ -118,16 +120,16 @@ template <typename Points>
 geometry::Fitted<points::DeviceMesh> triangulate_in(Frame& call, const Points& points,
                                                     const std::vector<std::size_t>& offsets,
                                                     const Options& options, Triangulation& result, bool ends,
-                                                    const ScaledWeights* weights = nullptr) {
+                                                    const HostWeights* weights = nullptr) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   statistics::Phases phases(options, [&engine] { return engine.runtime.working_clock(); });
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
-  engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+  engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
   const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
                       result);
-  const auto mesh = compute(call, points, offsets, arrays, phases, result, weights);
+  const auto mesh = compute(call, points, offsets, arrays, weights_in(call, n, weights), phases, result);
   if (!mesh) return mesh;
   if (ends) call.end();
   phases.end("output");
@@ -138,13 +140,12 @@ geometry::Fitted<points::DeviceMesh> triangulate_in(Frame& call, const Points& p
 
 geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints& points,
                                                const std::vector<std::size_t>& offsets,
-                                               const Options& options,
-                                               const ScaledWeights* weights = nullptr) {
+                                               const Options& options, const HostWeights* weights = nullptr) {
   const std::size_t n = points.count, sets = offsets.size() - 1;
   Triangulation result = empty_result(engine, sets);
   if (n == 0) return result;
   Frame call(engine, options.profile);
-  if (engine.workspace != nullptr) engine.provide_memory(n, sets);
+  if (engine.workspace != nullptr && weights == nullptr) engine.provide_memory(n, sets);
   const auto mesh = triangulate_in(call, points, offsets, options, result, true, weights);
   if (!mesh) return mesh.too_wide();
   engine.write_accounts(result.statistics);
@@ -155,7 +156,8 @@ geometry::Fitted<Triangulation> triangulate_on(Engine& engine, const HostPoints&
 geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Place& place,
                                                 const std::string& reason, const DevicePoints& points,
                                                 DeviceTriangulation& result, const Parts& parts,
-                                                const Enqueue& enqueue) {
+                                                const Enqueue& enqueue,
+                                                const DeviceWeights* weights = nullptr) {
   Engine& device = *place.device;
   Frame call(self, place, enqueue);
   if ((parts.neighbors || parts.halfedges || parts.areas) && !parts.triangles) {
@@ -168,6 +170,7 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   std::vector<std::size_t> offsets = call.offsets(points);
   const std::size_t n = points.count, sets = offsets.size() - 1;
   const Arrays arrays(call, parts, n, result);
+  const std::optional<points::Weights> by_point = weights_in(call, n, weights);
   call.check_distinct({device.workspace.get()});
   result.statistics = {};
   result.statistics.device = call.runtime.name();
@@ -180,14 +183,14 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   result.hull_offsets.assign(sets + 1, 0);
   if (n > 0) {
     call.check_size(n);
-    if (place.is_apart()) {
-      call.engine.persistent.reserve(n * blocks::kPersistentBytesPerPoint);
+    if (place.is_apart() || weights != nullptr) {
+      call.engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
     } else {
       device.provide_memory(n, sets);
     }
     const Options unheard;
     statistics::Phases phases(unheard);
-    const auto mesh = compute(call, points, offsets, arrays, phases, result);
+    const auto mesh = compute(call, points, offsets, arrays, by_point, phases, result);
     if (!mesh) return mesh.too_wide();
     call.end();
     if (place.is_apart()) {
@@ -272,10 +275,14 @@ Triangulation triangulate_small(const HostPoints& points, const std::vector<std:
   return result;
 }
 
-Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, const ScaledWeights& weights,
-                                   const std::vector<std::size_t>& offsets, const Options& options) {
+Triangulation triangulate(Implementation& self, const HostPoints& points, const HostWeights& weights,
+                          const std::vector<std::size_t>& offsets, const Options& options) {
+  Engine& asked = self.is_named() ? self.for_host_memory() : self.native();
+  Engine& engine = self.with_doubles(asked);
   engine.check_size(points.count);
-  return *triangulate_on(engine, points, offsets, options, &weights);
+  Triangulation result = *triangulate_on(engine, points, offsets, options, &weights);
+  add_note(asked, engine, "weights", "triangulated", result.statistics);
+  return result;
 }
 
 points::DeviceMesh triangulate_stage(Frame& call, const Buffer<cl_double>& coordinates,
@@ -315,6 +322,12 @@ Triangulation triangulate(Implementation& self, const HostPoints& points,
         add_note(engine, other, reason, "triangulated", result.statistics);
         return result;
       });
+}
+
+void triangulate(Implementation& self, const DevicePoints& points, const DeviceWeights& weights,
+                 DeviceTriangulation& result, const Parts& parts, const Enqueue& enqueue) {
+  const Place place = with_doubles(self, self.on_device());
+  (void)*triangulate_on(self, place, "weights", points, result, parts, enqueue, &weights);
 }
 
 void triangulate(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,

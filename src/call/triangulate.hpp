@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "call/frame.hpp"
@@ -41,19 +43,38 @@ bool are_small(Implementation& self, const std::vector<std::size_t>& offsets, bo
 Triangulation triangulate_small(const HostPoints& points, const std::vector<std::size_t>& offsets,
                                 const Options& options);
 
-/// Weights by index, scaled twice as points are, and the largest difference of two of them.
-struct ScaledWeights {
-  std::vector<double> values;
-  double range = 0;
-  const points::WeightedSolver* solver = nullptr;
-  std::vector<cl_int>&
-      hidden;  ///< gets the points that are no vertices, besides those in heavier ones' places
+/// Weights as the caller gives them, and where hidden points go, in host or in device memory.
+template <typename Values, typename Hidden>
+struct GivenWeights {
+  Values values;
+  const points::WeightedSolver* solver;
+  Hidden& hidden;
+  std::size_t* hidden_count = nullptr;                  ///< not null for device memory
+  std::function<std::size_t(std::size_t)> number = {};  ///< points::Weights::number
 };
+using HostWeights = GivenWeights<const double*, std::vector<cl_int>>;
+using DeviceWeights = GivenWeights<cl_mem, DeviceBuffer>;
 
-/// Computes regular triangulations of sets in host memory. The representative of a point in the place of a
-/// heavier one is the complement of that one.
-Triangulation triangulate_weighted(Engine& engine, const HostPoints& points, const ScaledWeights& weights,
-                                   const std::vector<std::size_t>& offsets, const Options& options);
+/// The weights of a call's points, if there are any, and the array of hidden points.
+template <typename Values, typename Hidden>
+std::optional<points::Weights> weights_in(Frame& call, std::size_t n,
+                                          const GivenWeights<Values, Hidden>* given) {
+  if (given == nullptr || n == 0) return std::nullopt;
+  const auto hidden = call.output<cl_int>(given->hidden, n, "hidden");
+  return points::Weights{call.in<cl_double>(given->values, n, "weights"), given->solver,
+                         [given, hidden](std::size_t count) {
+                           if (given->hidden_count != nullptr) *given->hidden_count = count;
+                           return hidden.buffer(count);
+                         },
+                         given->number};
+}
+
+/// Computes regular triangulations of sets in host memory: on the device if one was named that has doubles.
+Triangulation triangulate(Implementation& self, const HostPoints& points, const HostWeights& weights,
+                          const std::vector<std::size_t>& offsets, const Options& options);
+/// Computes them in device memory. Devices without doubles leave it to the host.
+void triangulate(Implementation& self, const DevicePoints& points, const DeviceWeights& weights,
+                 DeviceTriangulation& result, const Parts& parts, const Enqueue& enqueue);
 
 /// Implements Triangulator::triangulate for device memory. What the device cannot compute in fixed point is
 /// computed with its doubles, or if it has none, on the host.

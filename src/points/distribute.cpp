@@ -116,6 +116,7 @@ Fitted<Blocks> make_blocks(Workspace& work, const Buffer<cl_double>& input,
   if (!uniform) return uniform.too_wide();
   work.bounds = uniform->scaling.bounds;
   blocks.scale = uniform->scaling.powers();
+  blocks.shifts = uniform->shifts;
   fill_blocks(work, plan, uniform->coordinates, offsets, Cuts::at_medians, BlockSizes::read, representatives,
               blocks);
   return blocks;

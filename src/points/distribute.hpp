@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "arithmetic/records.h"
@@ -18,11 +19,16 @@ using host::Buffer;
 
 struct WeightedSolver;
 
-/// Weights of points, for regular triangulations: squared, and scaled, as distances are.
+/// Weights of points, for regular triangulations.
 struct Weights {
-  Buffer<cl_double> by_point{};            ///< by index of the input
-  double range = 0;                        ///< the largest difference of two of them
+  /// By index of the input. In a workspace they are scaled as the squares of coordinates are.
+  Buffer<cl_double> by_point{};
   const WeightedSolver* solver = nullptr;  ///< see blocks/weighted.hpp
+  /// Returns the array for this number of hidden points.
+  std::function<Buffer<cl_int>(std::size_t)> hidden{};
+  /// Returns the number of a point in error messages, by its index; empty if that is the number.
+  std::function<std::size_t(std::size_t)> number{};
+  double range = 0;  ///< the largest difference of two scaled weights
 };
 
 /// The context of every stage.
@@ -55,6 +61,7 @@ struct Blocks {
   Buffer<kernel::block_merge> device_merges{};
   Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
   kernel::scaling scale{1, 1, 1};           ///< the factor of the nodes' coordinates
+  std::vector<int> shifts;                  ///< UniformPoints::shifts
   /// The scaled points, block by block, and their indices in the input. After blocks are triangulated, the
   /// distinct points of each block come first; these are its vertices.
   Buffer<cl_double2> vertices{};

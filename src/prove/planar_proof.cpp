@@ -119,22 +119,9 @@ class PlanarProof : RowsProof {
     }
   }
 
-  /// Lifts are lowered by an infinitesimal part of x^2 + y^2, so that a point on the plane of others is
-  /// hidden; and among points on one circle, the lift of the lexicographically smallest is lowered further.
   bool is_below(const std::int32_t* t, std::int32_t p) {
-    const double *const a = place(t[0]), *const b = place(t[1]), *const c = place(t[2]), *const d = place(p);
-    const double weights[] = {weight(t[0]), weight(t[1]), weight(t[2]), weight(p)};
-    const bool are_alike = weights[0] == weights[3] && weights[1] == weights[3] && weights[2] == weights[3];
-    const int power = predicates_.power(a, b, c, d, are_alike ? nullptr : weights);
-    if (power != 0) return power > 0;
-    const int circle = are_alike ? 0 : predicates_.incircle(a, b, c, d);
-    if (circle != 0) return circle < 0;
-    // The edge across which d lies, or if it lies inside none.
-    for (int k = 0; k < 3; ++k) {
-      const double *const from = place(t[(k + 1) % 3]), *const to = place(t[(k + 2) % 3]);
-      if (predicates_.orient2d(from, to, d) < 0) return !is_of_fan(from, to, place(t[k]), d);
-    }
-    return false;
+    return prove::is_below(predicates_, {place(t[0]), place(t[1]), place(t[2]), place(p)},
+                           {weight(t[0]), weight(t[1]), weight(t[2]), weight(p)});
   }
 
   /// Hidden points lie in a triangle or on its border, and not below it.
@@ -143,7 +130,7 @@ class PlanarProof : RowsProof {
         std::lower_bound(claim_.hidden.begin(), claim_.hidden.end(), static_cast<std::int64_t>(first_));
     const auto end = std::lower_bound(begin, claim_.hidden.end(), static_cast<std::int64_t>(last_));
     Ids hidden(begin, end);
-    sort_along_strips(hidden);
+    sort_along_strips(claim_.points, hidden);
     std::size_t t = begin_;
     for (const std::int32_t p : hidden) {
       t = walk(t, p);
@@ -152,20 +139,6 @@ class PlanarProof : RowsProof {
           std::find_if(v, v + 3, [&](std::int32_t corner) { return is_same_place(corner, p); });
       require(same != v + 3 ? weight(*same) > weight(p) : !is_below(v, p),
               "point {} is listed as hidden, but lies below triangle {}", p, t);
-    }
-  }
-
-  /// So that walks from one point to the next are short.
-  void sort_along_strips(Ids& points) const {
-    std::sort(points.begin(), points.end(), [&](std::int32_t a, std::int32_t b) { return is_before(a, b); });
-    const auto strip = static_cast<std::size_t>(std::sqrt(static_cast<double>(points.size()))) + 1;
-    for (std::size_t begin = 0; begin < points.size(); begin += strip) {
-      const bool is_upward = begin / strip % 2 == 0;
-      std::sort(points.begin() + static_cast<std::ptrdiff_t>(begin),
-                points.begin() + static_cast<std::ptrdiff_t>(std::min(begin + strip, points.size())),
-                [&](std::int32_t a, std::int32_t b) {
-                  return is_upward ? place(a)[1] < place(b)[1] : place(b)[1] < place(a)[1];
-                });
     }
   }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -11,6 +13,7 @@
 
 #include "mesh/corners.hpp"
 #include "prove/describe.hpp"
+#include "prove/exact.hpp"
 
 namespace flaunay::prove {
 
@@ -19,6 +22,24 @@ struct Rows {
   const std::vector<std::int32_t>&triangles, &neighbors, &representatives;
   const std::vector<std::size_t>&point_offsets, &triangle_offsets;
 };
+
+/// Whether the last of four weighted points is below the plane through the others when they are lifted. These
+/// turn left. Lifts are lowered by an infinitesimal part of x^2 + y^2, so that a point on the plane of others
+/// is hidden; and among points on one circle, the lift of the lexicographically smallest is lowered further.
+inline bool is_below(ExactPredicates& predicates, const std::array<const double*, 4>& p,
+                     const std::array<double, 4>& weights) {
+  const bool are_alike = weights[0] == weights[3] && weights[1] == weights[3] && weights[2] == weights[3];
+  const int power = predicates.power(p[0], p[1], p[2], p[3], are_alike ? nullptr : weights.data());
+  if (power != 0) return power > 0;
+  const int circle = are_alike ? 0 : predicates.incircle(p[0], p[1], p[2], p[3]);
+  if (circle != 0) return circle < 0;
+  // The edge across which the last one lies, or if it lies inside none.
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double *const from = p[(k + 1) % 3], *const to = p[(k + 2) % 3];
+    if (predicates.orient2d(from, to, p[3]) < 0) return !is_of_fan(from, to, p[k], p[3]);
+  }
+  return false;
+}
 
 /// The checks of one set after the other.
 class RowsProof {
@@ -78,6 +99,22 @@ class RowsProof {
   std::int32_t from(std::size_t c) const { return rows_.triangles[after(c)]; }
   std::int32_t to(std::size_t c) const { return rows_.triangles[after(after(c))]; }
   static std::size_t after(std::size_t c) { return mesh::next_corner(c); }
+
+  /// Sorts points so that walks from one to the next are short.
+  static void sort_along_strips(const double* places, std::vector<std::int32_t>& points) {
+    const auto at = [&](std::int32_t i) { return places + 2 * index(i); };
+    std::sort(points.begin(), points.end(),
+              [&](std::int32_t a, std::int32_t b) { return comes_before(at(a), at(b)); });
+    const auto strip = static_cast<std::size_t>(std::sqrt(static_cast<double>(points.size()))) + 1;
+    for (std::size_t begin = 0; begin < points.size(); begin += strip) {
+      const bool is_upward = begin / strip % 2 == 0;
+      std::sort(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                points.begin() + static_cast<std::ptrdiff_t>(std::min(begin + strip, points.size())),
+                [&](std::int32_t a, std::int32_t b) {
+                  return is_upward ? at(a)[1] < at(b)[1] : at(b)[1] < at(a)[1];
+                });
+    }
+  }
 
   const Rows rows_;
   std::size_t first_ = 0, last_ = 0, begin_ = 0, end_ = 0;  // points and triangles of the set

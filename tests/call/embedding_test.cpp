@@ -575,10 +575,13 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
   const auto clipped = std::make_shared<DeviceClippedVoronoi>();
   const auto relaxed = std::make_shared<DeviceBuffer>();
   const auto periodic = std::make_shared<DeviceTriangulation>();
+  const auto weighted = std::make_shared<DeviceTriangulation>();
+  const Memory weights = embedder().upload(std::vector<double>(n));
   const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
   const DevicePoints points = points_in(memory, n);
-  DevicePoints on_torus = points;
+  DevicePoints on_torus = points, with_weights = points;
   on_torus.space = Space::torus({});
+  with_weights.weights = weights.get();
   return {
       {"triangulate", [=, &t, &xy] { t.triangulate(xy.data(), n); }},
       {"triangulate float", [=, &t] { t.triangulate(narrow->data(), n); }},
@@ -599,6 +602,8 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
        [=, &t, &enqueue] { t.relax(points, kTriangle.data(), kTriangle.size() / 2, 1, *relaxed, enqueue); }},
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
       {"periodic on device", [=, &t, &enqueue] { t.triangulate(on_torus, *periodic, kAll, enqueue); }},
+      {"weighted on device",
+       [=, &t, &enqueue] { t.triangulate(with_weights, *weighted, triangles_alone(), enqueue); }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
       {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},
@@ -1415,6 +1420,15 @@ TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {
     points.space = Space::torus({});
     kept.triangulate(points, result, kAll, on_own());
     EXPECT_EQ(result.triangle_offsets.back(), 2 * n);
+  });
+  const std::vector<double> heavier(n, 1);
+  const Memory weights = embedder().upload(heavier);
+  attack("weights", [&] {
+    DeviceTriangulation result;
+    DevicePoints points = points_in(memory, n);
+    points.weights = weights.get();
+    kept.triangulate(points, result, kAll, on_own());
+    expect_same(result, expected);
   });
   attack("a locator", [&] {
     Locator locator(kept, coordinates.data(), n, expected);

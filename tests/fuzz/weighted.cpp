@@ -44,6 +44,7 @@ class WeightedFuzzer : public Fuzzer {
       if (problem.empty() && (mesh.hidden != other.hidden || mesh.hull != other.hull))
         problem = "blocks differ";
       hidden_ += mesh.hidden.size();
+      if (problem.empty()) problem = problem_with_period(points, weights, offsets, random);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::input) throw;
       ++refused_;  // out of the range of magnitudes
@@ -73,6 +74,24 @@ class WeightedFuzzer : public Fuzzer {
                                     options);
   }
 
+  /// On a torus or a cylinder that is about as large as the points, or much smaller.
+  std::string problem_with_period(const Coordinates& points, const std::vector<double>& weights,
+                                  const std::vector<std::size_t>& offsets, FixtureRandom& random) {
+    double extent = 0;
+    for (const double x : points) extent = std::max(extent, std::fabs(x));
+    if (!(extent > 0x1p-300 && extent < 0x1p300)) return "";
+    const auto length = [&] { return std::ldexp(extent, static_cast<int>(random.integer(-2, 2))); };
+    const std::int64_t ends = random.integer(0, 3);
+    const Period period{ends == 0 ? HUGE_VAL : length(), ends == 1 ? HUGE_VAL : length()};
+    const Triangulation mesh =
+        host_.triangulate(points.data(), offsets, Space::torus(period).with_weights(weights.data()));
+    hidden_ += mesh.hidden.size();
+    const std::string problem =
+        verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh);
+    if (!problem.empty()) fmt::print("period {} x {}\n", period.x, period.y);
+    return problem;
+  }
+
   /// Of one kind for a set: equal ones, few different ones, those that lift points to a plane or nearly so,
   /// and any, all beside the square of how far points are apart.
   static void add_weights(const Coordinates& set, FixtureRandom& random, std::vector<double>& weights) {
@@ -94,7 +113,7 @@ class WeightedFuzzer : public Fuzzer {
   }
 
   Triangulator& host_ = testing::triangulator_with("cpu");
-  Triangulator& small_blocks_ = testing::triangulator_with("cpu,block_points=6");
+  Triangulator& small_blocks_ = testing::triangulator_with("gpu:32,block_points=6");
   std::size_t sets_ = 0, points_ = 0, hidden_ = 0, refused_ = 0;
 };
 

@@ -246,7 +246,7 @@ void expect_sets_of_the_twin(Runtime& runtime, const Period& period, const Sets&
   mesh.representatives = upload(runtime, planar.representatives);
   const std::size_t points = sets.places.size() / 2;
   const auto representatives = guarded<cl_int>(runtime, points);
-  const periodic::FoldedSets folded(runtime, arena, plane, mesh, representatives);
+  const periodic::FoldedSets folded(runtime, arena, plane, mesh, representatives, nullptr);
   const std::vector<cl_int> same_points = download(runtime, representatives, points);
 
   Offsets first_rows;

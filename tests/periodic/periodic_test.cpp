@@ -308,7 +308,9 @@ TEST(Periodic, ShearedBoxesMayBeFlat) {
                                {0x1p-895, 0x1p-900, 0x1p900},
                                {0x1p-900, 0x1p-870, 0x1.3p-901}}) {
     const Numbers points = uniform(60, period, 4);
-    EXPECT_EQ("", verify(triangulated(points, period).places.data(), triangulated(points, period).point_offsets, triangulated(points, period).space, triangulated(points, period)));
+    EXPECT_EQ("",
+              verify(triangulated(points, period).places.data(), triangulated(points, period).point_offsets,
+                     triangulated(points, period).space, triangulated(points, period)));
   }
 }
 
@@ -762,7 +764,9 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
   testing::expect_error(ErrorKind::usage, "has no shear", [&] { triangulated(few, {1, HUGE_VAL, 0.5}); });
   testing::expect_error(ErrorKind::usage, "64 times", [&] { triangulated(few, {65, 1, 0.5}); });
   testing::expect_error(ErrorKind::usage, "not finite", [&] { triangulated(few, {1, 1, HUGE_VAL}); });
-  EXPECT_EQ("", verify(triangulated(few, {65, 1, 130}).places.data(), triangulated(few, {65, 1, 130}).point_offsets, triangulated(few, {65, 1, 130}).space, triangulated(few, {65, 1, 130})));
+  EXPECT_EQ(
+      "", verify(triangulated(few, {65, 1, 130}).places.data(), triangulated(few, {65, 1, 130}).point_offsets,
+                 triangulated(few, {65, 1, 130}).space, triangulated(few, {65, 1, 130})));
   EXPECT_TRUE(triangulated({}, {}).triangles.empty());
 }
 

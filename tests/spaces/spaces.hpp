@@ -73,6 +73,9 @@ inline std::vector<TestSpace> all_spaces() {
           {"weighted", 3, Space::plane(), true},
           {"torus", 2, Space::torus({0.75, 1})},
           {"sheared_torus", 2, Space::torus({0.75, 1, 0.25})},
+          {"weighted_torus", 3, Space::torus({0.75, 1}), true},
+          {"weighted_sheared_torus", 3, Space::torus({0.75, 1, 0.25}), true},
+          {"weighted_cylinder", 3, Space::torus({0.75, kWhole}), true},
           {"cylinder", 2, Space::torus({0.75, kWhole})},
           {"upright_cylinder", 2, Space::torus({kWhole, 1})},
           {"sphere", 3, Space::sphere(SphereCoordinates::directions)}};

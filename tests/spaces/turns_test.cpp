@@ -53,6 +53,8 @@ TEST_F(Turns, TriangulationsTakeOne) {
   expect_one("polygons", [&] { made_.polygons(polygons); });
   expect_one("weighted",
              [&] { made_.triangulate(at_, kCount, Space::plane().with_weights(weights.data())); });
+  expect_one("weighted torus",
+             [&] { made_.triangulate(at_, kCount, Space::torus({}).with_weights(weights.data())); });
   for (const Period& period : {Period{}, {1, HUGE_VAL}})
     expect_one("periodic", [&] { made_.triangulate(at_, {0, 20, 60}, Space::torus(period)); });
   // Few points need wider margins.

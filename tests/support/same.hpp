@@ -46,8 +46,8 @@ template <typename T>
 }
 
 /// The offsets of sets, and the numbers that statistics have of points and results.
-template <typename Result>
-void expect_same_sizes(const Result& found, const Result& expected) {
+template <typename Result, typename Expected>
+void expect_same_sizes(const Result& found, const Expected& expected) {
   EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
   EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
   EXPECT_EQ(found.statistics.points, expected.statistics.points);

@@ -155,9 +155,8 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
     on_sphere = std::move(found.places);
     mesh = completed(std::move(found), n);
   } else {
-    Triangulation found = named([&] {
-      return triangulator.triangulate(coordinates, n, Space::torus(period_of(request.period)));
-    });
+    Triangulation found = named(
+        [&] { return triangulator.triangulate(coordinates, n, Space::torus(period_of(request.period))); });
     offsets.assign(found.corner_offsets.begin(), found.corner_offsets.end());
     period = found.space.period;
     points.coordinates = std::move(found.places);

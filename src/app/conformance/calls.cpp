@@ -457,15 +457,32 @@ void sphere(Triangulator& triangulator, std::size_t n, Arrays& results) {
   }
 }
 
+std::vector<double> weights_of(const Coordinates& points) {
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < points.size() / 2; ++k) weights.push_back(static_cast<double>(k % 5) / 64);
+  return weights;
+}
+
 void weighted(Triangulator& triangulator, std::size_t n, Arrays& results) {
+  // Enough for merges of blocks.
+  const Coordinates many = points_of("uniform", 8 * n);
+  const std::vector<double> weights_of_many = weights_of(many);
+  const Triangulation merged = triangulator.triangulate(
+      many.data(), many.size() / 2, Space::plane().with_weights(weights_of_many.data()), all_arrays());
+  add(results, "many", merged);
+  results.add("many hidden", merged.hidden);
   for (const std::string& input : kTameInputs) {
     const Coordinates points = points_of(input, n);
-    std::vector<double> weights;
-    for (std::size_t k = 0; k < points.size() / 2; ++k) weights.push_back(static_cast<double>(k % 5) / 64);
+    const std::vector<double> weights = weights_of(points);
     const Triangulation mesh = triangulator.triangulate(
         points.data(), weights.size(), Space::plane().with_weights(weights.data()), all_arrays());
     add(results, input, mesh);
     results.add(input + " hidden", mesh.hidden);
+    const Triangulation torus = triangulator.triangulate(
+        points.data(), weights.size(), Space::torus({2.5, 1.25}).with_weights(weights.data()));
+    add_unfolded(results, input + " on a torus", torus);
+    results.add(input + " hidden on a torus", torus.hidden);
+    add(results, input + " cells on a torus", triangulator.clipped_voronoi(torus, weights.data()));
     const Coordinates box = box_in(points);
     add(results, input + " cells",
         triangulator.clipped_voronoi(points.data(), weights.data(), weights.size(), mesh, box.data(),

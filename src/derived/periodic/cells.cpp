@@ -33,7 +33,8 @@ double determinant(double a, double b, double a2, double b2) {
 // Corners of triangles, 3 t + k, and what is around them.
 class Corners {
  public:
-  Corners(const Triangulation& mesh, const Lattice& lattice) : mesh_(mesh), lattice_(lattice) {}
+  Corners(const Triangulation& mesh, const Lattice& lattice, const double* weights)
+      : mesh_(mesh), lattice_(lattice), weights_(weights) {}
 
   std::int32_t point(std::int32_t c) const { return mesh_.triangles[index(c)]; }
   // The same point's corner in the next triangle, counter-clockwise; -1 if the arrays are no triangulation's.
@@ -48,13 +49,14 @@ class Corners {
     }
     return -1;
   }
-  // The centre of the corner's triangle when the corner is at its place, as seen from there.
+  // The centre of the corner's triangle, from which its corners have the same power, when the corner is at
+  // its place, as seen from there.
   Point centre(std::int32_t c) const {
     const Point a = seen(c, turned(c, 1)), b = seen(c, turned(c, 2));
     const double twice = 2 * determinant(a.x, a.y, b.x, b.y);
-    const double a_square = a.x * a.x + a.y * a.y, b_square = b.x * b.x + b.y * b.y;
-    return {determinant(a_square, a.y, b_square, b.y) / twice,
-            determinant(a.x, a_square, b.x, b_square) / twice};
+    const double a_lift = a.x * a.x + a.y * a.y - heavier(turned(c, 1), c),
+                 b_lift = b.x * b.x + b.y * b.y - heavier(turned(c, 2), c);
+    return {determinant(a_lift, a.y, b_lift, b.y) / twice, determinant(a.x, a_lift, b.x, b_lift) / twice};
   }
   Point place(std::int32_t v) const { return {mesh_.places[2 * index(v)], mesh_.places[2 * index(v) + 1]}; }
 
@@ -68,13 +70,18 @@ class Corners {
     return kernel::moved(q, step(from, to, 0), step(from, to, 1), &lattice_) - p;
   }
 
+  double heavier(std::int32_t c, std::int32_t than) const {
+    return weights_ == nullptr ? 0 : weights_[point(c)] - weights_[point(than)];
+  }
+
   const Triangulation& mesh_;
   const Lattice& lattice_;
+  const double* weights_;
 };
 
 }  // namespace
 
-ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
+ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh, const double* weights) {
   const std::size_t n = mesh.places.size() / 2;
   ClippedVoronoi cells;
   cells.areas.assign(n, 0);
@@ -88,7 +95,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh) {
   std::partial_sum(cells.offsets.begin(), cells.offsets.end(), cells.offsets.begin());
   cells.vertices.resize(2 * mesh.triangles.size());
   const Lattice lattice = lattice_of(mesh.space.period);
-  const Corners corners(mesh, lattice);
+  const Corners corners(mesh, lattice, weights);
   // Within the period and rounded to its units, so that images are exact and cells have the same corners.
   // From the first corner by place, whatever the order of the points.
   std::vector<Point> centres(mesh.triangles.size() / 3);

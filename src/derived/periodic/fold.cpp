@@ -10,6 +10,7 @@
 #include "host/launch/vector_operations.hpp"
 #include "launchers/periodic/fold.cl.hpp"
 #include "launchers/periodic/unroll.cl.hpp"
+#include "launchers/periodic/weights.cl.hpp"
 #include "periodic/torus.h"
 #include "points/download.hpp"
 
@@ -82,7 +83,7 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
 UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
                            const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
                            std::vector<Box> boxes, const MakeRoom& make_room)
-    : boxes_(std::move(boxes)), first_(first.front()) {
+    : boxes_(std::move(boxes)), first_(first) {
   const Lattice& lattice = boxes_.front().lattice;
   std::vector<kernel::unrolled_set> records;
   std::vector<std::size_t> point_offsets{0};
@@ -130,6 +131,21 @@ UnrolledSets::UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl
                                              .images = at_});
 }
 
+std::size_t UnrolledSets::number(std::size_t v) const {
+  const auto k =
+      static_cast<std::size_t>(std::upper_bound(offsets_.begin(), offsets_.end(), v) - offsets_.begin()) - 1;
+  return first_[k] + v - offsets_[k];
+}
+
+Buffer<cl_double> UnrolledSets::weights(host::Runtime& runtime, Arena& arena,
+                                        const Buffer<cl_double>& weights) const {
+  const auto in_plane = arena.allocate<cl_double>(offsets_.back());
+  runtime.map(
+      offsets_.back(),
+      kernels::weigh_images{.own = own(), .images = at_, .weights = weights, .plane_weights = in_plane});
+  return in_plane;
+}
+
 Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box) {
   Arena::Scope scope(runtime.arena());
   Arena arena(runtime.memory());
@@ -143,7 +159,8 @@ Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const 
 }
 
 FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets& plane,
-                       const points::DeviceMesh& mesh, const Buffer<cl_int>& representatives)
+                       const points::DeviceMesh& mesh, const Buffer<cl_int>& representatives,
+                       const HiddenPoints* hidden)
     : runtime_(runtime),
       plane_(plane),
       mesh_(mesh),
@@ -165,6 +182,19 @@ FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets&
   runtime.map(count,
               kernels::keep_triangles{
                   .own = plane.own(), .triangles = mesh.triangles, .images = plane.at_, .kept = ranks_});
+  if (hidden != nullptr) {
+    runtime.map(hidden->count,
+                kernels::flag_hidden_points{.own = plane.own(),
+                                            .lattice = plane.boxes_.front().lattice,
+                                            .sets = sets,
+                                            .offsets = runtime.upload(arena, integers(plane.offsets_)),
+                                            .all = plane.records_,
+                                            .hidden = hidden->in_plane,
+                                            .images = plane.at_,
+                                            .coordinates = plane.coordinates_,
+                                            .is_hidden = hidden->by_point,
+                                            .missing = missing});
+  }
   host::exclusive_scan(runtime, ranks_, count, ranks_);
 
   std::vector<cl_uint> fewer(sets);

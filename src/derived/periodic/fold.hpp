@@ -43,16 +43,20 @@ class UnrolledSets {
   std::size_t sets() const { return boxes_.size(); }
   std::size_t points() const { return points_; }
   std::size_t images(std::size_t k) const { return images_[k]; }
+  /// The number of the point at place v of the plane, which is no image.
+  std::size_t number(std::size_t v) const;
+  /// The weights of the points and images. weights: of all points. Does not wait. O(n).
+  Buffer<cl_double> weights(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& weights) const;
 
  private:
   friend class FoldedSets;
   friend Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
   /// Points in the plane below this number are those of this number.
-  std::size_t own() const { return sets() == 1 && first_ == 0 ? points_ : 0; }
+  std::size_t own() const { return sets() == 1 && first_[0] == 0 ? points_ : 0; }
 
   std::vector<Box> boxes_;
-  std::size_t points_ = 0, first_ = 0;
-  std::vector<std::size_t> counts_, images_, offsets_;
+  std::size_t points_ = 0;
+  std::vector<std::size_t> first_, counts_, images_, offsets_;
   Buffer<cl_int> point_offsets_;
   Buffer<kernel::unrolled_set> records_;
   Buffer<cl_uint> image_counts_;  // scanned
@@ -63,14 +67,21 @@ class UnrolledSets {
 /// One set of places in host memory, unrolled natively.
 Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
 
+/// What is known of hidden points when planes are folded.
+struct HiddenPoints {
+  Buffer<cl_int> in_plane{};  ///< the hidden vertices of the plane
+  std::size_t count = 0;
+  Buffer<cl_uchar> by_point{};  ///< whether a point is hidden, for all points; 0 at first
+};
+
 /// The triangles of planes, turned into those of the torus or the cylinder: of all images of a triangle one
 /// is kept. If those of a set are not the canonical Delaunay triangulation, its margin was too small.
 class FoldedSets {
  public:
   /// mesh: of the plane, with neighbours and representatives; its neighbours are changed. representatives: of
-  /// all points; those of the sets are set. Waits twice. O(t).
+  /// all points; those of the sets are set. hidden: null without weights. Waits twice. O(t).
   FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets& plane, const points::DeviceMesh& mesh,
-             const Buffer<cl_int>& representatives);
+             const Buffer<cl_int>& representatives, const HiddenPoints* hidden);
 
   /// How many triangles a set must have.
   std::size_t expected(std::size_t k) const { return expected_[k]; }

@@ -32,6 +32,9 @@ struct DevicePoints {
   /// The space that the points lie in. On the sphere, the buffer has per point the numbers of the
   /// coordinates: x y z, or longitude and latitude.
   Space space = Space::plane();
+  /// In the plane, on a torus and on a cylinder: the weights of the points to use, double, 8 bytes each.
+  /// Null: they have none. Space::weights must be null.
+  cl_mem weights = nullptr;
 };
 
 /// How a call on device memory is enqueued. The queue and the events must be alive when the call is made; the
@@ -96,11 +99,13 @@ struct DeviceTriangulation {
   DeviceBuffer areas;            ///< 1 per triangle
   DeviceBuffer places;           ///< except in the plane, double2, 16 n bytes
   DeviceBuffer corner_offsets;   ///< on a torus and a cylinder, char, 12 n bytes
+  DeviceBuffer hidden;           ///< of points with weights, 4 n bytes; 1 per hidden point
   /// The arrays that the last call computed. On a torus, a cylinder and the sphere these are triangles,
   /// neighbors, representatives, places and corner offsets, whatever was asked for.
   Parts parts{false, false, false, false, false, false};
   Space space = Space::plane();  ///< Triangulation::space
   std::size_t images = 0;        ///< Triangulation::images
+  std::size_t hidden_count = 0;  ///< the number of hidden points, known when the call returns
   /// On the sphere, the triangulation of the places in the plane, kept for the memory that the next call
   /// needs for it.
   std::shared_ptr<DeviceTriangulation> planar;

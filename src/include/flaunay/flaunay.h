@@ -145,8 +145,8 @@ typedef struct flaunay_space {
   double period_x;
   double period_y;  ///< see period_x
   /// On a torus, how far the period in y moves places along x: any finite number, which is reduced by
-  /// multiples of period_x. On a cylinder it must be 0. If it is not a multiple of period_x, then period_x may
-  /// be at most 64 times period_y.
+  /// multiples of period_x. On a cylinder it must be 0. If it is not a multiple of period_x, then period_x
+  /// may be at most 64 times period_y.
   double shear;
   /// In the plane, one per point: squared lengths of any sign; of circles, the squared radii. NULL: none.
   const double* weights;
@@ -522,8 +522,9 @@ typedef struct flaunay_mesh {
   const size_t* hull_offsets;            ///< sets + 1 values
   const flaunay_statistics* statistics;  ///< what the call did and how long it took
   const double* areas;                   ///< t values; NULL if not asked for
-  /// Where the points lie, without their weights; NULL: in the plane. The period is as given, but for the last
-  /// bit of a double, which is 0 unless the period is a power of two, and with the shear in (-x / 2, x / 2].
+  /// Where the points lie, without their weights; NULL: in the plane. The period is as given, but for the
+  /// last bit of a double, which is 0 unless the period is a power of two, and with the shear in (-x / 2, x /
+  /// 2].
   const flaunay_space* space;
   const double* places;          ///< 2 n values on a torus, a cylinder and the sphere; NULL in the plane
   const int8_t* corner_offsets;  ///< 6 t values on a torus and a cylinder

@@ -181,9 +181,9 @@ struct Triangulation {
   /// x and y per point on a torus, a cylinder and the sphere; empty in the plane. A point's place is rounded
   /// once, and is then what the point is. On a torus it is the point in [0, period), a multiple of the
   /// period's last bit but one, or of the last bit if the period is a power of two; with a shear, y as that
-  /// of the period. So every image of a point is exact. What has no period is not rounded. On the sphere it is where the line from the south pole
-  /// through the point meets the plane of the equator; infinite for the south pole. Every pair of numbers is
-  /// a point that lies on the sphere exactly.
+  /// of the period. So every image of a point is exact. What has no period is not rounded. On the sphere it
+  /// is where the line from the south pole through the point meets the plane of the equator; infinite for the
+  /// south pole. Every pair of numbers is a point that lies on the sphere exactly.
   std::vector<double> places;
   /// 3 per triangle, counter-clockwise, on the sphere as seen from outside, smallest index first. n different
   /// points on a torus have 2 n, on a cylinder 2 n - h, if h of them are on its lowest and its highest
@@ -401,20 +401,21 @@ class FLAUNAY_API Triangulator {
   /// with equal weights the Delaunay triangulation, to the byte. Where more than three lifted points are on a
   /// plane, those that are no corners of their hull there are hidden; the others' polygon is triangulated as
   /// the farthest-point Delaunay triangulation, and where these are cocircular, as a fan from the
-  /// lexicographically smallest one. It runs on the host's cores.
+  /// lexicographically smallest one. It runs on the device that was named, if it has double precision;
+  /// otherwise on the host's cores.
   ///
   /// On a torus or a cylinder it is the Delaunay triangulation of all images of all points, of which it has
-  /// each triangle once, however few points there are. Where more than three points are cocircular, their
-  /// polygon is a fan from its lexicographically smallest vertex. Triangles are in the order that they have
-  /// in the plane, which the number of points given has a part in.
+  /// each triangle once, however few points there are; images have the weights of their points. Where more
+  /// than three points are cocircular, their polygon is a fan from its lexicographically smallest vertex.
+  /// Triangles are in the order that they have in the plane, which the number of points given has a part in.
   ///
   /// On the sphere it is the convex hull of the points in space: the triangulation of their places, and
   /// around the south pole what is beyond the hull there, which is the farthest-point Delaunay triangulation
   /// of the hull (Brown, 1979). Where more than three points are cocircular, their polygon is a fan from the
   /// first of them: the south pole, or else the smallest place, x before y.
   ///
-  /// Throws what the call for the plane throws; Error(usage) also for a period that is none, for weights
-  /// except in the plane, and for half-edges and areas on a torus or the sphere, which have neighbours
+  /// Throws what the call for the plane throws; Error(usage) also for a period that is none, for weights on
+  /// the sphere, and for half-edges and areas on a torus or the sphere, which have neighbours
   /// always; Error(input) also for a weight that is not finite or beyond the squares of what coordinates may
   /// be, for the direction 0, and for a latitude beyond a pole. O(n log n) work.
   Triangulation triangulate(const double* points, std::size_t n, const Space& space,
@@ -521,10 +522,10 @@ class FLAUNAY_API Triangulator {
                                  std::size_t corner_count);
   /// Computes the Voronoi cells on a torus, each around its point's place, so that some reach beyond the
   /// period. Vertices are rounded to the units of the period, so that their images are exact; polygons are
-  /// simple, and tile the torus. The areas of a set's cells sum to that of the period. Throws Error(usage)
-  /// for another space, for arrays that do not fit each other, and for a cylinder, where cells have no end.
-  /// O(n).
-  ClippedVoronoi clipped_voronoi(const Triangulation& triangulation);
+  /// simple, and tile the torus. The areas of a set's cells sum to that of the period. weights: of points
+  /// with weights, whose power cells these are; a point may lie outside of its cell. Throws Error(usage) for
+  /// another space, for arrays that do not fit each other, and for a cylinder, where cells have no end. O(n).
+  ClippedVoronoi clipped_voronoi(const Triangulation& triangulation, const double* weights = nullptr);
   /// Does not compile: a constrained triangulation is not the dual of a Voronoi diagram.
   ClippedVoronoi clipped_voronoi(const double* coordinates, std::size_t n,
                                  const ConstrainedTriangulation& triangulation, const double* corners,

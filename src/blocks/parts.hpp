@@ -1,0 +1,50 @@
+// Launches over the parts of halved blocks, and over merges of blocks, on devices with many lanes
+// (kernels/blocks/halves.h).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "blocks/pipeline.hpp"
+#include "launchers/blocks/merge.cl.hpp"
+#include "tuning/tuning.hpp"
+
+namespace flaunay::blocks {
+
+/// One of this many consecutive work-items of a launch has a merge.
+inline std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
+  return std::clamp<std::size_t>(tuning.merge_items / merges, 1, tuning.block_group);
+}
+
+/// Spreads the work-items of these merges over warps.
+template <typename Kernel>
+void launch_spread(points::Workspace& work, std::size_t spread, std::size_t merges, const Kernel& kernel) {
+  work.runtime.note_spread(spread);
+  work.runtime.launch(spread * merges, tuning_of(work.runtime).block_group, merges, kernel);
+}
+
+/// The least number of vertices of a part of this height.
+inline std::size_t least_vertices(int height) { return std::size_t{2} << height; }
+
+/// The cells of that size, in which at most one part of this height begins.
+inline std::size_t cells_of(const PointBlocks& blocks, int height) {
+  return (blocks.points + least_vertices(height) - 1) / least_vertices(height);
+}
+
+/// As spread_of, for the parts of a height.
+inline std::size_t spread_of_parts(const Tuning& tuning, const PointBlocks& blocks, int height) {
+  return std::max(spread_of(tuning, cells_of(blocks, height)),
+                  height == 0 ? std::min(tuning.leaf_spread, tuning.block_group) : 1);
+}
+
+inline kernels::places_of_parts places_of_parts(const PointBlocks& blocks, const HalvedBlocks& halved,
+                                                const points::Rings& rings, int height) {
+  return {.height = height,
+          .places = blocks.points,
+          .offsets = blocks.offsets,
+          .distinct = rings.device_distinct,
+          .block_of_place = halved.block_of_place,
+          .axes = halved.axes};
+}
+
+}  // namespace flaunay::blocks

@@ -1,0 +1,355 @@
+// Regular triangulations on a torus or a cylinder, beside those of copies of the points in the plane.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "flaunay/verify.hpp"
+#include "flaunay/weighted.hpp"
+#include "tests/support/errors.hpp"
+#include "tests/support/fixtures.hpp"
+#include "tests/support/same.hpp"
+#include "tests/support/shared_triangulator.hpp"
+
+namespace flaunay::testing::weighted_tori {
+namespace {
+
+using Numbers = std::vector<double>;
+using Ids = std::vector<std::int32_t>;
+using Offsets = std::vector<std::size_t>;
+
+struct WeightedPoints {
+  std::string name;
+  Coordinates coordinates;
+  Numbers weights;
+
+  std::size_t size() const { return weights.size(); }
+};
+
+/// A corner: its point, and where it is in periods.
+using Corner = std::array<int, 3>;
+/// From the smallest corner on, which has the periods 0, 0.
+using Triangle = std::array<Corner, 3>;
+
+Triangle from_smallest(const Triangle& corners) {
+  Triangle least{};
+  for (std::size_t first = 0; first < 3; ++first) {
+    Triangle row{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Corner& c = corners[(first + k) % 3];
+      row[k] = {c[0], c[1] - corners[first][1], c[2] - corners[first][2]};
+    }
+    least = first == 0 ? row : std::min(least, row);
+  }
+  return least;
+}
+
+std::multiset<Triangle> triangles_of(const Triangulation& mesh) {
+  std::multiset<Triangle> all;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    Triangle corners{};
+    for (std::size_t k = 0; k < 3; ++k)
+      corners[k] = {mesh.triangles[t + k], mesh.corner_offsets[2 * (t + k)],
+                    mesh.corner_offsets[2 * (t + k) + 1]};
+    all.insert(from_smallest(corners));
+  }
+  return all;
+}
+
+/// What copies of all points say, so many on each side along the axes that have a period: the triangles with
+/// a corner in the middle, and the points that are hidden there.
+struct Copies {
+  std::multiset<Triangle> triangles;
+  Ids hidden;
+};
+
+Copies copies_of(const WeightedPoints& points, const Numbers& places, const Period& period, int sides) {
+  const int across = std::isfinite(period.x) ? sides : 0, up = std::isfinite(period.y) ? sides : 0;
+  const auto n = static_cast<std::int32_t>(points.size());
+  Numbers all, weights;
+  std::vector<std::array<int, 2>> copies = {{0, 0}};
+  for (int x = -across; x <= across; ++x) {
+    for (int y = -up; y <= up; ++y) {
+      if (x != 0 || y != 0) copies.push_back({x, y});
+    }
+  }
+  for (const auto& [x, y] : copies) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      all.push_back(x == 0 ? places[2 * i] : places[2 * i] + x * period.x);
+      all.push_back(y == 0 ? places[2 * i + 1] : places[2 * i + 1] + y * period.y);
+      weights.push_back(points.weights[i]);
+    }
+  }
+  const Triangulation mesh =
+      triangulator().triangulate(all.data(), weights.size(), Space::plane().with_weights(weights.data()));
+  Copies result;
+  std::set<Triangle> different;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    Triangle corners{};
+    bool is_inside = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t v = mesh.triangles[t + k];
+      const auto& [x, y] = copies[static_cast<std::size_t>(v / n)];
+      corners[k] = {v % n, x, y};
+      is_inside |= v < n;
+    }
+    if (is_inside) different.insert(from_smallest(corners));
+  }
+  result.triangles.insert(different.begin(), different.end());
+  std::copy_if(mesh.hidden.begin(), mesh.hidden.end(), std::back_inserter(result.hidden),
+               [&](std::int32_t v) { return v < n; });
+  return result;
+}
+
+Triangulation triangulated(const WeightedPoints& points, const Period& period) {
+  return triangulator().triangulate(points.coordinates.data(), points.size(),
+                                    Space::torus(period).with_weights(points.weights.data()));
+}
+
+/// Places of few bits, so that all copies are exact.
+WeightedPoints any_points(FixtureRandom& random, std::size_t n, double bits, int kind) {
+  const double unit = std::exp2(-bits), share = 1 / static_cast<double>(n);
+  WeightedPoints points{
+      "kind " + std::to_string(kind) + " of " + std::to_string(n) + ", bits " + std::to_string(bits), {}, {}};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = std::floor(random.unit() / unit) * unit, y = std::floor(random.unit() / unit) * unit;
+    points.coordinates.insert(points.coordinates.end(), {x, y});
+    const double any = random.unit();
+    points.weights.push_back(kind == 0   ? any * share
+                             : kind == 1 ? static_cast<double>(random.integer(0, 3)) * unit * unit
+                             : kind == 2 ? x * x + y * y
+                             : kind == 3 ? (random.integer(0, 9) == 0 ? 1 : 0.01) * any - 3
+                                         : any * 20);
+  }
+  return points;
+}
+
+const std::vector<Period> kPeriods = {{1, 1}, {1, 0.5}, {0.25, 2}, {1, HUGE_VAL}, {HUGE_VAL, 0.5}};
+
+TEST(WeightedPeriodic, IsThatOfCopiesInThePlane) {
+  FixtureRandom random(1);
+  std::size_t hidden = 0, triangles = 0;
+  for (int round = 0; round < 500; ++round) {
+    const std::size_t n = static_cast<std::size_t>(random.integer(1, round % 10 == 0 ? 150 : 14));
+    const double bits = round % 3 == 0 ? 3 : round % 3 == 1 ? 5 : 40;
+    const WeightedPoints points = any_points(random, n, bits, round % 5);
+    const Period period = kPeriods[static_cast<std::size_t>(round / 5) % kPeriods.size()];
+    SCOPED_TRACE(points.name + ", " + std::to_string(period.x) + " " + std::to_string(period.y));
+    const Triangulation mesh = triangulated(points, period);
+    ASSERT_EQ("", verify(mesh.places.data(), mesh.point_offsets,
+                         mesh.space.with_weights(points.weights.data()), mesh));
+    for (const int sides : {1, 2}) {
+      const Copies copies = copies_of(points, mesh.places, period, sides);
+      ASSERT_EQ(copies.hidden, mesh.hidden);
+      ASSERT_TRUE(copies.triangles == triangles_of(mesh));
+    }
+    hidden += mesh.hidden.size();
+    triangles += mesh.triangles.size() / 3;
+  }
+  EXPECT_GT(hidden, 2000u);
+  EXPECT_GT(triangles, 4000u);
+}
+
+TEST(WeightedPeriodic, EqualWeightsGiveTheBytesOfTheDelaunayTriangulation) {
+  FixtureRandom random(2);
+  for (const Period& period : kPeriods) {
+    for (const std::size_t n : {0, 1, 2, 5, 50, 3000}) {
+      const WeightedPoints points = any_points(random, n, n == 50 ? 3 : 52, 0);
+      for (const double weight : {0.0, -7.5, 0x1p20}) {
+        const Numbers weights(n, weight);
+        const Triangulation mesh = triangulator().triangulate(
+            points.coordinates.data(), n, Space::torus(period).with_weights(weights.data()));
+        const Triangulation plain =
+            triangulator().triangulate(points.coordinates.data(), n, Space::torus(period));
+        EXPECT_TRUE(mesh.hidden.empty());
+        EXPECT_TRUE(same(mesh.places, plain.places));
+        EXPECT_TRUE(same(mesh.triangles, plain.triangles));
+        EXPECT_TRUE(same(mesh.corner_offsets, plain.corner_offsets));
+        EXPECT_TRUE(same(mesh.neighbors, plain.neighbors));
+        EXPECT_TRUE(same(mesh.representatives, plain.representatives));
+        EXPECT_EQ(mesh.triangle_offsets, plain.triangle_offsets);
+        EXPECT_EQ(mesh.images, plain.images);
+        EXPECT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()),
+                             mesh));
+      }
+    }
+  }
+}
+
+TEST(WeightedPeriodic, ManyPointsAndSetsThatNeedWiderMargins) {
+  FixtureRandom random(3);
+  WeightedPoints all{"sets", {}, {}};
+  Offsets offsets{0};
+  // One heavy point beside which most are hidden, so that images from farther away are needed; and even ones.
+  for (const double heavy : {0.0, 0.1, 0.02, 0.3}) {
+    WeightedPoints points = any_points(random, 4000, 52, 0);
+    points.weights[7] = heavy;
+    all.coordinates.insert(all.coordinates.end(), points.coordinates.begin(), points.coordinates.end());
+    all.weights.insert(all.weights.end(), points.weights.begin(), points.weights.end());
+    offsets.push_back(all.size());
+  }
+  for (const Period& period : {Period{1, 1}, {1, HUGE_VAL}}) {
+    const Triangulation mesh = triangulator().triangulate(
+        all.coordinates.data(), offsets, Space::torus(period).with_weights(all.weights.data()));
+    EXPECT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(all.weights.data()),
+                         mesh));
+    std::size_t hidden = 0, images = 0, even_images = 0;
+    for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+      const auto begin = static_cast<std::ptrdiff_t>(offsets[s]),
+                 end = static_cast<std::ptrdiff_t>(offsets[s + 1]);
+      const WeightedPoints own{"",
+                               {all.coordinates.begin() + 2 * begin, all.coordinates.begin() + 2 * end},
+                               {all.weights.begin() + begin, all.weights.begin() + end}};
+      const Triangulation alone = triangulated(own, period);
+      ASSERT_EQ(alone.triangles.size(), 3 * (mesh.triangle_offsets[s + 1] - mesh.triangle_offsets[s]));
+      for (std::size_t c = 0; c < alone.triangles.size(); ++c)
+        ASSERT_EQ(alone.triangles[c] + begin, mesh.triangles[3 * mesh.triangle_offsets[s] + c]);
+      for (const std::int32_t i : alone.hidden) ASSERT_EQ(i + begin, mesh.hidden[hidden++]);
+      images += alone.images;
+      if (s == 0) even_images = alone.images;
+      // Its margin was too small at first.
+      if (s == 3) {
+        EXPECT_GT(alone.images, 4 * even_images);
+      }
+      const Copies copies = copies_of(own, alone.places, period, 1);
+      ASSERT_EQ(copies.hidden, alone.hidden);
+      ASSERT_TRUE(copies.triangles == triangles_of(alone));
+    }
+    EXPECT_EQ(hidden, mesh.hidden.size());
+    EXPECT_GT(hidden, 3000u);
+    EXPECT_GE(mesh.images, images);
+  }
+}
+
+TEST(WeightedPeriodic, VerificationFindsWhatIsWrong) {
+  FixtureRandom random(4);
+  std::size_t heavier = 0;
+  for (int round = 0; round < 60; ++round) {
+    const Period period = kPeriods[static_cast<std::size_t>(round) % kPeriods.size()];
+    const WeightedPoints points =
+        any_points(random, round % 6 == 0 ? 6 : 60, round % 2 == 0 ? 4 : 52, round % 4);
+    const Triangulation good = triangulated(points, period);
+    ASSERT_EQ("", verify(good.places.data(), good.point_offsets,
+                         good.space.with_weights(points.weights.data()), good));
+    Triangulation bad = good;
+    if (!good.hidden.empty()) {
+      const auto at = static_cast<std::size_t>(random.integer(0, std::ssize(good.hidden) - 1));
+      bad.hidden.erase(bad.hidden.begin() + static_cast<std::ptrdiff_t>(at));
+      EXPECT_NE("", verify(bad.places.data(), bad.point_offsets,
+                           bad.space.with_weights(points.weights.data()), bad));
+      // A hidden point that becomes heavy is not hidden any more.
+      Numbers weights = points.weights;
+      weights[static_cast<std::size_t>(good.hidden[at])] += 50;
+      EXPECT_NE(
+          "", verify(good.places.data(), good.point_offsets, good.space.with_weights(weights.data()), good));
+      ++heavier;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::binary_search(good.hidden.begin(), good.hidden.end(), static_cast<std::int32_t>(i))) continue;
+      bad = good;
+      bad.hidden.insert(std::lower_bound(bad.hidden.begin(), bad.hidden.end(), static_cast<std::int32_t>(i)),
+                        static_cast<std::int32_t>(i));
+      ASSERT_NE("", verify(bad.places.data(), bad.point_offsets,
+                           bad.space.with_weights(points.weights.data()), bad))
+          << i;
+    }
+  }
+  EXPECT_GT(heavier, 20u);
+  // Points on a circle, of which the middle one is hidden, or not.
+  const Coordinates line = {0, 0, 0.25, 0, 0.5, 0};
+  for (const double weight : {-0.0625, -0.06}) {
+    const Numbers weights = {0, weight, 0};
+    Triangulation mesh =
+        triangulator().triangulate(line.data(), 3, Space::torus({1, HUGE_VAL}).with_weights(weights.data()));
+    EXPECT_TRUE(mesh.triangles.empty());
+    EXPECT_EQ(mesh.hidden, weight == -0.0625 ? Ids{1} : Ids{});
+    EXPECT_EQ("",
+              verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh));
+    mesh.hidden = weight == -0.0625 ? Ids{} : Ids{1};
+    EXPECT_NE("",
+              verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh));
+    mesh.hidden = {0, 1, 2};
+    EXPECT_NE("",
+              verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh));
+  }
+}
+
+TEST(WeightedPeriodic, CellsAreWhereThePowerIsLeast) {
+  FixtureRandom random(5);
+  for (const std::size_t n : {1, 2, 7, 200}) {
+    for (const int kind : {0, 3, 4}) {
+      const WeightedPoints points = any_points(random, n, 52, kind);
+      const Period period{1, n == 7 ? 0.25 : 1.5};
+      const Triangulation mesh = triangulated(points, period);
+      const ClippedVoronoi cells = triangulator().clipped_voronoi(mesh, points.weights.data());
+      EXPECT_NEAR(std::accumulate(cells.areas.begin(), cells.areas.end(), 0.0), period.x * period.y, 1e-12);
+      // The least power of a point's images.
+      const auto power = [&](std::size_t i, double x, double y) {
+        const double dx = std::remainder(mesh.places[2 * i] - x, period.x),
+                     dy = std::remainder(mesh.places[2 * i + 1] - y, period.y);
+        return dx * dx + dy * dy - points.weights[i];
+      };
+      double tiled = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const bool is_hidden = std::binary_search(mesh.hidden.begin(), mesh.hidden.end(), i);
+        if (is_hidden) {
+          ASSERT_EQ(cells.offsets[i], cells.offsets[i + 1]);
+          ASSERT_EQ(cells.areas[i], 0);
+          continue;
+        }
+        ASSERT_GE(cells.offsets[i + 1] - cells.offsets[i], 3);
+        for (std::int32_t v = cells.offsets[i]; v < cells.offsets[i + 1]; ++v) {
+          const double x = cells.vertices[2 * v], y = cells.vertices[2 * v + 1];
+          for (std::size_t j = 0; j < n; ++j) ASSERT_LE(power(i, x, y), power(j, x, y) + 1e-11);
+          const std::int32_t w = v + 1 < cells.offsets[i + 1] ? v + 1 : cells.offsets[i];
+          tiled += (x * cells.vertices[2 * w + 1] - y * cells.vertices[2 * w]) / 2;
+        }
+      }
+      EXPECT_NEAR(tiled, period.x * period.y, 1e-12);
+    }
+  }
+  const WeightedPoints points = any_points(random, 300, 52, 0);
+  const Numbers equal(300, 0.5);
+  const Triangulation mesh = triangulator().triangulate(points.coordinates.data(), 300,
+                                                        Space::torus({1, 1}).with_weights(equal.data()));
+  const ClippedVoronoi power = triangulator().clipped_voronoi(mesh, equal.data()),
+                       voronoi = triangulator().clipped_voronoi(mesh);
+  EXPECT_TRUE(same(power.vertices, voronoi.vertices));
+  EXPECT_TRUE(same(power.areas, voronoi.areas));
+}
+
+TEST(WeightedPeriodic, ErrorsSayWhatIsWrong) {
+  const Coordinates points = {0.1, 0.2, 0.6, 0.3, 0.4, 0.9, 0.5, 0.5};
+  Numbers weights = {0, 0, 0, 0};
+  const auto run = [&](const Period& period) {
+    triangulator().triangulate(points.data(), {0, 2, 4}, Space::torus(period).with_weights(weights.data()));
+  };
+  weights[3] = NAN;
+  expect_error(ErrorKind::input, "point 3 has a weight that is not finite", [&] { run({1, 1}); });
+  weights[3] = 1e300;
+  expect_error(ErrorKind::input, "point 3 has a weight, 1e+300, that is too large", [&] {
+    run({1, HUGE_VAL});
+  });
+  weights[3] = 0;
+  expect_error(ErrorKind::usage, "the period", [&] { run({0, 1}); });
+  expect_error(ErrorKind::usage, {"weights", "NULL"}, [&] {
+    triangulator().triangulate(points.data(), 4, Space::torus({1, 1}).with_weights(nullptr));
+  });
+  Triangulation mesh =
+      triangulator().triangulate(points.data(), 4, Space::torus({1, 1}).with_weights(weights.data()));
+  mesh.hidden = {2, 1};
+  expect_error(ErrorKind::usage, "hidden", [&] {
+    verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh);
+  });
+}
+
+}  // namespace
+}  // namespace flaunay::testing::weighted_tori
