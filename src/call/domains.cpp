@@ -14,8 +14,8 @@ constrained::DomainMesh triangles_of(Frame& call, const double* coordinates,
                                      const ConstrainedTriangulation& result) {
   constrained::DomainMesh mesh;
   mesh.triangle_offsets = result.triangle_offsets;
-  mesh.points = offsets.back();
-  mesh.coordinates = call.in(coordinates, 2 * mesh.points + result.added_points.size());
+  mesh.point_offsets = offsets;
+  mesh.coordinates = call.in(coordinates, 2 * offsets.back() + result.added_points.size());
   mesh.triangles = call.in(result.triangles);
   mesh.constrained = call.in(result.constrained);
   return mesh;
