@@ -1,7 +1,7 @@
 // Tests of single triangles. Segments: none; one pass each.
 //
-// place_edges, load_rows and load_vertices: the mesh, from arrays of triangulations. test_rows: the tasks for rows.
-// retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas,
+// place_edges, load_rows, load_vertices and place_apexes: the mesh, from arrays of triangulations. test_rows: the tasks
+// for rows. retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas,
 // and set_areas.
 
 #include "arithmetic/coordinates.h"
@@ -49,6 +49,13 @@ kernel void load_vertices(int n, scaling scale, global const double* restrict co
     births[v] = VECTOR(int2, -1, 0);
     places[v] = nowhere;
   }
+}
+
+// The places of n vertices at apexes.
+kernel void place_apexes(int n, global const int* restrict vertices, global const edge_place* restrict at_apexes,
+                         global edge_place* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n) places[vertices[i]] = at_apexes[i];
 }
 
 // n rows; refused ones are left out. Tests constraints first, and then triangles.

@@ -1076,9 +1076,13 @@ TEST(Embedding, StagesOfConstraintsSendTheInputOnce) {
   std::vector<std::int32_t> segments;
   add_ring(points, segments, 0.5, 0.5, 0.4, 900);
   add_ring(points, segments, 0.4, 0.5, 0.1, 300);
-  const std::size_t n = points.size() / 2, count = segments.size() / 2;
   const double hole[] = {0.4, 0.5}, seed[] = {0.7, 0.5};
   const Coordinates corners(points.end() - 2400, points.end());
+  // A sharp corner, whose edges refinement splits at powers of two.
+  const auto sharp = static_cast<std::int32_t>(points.size() / 2);
+  points.insert(points.end(), {0.6, 0.45, 0.7, 0.45, 0.7, 0.47});
+  segments.insert(segments.end(), {sharp, sharp + 1, sharp, sharp + 2});
+  const std::size_t n = points.size() / 2, count = segments.size() / 2;
   const Polygons polygons = {corners.data(), {0, 900, 1200}, {0, 1, 2}};
   const ScopedEnvironment tuning("FLAUNAY_TUNING", "in_host_memory=0");
   Triangulator device(embedder().context(), embedder().device());

@@ -368,9 +368,21 @@ class Refining {
                                                      .names = names_,
                                                      .births = arrays_.births,
                                                      .places = arrays_.places});
+      std::vector<cl_int> vertices;
+      std::vector<edge_place> at_apexes;
+      for (std::size_t v = 0; v < places.size(); ++v) {
+        if (places[v].apex < 0) continue;
+        vertices.push_back(static_cast<cl_int>(v));
+        at_apexes.push_back(places[v]);
+      }
+      const std::size_t count = vertices.size();
+      if (count > 0) {
+        runtime_.map(count, kernels::place_apexes{.vertices = runtime_.upload(arena_, std::move(vertices)),
+                                                  .at_apexes = runtime_.upload(arena_, std::move(at_apexes)),
+                                                  .places = arrays_.places});
+      }
       runtime_.finish();
     }
-    runtime_.write(arrays_.places, 0, places.size(), places.data());
     if (!mesh_.largest_areas.empty()) {
       std::vector<double> areas = mesh_.largest_areas;
       for (double& area : areas) area = scaled_area(area);
