@@ -1,14 +1,21 @@
 // Tests of single triangles. Segments: none; one pass each.
 //
-// load_rows and load_vertices: the mesh, from the arrays of the host. test_rows: the tasks for rows.
-// retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas,
+// place_edges, load_rows, load_vertices and place_apexes: the mesh, from arrays of triangulations. test_rows: the tasks
+// for rows. retry_frozen: triangles that are tried once more. write_centroids: places at which the host asks for areas,
 // and set_areas.
 
+#include "arithmetic/coordinates.h"
 #include "refinement/arguments.h"
 #include "refinement/blocks.h"
 #include "refinement/records.h"
 
 #ifndef FIXED_POINT
+
+// n corners and the edges that are opposite to them.
+kernel void place_edges(int n, global const int2* restrict corners, global int* restrict edges) {
+  const int i = get_global_id(0);
+  if (i < n) edges[corners[i].x] = corners[i].y;
+}
 
 // numbers: the numbers of vertices here. kept: per edge, if some must be kept.
 kernel void load_rows(int n, int has_kept, global const int* restrict triangles, global const int* restrict neighbors,
@@ -28,13 +35,27 @@ kernel void load_rows(int n, int has_kept, global const int* restrict triangles,
     states[t] = ROW_NEW;
   }
 }
-kernel void load_vertices(int n, global int2* restrict births, global edge_place* restrict places) {
-  const int v = get_global_id(0);
-  if (v < n) {
+// n points. names: the points of vertices.
+kernel void load_vertices(int n, scaling scale, global const double* restrict coordinates,
+                          global const int* restrict numbers, global double2* restrict points,
+                          global int* restrict names, global int2* restrict births,
+                          global edge_place* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n) {
+    const int v = numbers[i];
     const edge_place nowhere = {0.0, 0.0, -1, -1};
+    points[v] = scaled_point(i, coordinates, scale);
+    names[v] = i;
     births[v] = VECTOR(int2, -1, 0);
     places[v] = nowhere;
   }
+}
+
+// The places of n vertices at apexes.
+kernel void place_apexes(int n, global const int* restrict vertices, global const edge_place* restrict at_apexes,
+                         global edge_place* restrict places) {
+  const int i = get_global_id(0);
+  if (i < n) places[vertices[i]] = at_apexes[i];
 }
 
 // n rows; refused ones are left out. Tests constraints first, and then triangles.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -121,6 +122,7 @@ struct Staged {
   Ids seeds{};               // per triangle that of its region, or -1; empty if there are none
   bool has_domains = false;  // whether domains were applied
   double domains_begin = 0;
+  call::StayingMesh staying{};
 };
 
 bool needs_domains(const Constraints& constraints, const call::DomainRequest& request) {
@@ -150,7 +152,8 @@ geometry::Fitted<geometry::Done> constrain_on(call::Engine& engine, call::Engine
                                               const call::DomainRequest* request, Staged& staged) {
   ConstrainedTriangulation& result = staged.result;
   call::Left left;
-  call::Frame call(engine, options.profile, true);
+  auto of_stages = std::make_unique<call::Frame>(engine, options.profile, true);
+  call::Frame& call = *of_stages;
   const auto points = call.points(call::HostPoints{coordinates, nullptr, offsets.back()});
   const points::DeviceMesh mesh =
       triangulates ? call::triangulate_stage(call, points, offsets, plain_options(options), result)
@@ -160,19 +163,25 @@ geometry::Fitted<geometry::Done> constrain_on(call::Engine& engine, call::Engine
                                                 [&] { phases.interrupt("compiling kernels"); });
   const double begin = host::now();
   if (triangulates) check_first(coordinates, offsets, constraints);
-  const auto inserted = call::insert_segments(call, mesh, constraints, options.halfedges, result);
+  auto inserted = call::insert_segments(call, mesh, constraints, options.halfedges, result);
   if (!inserted) return inserted.too_wide();
+  staged.staying.mesh = *std::move(inserted);
   staged.has_domains = request != nullptr;
   if (!staged.has_domains) call.end();
   end_phase("constrain", begin, result.statistics);
   if (staged.has_domains) {
     staged.domains_begin = host::now();
-    call::apply_domains(call, with_doubles, *inserted, coordinates, offsets, constraints, *request, result,
-                        left);
+    call::apply_domains(call, with_doubles, staged.staying.mesh, coordinates, offsets, constraints, *request,
+                        result, left);
     call.end();
     staged.seeds = call::take_left(constraints, left, result);
   }
-  result.edge_segments = constrained::first_pieces(inserted->edges, result.piece_edges);
+  result.edge_segments = constrained::first_pieces(staged.staying.mesh.edges, result.piece_edges);
+  if (engine.runtime.sizes().in_host_memory == 0) {
+    staged.staying.call = std::move(of_stages);
+  } else {
+    staged.staying = {};
+  }
   return geometry::Done();
 }
 
@@ -276,6 +285,7 @@ Staged constrain_split(call::Implementation& self, const double* coordinates,
   pieces.segment_count = split.pieces.size() / 2;
   staged = constrain(self, all.coordinates.data(), all.offsets, pieces, options, nullptr, true);
   constrained::carry_split(all, std::move(split), staged.result);
+  staged.staying.call.reset();
   end_split(seconds);
   return staged;
 }
@@ -418,10 +428,13 @@ ConstrainedTriangulation constrain_and_refine(call::Implementation& self, const 
   if (!at_once && !staged.has_domains)
     seeds = apply_domains(self, points(), offsets, constraints, request, result);
   std::vector<double> areas;
-  if (mesh != nullptr) areas = mesh->leave(points(), result, seeds);
+  if (mesh != nullptr) {
+    areas = mesh->leave(points(), result, seeds);
+    staged.staying.call.reset();
+  }
   if (is_refined) {
     if (!at_once) end_phase("domains", std::exchange(begin, host::now()), result.statistics);
-    call::refine(self, points(), offsets, options, seeds, areas, result);
+    call::refine(self, points(), offsets, options, seeds, areas, staged.staying, result);
     if (options.areas) all = with_added(coordinates, offsets.back(), result.added_points);
   }
   constrained::carry_markers(constraints, offsets.back(), result);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "call/frame.hpp"
@@ -55,10 +56,10 @@ struct Left {
   std::vector<std::int32_t> seeds;  ///< per triangle that of its region, or -1; empty if there are no seeds
 };
 
-/// Labels the triangles of a mesh, and leaves out what the request and the holes say. with_doubles: finds
-/// holes and seeds; another engine if the call's computes in fixed point. coordinates: of all points, those
-/// that splitting added too; offsets: without those; left: must have been declared before the call.
-void apply_domains(Frame& call, Engine& with_doubles, const constrained::DomainMesh& mesh,
+/// Labels the triangles of a mesh, and leaves out of it what the request and the holes say. with_doubles:
+/// finds holes and seeds; another engine if the call's computes in fixed point. coordinates: of all points,
+/// those that splitting added too; offsets: without those; left: must have been declared before the call.
+void apply_domains(Frame& call, Engine& with_doubles, constrained::DomainMesh& mesh,
                    const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const DomainRequest& request,
                    ConstrainedTriangulation& result, Left& left);
@@ -72,6 +73,12 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
                                            const std::vector<std::size_t>& offsets,
                                            const Constraints& constraints, const DomainRequest& request,
                                            ConstrainedTriangulation& result);
+
+/// A mesh that earlier stages have left in the memory of a device, where it stays as long as this lives.
+struct StayingMesh {
+  std::unique_ptr<Frame> call;  ///< null if there is none: other devices use the arrays of the result
+  constrained::DomainMesh mesh;
+};
 
 // ---- Refinement
 
@@ -87,10 +94,11 @@ void measure_angles(Implementation& self, const double* coordinates, std::size_t
 /// it were alone; small ones on threads of the host. All arrays but half-edges, areas and markers are
 /// extended. coordinates: of all points, those that splitting added too; offsets: without those; seeds: for
 /// each triangle that of its region, or -1; empty if there are none; areas: for each triangle the area that
-/// it and its parts may have, 0 for any, or empty. Throws what constrained::refine throws.
+/// it and its parts may have, 0 for any, or empty; staying: the same mesh, unless there is none. Throws what
+/// constrained::refine throws.
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
             const ConstrainedOptions& options, const std::vector<std::int32_t>& seeds,
-            const std::vector<double>& areas, ConstrainedTriangulation& result);
+            const std::vector<double>& areas, const StayingMesh& staying, ConstrainedTriangulation& result);
 
 // ---- All stages
 

@@ -14,8 +14,8 @@ constrained::DomainMesh triangles_of(Frame& call, const double* coordinates,
                                      const ConstrainedTriangulation& result) {
   constrained::DomainMesh mesh;
   mesh.triangle_offsets = result.triangle_offsets;
-  mesh.points = offsets.back();
-  mesh.coordinates = call.in(coordinates, 2 * mesh.points + result.added_points.size());
+  mesh.point_offsets = offsets;
+  mesh.coordinates = call.in(coordinates, 2 * offsets.back() + result.added_points.size());
   mesh.triangles = call.in(result.triangles);
   mesh.constrained = call.in(result.constrained);
   return mesh;
@@ -80,7 +80,7 @@ void label_seeds(host::Runtime& runtime, const std::vector<std::int32_t>& triang
 }
 
 // Writes the triangles that are left, if some are left out. numbers: gets the regions of these triangles.
-void leave(Frame& call, const constrained::DomainMesh& mesh, const constrained::LeftPlaces& places,
+void leave(Frame& call, constrained::DomainMesh& mesh, const constrained::LeftPlaces& places,
            const Buffer<cl_int>& numbers, constrained::Regions& regions,
            const ConstrainedTriangulation& result, Left& left) {
   call.drop(result.triangles);
@@ -89,12 +89,15 @@ void leave(Frame& call, const constrained::DomainMesh& mesh, const constrained::
   call.drop(result.constrained);
   const std::size_t corners = 3 * places.triangle_offsets.back();
   left.triangle_offsets = places.triangle_offsets;
-  write_left(call.runtime, mesh, places,
-             {.triangles = call.out<cl_int>(left.triangles, corners),
-              .neighbors = call.out<cl_int>(left.neighbors, corners),
-              .constrained = call.out<cl_uchar>(left.constrained, corners),
-              .regions = numbers},
-             regions);
+  const constrained::LeftBuffers buffers{.triangles = call.out<cl_int>(left.triangles, corners),
+                                         .neighbors = call.out<cl_int>(left.neighbors, corners),
+                                         .constrained = call.out<cl_uchar>(left.constrained, corners),
+                                         .regions = numbers};
+  write_left(call.runtime, mesh, places, buffers, regions);
+  mesh.triangle_offsets = places.triangle_offsets;
+  mesh.triangles = buffers.triangles;
+  mesh.neighbors = buffers.neighbors;
+  mesh.constrained = buffers.constrained;
 }
 
 }  // namespace
@@ -103,7 +106,7 @@ DomainRequest request_of(const ConstrainedOptions& options, bool are_closed) {
   return {{options.fill_rule, options.outside, are_closed}, options.labels};
 }
 
-void apply_domains(Frame& call, Engine& with_doubles, const constrained::DomainMesh& mesh,
+void apply_domains(Frame& call, Engine& with_doubles, constrained::DomainMesh& mesh,
                    const double* coordinates, const std::vector<std::size_t>& offsets,
                    const Constraints& constraints, const DomainRequest& request,
                    ConstrainedTriangulation& result, Left& left) {
@@ -172,8 +175,8 @@ std::vector<std::int32_t> apply_domains_on(Engine& engine, Engine& with_doubles,
                                            ConstrainedTriangulation& result) {
   Left left;
   Frame call(engine);
-  apply_domains(call, with_doubles, mesh_of(call, coordinates, offsets, constraints, result), coordinates,
-                offsets, constraints, request, result, left);
+  constrained::DomainMesh mesh = mesh_of(call, coordinates, offsets, constraints, result);
+  apply_domains(call, with_doubles, mesh, coordinates, offsets, constraints, request, result, left);
   call.end();
   return take_left(constraints, left, result);
 }

@@ -35,7 +35,7 @@ geometry::Fitted<constrained::DomainMesh> insert(Frame& call, const points::Devi
       .halfedges = halfedges,
       .constrained = call.output<cl_uchar>(edges.constrained, 6 * n, "constrained edges").buffer(corners),
       .piece_edges = call.out<cl_int>(edges.piece_edges, 2 * count, "pieces' edges")};
-  constrained::DomainMesh mesh;
+  constrained::DomainMesh mesh{delaunay};
   const auto done =
       constrained::constrain(call.runtime, delaunay, segments, count, buffers, [&](std::size_t found) {
         mesh.edges = found;
@@ -44,14 +44,8 @@ geometry::Fitted<constrained::DomainMesh> insert(Frame& call, const points::Devi
         return mesh.constraint_edges;
       });
   if (!done) return done.too_wide();
-  mesh.triangle_offsets = delaunay.triangle_offsets;
-  mesh.points = n;
   mesh.segments = count;
-  mesh.coordinates = delaunay.coordinates;
-  mesh.triangles = delaunay.triangles;
-  mesh.neighbors = delaunay.neighbors;
   mesh.constrained = buffers.constrained;
-  mesh.representatives = delaunay.representatives;
   mesh.segment_ends = segments;
   mesh.piece_edges = buffers.piece_edges;
   return mesh;

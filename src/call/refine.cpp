@@ -87,15 +87,20 @@ void check_refinement(const Refinement& wanted, std::size_t seeds) {
 
 void refine(Implementation& self, const double* coordinates, const std::vector<std::size_t>& offsets,
             const ConstrainedOptions& options, const std::vector<std::int32_t>& seeds,
-            const std::vector<double>& areas, ConstrainedTriangulation& result) {
+            const std::vector<double>& areas, const StayingMesh& staying, ConstrainedTriangulation& result) {
   const Refinement& wanted = options.refinement;
   const std::size_t n = offsets.back(), points = n + result.added_points.size() / 2;
   constrained::FixedEdges edges;
-  const MeshToRefine mesh = constrained::take_mesh(threads_for(self, result.triangles.size() / 3),
-                                                   coordinates, points, wanted, seeds, areas, result, edges);
+  MeshToRefine mesh = constrained::take_mesh(threads_for(self, result.triangles.size() / 3), coordinates,
+                                             points, wanted, seeds, areas, result, edges);
   Engine& asked =
       self.for_points(constrained::expected_points(mesh, 0, mesh.triangles.size() / 3), options.profile);
   Engine& engine = self.with_doubles(asked);
+  if (staying.call && &staying.call->engine == &engine) {
+    mesh.coordinates_there = staying.mesh.coordinates;
+    mesh.triangles_there = staying.mesh.triangles;
+    mesh.neighbors_there = staying.mesh.neighbors;
+  }
   add_note(asked, engine, "refinement", "refined", result.statistics);
   const statistics::Phases phases(options);
   const host::Runtime::BeforeCompiling announce(engine.runtime,

@@ -45,13 +45,14 @@ struct Plane {
       : coordinates(all.data()),
         scaling(geometry::scaling_for(coordinates, 0, all.size() / 2,
                                       geometry::inspect(coordinates, 0, all.size() / 2))) {}
-  geometry::Point at(std::int32_t v) const { return kernel::scaled_point(v, coordinates, scaling.powers()); }
+  geometry::Point at(std::int32_t v) const { return kernel::scaled_point(v, coordinates, powers); }
   int orient(std::int32_t a, std::int32_t b, std::int32_t c) const {
     return predicates.orient(at(a), at(b), at(c));
   }
 
   const double* coordinates;
   geometry::Scaling scaling;
+  kernel::scaling powers = scaling.powers();
   geometry::Predicates predicates{scaling.bounds};
 };
 

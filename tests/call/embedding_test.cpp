@@ -1075,40 +1075,48 @@ void add_ring(Coordinates& points, std::vector<std::int32_t>& segments, double x
   }
 }
 
-// Between triangulation, segments and domains the mesh stays on a device that has memory of its own.
-TEST(Embedding, ConstraintsAndDomainsSendTheInputOnce) {
+// Between triangulation, segments, domains and refinement the mesh stays on a device that has memory of its
+// own. Refinement gets an order of the points and the edges that must stay besides.
+TEST(Embedding, StagesOfConstraintsSendTheInputOnce) {
   Coordinates points = make_fixture("uniform", 20000, 3);
   std::vector<std::int32_t> segments;
   add_ring(points, segments, 0.5, 0.5, 0.4, 900);
   add_ring(points, segments, 0.4, 0.5, 0.1, 300);
-  const std::size_t n = points.size() / 2, count = segments.size() / 2;
   const double hole[] = {0.4, 0.5}, seed[] = {0.7, 0.5};
   const Coordinates corners(points.end() - 2400, points.end());
+  // A sharp corner, whose edges refinement splits at powers of two.
+  const auto sharp = static_cast<std::int32_t>(points.size() / 2);
+  points.insert(points.end(), {0.6, 0.45, 0.7, 0.45, 0.7, 0.47});
+  segments.insert(segments.end(), {sharp, sharp + 1, sharp, sharp + 2});
+  const std::size_t n = points.size() / 2, count = segments.size() / 2;
   const Polygons polygons = {corners.data(), {0, 900, 1200}, {0, 1, 2}};
   const ScopedEnvironment tuning("FLAUNAY_TUNING", "in_host_memory=0");
   Triangulator device(embedder().context(), embedder().device());
   Triangulator host("host");
-  for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
-    Constraints constraints;
-    constraints.segments = segments.data();
-    constraints.segment_count = count;
-    ConstrainedOptions options;
-    options.outside = outside;
-    options.neighbors = options.halfedges = true;
-    options.labels = outside == Outside::holes;
-    if (outside == Outside::hull) {
-      constraints.holes = hole;
-      constraints.seeds = seed;
-      constraints.seed_attributes = seed;
-      constraints.hole_count = constraints.seed_count = 1;
+  for (const bool is_refined : {false, true}) {
+    for (const Outside outside : {Outside::keep, Outside::hull, Outside::holes}) {
+      Constraints constraints;
+      constraints.segments = segments.data();
+      constraints.segment_count = count;
+      ConstrainedOptions options;
+      options.outside = outside;
+      options.refinement.min_angle = is_refined ? 20 : 0;
+      options.neighbors = options.halfedges = true;
+      options.labels = outside == Outside::holes;
+      if (outside == Outside::hull) {
+        constraints.holes = hole;
+        constraints.seeds = seed;
+        constraints.seed_attributes = seed;
+        constraints.hole_count = constraints.seed_count = 1;
+      }
+      opencl_calls().reset();
+      const auto found = device.constrained(points.data(), n, constraints, options);
+      if (device.device().fp64) {
+        EXPECT_EQ(opencl_calls().bytes_to_device, found.statistics.bytes_to_device);
+        EXPECT_LE(found.statistics.bytes_to_device, (n * 16 + count * 8) * (is_refined ? 18 : 11) / 10);
+      }
+      expect_same_arrays(found, host.constrained(points.data(), n, constraints, options));
     }
-    opencl_calls().reset();
-    const auto found = device.constrained(points.data(), n, constraints, options);
-    if (device.device().fp64) {
-      EXPECT_EQ(opencl_calls().bytes_to_device, found.statistics.bytes_to_device);
-      EXPECT_LE(found.statistics.bytes_to_device, (n * 16 + count * 8) * 11 / 10);
-    }
-    expect_same_arrays(found, host.constrained(points.data(), n, constraints, options));
   }
   PolygonOptions options;
   options.map = options.labels = true;

@@ -49,13 +49,13 @@ struct Weights {
 
 // Throws if segments are no closed curves.
 void check_closed(host::Runtime& runtime, const DomainMesh& mesh, FillRule rule) {
-  const auto balances = filled(runtime, mesh.points, cl_uint{0});
+  const auto balances = filled(runtime, mesh.points(), cl_uint{0});
   runtime.map(mesh.segments, kernels::count_ends{.rule = rule,
                                                  .segments = mesh.segment_ends,
                                                  .representatives = mesh.representatives,
                                                  .balances = balances});
   const auto bad = filled(runtime, 1, kNone);
-  runtime.map(mesh.points, kernels::find_unbalanced{.rule = rule, .balances = balances, .bad = bad});
+  runtime.map(mesh.points(), kernels::find_unbalanced{.rule = rule, .balances = balances, .bad = bad});
   const cl_int point = runtime.read_one(bad, 0);
   if (point == kNone) return;
   double place[2];

@@ -9,6 +9,7 @@
 #include "flaunay/constrained.hpp"
 #include "geometry/magnitudes.hpp"
 #include "host/runtime.hpp"
+#include "points/device_mesh.hpp"
 
 namespace flaunay::constrained {
 
@@ -17,16 +18,11 @@ using host::Buffer;
 
 /// Triangulations of sets with constraints, in device memory. The arrays are as in ConstrainedTriangulation.
 /// Arrays of segments are read only for fill rules that need them.
-struct DomainMesh {
-  std::vector<std::size_t> triangle_offsets;  ///< sets + 1
-  std::size_t points = 0;                     ///< of the input, without points that splitting added
+/// Points that splitting added have coordinates, but are not in the offsets.
+struct DomainMesh : points::DeviceMesh {
   std::size_t segments = 0, edges = 0;
-  Buffer<cl_double> coordinates{};  ///< of all points; aligned to 8 bytes only
-  Buffer<cl_int> triangles{}, neighbors{};
   Buffer<cl_uchar> constrained{};
-  Buffer<cl_int> representatives{}, segment_ends{}, piece_offsets{}, piece_edges{}, constraint_edges{};
-
-  std::size_t triangle_count() const { return triangle_offsets.back(); }
+  Buffer<cl_int> segment_ends{}, piece_offsets{}, piece_edges{}, constraint_edges{};
 };
 
 /// The regions of all sets, in the arena of the runtime.

@@ -335,6 +335,7 @@ class Refining {
     }
     ends_ = runtime_.upload(arena_, std::move(ends));
     wedges_ = runtime_.upload(arena_, std::move(wedges));
+    names_ = arena_.allocate<cl_int>(mesh_.points);
     // With lists of the first phase's size.
     is_starting_ = runtime_.is_native();
     if (is_starting_ && rows_ <= kFewRows) reserve_lists(1, kLeastRoom, false);
@@ -347,19 +348,41 @@ class Refining {
       Arena::Scope scope(arena_);
       const bool has_kept = !mesh_.kept_edges.empty();
       const auto view = [&](const auto& values) { return runtime_.view(values.data(), values.size()); };
-      runtime_.map(rows_, kernels::load_rows{.has_kept = has_kept ? 1 : 0,
-                                             .triangles = view(mesh_.triangles),
-                                             .neighbors = view(mesh_.neighbors),
-                                             .edges = view(mesh_.edges),
-                                             .kept = has_kept ? view(mesh_.kept_edges) : arrays_.states,
-                                             .numbers = view(place_of_),
-                                             .rows = arrays_.rows,
-                                             .states = arrays_.states});
-      runtime_.map(vertices_, kernels::load_vertices{.births = arrays_.births, .places = arrays_.places});
+      const bool is_there = mesh_.triangles_there.size() > 0;
+      const auto numbers = view(place_of_);
+      const auto coordinates =
+          is_there ? mesh_.coordinates_there : runtime_.view(mesh_.coordinates, 2 * mesh_.points);
+      runtime_.map(rows_,
+                   kernels::load_rows{.has_kept = has_kept ? 1 : 0,
+                                      .triangles = is_there ? mesh_.triangles_there : view(mesh_.triangles),
+                                      .neighbors = is_there ? mesh_.neighbors_there : view(mesh_.neighbors),
+                                      .edges = upload_edges(),
+                                      .kept = has_kept ? view(mesh_.kept_edges) : arrays_.states,
+                                      .numbers = numbers,
+                                      .rows = arrays_.rows,
+                                      .states = arrays_.states});
+      runtime_.map(vertices_, kernels::load_vertices{.scale = scale_,
+                                                     .coordinates = coordinates,
+                                                     .numbers = numbers,
+                                                     .points = arrays_.points,
+                                                     .names = names_,
+                                                     .births = arrays_.births,
+                                                     .places = arrays_.places});
+      std::vector<cl_int> vertices;
+      std::vector<edge_place> at_apexes;
+      for (std::size_t v = 0; v < places.size(); ++v) {
+        if (places[v].apex < 0) continue;
+        vertices.push_back(static_cast<cl_int>(v));
+        at_apexes.push_back(places[v]);
+      }
+      const std::size_t count = vertices.size();
+      if (count > 0) {
+        runtime_.map(count, kernels::place_apexes{.vertices = runtime_.upload(arena_, std::move(vertices)),
+                                                  .at_apexes = runtime_.upload(arena_, std::move(at_apexes)),
+                                                  .places = arrays_.places});
+      }
       runtime_.finish();
     }
-    runtime_.write(arrays_.points.as<double2>(), 0, points_.size(), points_.data());
-    runtime_.write(arrays_.places, 0, places.size(), places.data());
     if (!mesh_.largest_areas.empty()) {
       std::vector<double> areas = mesh_.largest_areas;
       for (double& area : areas) area = scaled_area(area);
@@ -372,6 +395,21 @@ class Refining {
     } else {
       parent_areas_ = arena_.allocate<cl_double>(1);  // nobody reads it
     }
+  }
+
+  // The edge opposite to each corner. Few have one, so that only these are sent to a device.
+  Buffer<cl_int> upload_edges() {
+    if (runtime_.sizes().in_host_memory) return runtime_.view(mesh_.edges.data(), mesh_.edges.size());
+    std::vector<cl_int2> corners;
+    for (std::size_t c = 0; c < mesh_.edges.size(); ++c) {
+      if (mesh_.edges[c] >= 0) corners.push_back({{static_cast<cl_int>(c), mesh_.edges[c]}});
+    }
+    const std::size_t count = corners.size();
+    const auto edges = arena_.allocate<cl_int>(mesh_.edges.size());
+    runtime_.fill(edges, mesh_.edges.size(), cl_int{-1});
+    runtime_.map(
+        count, kernels::place_edges{.corners = runtime_.upload(arena_, std::move(corners)), .edges = edges});
+    return edges;
   }
 
   bool areas_differ_within_regions() const {
@@ -857,21 +895,17 @@ class Refining {
 
   // by_input: whether vertices of the input have the numbers that they have there.
   Order find_order(bool by_input) {
-    std::vector<cl_int> firsts(inserted_by_.size()), names;
+    std::vector<cl_int> firsts(inserted_by_.size());
     std::exclusive_scan(inserted_by_.begin(), inserted_by_.end(), firsts.begin(), cl_int{0});
     Order found{0, added_ - known_ + mesh_.points};
-    if (by_input) {
-      names.resize(mesh_.points);
-      for (std::size_t v = 0; v < mesh_.points; ++v) names[place_of_[v]] = static_cast<cl_int>(v);
-    }
     const int known = static_cast<int>(known_);
     found.numbers = arena_.allocate<cl_int>(vertices_);
     found.row_numbers = arena_.allocate<cl_int>(rows_);
     runtime_.map(vertices_, kernels::number_added{.known = known,
-                                                  .inputs = static_cast<int>(names.size()),
+                                                  .inputs = by_input ? static_cast<int>(mesh_.points) : 0,
                                                   .births = arrays_.births,
                                                   .firsts = runtime_.upload(arena_, std::move(firsts)),
-                                                  .names = runtime_.upload(arena_, std::move(names)),
+                                                  .names = names_,
                                                   .numbers = found.numbers});
     runtime_.finish();
     if (runtime_.is_native()) {
@@ -1122,7 +1156,7 @@ class Refining {
   std::vector<std::int32_t> place_of_;  // per point of the mesh the number of its vertex here
   std::vector<double2> points_;         // scaled, by these numbers
   Arrays arrays_;
-  Buffer<cl_int> ends_{}, wedges_{};
+  Buffer<cl_int> ends_{}, wedges_{}, names_{};  // names: the points of vertices
   Buffer<cl_double> parent_areas_{};
   Buffer<mesh_row> given_{};  // the rows at first, if triangles of one region have different areas
   std::size_t rows_ = 0, vertices_ = 0, row_room_ = 0, vertex_room_ = 0, added_ = 0;

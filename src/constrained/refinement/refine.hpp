@@ -26,6 +26,9 @@ struct MeshToRefine {
   std::vector<std::uint8_t> kept_edges;  ///< one per edge: 1 if it must not be split; empty if all may be
   std::vector<double>
       largest_areas;  ///< one per triangle: the area of those with their centroid in it, 0 for any; or empty
+  // The same arrays in the memory of the runtime, if they are there.
+  host::Buffer<cl_double> coordinates_there{};
+  host::Buffer<cl_int> triangles_there{}, neighbors_there{};
 };
 
 /// A refined triangulation: canonical, of the points before and those added.
