@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
 #include "geometry/predicates.hpp"
 #include "mesh/corners.hpp"
 #include "mesh/join_sides.hpp"
+#include "mesh/rows.hpp"
 
 namespace flaunay::constrained {
 namespace {
@@ -117,20 +120,21 @@ struct Border {
 };
 
 // Adds the triangles that are outside of the border, which have depth 0, to the triangles of a mesh.
-void add_outside(const ConstrainedTriangulation& all, const Border& border, Triangulation& mesh) {
-  auto next = static_cast<std::int32_t>(mesh.triangles.size() / 3);
-  Ids numbers(all.depths.size(), -1);
-  for (std::size_t t = 0; t < numbers.size(); ++t) {
-    if (all.depths[t] == 0) numbers[t] = next++;
+void add_outside(ConstrainedTriangulation all, const Border& border, Triangulation& mesh) {
+  const auto first = static_cast<std::int32_t>(mesh.triangles.size() / 3);
+  std::vector<bool> is_outside;
+  for (const std::int32_t depth : all.depths) is_outside.push_back(depth == 0);
+  const Ids numbers = mesh::numbers_of_kept(is_outside);
+  mesh::keep(is_outside, 3, all.triangles);
+  mesh::keep(is_outside, 3, all.neighbors);
+  for (std::int32_t& t : all.neighbors) t = t < 0 || numbers[t] < 0 ? -1 : first + numbers[t];
+  for (Ids* const vertices : {&all.triangles, &all.hull}) {
+    for (std::int32_t& v : *vertices) v = border.points[v];
   }
-  for (std::size_t c = 0; c < all.triangles.size(); ++c) {
-    if (numbers[c / 3] < 0) continue;
-    mesh.triangles.push_back(border.points[all.triangles[c]]);
-    mesh.neighbors.push_back(all.neighbors[c] < 0 ? -1 : numbers[all.neighbors[c]]);
-  }
+  mesh.triangles.insert(mesh.triangles.end(), all.triangles.begin(), all.triangles.end());
+  mesh.neighbors.insert(mesh.neighbors.end(), all.neighbors.begin(), all.neighbors.end());
   mesh.triangle_offsets = {0, mesh.triangles.size() / 3};
-  mesh.hull.clear();
-  for (const std::int32_t v : all.hull) mesh.hull.push_back(border.points[v]);
+  mesh.hull = std::move(all.hull);
   mesh.hull_offsets = {0, mesh.hull.size()};
 }
 
