@@ -72,8 +72,8 @@ struct PeriodicLocator::Implementation {
   std::vector<double> with_images(const double* values, std::size_t columns) const {
     std::vector<double> all(values, values + columns * plane->points());
     all.reserve(columns * (plane->points() + plane->images.size()));
-    for (const periodic::Image& image : plane->images) {
-      const double* const row = values + columns * static_cast<std::size_t>(image.point);
+    for (const std::uint64_t image : plane->images) {
+      const double* const row = values + columns * static_cast<std::size_t>(kernel::point_of(image));
       all.insert(all.end(), row, row + columns);
     }
     return all;
@@ -124,7 +124,8 @@ std::vector<std::int32_t> PeriodicLocator::locate(const double* queries, std::si
 std::vector<std::int32_t> PeriodicLocator::nearest(const double* queries, std::size_t m) {
   return implementation_->answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
     std::vector<std::int32_t> found = implementation_->locator->nearest(places, m);
-    for (std::int32_t& v : found) v = static_cast<std::int32_t>(implementation_->plane->image(v).point);
+    for (std::int32_t& v : found)
+      v = static_cast<std::int32_t>(kernel::point_of(implementation_->plane->image(v)));
     return found;
   });
 }

@@ -23,9 +23,18 @@ namespace flaunay::prove {
 namespace {
 
 using periodic::Box;
-using periodic::Image;
-using periodic::Pair;
 using TorusPlace = std::array<double, 2>;
+using Vectors = std::array<int, 2>;
+
+// A point moved by vectors of the lattice.
+struct Image {
+  std::int64_t point;
+  Vectors at;
+};
+bool operator==(const Image& a, const Image& b) { return a.point == b.point && a.at == b.at; }
+bool operator<(const Image& a, const Image& b) {
+  return a.point < b.point || (a.point == b.point && a.at < b.at);
+}
 
 class PeriodicProof : RowsProof {
  public:
@@ -115,7 +124,7 @@ class PeriodicProof : RowsProof {
   double check_triangle(std::size_t t, const Box& box) {
     const Image images[] = {corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)};
     for (const Image& image : images) check_vertex(static_cast<std::int32_t>(image.point), t);
-    require(images[0].at == Pair<int>{} && images[0] < images[1] && images[0] < images[2],
+    require(images[0].at == Vectors{} && images[0] < images[1] && images[0] < images[2],
             "triangle {} does not begin with its first corner", t);
     const TorusPlace p[] = {place(images[0], images[0]), place(images[1], images[0]),
                             place(images[2], images[0])};
@@ -144,11 +153,11 @@ class PeriodicProof : RowsProof {
   }
 
   /// The number of vectors by which a triangle must move so that the edge opposite to its corner d ends at b.
-  Pair<int> step_to(const Image& b, std::size_t d) const {
+  Vectors step_to(const Image& b, std::size_t d) const {
     const Image end = corner(after(after(d)));
     return {b.at[0] - end.at[0], b.at[1] - end.at[1]};
   }
-  static Image moved(const Image& image, const Pair<int>& step) {
+  static Image moved(const Image& image, const Vectors& step) {
     return {image.point, {image.at[0] + step[0], image.at[1] + step[1]}};
   }
 
