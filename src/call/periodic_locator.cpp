@@ -28,8 +28,8 @@ struct PeriodicLocator::Implementation {
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
     const bool is_torus = periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1);
-    gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
-    box.margin = std::max(periodic::first_margin(box, n), gap);
+    gap = periodic::widest_gap(owner->native().runtime, mesh, box);
+    box.margin = is_torus ? std::max(periodic::first_margin(box, n), gap) : kWhole;
     for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
       if (periodic::is_whole(plane->box))
         throw Error(ErrorKind::usage,
@@ -81,25 +81,26 @@ struct PeriodicLocator::Implementation {
 
   /// Throws unless a method of interpolation is possible. The natural neighbors of a place in the box are
   /// corners of triangles whose circles contain it, and no circle without points is wider than the gap. So if
-  /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus.
+  /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus. On a
+  /// cylinder, circles can be wider whose centre is beyond an end. But at the end they are at most a period
+  /// wide, since images of its point are that far apart, and between the ends less than there: so all these
+  /// corners are at most a period away from the place.
   void check(const InterpolationOptions& options) const {
     check_enumerator(options.method);
     call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr &&
                      options.device_gradients == nullptr,
                  "values on a torus or a cylinder are interpolated without gradients");
     if (options.method != Interpolation::sibson && options.method != Interpolation::laplace) return;
-    call::expect(periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1),
-                 "values on a cylinder are not interpolated by natural neighbors; those on a torus are");
     if (locator && gap > std::min(lattice.period[0], lattice.period[1]))
       throw Error(
           ErrorKind::input,
-          "these points have no natural neighbors on their torus: a circle without points is wider than "
-          "the shorter period");
+          "these points have no natural neighbors on their torus or cylinder: a circle without points is "
+          "wider than the shorter period");
   }
 
   std::shared_ptr<call::Implementation> owner;
   periodic::Lattice lattice;
-  double gap = 0;  // of a torus: the width of the widest circle without points, or more
+  double gap = 0;  // the width of the widest circle without points, or more
   std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh
   std::optional<Locator> locator;     // in the plane; none without points

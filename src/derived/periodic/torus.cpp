@@ -233,12 +233,26 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
-double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
+double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh, const Box& box) {
   // Bounds of all roundings: images and differences of coordinates have one each.
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
-  // With periods near 1, the squares of lengths are doubles.
-  const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.period.x, mesh.period.y)));
-  const Lattice lattice = lattice_of(mesh.period);
+  const auto half = [&](std::size_t axis) { return box.high[axis] / 2 - box.low[axis] / 2; };
+  // With a box of a size near 1, the squares of lengths are doubles.
+  const double scale = std::ldexp(0.5, -std::ilogb(std::max(half(0), half(1))));
+  const bool is_upright = !repeats(box.lattice, 0), has_ends = is_upright || !repeats(box.lattice, 1);
+  const std::size_t along = is_upright ? 0 : 1;
+  // Whether the centre of the circle around a counter-clockwise triangle is surely beyond an end.
+  const auto is_beyond = [&](Point a, Point b, Point c) {
+    if (is_upright) a = {a.y, -a.x}, b = {b.y, -b.x}, c = {c.y, -c.x};
+    const Point p = b - a, q = c - a;
+    const double first = p.x * (q.x * q.x + q.y * q.y), second = q.x * (p.x * p.x + p.y * p.y);
+    const double height = first - second, error = 16 * kError * (std::fabs(first) + std::fabs(second));
+    const double left = p.x * q.y, right = p.y * q.x;
+    const double area = 2 * kSpare * (left - right + kError * (std::fabs(left) + std::fabs(right)));
+    const double low = scale * box.low[along], high = scale * box.high[along];
+    const double below = is_upright ? high + a.y : a.y - low, above = is_upright ? -a.y - low : high - a.y;
+    return height + error < -below * area || height - error > above * area;
+  };
   const std::size_t count = mesh.triangles.size() / 3;
   std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
   runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
@@ -248,9 +262,10 @@ double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
         p[k] = kernel::moved({mesh.places[v], mesh.places[v + 1]}, mesh.offsets[2 * c],
-                             mesh.offsets[2 * c + 1], &lattice);
+                             mesh.offsets[2 * c + 1], &box.lattice);
         p[k] = {scale * p[k].x, scale * p[k].y};
       }
+      if (has_ends && is_beyond(p[0], p[1], p[2])) continue;
       std::array<double, 3> opposite;
       for (std::size_t k = 0; k < 3; ++k) {
         const double x = p[(k + 2) % 3].x - p[(k + 1) % 3].x, y = p[(k + 2) % 3].y - p[(k + 1) % 3].y;

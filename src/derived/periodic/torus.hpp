@@ -117,8 +117,9 @@ struct Plane {
   }
 };
 
-/// About the width of the widest circle without points, on a torus; not less. O(t).
-double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh);
+/// About the width of the widest circle without points, and on a cylinder of those with centres between its
+/// ends; not less. box: of all points. O(t).
+double widest_gap(host::Runtime& runtime, const PeriodicTriangulation& mesh, const Box& box);
 
 /// Whether all that lies in the box lies in the hull, by some distance. O(h).
 bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);

@@ -1743,8 +1743,8 @@ FLAUNAY_API flaunay_status flaunay_periodic_locator_nearest(flaunay_periodic_loc
                                                             const double* queries, size_t m, int32_t* points);
 /// Interpolates as flaunay_locator_interpolate_with does: values: options->columns numbers per point;
 /// results: as many per query. options: NULL for the defaults. Without triangles, results are options->fill.
-/// It is FLAUNAY_ERROR_USAGE for Clough-Tocher, and on a cylinder for natural neighbours; FLAUNAY_ERROR_INPUT
-/// for natural neighbours of so few points that a circle without points is wider than the shorter period.
+/// It is FLAUNAY_ERROR_USAGE for Clough-Tocher; FLAUNAY_ERROR_INPUT for natural neighbours of so few points
+/// that a circle without points is wider than the shorter period.
 FLAUNAY_API flaunay_status flaunay_periodic_locator_interpolate(flaunay_periodic_locator* locator,
                                                                 const double* values, const double* queries,
                                                                 size_t m,

@@ -168,8 +168,9 @@ class FLAUNAY_API PeriodicLocator {
   /// Computes values at m queries as Locator::interpolate does, rounded: options.columns numbers per point
   /// and per query. At a point the result is exactly that point's value; beyond the ends of a cylinder, and
   /// without triangles, options.fill. For duplicates, the value of their representative is used. Throws
-  /// Error(usage) for gradients and Clough-Tocher, and on a cylinder for natural neighbors; Error(input) for
-  /// the natural neighbors of so few points that a circle without points is wider than the shorter period.
+  /// Error(usage) for gradients and Clough-Tocher; Error(input) for the natural neighbors of so few points
+  /// that a circle without points is wider than the shorter period, with its centre between the ends of a
+  /// cylinder.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
                                   const InterpolationOptions& options = {});
 
