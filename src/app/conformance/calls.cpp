@@ -432,6 +432,8 @@ void torus(Triangulator& triangulator, std::size_t n, Arrays& results) {
         triangulate_periodic(triangulator, points.data(), points.size() / 2, {2.5, 1.25});
     add_unfolded(results, input, mesh);
     results.add(input + " offsets", mesh.offsets);
+    add_unfolded(results, input + " sheared",
+                 triangulate_periodic(triangulator, points.data(), points.size() / 2, {2.5, 1.25, 0.75}));
     add(results, input + " cells", periodic_cells(triangulator, mesh));
     PeriodicLocator locator(triangulator, mesh);
     results.add(input + " located", locator.locate(places.data(), places.size() / 2));
