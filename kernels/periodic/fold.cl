@@ -37,36 +37,31 @@ kernel void fold_representatives(int n, periodic_lattice lattice, int sets, glob
   }
 }
 
-// n triangles. Their rows begin with the smallest number, and points come before images: a smallest corner that is in
-// its place is the first one.
+// n triangles.
 kernel void keep_triangles(int n, int own, global const int* restrict triangles, global const uint64* restrict images,
                            global uint* restrict kept) {
   const int t = get_global_id(0);
   if (t < n) {
     const int a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
-    if (max(max(a, b), c) < own) {
-      kept[t] = 1;
-    } else {
-      const uint64 first = image_at(a, own, images);
-      kept[t] = (uint)(is_in_place(first) && first < image_at(b, own, images) && first < image_at(c, own, images));
-    }
+    kept[t] = max(max(a, b), c) < own ||
+              is_kept(image_at(a, own, images), image_at(b, own, images), image_at(c, own, images));
   }
 }
 
 // ranks: how many triangles before each one are kept.
-static inline int is_kept(int t, global const uint* ranks) { return ranks[t + 1] != ranks[t]; }
-static inline int is_seam(int beyond, global const uint* ranks) { return beyond < 0 || !is_kept(beyond, ranks); }
+static inline int has_row(int t, global const uint* ranks) { return ranks[t + 1] != ranks[t]; }
+static inline int is_seam(int beyond, global const uint* ranks) { return beyond < 0 || !has_row(beyond, ranks); }
 
 kernel void find_seams(int n, global const int* restrict neighbors, global const uint* restrict ranks,
                        global uchar* restrict flags) {
   const int t = get_global_id(0);
   if (t < n) {
-    flags[t] = is_kept(t, ranks) && (is_seam(neighbors[3 * t], ranks) || is_seam(neighbors[3 * t + 1], ranks) ||
+    flags[t] = has_row(t, ranks) && (is_seam(neighbors[3 * t], ranks) || is_seam(neighbors[3 * t + 1], ranks) ||
                                      is_seam(neighbors[3 * t + 2], ranks));
   }
 }
 
-// n of the triangles. seams: 3 for each.
+// n of the triangles. seams: 3 for each; own is NO_IMAGE in edges between two that are kept.
 kernel void list_seams(int n, int own, global const int* restrict list, global const int* restrict triangles,
                        global const int* restrict neighbors, global const uint* restrict ranks,
                        global const uint64* restrict images, global const double* restrict coordinates,
@@ -79,8 +74,7 @@ kernel void list_seams(int n, int own, global const int* restrict list, global c
       const int from = triangles[next_halfedge(at)], to = triangles[next_halfedge(next_halfedge(at))];
       const double2 a = vload2(from, coordinates), b = vload2(to, coordinates);
       seam.at = at;
-      seam.is_seam = is_seam(beyond, ranks);
-      seam.own = image_at(triangles[at], own, images);
+      seam.own = is_seam(beyond, ranks) ? image_at(triangles[at], own, images) : NO_IMAGE;
       seam.from = image_at(from, own, images);
       seam.to = image_at(to, own, images);
       seam.beyond = NO_IMAGE;
@@ -111,7 +105,7 @@ kernel void write_folded(int n, int first, int begin, int sets, global const int
                          global const uint64* restrict images, global int* folded, global uchar2* restrict periods,
                          global int* folded_neighbors) {
   const int t = first + get_global_id(0);
-  if (t < first + n && is_kept(t, ranks)) {
+  if (t < first + n && has_row(t, ranks)) {
     const int shift = shifts[segment_near(t, sets, offsets)];
     if (shift == NOT_WRITTEN) return;
     const int row = (int)ranks[t] + shift, to = row - begin;

@@ -31,12 +31,12 @@ typedef struct {
 } unrolled_set;
 ASSERT_SIZE(unrolled_set, 48);
 
-// An edge of a triangle that is kept: a seam if none beyond it is. All four are images, see torus.h.
+// An edge of a triangle that is kept, where the one beyond is not. All four are images, see torus.h.
 typedef struct {
   double ends[4];      // x and y in the plane: of `from`, of `to`
   uint64 from, to;     // counter-clockwise
-  uint64 own, beyond;  // opposite to the edge, in both triangles; NO_IMAGE if there is no other one
-  int at, is_seam;     // at: 3 t + the corner opposite. Edges within what is kept are none.
+  uint64 own, beyond;  // opposite to the edge, in both triangles; beyond: NO_IMAGE if there is no other one
+  int64 at;            // 3 t + the corner opposite
 } seam_record;
 ASSERT_SIZE(seam_record, 72);
 INTEGER_CONSTANT(NO_SEAM, -1);

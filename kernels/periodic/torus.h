@@ -86,14 +86,24 @@ static inline double2 place_in(double2 p, const periodic_lattice* lattice) {
 }
 
 // An image of a point, which is moved by so many vectors of the lattice from its place. Images have the order of
-// (point, across, up). Points have less than 48 bits.
+// (point, across, up). Points have less than 44 bits.
 static inline uint64 image_of(int64 point, int across, int up) {
-  return as_ulong(point) << 16 | (uint64)(across + 128) << 8 | (uint64)(up + 128);
+  return as_ulong(point) << 20 | (uint64)(across + 512) << 10 | (uint64)(up + 512);
 }
-static inline int64 point_of(uint64 image) { return as_long(image >> 16); }
-static inline int vectors_across(uint64 image) { return (int)(image >> 8 & 255) - 128; }
-static inline int vectors_up(uint64 image) { return (int)(image & 255) - 128; }
-static inline int is_in_place(uint64 image) { return (image & 0xffff) == 0x8080; }
+static inline int64 point_of(uint64 image) { return as_long(image >> 20); }
+static inline int vectors_across(uint64 image) { return (int)(image >> 10 & 1023) - 512; }
+static inline int vectors_up(uint64 image) { return (int)(image & 1023) - 512; }
+static inline int is_in_place(uint64 image) { return (image & 0xfffff) == 0x80200; }
+// The image when `to` is in its place.
+static inline uint64 image_beside(uint64 image, uint64 to) {
+  return image_of(point_of(image), vectors_across(image) - vectors_across(to), vectors_up(image) - vectors_up(to));
+}
+
+// Of all images of a triangle in the plane, the one is kept whose smallest corner is the point itself. Rows begin with
+// the corner of the smallest number, and points come before images: such a corner is the first one.
+static inline int is_kept(uint64 first, uint64 second, uint64 third) {
+  return is_in_place(first) && first < second && first < third;
+}
 
 // What is at a place of the plane. Places below `own` are those of the points with these numbers.
 static inline uint64 image_at(int v, int own, GLOBAL const uint64* images) {

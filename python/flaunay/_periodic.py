@@ -186,7 +186,7 @@ class PeriodicDelaunay(WithLocator):
             Any places of the plane.
         method : {"linear", "nearest", "sibson", "laplace"}
             Linear in triangles, the value of the nearest point, or between natural neighbors, as
-            `NaturalNeighborInterpolator`; these on a torus only.
+            `NaturalNeighborInterpolator`.
 
         Returns
         -------
@@ -197,9 +197,9 @@ class PeriodicDelaunay(WithLocator):
         Raises
         ------
         UsageError, InputError
-            As of `find_simplex`; UsageError for another number of values than of points, an unknown method, and
-            natural neighbors on a cylinder; InputError for natural neighbors of so few points that a circle without
-            points is wider than the shorter period.
+            As of `find_simplex`; UsageError for another number of values than of points, and an unknown method;
+            InputError for natural neighbors of so few points that a circle without points is wider than the shorter
+            period.
 
         Examples
         --------

@@ -35,7 +35,7 @@ class TorusLocator : public call::SpaceLocator {
   std::vector<std::int32_t> nearest(const double* queries, std::size_t m) override {
     return answer(queries, m, 1, std::int32_t{-1}, [&](const double* places) {
       std::vector<std::int32_t> found = locator->nearest(places, m);
-      for (std::int32_t& v : found) v = static_cast<std::int32_t>(plane->image(v).point);
+      for (std::int32_t& v : found) v = static_cast<std::int32_t>(kernel::point_of(plane->image(v)));
       return found;
     });
   }
@@ -60,8 +60,8 @@ class TorusLocator : public call::SpaceLocator {
     // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
     // direction that has one.
     const bool is_torus = periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1);
-    gap = is_torus ? periodic::widest_gap(owner->native().runtime, mesh) : kWhole;
-    box.margin = std::max(periodic::first_margin(box, n), gap);
+    gap = periodic::widest_gap(owner->native().runtime, mesh, box);
+    box.margin = is_torus ? std::max(periodic::first_margin(box, n), gap) : kWhole;
     for (; !make_within(box, used, mesh); box.margin *= periodic::kWider) {
       if (periodic::is_whole(plane->box))
         throw Error(ErrorKind::usage,
@@ -104,8 +104,8 @@ class TorusLocator : public call::SpaceLocator {
   std::vector<double> with_images(const double* values, std::size_t columns) const {
     std::vector<double> all(values, values + columns * plane->points());
     all.reserve(columns * (plane->points() + plane->images.size()));
-    for (const periodic::Image& image : plane->images) {
-      const double* const row = values + columns * static_cast<std::size_t>(image.point);
+    for (const std::uint64_t image : plane->images) {
+      const double* const row = values + columns * static_cast<std::size_t>(kernel::point_of(image));
       all.insert(all.end(), row, row + columns);
     }
     return all;
@@ -113,25 +113,26 @@ class TorusLocator : public call::SpaceLocator {
 
   /// Throws unless a method of interpolation is possible. The natural neighbors of a place in the box are
   /// corners of triangles whose circles contain it, and no circle without points is wider than the gap. So if
-  /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus.
+  /// the margin, or the period, is as wide, these circles are the same in the plane as on the torus. On a
+  /// cylinder, circles can be wider whose centre is beyond an end. But at the end they are at most a period
+  /// wide, since images of its point are that far apart, and between the ends less than there: so all these
+  /// corners are at most a period away from the place.
   void check(const InterpolationOptions& options) const {
     check_enumerator(options.method);
     call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr &&
                      options.device_gradients == nullptr,
                  "values on a torus or a cylinder are interpolated without gradients");
     if (options.method != Interpolation::sibson && options.method != Interpolation::laplace) return;
-    call::expect(periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1),
-                 "values on a cylinder are not interpolated by natural neighbors; those on a torus are");
     if (locator && gap > std::min(lattice.period[0], lattice.period[1]))
       throw Error(
           ErrorKind::input,
-          "these points have no natural neighbors on their torus: a circle without points is wider than "
-          "the shorter period");
+          "these points have no natural neighbors on their torus or cylinder: a circle without points is "
+          "wider than the shorter period");
   }
 
   std::shared_ptr<call::Implementation> owner;
   periodic::Lattice lattice;
-  double gap = 0;  // of a torus: the width of the widest circle without points, or more
+  double gap = 0;  // the width of the widest circle without points, or more
   std::optional<periodic::Plane> plane;
   std::vector<std::int32_t> numbers;  // per triangle in the plane, that of the mesh
   std::optional<Locator> locator;     // in the plane; none without points

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -26,8 +25,6 @@ namespace {
 
 using geometry::Point;
 using periodic::Box;
-using periodic::Image;
-using periodic::Pair;
 
 // Points that are read at once.
 constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 18;
@@ -63,42 +60,30 @@ class Places {
 };
 
 Box box_of(const Places& places, const periodic::Lattice& lattice) {
-  Box box = periodic::box_of(nullptr, 0, 0, lattice);
+  Box box = periodic::box_of(lattice);
   if (periodic::repeats(lattice, 0) && periodic::repeats(lattice, 1)) return box;
-  const std::size_t axis = periodic::repeats(lattice, 0) ? 1 : 0;
-  box.low[axis] = HUGE_VAL;
-  box.high[axis] = -HUGE_VAL;
-  places.for_each([&](std::uint64_t, Point p) {
-    const double x = axis == 0 ? p.x : p.y;
-    box.low[axis] = std::min(box.low[axis], x);
-    box.high[axis] = std::max(box.high[axis], x);
-  });
+  places.for_each([&](std::uint64_t, Point p) { periodic::extend(box, &p.x, 1); });
   return box;
 }
 
-// Points and, after them, the images within the margin.
-class UnrolledPlane : public PointSource {
+// Points and, after them, the images within the margin. Takes the edges where triangles that are kept end.
+class UnrolledPlane : public PointSource, public chunks::Folding {
  public:
   // Bytes that an image may take: 24 for itself, the rest for edges where triangles are joined.
   static constexpr std::uint64_t kBytesPerImage = 48;
 
-  UnrolledPlane(const Places& places, const Box& box, std::uint64_t memory) : places_(places) {
+  UnrolledPlane(const Places& places, const Box& box, std::uint64_t memory) : places_(places), seams_(box) {
     const std::uint64_t most = (memory - call::kLeastChunkBytes) / kBytesPerImage;
     places.for_each([&](std::uint64_t i, Point p) {
-      periodic::for_each_image(box, p, [&](const Pair<int>& at, Point place) {
+      periodic::for_each_image(box, static_cast<std::int64_t>(i), p, [&](std::uint64_t image, Point place) {
         if (images_.size() == most) throw too_many(memory);
-        images_.push_back({place, kernel::image_of(static_cast<std::int64_t>(i), at[0], at[1])});
+        images_.push_back({place, image});
       });
     });
   }
 
   std::uint64_t images() const { return images_.size(); }
   std::uint64_t bytes() const { return kBytesPerImage * images(); }
-  Image image(std::int64_t v) const {
-    const auto k = static_cast<std::uint64_t>(v);
-    if (k < places_.size()) return {v, {}};
-    return periodic::image_of(images_[k - places_.size()].image);
-  }
 
   std::uint64_t size() const override { return places_.size() + images(); }
   void read(std::uint64_t first, std::size_t count, double* coordinates) override {
@@ -109,6 +94,29 @@ class UnrolledPlane : public PointSource {
       coordinates[2 * (v - first)] = place.x;
       coordinates[2 * (v - first) + 1] = place.y;
     }
+  }
+
+  std::int64_t first_image() const override { return static_cast<std::int64_t>(places_.size()); }
+  std::uint64_t image(std::int64_t v) const override {
+    return v < first_image() ? kernel::image_of(v, 0, 0)
+                             : images_[static_cast<std::uint64_t>(v) - places_.size()].image;
+  }
+  void add(const std::vector<kernel::seam_record>& seams) override {
+    for (const kernel::seam_record& seam : seams) seams_.add(seam);
+  }
+  bool match(std::uint64_t points, std::uint64_t triangles) {
+    return triangles == seams_.expected(points) && seams_.match(triangles);
+  }
+  // After match.
+  void write_neighbors(MeshSink& sink) const {
+    std::vector<std::pair<std::uint64_t, std::int64_t>> links;
+    seams_.for_each_link([&](std::int64_t entry, std::int64_t t) {
+      links.emplace_back(static_cast<std::uint64_t>(entry), t);
+    });
+    std::sort(links.begin(), links.end());
+    chunks::RunWriter writer(sink, MeshArray::neighbors);
+    for (const auto& [entry, t] : links) writer.add(entry, t);
+    writer.flush();
   }
 
  private:
@@ -126,44 +134,6 @@ class UnrolledPlane : public PointSource {
 
   const Places& places_;
   std::deque<Stored> images_;  // it grows without being copied
-};
-
-// Takes the edges where triangles that are kept end.
-class Folding : public chunks::Folding {
- public:
-  Folding(const UnrolledPlane& plane, std::uint64_t points, const Box& box)
-      : plane_(plane), points_(points), seams_(box) {}
-
-  std::int64_t first_image() const override { return static_cast<std::int64_t>(points_); }
-  bool is_kept(const std::array<std::int64_t, 3>& corners) const override {
-    return periodic::is_kept({plane_.image(corners[0]), plane_.image(corners[1]), plane_.image(corners[2])});
-  }
-  void add(const std::vector<chunks::Fold>& folds) override {
-    for (const chunks::Fold& fold : folds) {
-      seams_.add({plane_.image(fold.from), plane_.image(fold.to), plane_.image(fold.own),
-                  fold.beyond < 0 ? Image{-1, {}} : plane_.image(fold.beyond),
-                  static_cast<std::uint64_t>(fold.entry)},
-                 fold.a, fold.b);
-    }
-  }
-  bool match(std::uint64_t points, std::uint64_t triangles) {
-    return triangles == seams_.expected(points) && seams_.match(triangles);
-  }
-  // After match.
-  void write_neighbors(MeshSink& sink) const {
-    std::vector<std::pair<std::uint64_t, std::int64_t>> links;
-    seams_.for_each_link([&](std::uint64_t entry, std::uint64_t t) {
-      links.emplace_back(entry, static_cast<std::int64_t>(t));
-    });
-    std::sort(links.begin(), links.end());
-    chunks::RunWriter writer(sink, MeshArray::neighbors);
-    for (const auto& [entry, t] : links) writer.add(entry, t);
-    writer.flush();
-  }
-
- private:
-  const UnrolledPlane& plane_;
-  std::uint64_t points_;
   periodic::Seams seams_;
 };
 
@@ -211,10 +181,10 @@ class FoldedSink : public MeshSink {
     if (static_cast<std::uint64_t>(*std::max_element(corners, corners + count)) < points_) return corners;
     corners_.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
-      const Image image = plane_.image(corners[k]);
-      corners_[k] = image.point;
-      for (std::size_t axis = 0; axis < 2; ++axis)
-        offsets_[2 * k + axis] = static_cast<std::int8_t>(image.at[axis]);
+      const std::uint64_t image = plane_.image(corners[k]);
+      corners_[k] = kernel::point_of(image);
+      offsets_[2 * k] = static_cast<std::int8_t>(kernel::vectors_across(image));
+      offsets_[2 * k + 1] = static_cast<std::int8_t>(kernel::vectors_up(image));
     }
     return corners_.data();
   }
@@ -234,11 +204,10 @@ std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& b
   UnrolledPlane plane(places, box, memory);
   const double end = host::now();
   options.memory_bytes = memory - plane.bytes();
-  Folding folding(plane, n, box);
   FoldedSink folded(sink, plane, n);
-  ChunkStatistics statistics = call::triangulate_chunks(plane, nullptr, folded, options, &folding);
-  if (!folding.match(n - folded.duplicates(), statistics.triangles)) return std::nullopt;
-  if (sink.wants(MeshArray::neighbors)) folding.write_neighbors(sink);
+  ChunkStatistics statistics = call::triangulate_chunks(plane, nullptr, folded, options, &plane);
+  if (!plane.match(n - folded.duplicates(), statistics.triangles)) return std::nullopt;
+  if (sink.wants(MeshArray::neighbors)) plane.write_neighbors(sink);
   statistics.points = n;
   statistics.duplicates = folded.duplicates();
   statistics.hull_vertices = 0;

@@ -121,8 +121,8 @@ PointTree::PointTree(Triangulator& triangulator, const Triangulation& mesh)
         self->lattice = lattice;
         self->points = plane.points();
         std::size_t copies = 0;  // of one point, whose images follow each other
-        for (const periodic::Image& image : plane.images) {
-          const auto point = static_cast<std::int32_t>(image.point);
+        for (const std::uint64_t image : plane.images) {
+          const auto point = static_cast<std::int32_t>(kernel::point_of(image));
           copies = self->originals.empty() || self->originals.back() != point ? 2 : copies + 1;
           self->most_copies = std::max(self->most_copies, copies);
           self->originals.push_back(point);

@@ -35,7 +35,7 @@ constexpr std::size_t kMostIndexed = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t kMostPointsAtOnce = kMostIndexed / kernel::EDGES_PER_VERTEX;
 /// The largest number of points of triangulations in chunks. Sums and products with numbers of bytes do not
 /// overflow.
-constexpr std::uint64_t kMostPointsInChunks = std::uint64_t{1} << 48;
+constexpr std::uint64_t kMostPointsInChunks = std::uint64_t{1} << 44;
 /// The largest number of rows times columns, so that the bytes of an array do not overflow.
 constexpr std::size_t kMostCountable = std::size_t{1} << (sizeof(std::size_t) == 8 ? 40 : 26);
 

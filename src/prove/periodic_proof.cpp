@@ -29,9 +29,18 @@ namespace flaunay::prove {
 namespace {
 
 using periodic::Box;
-using periodic::Image;
-using periodic::Pair;
 using TorusPlace = std::array<double, 2>;
+using Vectors = std::array<int, 2>;
+
+// A point moved by vectors of the lattice.
+struct Image {
+  std::int64_t point;
+  Vectors at;
+};
+bool operator==(const Image& a, const Image& b) { return a.point == b.point && a.at == b.at; }
+bool operator<(const Image& a, const Image& b) {
+  return a.point < b.point || (a.point == b.point && a.at < b.at);
+}
 
 class PeriodicProof : RowsProof {
  public:
@@ -193,7 +202,7 @@ class PeriodicProof : RowsProof {
       const std::size_t d = across(c, [&](std::size_t at) {
         return to(at) == from(c) && moved(corner(after(at)), step_to(b, at)) == e;
       });
-      const Pair<int> step = step_to(b, d);
+      const Vectors step = step_to(b, d);
       image = moved(image, {-step[0], -step[1]});
       t = d / 3;
       k = 0;
@@ -245,7 +254,7 @@ class PeriodicProof : RowsProof {
     require(first_ == last_ || !visible.empty(), "all points of a set are listed as hidden");
     std::sort(visible.begin(), visible.end(),
               [&](std::int32_t a, std::int32_t b) { return is_before(a, b); });
-    const Pair<int> once = {repeats(0) ? 1 : 0, repeats(1) ? 1 : 0};
+    const Vectors once = {repeats(0) ? 1 : 0, repeats(1) ? 1 : 0};
     // The visible point that is number k, or an image of it.
     const auto at = [&](std::size_t k) -> Image {
       const std::size_t count = visible.size();
@@ -277,7 +286,7 @@ class PeriodicProof : RowsProof {
       check_vertex(static_cast<std::int32_t>(image.point), t);
       require(!is_hidden(index(image.point)), "triangle {} has a hidden corner, {}", t, image.point);
     }
-    require(images[0].at == Pair<int>{} && images[0] < images[1] && images[0] < images[2],
+    require(images[0].at == Vectors{} && images[0] < images[1] && images[0] < images[2],
             "triangle {} does not begin with its first corner", t);
     const TorusPlace p[] = {place(images[0], images[0]), place(images[1], images[0]),
                             place(images[2], images[0])};
@@ -305,11 +314,11 @@ class PeriodicProof : RowsProof {
   }
 
   /// The number of vectors by which a triangle must move so that the edge opposite to its corner d ends at b.
-  Pair<int> step_to(const Image& b, std::size_t d) const {
+  Vectors step_to(const Image& b, std::size_t d) const {
     const Image end = corner(after(after(d)));
     return {b.at[0] - end.at[0], b.at[1] - end.at[1]};
   }
-  static Image moved(const Image& image, const Pair<int>& step) {
+  static Image moved(const Image& image, const Vectors& step) {
     return {image.point, {image.at[0] + step[0], image.at[1] + step[1]}};
   }
 

@@ -1050,7 +1050,7 @@ TEST(SmallClippedVoronoi, OfTheHostAndOfTheDevice) {
   EXPECT_EQ(result.vertex_count, cells.vertices.size() / 2);
   EXPECT_TRUE(
       same(embedder().download<double>(result.vertices.memory(), cells.vertices.size()), cells.vertices));
-  EXPECT_TRUE(same(embedder().download<std::int32_t>(result.corner_offsets.memory(), n + 1), cells.offsets));
+  EXPECT_TRUE(same(embedder().download<std::int32_t>(result.offsets.memory(), n + 1), cells.offsets));
   EXPECT_TRUE(same(embedder().download<double>(result.areas.memory(), n), cells.areas));
   const std::vector<double> centroids = embedder().download<double>(result.centroids.memory(), 2 * n);
   for (std::size_t i = 0; i < n; ++i) {

@@ -101,9 +101,9 @@ TEST(SmallPeriodicKernels, Places) {
 
 TEST(SmallPeriodicKernels, ImagesHaveTheOrderOfPointAndPeriods) {
   std::vector<std::uint64_t> all;
-  for (const std::int64_t point : {std::int64_t{0}, std::int64_t{1}, (std::int64_t{1} << 48) - 1}) {
-    for (int across = -128; across <= 127; across += 51) {
-      for (int up = -128; up <= 127; up += 64) {
+  for (const std::int64_t point : {std::int64_t{0}, std::int64_t{1}, (std::int64_t{1} << 44) - 1}) {
+    for (int across = -512; across <= 511; across += 341) {
+      for (int up = -512; up <= 511; up += 250) {
         all.push_back(kernel::image_of(point, across, up));
         EXPECT_EQ(kernel::point_of(all.back()), point);
         EXPECT_EQ(kernel::vectors_across(all.back()), across);
@@ -168,10 +168,11 @@ TEST(SmallPeriodicKernels, BoxesOfSets) {
 struct Twin {
   Twin(const Coordinates& places, const periodic::Box& box) : plane{box, places, {}} {
     for (std::size_t i = 0; i < places.size() / 2; ++i) {
-      periodic::for_each_image(box, {places[2 * i], places[2 * i + 1]}, [&](const auto& at, Point p) {
-        plane.coordinates.insert(plane.coordinates.end(), {p.x, p.y});
-        plane.images.push_back({static_cast<std::int64_t>(i), at});
-      });
+      periodic::for_each_image(box, static_cast<std::int64_t>(i), {places[2 * i], places[2 * i + 1]},
+                               [&](std::uint64_t image, Point p) {
+                                 plane.coordinates.insert(plane.coordinates.end(), {p.x, p.y});
+                                 plane.images.push_back(image);
+                               });
     }
   }
 
@@ -183,32 +184,34 @@ struct Twin {
     std::vector<std::int32_t> rows;
     std::int32_t kept = 0;
     for (std::size_t c = 0; c < planar.size(); c += 3)
-      rows.push_back(periodic::is_kept({image(c), image(c + 1), image(c + 2)}) ? kept++ : -1);
+      rows.push_back(kernel::is_kept(image(c), image(c + 1), image(c + 2)) != 0 ? kept++ : -1);
     std::vector<std::int32_t> linked = beyond;
     periodic::Seams seams(plane.box);
     for (std::size_t c = 0; c < planar.size(); ++c) {
       const auto other = static_cast<std::size_t>(std::max(beyond[c], 0));
       if (rows[c / 3] < 0 || (beyond[c] >= 0 && rows[other] >= 0)) continue;
-      periodic::Image outside{-1, {}};
+      std::uint64_t outside = NO_IMAGE;
       for (std::size_t k = 3 * other; k < 3 * other + 3 && beyond[c] >= 0; ++k) {
         if (beyond[k] == static_cast<std::int32_t>(c / 3)) outside = image(k);
       }
       const std::size_t from = c / 3 * 3 + (c + 1) % 3, to = c / 3 * 3 + (c + 2) % 3;
-      seams.add({image(from), image(to), image(c), outside, c}, plane.place(planar[from]),
-                plane.place(planar[to]));
+      const Point a = plane.place(planar[from]), b = plane.place(planar[to]);
+      seams.add(
+          {{a.x, a.y, b.x, b.y}, image(from), image(to), image(c), outside, static_cast<std::int64_t>(c)});
     }
     std::uint64_t different = 0;
     for (std::size_t i = 0; i < representatives.size(); ++i)
       different += representatives[i] == static_cast<std::int32_t>(i);
     const auto count = static_cast<std::uint64_t>(kept);
     if (count != seams.expected(different) || !seams.match(count)) return false;
-    seams.for_each_link(
-        [&](std::uint64_t at, std::uint64_t t) { linked[at] = static_cast<std::int32_t>(t); });
+    seams.for_each_link([&](std::int64_t at, std::int64_t t) {
+      linked[static_cast<std::size_t>(at)] = static_cast<std::int32_t>(t);
+    });
     for (std::size_t c = 0; c < planar.size(); ++c) {
       if (rows[c / 3] < 0) continue;
-      corners.push_back(static_cast<std::int32_t>(image(c).point));
+      corners.push_back(static_cast<std::int32_t>(kernel::point_of(image(c))));
       neighbors.push_back(linked[c] < 0 ? -1 : rows[static_cast<std::size_t>(linked[c])]);
-      for (const int at : image(c).at) offsets.push_back(at);
+      offsets.insert(offsets.end(), {kernel::vectors_across(image(c)), kernel::vectors_up(image(c))});
     }
     return true;
   }
@@ -288,7 +291,7 @@ void expect_sets_of_the_twin(Runtime& runtime, const Period& period, const Sets&
     EXPECT_TRUE(same(part(beyond, 3 * row, 3 * last, row), expected.neighbors)) << k;
     EXPECT_TRUE(same(std::vector<std::int32_t>(periods.begin() + static_cast<std::ptrdiff_t>(6 * row),
                                                periods.begin() + static_cast<std::ptrdiff_t>(6 * last)),
-                     expected.corner_offsets));
+                     expected.offsets));
   }
 }
 

@@ -248,9 +248,9 @@ TEST(Periodic, ShearsMayBeReduced) {
     EXPECT_EQ(mesh.triangles, other.triangles);
     EXPECT_EQ(mesh.corner_offsets, other.corner_offsets);
   }
-  EXPECT_EQ(0.375, triangulated(points, {0.75, 1.25, -0.375}).period.shear);
+  EXPECT_EQ(0.375, triangulated(points, {0.75, 1.25, -0.375}).space.period.shear);
   const Triangulation none = triangulated(points, {0.75, 1.25, 7.5});
-  EXPECT_EQ(0, none.period.shear);
+  EXPECT_EQ(0, none.space.period.shear);
   EXPECT_EQ(triangulated(points, {0.75, 1.25}).triangles, none.triangles);
   // Of two boxes one above the other, which are a box without a shear.
   Numbers twice = points;
@@ -263,9 +263,9 @@ TEST(Periodic, ShearsMayBeReduced) {
       std::array<std::array<double, 2>, 3> p{};
       for (std::size_t k = 0; k < 3; ++k) {
         const auto v = 2 * static_cast<std::size_t>(of.triangles[t + k]);
-        const double across = of.offsets[2 * (t + k)], up = of.offsets[2 * (t + k) + 1];
-        p[k] = {of.places[v] + across * of.period.x + up * of.period.shear,
-                of.places[v + 1] + up * of.period.y};
+        const double across = of.corner_offsets[2 * (t + k)], up = of.corner_offsets[2 * (t + k) + 1];
+        p[k] = {of.places[v] + across * of.space.period.x + up * of.space.period.shear,
+                of.places[v + 1] + up * of.space.period.y};
       }
       std::rotate(p.begin(), std::min_element(p.begin(), p.end()), p.end());
       all.insert({p[1][0] - p[0][0], p[1][1] - p[0][1], p[2][0] - p[1][0], p[2][1] - p[1][1]});
@@ -558,7 +558,16 @@ TEST(Periodic, QueriesOfManyPoints) {
 }
 
 TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
-  for (const Period& period : {Period{1, 1}, {0.3, 0.7}, {1, 4}, {1, 1, 0.375}, {1, 0.5, 0.5}}) {
+  for (const Period& given : {Period{1, 1},
+                              {0.3, 0.7},
+                              {1, 4},
+                              {1, 1, 0.375},
+                              {1, 0.5, 0.5},
+                              {1, HUGE_VAL},
+                              {HUGE_VAL, 0.7},
+                              {0.3, HUGE_VAL}}) {
+    const bool is_across = std::isfinite(given.x), is_up = std::isfinite(given.y);
+    const Period period{is_across ? given.x : 1, is_up ? given.y : 1, given.shear};
     for (const std::size_t n : {40, 300}) {
       SCOPED_TRACE(n);
       Numbers points = uniform(n, period, n + 7);
@@ -566,15 +575,15 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       for (std::size_t i = 0; i < n; i += 2)
         points[i] = std::floor(16 * points[i] / period.x) / 16 * period.x;
       points.insert(points.end(), points.begin(), points.begin() + 20);
-      const Triangulation mesh = triangulated(points, period);
+      const Triangulation mesh = triangulated(points, given);
       Locator locator(testing::triangulator(), mesh);
       Numbers copies, values, of_copies, queries = uniform(100, period, 3);
       for (std::size_t i = 0; i < points.size() / 2; ++i) {
         values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
         values.push_back(static_cast<double>(mesh.representatives[i]));
       }
-      for (int across = -2; across <= 2; ++across) {
-        for (int up = -2; up <= 2; ++up) {
+      for (int across = is_across ? -2 : 0; across <= (is_across ? 2 : 0); ++across) {
+        for (int up = is_up ? -2 : 0; up <= (is_up ? 2 : 0); ++up) {
           for (std::size_t i = 0; i < mesh.places.size(); i += 2) {
             copies.insert(copies.end(), {mesh.places[i] + across * period.x + up * period.shear,
                                          mesh.places[i + 1] + up * period.y});
@@ -590,15 +599,20 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       Numbers elsewhere;
       for (std::size_t q = 0; q < queries.size(); q += 2)
         elsewhere.insert(elsewhere.end(),
-                         {queries[q] - 3 * period.x + 2 * period.shear, queries[q + 1] + 2 * period.y});
+                         {queries[q] - (is_across ? 3 : 0) * period.x + (is_up ? 2 : 0) * period.shear,
+                          queries[q + 1] + (is_up ? 2 : 0) * period.y});
       InterpolationOptions wanted;
       wanted.columns = 2;
       for (const Interpolation method : {Interpolation::sibson, Interpolation::laplace}) {
         wanted.method = method;
         const Numbers found = locator.interpolate(values.data(), elsewhere.data(), 100, wanted);
         const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 100, wanted);
-        for (std::size_t i = 0; i < expected.size(); ++i)
-          ASSERT_NEAR(expected[i], found[i], 1e-9 * static_cast<double>(n)) << i;
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+          if (!std::isnan(expected[i])) {
+            ASSERT_NEAR(expected[i], found[i], 1e-9 * static_cast<double>(n)) << i;
+          }
+          ASSERT_EQ(std::isnan(expected[i]), std::isnan(found[i])) << i;
+        }
       }
       for (const Interpolation method :
            {Interpolation::linear, Interpolation::nearest, Interpolation::sibson, Interpolation::laplace}) {
@@ -608,6 +622,61 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       }
     }
   }
+}
+
+// Circles reach far beyond the ends, and are refused if they are too wide between these.
+TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
+  testing::FixtureRandom random(5);
+  std::size_t answered = 0, refused = 0;
+  for (int k = 0; k < 200; ++k) {
+    const auto n = static_cast<std::size_t>(random.integer(2, 9));
+    const double height = std::ldexp(1, static_cast<int>(random.integer(-6, 1)));
+    Numbers points, copies, values, of_copies, queries;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = random.unit(), y = random.unit() * height;
+      points.insert(points.end(), {k % 2 == 0 ? x : y, k % 2 == 0 ? y : x});
+      values.push_back(static_cast<double>(i * i));
+    }
+    for (std::size_t i = 0; i < 40; ++i) {
+      const double x = random.unit(), y = random.unit() * height;
+      queries.insert(queries.end(), {k % 2 == 0 ? x : y, k % 2 == 0 ? y : x});
+    }
+    const Triangulation mesh =
+        triangulated(points, k % 2 == 0 ? Period{1, HUGE_VAL} : Period{HUGE_VAL, 1});
+    for (int step = -9; step <= 9; ++step) {
+      for (std::size_t i = 0; i < n; ++i) {
+        copies.insert(copies.end(), {mesh.places[2 * i] + (k % 2 == 0 ? step : 0),
+                                     mesh.places[2 * i + 1] + (k % 2 == 0 ? 0 : step)});
+        of_copies.push_back(values[i]);
+      }
+    }
+    Options options;
+    options.neighbors = true;
+    const std::size_t count = of_copies.size();
+    Locator plane(testing::triangulator(), copies.data(), count,
+                  testing::triangulator().triangulate(copies.data(), count, options));
+    InterpolationOptions wanted;
+    wanted.method = k % 3 == 0 ? Interpolation::laplace : Interpolation::sibson;
+    Locator locator(testing::triangulator(), mesh);
+    Numbers found;
+    try {
+      found = locator.interpolate(values.data(), queries.data(), 40, wanted);
+    } catch (const Error& error) {
+      ASSERT_EQ(ErrorKind::input, error.kind());
+      ++refused;
+      continue;
+    }
+    ++answered;
+    const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 40, wanted);
+    for (std::size_t i = 0; i < 40; ++i) {
+      ASSERT_EQ(std::isnan(expected[i]), std::isnan(found[i])) << k << " " << i;
+      if (!std::isnan(expected[i])) {
+        ASSERT_NEAR(expected[i], found[i], 1e-9) << k << " " << i;
+      }
+    }
+  }
+  EXPECT_GT(answered, 50u);
+  EXPECT_GT(refused, 20u);
 }
 
 TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
@@ -621,9 +690,10 @@ TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
   const Numbers some = uniform(30, {}, 3), line = {0.1, 0.5, 0.6, 0.5, 0.3, 0.52};
   testing::expect_error(ErrorKind::usage, "gradients",
                         [&] { interpolate(some, {}, Interpolation::clough_tocher); });
-  testing::expect_error(ErrorKind::usage, "cylinder", [&] {
-    interpolate(some, {1, HUGE_VAL}, Interpolation::sibson);
+  testing::expect_error(ErrorKind::input, "wider than", [&] {
+    interpolate({0.1, 0, 0.2, 9}, {1, HUGE_VAL}, Interpolation::sibson);
   });
+  interpolate({0.1, 0, 0.6, 0.25, 0.1, 0.5}, {1, HUGE_VAL}, Interpolation::sibson);
   testing::expect_error(ErrorKind::input, "wider than", [&] {
     interpolate(line, {1, 16}, Interpolation::laplace);
   });

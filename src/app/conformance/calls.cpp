@@ -432,6 +432,8 @@ void torus(Triangulator& triangulator, std::size_t n, Arrays& results) {
         triangulator.triangulate(points.data(), points.size() / 2, Space::torus({2.5, 1.25}));
     add_unfolded(results, input, mesh);
     results.add(input + " offsets", mesh.corner_offsets);
+    add_unfolded(results, input + " sheared",
+                 triangulator.triangulate(points.data(), points.size() / 2, Space::torus({2.5, 1.25, 0.75})));
     add(results, input + " cells", triangulator.clipped_voronoi(mesh));
     Locator locator(triangulator, mesh);
     results.add(input + " located", locator.locate(places.data(), places.size() / 2));

@@ -153,8 +153,8 @@ Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const 
   const UnrolledSets set(runtime, arena, runtime.view(places.data(), 2 * n), {0}, {n}, {box});
   Plane plane{box, std::vector<double>(2 * set.offsets().back()), {}};
   runtime.read(set.coordinates(), 0, plane.coordinates.size(), plane.coordinates.data());
-  for (const cl_ulong image : points::download(runtime, set.at_, n, set.images(0)))
-    plane.images.push_back(image_of(image));
+  const std::vector<cl_ulong> images = points::download(runtime, set.at_, n, set.images(0));
+  plane.images.assign(images.begin(), images.end());
   return plane;
 }
 
@@ -242,16 +242,12 @@ void FoldedSets::join(Arena& arena, const Buffer<cl_int>& list, std::size_t coun
     const std::size_t first = first_of(k), end = first_of(k + 1);
     Seams joined(plane_.boxes_[k]);
     for (std::size_t i = first; i < end; ++i) {
-      const kernel::seam_record& seam = seams[i];
-      if (seam.is_seam == 0) continue;
-      joined.add({image_of(seam.from), image_of(seam.to), image_of(seam.own), image_of(seam.beyond),
-                  static_cast<std::uint64_t>(seam.at)},
-                 {seam.ends[0], seam.ends[1]}, {seam.ends[2], seam.ends[3]});
+      if (seams[i].own != NO_IMAGE) joined.add(seams[i]);
     }
     if (!joined.match(expected_[k])) return;
     is_done_[k] = 1;
     auto link = links.begin() + static_cast<std::ptrdiff_t>(first);
-    joined.for_each_link([&](std::uint64_t at, std::uint64_t t) {
+    joined.for_each_link([&](std::int64_t at, std::int64_t t) {
       *link++ = {{static_cast<cl_int>(at), static_cast<cl_int>(t)}};
     });
   });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -114,16 +115,28 @@ std::vector<double> to_places(host::Runtime& runtime, const double* points, std:
   return places;
 }
 
-Box box_of(const double* places, std::size_t first, std::size_t last, const Lattice& lattice) {
+Box box_of(const Lattice& lattice) {
   Box box{{{}, {lattice.period[0], lattice.period[1]}, 0}, lattice};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (repeats(lattice, axis) || first == last) continue;
-    box.low[axis] = box.high[axis] = places[2 * first + axis];
-    for (std::size_t i = first; i < last; ++i) {
-      box.low[axis] = std::min(box.low[axis], places[2 * i + axis]);
-      box.high[axis] = std::max(box.high[axis], places[2 * i + axis]);
+    if (repeats(lattice, axis)) continue;
+    box.low[axis] = HUGE_VAL;
+    box.high[axis] = -HUGE_VAL;
+  }
+  return box;
+}
+
+void extend(Box& box, const double* places, std::size_t n) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (std::size_t i = axis; i < 2 * n && !repeats(box.lattice, axis); i += 2) {
+      box.low[axis] = std::min(box.low[axis], places[i]);
+      box.high[axis] = std::max(box.high[axis], places[i]);
     }
   }
+}
+
+Box box_of(const double* places, std::size_t first, std::size_t last, const Lattice& lattice) {
+  Box box = box_of(lattice);
+  extend(box, places + 2 * first, last - first);
   return box;
 }
 
@@ -164,9 +177,6 @@ void widen(Box& box, std::size_t s) {
 
 namespace {
 
-// The image when `to` is in its place.
-Image beside(const Image& a, const Image& to) { return {a.point, {a.at[0] - to.at[0], a.at[1] - to.at[1]}}; }
-
 // The place in units of the box.
 Point in_box(const Box& box, Point p) {
   const auto share = [&](double x, std::size_t axis) {
@@ -184,22 +194,22 @@ bool is_at_end(const Box& box, Point a, Point b) {
 
 }  // namespace
 
-void Seams::add(Edge edge, Point from, Point to) {
+void Seams::add(const kernel::seam_record& seam) {
+  const Point from{seam.ends[0], seam.ends[1]}, to{seam.ends[2], seam.ends[3]};
   // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
   // says: once. (The area is rounded, and computed from the border.)
   const Point a = in_box(box_, from), b = in_box(box_, to);
   area_ += (a.x + b.x) / 2 * (b.y - a.y);
-  if (edge.beyond.point < 0 && is_at_end(box_, from, to)) {
+  if (seam.beyond == NO_IMAGE && is_at_end(box_, from, to)) {
     ++ends_;
     return;
   }
-  is_torn_ |= edge.beyond.point < 0 && !is_whole(box_);
-  const Image step = beside(edge.to, edge.from);
-  if (edge.to.point < edge.from.point || (edge.to.point == edge.from.point && step.at < Pair<int>{}))
-    std::swap(edge.from, edge.to);
-  for (Image* const image : {&edge.to, &edge.own, &edge.beyond}) *image = beside(*image, edge.from);
-  edge.from.at = {};
-  edges_.push_back(edge);
+  is_torn_ |= seam.beyond == NO_IMAGE && !is_whole(box_);
+  const bool is_first = kernel::image_beside(seam.from, seam.from) < kernel::image_beside(seam.to, seam.from);
+  const std::uint64_t first = is_first ? seam.from : seam.to, second = is_first ? seam.to : seam.from;
+  const auto beside = [&](std::uint64_t image) { return kernel::image_beside(image, first); };
+  edges_.push_back({beside(first), beside(second), beside(seam.own),
+                    seam.beyond == NO_IMAGE ? NO_IMAGE : beside(seam.beyond), seam.at});
 }
 
 std::uint64_t Seams::expected(std::uint64_t points) const {
@@ -211,9 +221,8 @@ std::uint64_t Seams::expected(std::uint64_t points) const {
 bool Seams::match(std::uint64_t triangles) {
   if (is_torn_ || edges_.size() % 2 != 0) return false;
   if (triangles > 0 && !(std::fabs(area_ - 1) < 0.5)) return false;
-  std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
-    return a.from < b.from || (a.from == b.from && a.to < b.to);
-  });
+  std::sort(edges_.begin(), edges_.end(),
+            [](const Edge& a, const Edge& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); });
   for (std::size_t i = 0; i < edges_.size(); i += 2) {
     const Edge &a = edges_[i], &b = edges_[i + 1];
     if (!(a.from == b.from && a.to == b.to)) return false;
@@ -224,12 +233,26 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
-double widest_gap(host::Runtime& runtime, const Triangulation& mesh) {
+double widest_gap(host::Runtime& runtime, const Triangulation& mesh, const Box& box) {
   // Bounds of all roundings: images and differences of coordinates have one each.
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
-  // With periods near 1, the squares of lengths are doubles.
-  const double scale = std::ldexp(1, -std::ilogb(std::max(mesh.space.period.x, mesh.space.period.y)));
-  const Lattice lattice = lattice_of(mesh.space.period);
+  const auto half = [&](std::size_t axis) { return box.high[axis] / 2 - box.low[axis] / 2; };
+  // With a box of a size near 1, the squares of lengths are doubles.
+  const double scale = std::ldexp(0.5, -std::ilogb(std::max(half(0), half(1))));
+  const bool is_upright = !repeats(box.lattice, 0), has_ends = is_upright || !repeats(box.lattice, 1);
+  const std::size_t along = is_upright ? 0 : 1;
+  // Whether the centre of the circle around a counter-clockwise triangle is surely beyond an end.
+  const auto is_beyond = [&](Point a, Point b, Point c) {
+    if (is_upright) a = {a.y, -a.x}, b = {b.y, -b.x}, c = {c.y, -c.x};
+    const Point p = b - a, q = c - a;
+    const double first = p.x * (q.x * q.x + q.y * q.y), second = q.x * (p.x * p.x + p.y * p.y);
+    const double height = first - second, error = 16 * kError * (std::fabs(first) + std::fabs(second));
+    const double left = p.x * q.y, right = p.y * q.x;
+    const double area = 2 * kSpare * (left - right + kError * (std::fabs(left) + std::fabs(right)));
+    const double low = scale * box.low[along], high = scale * box.high[along];
+    const double below = is_upright ? high + a.y : a.y - low, above = is_upright ? -a.y - low : high - a.y;
+    return height + error < -below * area || height - error > above * area;
+  };
   const std::size_t count = mesh.triangles.size() / 3;
   std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
   runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
@@ -239,9 +262,10 @@ double widest_gap(host::Runtime& runtime, const Triangulation& mesh) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
         p[k] = kernel::moved({mesh.places[v], mesh.places[v + 1]}, mesh.corner_offsets[2 * c],
-                             mesh.corner_offsets[2 * c + 1], &lattice);
+                             mesh.corner_offsets[2 * c + 1], &box.lattice);
         p[k] = {scale * p[k].x, scale * p[k].y};
       }
+      if (has_ends && is_beyond(p[0], p[1], p[2])) continue;
       std::array<double, 3> opposite;
       for (std::size_t k = 0; k < 3; ++k) {
         const double x = p[(k + 2) % 3].x - p[(k + 1) % 3].x, y = p[(k + 2) % 3].y - p[(k + 1) % 3].y;
@@ -280,18 +304,20 @@ Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners, co
   for (std::size_t t = by_first.size(); t-- > 0;)
     by_first[--begins[index(mesh.triangles[3 * t])]] = static_cast<std::int32_t>(t);
 
-  const auto find = [&](const std::array<Image, 3>& images) {
+  const auto find = [&](const std::array<std::uint64_t, 3>& images) {
     const auto is_same = [&](std::int32_t t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t c = 3 * index(t) + k;
-        if (!(Image{mesh.triangles[c], {mesh.corner_offsets[2 * c], mesh.corner_offsets[2 * c + 1]}} ==
-              beside(images[k], images[0])))
+        if (kernel::image_of(mesh.triangles[c], mesh.corner_offsets[2 * c], mesh.corner_offsets[2 * c + 1]) !=
+            kernel::image_beside(images[k], images[0]))
           return false;
       }
       return true;
     };
-    const auto first = by_first.begin() + static_cast<std::ptrdiff_t>(begins[index(images[0].point)]),
-               last = by_first.begin() + static_cast<std::ptrdiff_t>(begins[index(images[0].point) + 1]);
+    const auto row = by_first.begin();
+    const std::size_t v = index(kernel::point_of(images[0]));
+    const auto first = row + static_cast<std::ptrdiff_t>(begins[v]),
+               last = row + static_cast<std::ptrdiff_t>(begins[v + 1]);
     const auto found = std::find_if(first, last, is_same);
     return found == last ? -1 : *found;
   };
@@ -312,7 +338,7 @@ Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners, co
   std::atomic<bool> is_right = true;
   for_each(runtime, result.size(), [&](std::size_t t) {
     std::array<Point, 3> places;
-    std::array<Image, 3> images;
+    std::array<std::uint64_t, 3> images;
     for (std::size_t k = 0; k < 3; ++k) {
       places[k] = plane.place(corners[3 * t + k]);
       images[k] = plane.image(corners[3 * t + k]);

@@ -1,7 +1,6 @@
 // From points on a torus or a cylinder to points in the plane, and from triangles of these back.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,10 +13,6 @@
 #include "periodic/torus.h"
 
 namespace flaunay::periodic {
-
-/// Of x and of y.
-template <typename T>
-using Pair = std::array<T, 2>;
 
 /// The lattice of images. Its vectors are rounded to multiples of their units, with the shear in
 /// (-x / 2, x / 2]; rounded periods remain as they are.
@@ -44,6 +39,10 @@ struct Box : kernel::periodic_box {
 };
 /// Whether a point and all its neighbours are within the margin, whatever the points are.
 bool is_whole(const Box& box);
+/// Of no points, without a margin.
+Box box_of(const Lattice& lattice);
+/// Widens a box to n more places.
+void extend(Box& box, const double* places, std::size_t n);
 /// Without a margin.
 Box box_of(const double* places, std::size_t first, std::size_t last, const Lattice& lattice);
 
@@ -57,37 +56,16 @@ void widen(Box& box, std::size_t s);
 /// Throws Error(input) for more points and images than can be triangulated in one call.
 void check_size(std::size_t points_and_images);
 
-/// Calls visit(at, place) for each image of a point that has this place, in ascending order.
+/// Calls visit(image, place) for each image of a point that has place p, in ascending order.
 template <typename Visit>
-void for_each_image(const Box& box, geometry::Point p, const Visit& visit) {
+void for_each_image(const Box& box, std::int64_t point, geometry::Point p, const Visit& visit) {
   const kernel::image_range to = kernel::images_around(p, &box.lattice, &box);
   for (int across = to.low[0]; across <= to.high[0]; ++across) {
     for (int up = to.low[1]; up <= to.high[1]; ++up) {
       if (kernel::is_image(p, across, up, &box.lattice, &box) != 0)
-        visit(Pair<int>{across, up}, kernel::moved(p, across, up, &box.lattice));
+        visit(kernel::image_of(point, across, up), kernel::moved(p, across, up, &box.lattice));
     }
   }
-}
-
-/// An image of a point, so many vectors of the lattice away from its place.
-struct Image {
-  std::int64_t point;
-  Pair<int> at;
-};
-inline Image image_of(std::uint64_t image) {
-  if (image == NO_IMAGE) return {-1, {}};
-  return {kernel::point_of(image), {kernel::vectors_across(image), kernel::vectors_up(image)}};
-}
-inline bool operator==(const Image& a, const Image& b) { return a.point == b.point && a.at == b.at; }
-inline bool operator<(const Image& a, const Image& b) {
-  return a.point < b.point || (a.point == b.point && a.at < b.at);
-}
-
-/// Of all images of a triangle in the plane, the one is kept whose smallest corner is the point itself. Rows
-/// begin with the corner of the smallest number, points come before images, and images are in ascending
-/// order.
-inline bool is_kept(const std::array<Image, 3>& corners) {
-  return corners[0].at == Pair<int>{} && corners[0] < corners[1] && corners[0] < corners[2];
 }
 
 /// The edges at which triangles that are kept end in the plane. There they are joined to each other.
@@ -95,13 +73,7 @@ class Seams {
  public:
   explicit Seams(const Box& box) : box_(box) {}
 
-  struct Edge {
-    Image from, to;     // counter-clockwise for the triangle that is kept
-    Image own, beyond;  // the opposite corners of that and of the other triangle; point -1: there is none
-    std::uint64_t at;   // the entry of `neighbors`: 3 t + the corner opposite
-  };
-  /// from, to: where its ends lie.
-  void add(Edge edge, geometry::Point from, geometry::Point to);
+  void add(const kernel::seam_record& seam);
   /// The triangles of so many different points.
   std::uint64_t expected(std::uint64_t points) const;
   /// Whether so many triangles that are kept, as many as expected, are the canonical Delaunay triangulation;
@@ -114,9 +86,15 @@ class Seams {
   }
 
  private:
+  // Images as of a seam, from the same end, which is in its place, for both triangles.
+  struct Edge {
+    std::uint64_t from, to, own, beyond;
+    std::int64_t at;
+  };
+
   Box box_;
-  std::vector<Edge> edges_;  // from the same end, which is in its place, for both triangles
-  std::uint64_t ends_ = 0;   // edges on the ends of a cylinder
+  std::vector<Edge> edges_;
+  std::uint64_t ends_ = 0;  // edges on the ends of a cylinder
   bool is_torn_ = false;
   double area_ = 0;  // in units of the box's
 };
@@ -125,7 +103,7 @@ class Seams {
 struct Plane {
   Box box{};
   std::vector<double> coordinates{};  ///< x and y of all
-  std::vector<Image> images{};
+  std::vector<std::uint64_t> images{};
 
   std::size_t points() const { return coordinates.size() / 2 - images.size(); }
   geometry::Point place(std::int32_t v) const {
@@ -133,14 +111,15 @@ struct Plane {
     return {coordinates[at], coordinates[at + 1]};
   }
   /// What is at a place; points are numbered from 0.
-  Image image(std::int32_t v) const {
+  std::uint64_t image(std::int32_t v) const {
     const auto i = static_cast<std::size_t>(v);
-    return i < points() ? Image{v, {}} : images[i - points()];
+    return i < points() ? kernel::image_of(v, 0, 0) : images[i - points()];
   }
 };
 
-/// About the width of the widest circle without points, on a torus; not less. O(t).
-double widest_gap(host::Runtime& runtime, const Triangulation& mesh);
+/// About the width of the widest circle without points, and on a cylinder of those with centres between its
+/// ends; not less. box: of all points. O(t).
+double widest_gap(host::Runtime& runtime, const Triangulation& mesh, const Box& box);
 
 /// Whether all that lies in the box lies in the hull, by some distance. O(h).
 bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);

@@ -1543,10 +1543,10 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
-/// a torus there is no Clough-Tocher, on a cylinder neither that nor natural neighbours, and on the sphere
-/// linear interpolation alone: the value where the direction of the query meets the triangle in space (Renka,
-/// 1984). Natural neighbours of so few points on a torus that a circle without points is wider than the
-/// shorter period are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
+/// a torus and a cylinder there is no Clough-Tocher, and on the sphere linear interpolation alone: the value
+/// where the direction of the query meets the triangle in space (Renka, 1984). Natural neighbours of so few
+/// points on a torus that a circle without points is wider than the shorter period, on a cylinder one with
+/// its centre between the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
 /// flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
                                                        const double* queries, size_t m, const size_t* offsets,

@@ -687,11 +687,11 @@ class FLAUNAY_API Locator {
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const Enqueue& enqueue = own_queue());
 
-  /// Interpolates by any method, several numbers per point at once. On a torus there is no Clough-Tocher, on
-  /// a cylinder neither that nor natural neighbors, and on the sphere linear interpolation alone: the value
-  /// where the direction of the query meets the triangle in space (Renka, 1984). Natural neighbors of so few
-  /// points on a torus that a circle without points is wider than the shorter period are Error(input).
-  /// values: one row of options.columns numbers per input point; the result has one row per query. At a
+  /// Interpolates by any method, several numbers per point at once. On a torus and a cylinder there is no
+  /// Clough-Tocher, and on the sphere linear interpolation alone: the value where the direction of the query
+  /// meets the triangle in space (Renka, 1984). Natural neighbors of so few points on a torus that a circle
+  /// without points is wider than the shorter period, on a cylinder one with its centre between the ends, are
+  /// Error(input). values: one row of options.columns numbers per input point; the result has one row per query. At a
   /// point, every method gives exactly that point's values; for duplicates, those of their representative are
   /// used. Throws Error(usage) if options.columns is 0.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,

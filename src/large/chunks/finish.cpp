@@ -10,6 +10,7 @@
 #include "blocks/certify.h"
 #include "blocks/open_sectors.h"
 #include "large/chunks/runs.hpp"
+#include "periodic/torus.h"
 
 namespace flaunay::chunks {
 namespace {
@@ -87,7 +88,8 @@ void FinishedChunk::find_final(host::Threads& threads, const kernel::block_frame
   const auto is_kept = [&](std::size_t t) {
     const std::int32_t a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     if (std::max({a, b, c}) < first_image) return true;
-    return folding->is_kept({points_.ids[a], points_.ids[b], points_.ids[c]});
+    const auto image = [&](std::int32_t v) { return folding->image(points_.ids[v]); };
+    return kernel::is_kept(image(a), image(b), image(c)) != 0;
   };
   rows_.resize(mesh_.triangles.size() / 3);
   threads.share(rows_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
@@ -258,8 +260,19 @@ ChunkSurface FinishedChunk::take_surface() && {
   return surface;
 }
 
-std::vector<Fold> FinishedChunk::folds(std::uint64_t first_row, bool is_last) const {
-  std::vector<Fold> folds;
+std::vector<kernel::seam_record> FinishedChunk::folds(const Folding& folding, std::uint64_t first_row,
+                                                      bool is_last) const {
+  std::vector<kernel::seam_record> folds;
+  const auto add = [&](std::int32_t from, std::int64_t to, kernel::double2 b, std::int64_t own,
+                       std::int64_t beyond, std::int64_t at) {
+    const kernel::double2 a = points_.point(from);
+    folds.push_back({{a.x, a.y, b.x, b.y},
+                     folding.image(points_.ids[from]),
+                     folding.image(to),
+                     folding.image(own),
+                     beyond < 0 ? NO_IMAGE : folding.image(beyond),
+                     at});
+  };
   for (const Border& border : border_) {
     if (border.closed == kNone) continue;
     const auto t = static_cast<std::size_t>(border.triangle);
@@ -280,14 +293,12 @@ std::vector<Fold> FinishedChunk::folds(std::uint64_t first_row, bool is_last) co
         at = edge.corner;
       }
     }
-    folds.push_back(
-        {points_.ids[from], points_.ids[to], points_.point(from), points_.point(to), own, beyond, at});
+    add(from, points_.ids[to], points_.point(to), own, beyond, at);
   }
   if (!is_last) return folds;
   for (const auto& [from, edge] : open_edges(first_row)) {
     if (edge.begins != 0 || edge.corner < 0) continue;
-    folds.push_back(
-        {points_.ids[from], edge.to, points_.point(from), {edge.x, edge.y}, edge.opposite, -1, edge.corner});
+    add(from, edge.to, {edge.x, edge.y}, edge.opposite, -1, edge.corner);
   }
   return folds;
 }

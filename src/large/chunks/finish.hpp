@@ -48,7 +48,7 @@ class FinishedChunk {
   ChunkPoints handed_on(std::uint64_t first_row) const;
   /// The edges between triangles with and without rows, and, if this is the only chunk of the last round,
   /// those on the hull.
-  std::vector<Fold> folds(std::uint64_t first_row, bool is_last) const;
+  std::vector<kernel::seam_record> folds(const Folding& folding, std::uint64_t first_row, bool is_last) const;
   /// Writes the final triangles, their areas, and neighbours, including missing ones of earlier rounds.
   void write(MeshSink& sink, std::uint64_t first_row) const;
   /// The final triangles with the values of their corners. Nothing else may be called after it.

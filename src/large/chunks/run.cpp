@@ -328,7 +328,7 @@ class Round {
     const std::uint64_t first_row = call_.rows;
     call_.rows += chunk.triangles();
     call_.dropped += chunk.dropped();
-    if (call_.folding != nullptr) call_.folding->add(chunk.folds(first_row, is_last()));
+    if (call_.folding != nullptr) call_.folding->add(chunk.folds(*call_.folding, first_row, is_last()));
     if (is_first_) call_.vertices += chunk.points().size() - made.duplicates;
     statistics_.duplicates += made.duplicates;
     statistics_.undecided += made.undecided;
