@@ -1,4 +1,5 @@
 // Regular triangulations on a torus or a cylinder, beside those of copies of the points in the plane.
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -282,39 +283,40 @@ TEST(WeightedPeriodic, VerificationFindsWhatIsWrong) {
   }
 }
 
+/// Returns the triangulation.
+Triangulation expect_cells(const WeightedPoints& points, const Period& period) {
+  SCOPED_TRACE(points.name);
+  const std::size_t n = points.size();
+  const Triangulation mesh = triangulated(points, period);
+  const ClippedVoronoi cells = triangulator().clipped_voronoi(mesh, points.weights.data());
+  EXPECT_NEAR(std::accumulate(cells.areas.begin(), cells.areas.end(), 0.0), period.x * period.y, 1e-12);
+  // The least power of a point's images.
+  const auto power = [&](std::size_t i, double x, double y) {
+    const double dx = std::remainder(mesh.places[2 * i] - x, period.x),
+                 dy = std::remainder(mesh.places[2 * i + 1] - y, period.y);
+    return dx * dx + dy * dy - points.weights[i];
+  };
+  double tiled = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (std::binary_search(mesh.hidden.begin(), mesh.hidden.end(), static_cast<std::int32_t>(i))) {
+      EXPECT_EQ(cells.offsets[i], cells.offsets[i + 1]);
+      EXPECT_EQ(cells.areas[i], 0);
+    }
+    for (std::int32_t v = cells.offsets[i]; v < cells.offsets[i + 1]; ++v) {
+      const double x = cells.vertices[2 * v], y = cells.vertices[2 * v + 1];
+      for (std::size_t j = 0; j < n; ++j) EXPECT_LE(power(i, x, y), power(j, x, y) + 1e-11);
+      const std::int32_t w = v + 1 < cells.offsets[i + 1] ? v + 1 : cells.offsets[i];
+      tiled += (x * cells.vertices[2 * w + 1] - y * cells.vertices[2 * w]) / 2;
+    }
+  }
+  EXPECT_NEAR(tiled, period.x * period.y, 1e-12);
+  return mesh;
+}
+
 TEST(WeightedPeriodic, CellsAreWhereThePowerIsLeast) {
   FixtureRandom random(5);
   for (const std::size_t n : {1, 2, 7, 200}) {
-    for (const int kind : {0, 3, 4}) {
-      const WeightedPoints points = any_points(random, n, 52, kind);
-      const Period period{1, n == 7 ? 0.25 : 1.5};
-      const Triangulation mesh = triangulated(points, period);
-      const ClippedVoronoi cells = triangulator().clipped_voronoi(mesh, points.weights.data());
-      EXPECT_NEAR(std::accumulate(cells.areas.begin(), cells.areas.end(), 0.0), period.x * period.y, 1e-12);
-      // The least power of a point's images.
-      const auto power = [&](std::size_t i, double x, double y) {
-        const double dx = std::remainder(mesh.places[2 * i] - x, period.x),
-                     dy = std::remainder(mesh.places[2 * i + 1] - y, period.y);
-        return dx * dx + dy * dy - points.weights[i];
-      };
-      double tiled = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const bool is_hidden = std::binary_search(mesh.hidden.begin(), mesh.hidden.end(), i);
-        if (is_hidden) {
-          ASSERT_EQ(cells.offsets[i], cells.offsets[i + 1]);
-          ASSERT_EQ(cells.areas[i], 0);
-          continue;
-        }
-        ASSERT_GE(cells.offsets[i + 1] - cells.offsets[i], 3);
-        for (std::int32_t v = cells.offsets[i]; v < cells.offsets[i + 1]; ++v) {
-          const double x = cells.vertices[2 * v], y = cells.vertices[2 * v + 1];
-          for (std::size_t j = 0; j < n; ++j) ASSERT_LE(power(i, x, y), power(j, x, y) + 1e-11);
-          const std::int32_t w = v + 1 < cells.offsets[i + 1] ? v + 1 : cells.offsets[i];
-          tiled += (x * cells.vertices[2 * w + 1] - y * cells.vertices[2 * w]) / 2;
-        }
-      }
-      EXPECT_NEAR(tiled, period.x * period.y, 1e-12);
-    }
+    for (const int kind : {0, 3, 4}) expect_cells(any_points(random, n, 52, kind), {1, n == 7 ? 0.25 : 1.5});
   }
   const WeightedPoints points = any_points(random, 300, 52, 0);
   const Numbers equal(300, 0.5);
@@ -324,6 +326,54 @@ TEST(WeightedPeriodic, CellsAreWhereThePowerIsLeast) {
                        voronoi = triangulator().clipped_voronoi(mesh);
   EXPECT_TRUE(same(power.vertices, voronoi.vertices));
   EXPECT_TRUE(same(power.areas, voronoi.areas));
+}
+
+TEST(WeightedPeriodic, CellsOfPointsThatAreNearlyHiddenAndOnLines) {
+  // Beside each second point of a column are two others nearly on a line with it, and at nearly the power
+  // with which they would hide it.
+  FixtureRandom random(6);
+  constexpr int kRows = 16;
+  WeightedPoints points{"columns", {}, {}};
+  for (int column = 0; column < kRows; ++column) {
+    Numbers weights(kRows);
+    for (int k = 0; k < kRows; k += 2) weights[k] = 1e-4 * random.unit();
+    for (int k = 1; k < kRows; k += 2)
+      weights[k] =
+          (weights[k - 1] + weights[(k + 1) % kRows]) / 2 - 1.0 / kRows / kRows + 1e-13 * random.unit();
+    points.weights.insert(points.weights.end(), weights.begin(), weights.end());
+    for (int k = 0; k < kRows; ++k) {
+      const double x = static_cast<double>(column) / kRows + 1e-12 * random.unit();
+      points.coordinates.insert(points.coordinates.end(), {x, static_cast<double>(k) / kRows});
+    }
+  }
+  const Triangulation mesh = expect_cells(points, {1, 1});
+  const ClippedVoronoi cells = triangulator().clipped_voronoi(mesh, points.weights.data());
+  std::size_t slivers = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const std::int32_t* const v = &mesh.triangles[t];
+    if (v[0] / kRows != v[1] / kRows || v[1] / kRows != v[2] / kRows) continue;
+    ++slivers;
+    // Its centre as seen from the first corner, exactly.
+    std::array<mpq_class, 2> x, y, lift;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::int32_t w = v[k + 1];
+      const std::int8_t* const offset = &mesh.offsets[2 * (t + k + 1)];
+      x[k] = mpq_class(mesh.places[2 * w]) + offset[0] - mesh.places[2 * v[0]];
+      y[k] = mpq_class(mesh.places[2 * w + 1]) + offset[1] - mesh.places[2 * v[0] + 1];
+      lift[k] = x[k] * x[k] + y[k] * y[k] + mpq_class(points.weights[v[0]]) - points.weights[w];
+    }
+    const mpq_class twice = 2 * (x[0] * y[1] - y[0] * x[1]),
+                    across = (lift[0] * y[1] - lift[1] * y[0]) / twice,
+                    up = (x[0] * lift[1] - x[1] * lift[0]) / twice;
+    double nearest = HUGE_VAL;
+    for (std::int32_t i = cells.offsets[v[0]]; i < cells.offsets[v[0] + 1]; ++i) {
+      const double dx = cells.vertices[2 * i] - mesh.places[2 * v[0]] - across.get_d(),
+                   dy = cells.vertices[2 * i + 1] - mesh.places[2 * v[0] + 1] - up.get_d();
+      nearest = std::min(nearest, std::hypot(dx, dy));
+    }
+    EXPECT_LT(nearest, 1e-14);
+  }
+  EXPECT_GT(slivers, 5u);
 }
 
 TEST(WeightedPeriodic, ErrorsSayWhatIsWrong) {

@@ -11,6 +11,7 @@
 #include "derived/periodic/torus.hpp"
 #include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/moments.hpp"
+#include "derived/weighted/centre.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/for_each.hpp"
 
@@ -52,11 +53,14 @@ class Corners {
   // The centre of the corner's triangle, from which its corners have the same power, when the corner is at
   // its place, as seen from there.
   Point centre(std::int32_t c) const {
-    const Point a = seen(c, turned(c, 1)), b = seen(c, turned(c, 2));
+    const std::int32_t next = turned(c, 1), last = turned(c, 2);
+    const Point a = seen(c, next), b = seen(c, last);
+    if (!are_alike(c, next, last))
+      return weighted::power_centre({0, 0}, a, b, {weight(c), weight(next), weight(last)});
     const double twice = 2 * determinant(a.x, a.y, b.x, b.y);
-    const double a_lift = a.x * a.x + a.y * a.y - heavier(turned(c, 1), c),
-                 b_lift = b.x * b.x + b.y * b.y - heavier(turned(c, 2), c);
-    return {determinant(a_lift, a.y, b_lift, b.y) / twice, determinant(a.x, a_lift, b.x, b_lift) / twice};
+    const double a_square = a.x * a.x + a.y * a.y, b_square = b.x * b.x + b.y * b.y;
+    return {determinant(a_square, a.y, b_square, b.y) / twice,
+            determinant(a.x, a_square, b.x, b_square) / twice};
   }
   Point place(std::int32_t v) const { return {mesh_.places[2 * index(v)], mesh_.places[2 * index(v) + 1]}; }
 
@@ -70,8 +74,9 @@ class Corners {
     return kernel::moved(q, step(from, to, 0), step(from, to, 1), &lattice_) - p;
   }
 
-  double heavier(std::int32_t c, std::int32_t than) const {
-    return weights_ == nullptr ? 0 : weights_[point(c)] - weights_[point(than)];
+  double weight(std::int32_t c) const { return weights_[point(c)]; }
+  bool are_alike(std::int32_t c, std::int32_t d, std::int32_t e) const {
+    return weights_ == nullptr || (weight(c) == weight(d) && weight(d) == weight(e));
   }
 
   const Triangulation& mesh_;
