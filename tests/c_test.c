@@ -759,7 +759,7 @@ static void test_bad_device_points(void) {
       {{.memory = memory, .count = 5}, "it has 64 bytes, 80 are needed"},
       {{.count = 4}, "no buffer of points"},
       {{.memory = memory, .count = 4, .precision = 17}, "17"},
-      {{.memory = memory, .count = 4, .reserved = {[2] = 1}}, "flaunay_device_points"},
+      {{.memory = memory, .count = 4, .reserved = {[1] = 1}}, "flaunay_device_points"},
       {{.memory = memory, .count = 4, .offsets = offsets, .device_offsets = memory, .sets = 2}, "twice"}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
     REFUSED(triangulate_square(bad[k].input, 0, NULL), bad[k].text);
@@ -1414,11 +1414,22 @@ static void test_weighted(void) {
   CHECK(fabs(areas[0] + areas[1] + areas[2] + areas[3] + areas[5] - 16) < 1e-12);
   flaunay_clipped_voronoi_destroy(cells);
   flaunay_triangulation_destroy(weighted);
-  // What the plane without weights alone has.
-  flaunay_triangulation* none = NULL;
+  // On a torus.
+  flaunay_triangulation *with_period = NULL, *none = NULL;
   flaunay_space torus = on_torus(8, 8);
   torus.weights = weights;
-  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "weights");
+  OK(triangulate_in(torus, places, 6, NULL, 0, &with_period));
+  const flaunay_mesh* const on_torus_mesh = flaunay_triangulation_mesh(with_period);
+  CHECK(on_torus_mesh->hidden_count == 1 && on_torus_mesh->triangle_count == 10);
+  OK(flaunay_mesh_verify(on_torus_mesh, places, NULL, &torus));
+  REFUSED(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, with_period, NULL, 0, &cells), "weights");
+  OK(flaunay_voronoi_clip(triangulator, NULL, weights, 0, with_period, NULL, 0, &cells));
+  CHECK(fabs(total(flaunay_clipped_voronoi_areas(cells), 6) - 64) < 1e-12);
+  flaunay_clipped_voronoi_destroy(cells);
+  flaunay_triangulation_destroy(with_period);
+  // What has no weights.
+  flaunay_space sphere = {.kind = FLAUNAY_SPACE_SPHERE, .weights = weights};
+  REFUSED(triangulate_in(sphere, places, 2, NULL, 0, &none), "weights");
   const flaunay_options dwyer = {.mode = FLAUNAY_MODE_DWYER, .space = &space};
   REFUSED(flaunay_triangulate(triangulator, places, 6, NULL, 0, &dwyer, &none), "mode");
   const flaunay_options with_space = {.space = &space};
@@ -1662,7 +1673,7 @@ static void test_sphere_on_device(void) {
   REFUSED(flaunay_locator_create_device(triangulator, &given, sphere, &enqueue, &locator), "space");
   space.coordinates = FLAUNAY_SPHERE_DIRECTIONS;
   REFUSED(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, sphere), "too small");
-  REFUSED(flaunay_device_triangulation_set_buffer(sphere, 256, own), "256");
+  REFUSED(flaunay_device_triangulation_set_buffer(sphere, 512, own), "512");
   flaunay_device_triangulation_destroy(sphere);
 }
 

@@ -415,8 +415,16 @@ TEST_F(CommandVerifyTest, OtherSpaces) {
       {"triangulate", points, "--period", "5,6,2", "--triangles", path("t.npy"), "--offsets", path("o.npy")});
   expect_right(joined(torus, {"5,6,2"}));
   expect_wrong({}, joined(torus, {"5,6,-2"}));
-  // On a line, triangles do not say which points are hidden.
-  const std::string none = write_rows("none.npy", {});
+  const Arguments with_weights = {"--weighted", "--offsets", path("o.npy"), "--period"};
+  run_well(joined({"triangulate", weighted, "--triangles", path("t.npy")}, joined(with_weights, {"8,8,1"})));
+  expect_right(joined({weighted, path("t.npy")}, joined(with_weights, {"8,8,1"})));
+  expect_wrong({}, joined({write("heavy.txt", "0 0 0\n4 0 0\n0 4 0\n1 1 9\n0 0 -1\n0 4 0\n"), path("t.npy")},
+                          joined(with_weights, {"8,8,1"})));
+  // On a line or a circle, triangles do not say which points are hidden.
+  const std::string none = write_rows("none.npy", {}), circle = write("circle.txt", "0 1 0\n1 1 9\n2 1 0\n");
+  run_well(joined({"triangulate", circle, "--triangles", path("t.npy")}, joined(with_weights, {"8,inf"})));
+  expect_right(joined({circle, path("t.npy")}, joined(with_weights, {"8,inf"})));
+  expect_wrong({"one circle"}, joined({weighted, path("t.npy")}, joined(with_weights, {"8,inf"})));
   expect_right({write("line.txt", "0 0 0\n1 1 9\n2 2 0\n"), none, "--weighted"});
   expect_wrong({"collinear"}, {weighted, none, "--weighted"});
 
@@ -1045,6 +1053,16 @@ TEST_F(CommandTriangulateTest, WeightedPoints) {
   EXPECT_EQ(read_array(path("h.npy")).values, (Indices{4}));
   EXPECT_EQ(read_array(path("hull.npy")).values, (Indices{0, 1, 2, 3}));
   EXPECT_EQ(json_of(path("s.json"))["triangles"], 4);
+}
+
+TEST_F(CommandTriangulateTest, WeightedPointsWithAPeriod) {
+  const std::string points = write("points.xyz", "0 0 0\n4 0 0\n4 4 0\n0 4 0\n1 2 -8\n1 2 3\n");
+  const Outcome outcome =
+      run_well({"triangulate", points, "--weighted", "--period", "8,8,1", "--triangles", path("t.npy"),
+                "--hidden", path("h.npy"), "--offsets", path("o.npy"), "--output", path("mesh.obj")});
+  expect_parts(outcome.out, {"hidden points: 1"});
+  EXPECT_EQ(read_array(path("t.npy")).shape, "(10, 3)");
+  EXPECT_EQ(read_array(path("h.npy")).values, (Indices{4}));
 }
 
 // --------------------------------------------------------------------------------------------------- chunks

@@ -26,7 +26,7 @@ from flaunay._declarations import INTERPOLATION
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._queries import Kept
-from flaunay._surfaces import Doubles, Indices, WithLocator
+from flaunay._surfaces import Doubles, Indices, WithLocator, as_weights
 
 if TYPE_CHECKING:
     import pyopencl
@@ -42,12 +42,16 @@ def _as_queries(given: ArrayLike) -> Doubles:
 
 
 class PeriodicDelaunay(WithLocator):
-    """Delaunay triangulations of points on a torus or a cylinder. `periodic` makes them.
+    """Delaunay triangulations of points on a torus or a cylinder, or with weights regular ones. `periodic` makes them.
 
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, 2)
         The points as they were given.
+    weights : ndarray of float64, shape (npoints,), or None
+        Their weights, as of `WeightedDelaunay`. Then `cells` are power cells, and only `nearest` has queries.
+    hidden : ndarray of int32, shape (nhidden,)
+        As of `WeightedDelaunay`. Without weights there are none.
     period : tuple of float
         Where the plane begins again, in x and in y; infinite if it does not. As given, but for the last bit
         of a double, which is 0 unless the period is a power of two. The shear is third, if there is one, and
@@ -75,10 +79,11 @@ class PeriodicDelaunay(WithLocator):
         points: Doubles,
         period: tuple[float, ...],
         offsets: Optional[npt.NDArray[np.int64]],
+        weights: Optional[Doubles],
         device: Optional[str],
     ) -> None:
-        self._given = points, period, offsets, device
-        space = _calls.space_of("torus", period)
+        self._given = points, period, offsets, weights, device
+        space = _calls.space_of("torus", period, weights=weights)
         self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
         made = self._handle.arrays()
         self.points = points
@@ -89,11 +94,13 @@ class PeriodicDelaunay(WithLocator):
         self.neighbors: Indices = frozen(made["neighbors"])
         self.representatives: Indices = frozen(made["representatives"])
         self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
+        self.weights = weights
+        self.hidden: Indices = frozen(made["hidden"])
         self._kept_locator, self._kept_tree = Kept(), Kept()
 
     @cached_property
     def cells(self) -> ClippedVoronoi:
-        """The Voronoi cells on the torus, computed when they are first asked for.
+        """The Voronoi cells on the torus, or with weights the power cells, computed when they are first asked for.
 
         Each cell is around its point's place, so that some reach beyond the period, whose box is the
         ``bounds``. Vertices are rounded, so that all cells that share one have exact images of it; those
@@ -112,7 +119,7 @@ class PeriodicDelaunay(WithLocator):
         """
         across, up = self.period[:2]
         box = np.array([[0, 0], [across, 0], [across, up], [0, up]])
-        return ClippedVoronoi(**self._handle.clipped_cells(self._triangulator), bounds=box)
+        return ClippedVoronoi(**self._handle.clipped_cells(self._triangulator, self.weights), bounds=box)
 
     @cached_property
     def corners(self) -> Doubles:
@@ -272,6 +279,7 @@ def periodic(
     period: Sequence[Optional[float]],
     offsets: Optional[npt.ArrayLike] = None,
     *,
+    weights: Optional[ArrayLike] = None,
     device: Optional[str] = None,
 ) -> PeriodicDelaunay:
     """Triangulates points in a plane that repeats itself, such as particles in a periodic box.
@@ -287,6 +295,8 @@ def periodic(
     offsets : array_like of int, optional
         Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
         are one set.
+    weights : array_like, shape (n,), optional
+        As of `weighted`: squared lengths, such as squared radii of particles.
     device : str, optional
         As of `triangulate`.
 
@@ -299,7 +309,7 @@ def periodic(
     UsageError
         For a wrong shape, a period beyond these limits, and offsets that decrease or do not go from 0 to n.
     InputError
-        For a point that is not finite.
+        For a point that is not finite, and for weights as of `weighted`.
     DeviceError
         As of `triangulate`.
 
@@ -320,11 +330,13 @@ def periodic(
     1.0
     >>> flaunay.periodic(points, (1, None)).nsimplex
     1998
+    >>> flaunay.periodic([[0, 0], [2, 0]], (4, 4), weights=[0, 2]).cells.areas.tolist()
+    [6.0, 10.0]
     """
     given = np.asarray(as_points(points), np.float64)
-    lengths = as_lengths(period)
+    lengths, of_points = as_lengths(period), None if weights is None else as_weights(weights, len(given))
     sets = None if offsets is None else as_offsets(offsets)
-    return PeriodicDelaunay(frozen(given.copy()), lengths, sets, device)
+    return PeriodicDelaunay(frozen(given.copy()), lengths, sets, of_points, device)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

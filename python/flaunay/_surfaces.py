@@ -9,12 +9,20 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, summary
+from flaunay._arrays import ArrayLike, as_floats, frozen, summary
 from flaunay._errors import UsageError
 from flaunay._queries import Kept, count_and_bound
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
+
+
+def as_weights(given: ArrayLike, n: int) -> Doubles:
+    """A copy of the weights of n points."""
+    weights = np.array(as_floats(given, "weights"), np.float64)
+    if weights.shape != (n,):
+        raise UsageError(f"weights must have the shape ({n},), one per point, not {weights.shape}")
+    return frozen(weights)
 
 
 class OfPoints:

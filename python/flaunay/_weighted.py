@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, summary
+from flaunay._arrays import ArrayLike, as_offsets, as_points, frozen, summary
 from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._errors import UsageError
-from flaunay._surfaces import Doubles, Indices, OfPoints
+from flaunay._surfaces import Doubles, Indices, OfPoints, as_weights
 
 
 
@@ -129,7 +129,7 @@ def weighted(
         Where sets begin: set s has the points ``offsets[s]`` to ``offsets[s + 1]``. By default all points
         are one set.
     device : str, optional
-        As of `triangulate`; the host's cores compute in any case.
+        As of `triangulate`.
 
     Returns
     -------
@@ -160,10 +160,5 @@ def weighted(
     ([3], [0])
     """
     given = np.asarray(as_points(points), np.float64)
-    of_points = np.asarray(as_floats(weights, "weights"), np.float64)
-    if of_points.shape != given.shape[:1]:
-        raise UsageError(
-            f"weights must have the shape ({len(given)},), one per point, not {of_points.shape}"
-        )
     sets = None if offsets is None else as_offsets(offsets)
-    return WeightedDelaunay(frozen(given.copy()), frozen(of_points.copy()), sets, device)
+    return WeightedDelaunay(frozen(given.copy()), as_weights(weights, len(given)), sets, device)

@@ -62,6 +62,28 @@ def test_sheared_boxes(random):
         flaunay.periodic(points, (2, 3, 1, 1))
 
 
+@pytest.mark.parametrize("period", [PERIOD, (*PERIOD, 0.75), (2, None)])
+def test_weights(random, period):
+    points, weights = random.uniform(0, PERIOD, (300, 2)), random.uniform(0, 0.1, 300)
+    tri = flaunay.periodic(points, period, weights=weights)
+    tri.verify()
+    assert len(tri.hidden) > 10 and not np.isin(tri.hidden, tri.simplices).any()
+    np.testing.assert_array_equal(tri.nearest(points), np.arange(300))
+    again = pickle.loads(pickle.dumps(tri))
+    np.testing.assert_array_equal(again.simplices, tri.simplices)
+    with pytest.raises(flaunay.UsageError, match="weights"):
+        tri.find_simplex(points)
+    if period[1] is None:
+        assert tri.nsimplex == 2 * (300 - len(tri.hidden)) - 2
+        return
+    assert tri.nsimplex == 2 * (300 - len(tri.hidden))
+    assert abs(tri.cells.areas.sum() - 6) < 1e-12 and (tri.cells.areas[tri.hidden] == 0).all()
+    equal = flaunay.periodic(points, period, weights=np.full(300, 0.5))
+    np.testing.assert_array_equal(equal.simplices, flaunay.periodic(points, period).simplices)
+    with pytest.raises(flaunay.UsageError, match=r"the shape \(300,\)"):
+        flaunay.periodic(points, period, weights=weights[1:])
+
+
 def test_one_point_has_two_triangles():
     tri = flaunay.periodic([[7.5, -1]], PERIOD)
     assert tri.simplices.tolist() == [[0, 0, 0], [0, 0, 0]]

@@ -17,7 +17,7 @@ flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const do
                                     size_t corner_count, flaunay_clipped_voronoi** cells) {
   return c::make(triangulator, cells, [&](Triangulator& cpp) {
     const Triangulation& primal = required(triangulation, "the triangulation").plain();
-    if (primal.space.kind != SpaceKind::plane) return cpp.clipped_voronoi(primal);
+    if (primal.space.kind != SpaceKind::plane) return cpp.clipped_voronoi(primal, weights);
     if (weights != nullptr)
       return cpp.clipped_voronoi(coordinates, weights, n, primal, corners, corner_count);
     return cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count);

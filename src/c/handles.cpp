@@ -129,6 +129,7 @@ flaunay_mesh view_of(const DeviceTriangulation& triangulation, const StatisticsV
   view.triangle_count = total(triangulation.triangle_offsets);
   view.hull_count = total(triangulation.hull_offsets);
   view.image_count = triangulation.images;
+  view.hidden_count = triangulation.hidden_count;
   view.triangle_offsets = elements(triangulation.triangle_offsets);
   view.hull_offsets = elements(triangulation.hull_offsets);
   view.point_offsets = elements(triangulation.point_offsets);
@@ -232,6 +233,7 @@ DevicePoints to_points(const flaunay_device_points* points, const char* what) {
   result.device_offsets = given.device_offsets;
   result.sets = given.sets;
   result.space = to_space(given.space);
+  result.weights = given.weights;
   return result;
 }
 

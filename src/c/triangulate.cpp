@@ -149,7 +149,7 @@ FLAUNAY_DESTROY(triangulation)
 FLAUNAY_ACCESSOR(const flaunay_mesh*, triangulation, mesh, &handle.view)
 
 FLAUNAY_DESTROY(device_triangulation)
-#define ARRAYS(X) FLAUNAY_TRIANGULATION_ARRAYS(X) X(double, places) X(std::int8_t, corner_offsets)
+#define ARRAYS(X) FLAUNAY_TRIANGULATION_ARRAYS(X) FLAUNAY_SPACE_ARRAYS(X)
 FLAUNAY_DEVICE_RESULT(triangulation, flaunay_part, ARRAYS, "the triangulation", "a triangulation")
 #undef ARRAYS
 FLAUNAY_ACCESSOR(unsigned, device_triangulation, parts, c::to_bits(handle.cpp.parts))

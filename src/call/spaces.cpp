@@ -87,6 +87,7 @@ std::unique_ptr<call::SpaceLocator> call::make_locator_in_space(Triangulator& tr
                                                                 const Triangulation& triangulation) {
   expect(triangulation.space.kind != SpaceKind::plane,
          "queries in the plane need the coordinates of the points, too");
+  expect(triangulation.hidden.empty(), "points with weights have no such queries on a torus or a cylinder");
   return triangulation.space.kind == SpaceKind::torus ? make_locator_on_torus(triangulator, triangulation)
                                                       : make_locator_on_sphere(triangulator, triangulation);
 }

@@ -579,9 +579,8 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
   const Memory weights = embedder().upload(std::vector<double>(n));
   const auto narrow = std::make_shared<std::vector<float>>(xy.begin(), xy.end());
   const DevicePoints points = points_in(memory, n);
-  DevicePoints on_torus = points, with_weights = points;
+  DevicePoints on_torus = points;
   on_torus.space = Space::torus({});
-  with_weights.weights = weights.get();
   return {
       {"triangulate", [=, &t, &xy] { t.triangulate(xy.data(), n); }},
       {"triangulate float", [=, &t] { t.triangulate(narrow->data(), n); }},
@@ -603,7 +602,11 @@ std::vector<std::pair<std::string, std::function<void()>>> calls_on(
       {"voronoi on device", [=, &t, &on_device, &enqueue] { t.voronoi(points, on_device, *dual, enqueue); }},
       {"periodic on device", [=, &t, &enqueue] { t.triangulate(on_torus, *periodic, kAll, enqueue); }},
       {"weighted on device",
-       [=, &t, &enqueue] { t.triangulate(with_weights, *weighted, triangles_alone(), enqueue); }},
+       [=, &t, &enqueue] {
+         DevicePoints given = points;
+         given.weights = weights.get();
+         t.triangulate(given, *weighted, triangles_alone(), enqueue);
+       }},
       {"locator", [=, &t, &xy, &mesh] { Locator(t, xy.data(), n, mesh); }},
       {"locator on device", [=, &t, &on_device, &enqueue] { Locator(t, points, on_device, enqueue); }},
       {"locate", [=, &locator, &xy] { locator.locate(xy.data(), n); }},

@@ -641,8 +641,7 @@ TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
       const double x = random.unit(), y = random.unit() * height;
       queries.insert(queries.end(), {k % 2 == 0 ? x : y, k % 2 == 0 ? y : x});
     }
-    const Triangulation mesh =
-        triangulated(points, k % 2 == 0 ? Period{1, HUGE_VAL} : Period{HUGE_VAL, 1});
+    const Triangulation mesh = triangulated(points, k % 2 == 0 ? Period{1, HUGE_VAL} : Period{HUGE_VAL, 1});
     for (int step = -9; step <= 9; ++step) {
       for (std::size_t i = 0; i < n; ++i) {
         copies.insert(copies.end(), {mesh.places[2 * i] + (k % 2 == 0 ? step : 0),

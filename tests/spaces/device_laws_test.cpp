@@ -23,13 +23,29 @@ constexpr Parts kWanted{true, true, false, true, true, false};
 
 class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
  protected:
-  // Points of the space, whose coordinates are in this buffer.
-  DevicePoints points_in(const Memory& memory, std::size_t count) const {
+  // Points of the space, whose coordinates and weights are in these buffers.
+  DevicePoints points_in(const Memory& memory, const Memory& weights, std::size_t count) const {
     DevicePoints points;
     points.memory = memory.get();
+    points.weights = weights.get();
     points.count = count;
     points.space = space_.space;
     return points;
+  }
+  // The weights of points, if they have some; otherwise no memory.
+  Memory weights_of(const Numbers& points) const {
+    if (!space_.has_weights) return {};
+    Numbers weights;
+    for (std::size_t i = 2; i < points.size(); i += space_.width) weights.push_back(points[i]);
+    return embedder().upload(weights);
+  }
+  template <typename T>
+  std::vector<T> without_weights(const std::vector<T>& points) const {
+    if (!space_.has_weights) return points;
+    std::vector<T> coordinates;
+    for (std::size_t i = 0; i < points.size(); i += space_.width)
+      coordinates.insert(coordinates.end(), {points[i], points[i + 1]});
+    return coordinates;
   }
 
   static Enqueue on_own() {
@@ -63,26 +79,24 @@ class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
       expect_array(found.neighbors, expected.neighbors);
       expect_array(found.hull, expected.hull);
       expect_array(found.representatives, expected.representatives);
+      ASSERT_EQ(found.hidden_count, expected.hidden.size());
+      expect_array(found.hidden, expected.hidden);
     }
   }
 
   const TestSpace space_ = GetParam();
   const std::vector<Case> cases_ = cases(space_.width);
 };
-std::vector<TestSpace> spaces_without_weights() {
-  std::vector<TestSpace> spaces = all_spaces();
-  std::erase_if(spaces, [](const TestSpace& space) { return space.has_weights; });
-  return spaces;
-}
-INSTANTIATE_TEST_SUITE_P(SmallSpaces, DeviceLaws, ::testing::ValuesIn(spaces_without_weights()),
+INSTANTIATE_TEST_SUITE_P(SmallSpaces, DeviceLaws, ::testing::ValuesIn(all_spaces()),
                          [](const auto& of) { return of.param.name; });
 
 TEST_P(DeviceLaws, ResultsAreThoseOfTheHost) {
   for (const Case& given : cases_) {
     SCOPED_TRACE(given.name);
     const std::size_t n = given.numbers.size() / space_.width;
-    const Memory memory = embedder().upload(given.numbers);
-    expect_same(points_in(memory, n), given.numbers, {0, n});
+    const Memory memory = embedder().upload(without_weights(given.numbers)),
+                 weights = weights_of(given.numbers);
+    expect_same(points_in(memory, weights, n), given.numbers, {0, n});
   }
 }
 
@@ -94,11 +108,13 @@ TEST_P(DeviceLaws, PointsOfSetsBeginAnywhereInEitherPrecision) {
   const Memory device_offsets = embedder().upload(ids);
   const auto expect_in = [&](const auto& numbers, Precision precision) {
     using T = typename std::decay_t<decltype(numbers)>::value_type;
-    std::vector<T> all(kFirst * space_.width, std::numeric_limits<T>::quiet_NaN());
-    all.insert(all.end(), numbers.begin(), numbers.end());
-    const Memory memory = embedder().upload(all);
+    const Numbers wide(numbers.begin(), numbers.end());
+    const std::vector<T> coordinates = without_weights(numbers);
+    std::vector<T> all(kFirst * coordinates.size() / offsets.back(), std::numeric_limits<T>::quiet_NaN());
+    all.insert(all.end(), coordinates.begin(), coordinates.end());
+    const Memory memory = embedder().upload(all), weights = weights_of(wide);
     for (const bool are_on_device : {false, true}) {
-      DevicePoints given = points_in(memory, offsets.back());
+      DevicePoints given = points_in(memory, weights, offsets.back());
       given.precision = precision;
       given.first = kFirst;
       if (are_on_device) {
@@ -107,7 +123,7 @@ TEST_P(DeviceLaws, PointsOfSetsBeginAnywhereInEitherPrecision) {
       } else {
         given.offsets = offsets;
       }
-      expect_same(given, Numbers(numbers.begin(), numbers.end()), offsets);
+      expect_same(given, wide, offsets);
     }
   };
   expect_in(points, Precision::float64);
@@ -117,7 +133,7 @@ TEST_P(DeviceLaws, PointsOfSetsBeginAnywhereInEitherPrecision) {
 TEST_P(DeviceLaws, ResultsGoToTheCallersBuffers) {
   const Numbers& numbers = cases_[6].numbers;
   const std::size_t n = numbers.size() / space_.width;
-  const Memory memory = embedder().upload(numbers);
+  const Memory memory = embedder().upload(without_weights(numbers)), weights = weights_of(numbers);
   const Triangulation expected = space_.triangulate(triangulator(), numbers, {0, n});
   DeviceTriangulation found;
   struct Wanted {
@@ -127,8 +143,9 @@ TEST_P(DeviceLaws, ResultsGoToTheCallersBuffers) {
   std::vector<Wanted> wanted = {{&found.triangles, 24}, {&found.neighbors, 24}, {&found.representatives, 4}};
   if (!expected.places.empty()) wanted.push_back({&found.places, 16});
   if (!expected.corner_offsets.empty()) wanted.push_back({&found.corner_offsets, 12});
+  if (space_.has_weights) wanted.push_back({&found.hidden, 4});
   for (const auto& [buffer, bytes] : wanted) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
-  const auto run = [&] { embedded().triangulate(points_in(memory, n), found, kWanted, on_own()); };
+  const auto run = [&] { embedded().triangulate(points_in(memory, weights, n), found, kWanted, on_own()); };
   run();
   expect_array(found.triangles, expected.triangles);
   expect_array(found.neighbors, expected.neighbors);
@@ -147,16 +164,16 @@ TEST_P(DeviceLaws, ErrorsNameThePoint) {
   const std::size_t n = numbers.size() / space_.width;
   numbers[13 * space_.width + 1] = std::numeric_limits<double>::infinity();
   numbers[16 * space_.width] = std::nan("");
-  const Memory memory = embedder().upload(numbers);
+  const Memory memory = embedder().upload(without_weights(numbers)), weights = weights_of(numbers);
   cl_event done = reinterpret_cast<cl_event>(8);
   Enqueue enqueue = on_own();
   enqueue.event = &done;
   DeviceTriangulation found;
   expect_error(ErrorKind::input, "point 13 is not finite",
-               [&] { embedded().triangulate(points_in(memory, n), found, kWanted, enqueue); });
+               [&] { embedded().triangulate(points_in(memory, weights, n), found, kWanted, enqueue); });
   EXPECT_EQ(done, nullptr);
   expect_error(ErrorKind::usage, "too small",
-               [&] { embedded().triangulate(points_in(memory, n + 1), found, kWanted, on_own()); });
+               [&] { embedded().triangulate(points_in(memory, weights, n + 1), found, kWanted, on_own()); });
 }
 
 }  // namespace

@@ -16,8 +16,7 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/command/results.hpp"
-#include "app/command/surfaces.hpp"
-#include "app/command/weighted.hpp"
+#include "app/command/spaces.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
@@ -39,9 +38,8 @@ struct TriangulateRequest : Task {
   ChunkRequest chunks;
   bool has_constraints = false;
   ConstraintRequest constraints;
-  bool is_on_surface = false;
-  SurfaceRequest surface;
-  WeightedRequest weighted;
+  bool is_in_space = false;
+  SpaceRequest space;
 };
 
 const research::ModeInfo& info_of(Mode mode) {
@@ -129,12 +127,11 @@ research::Options options_of(const TriangulateRequest& request, Progress& progre
 }
 
 int triangulate(const TriangulateRequest& request) {
-  if (request.weighted.is_weighted) return triangulate_weighted(request, request.weighted);
   // The request is checked before any work begins, and the input before a device is opened.
   io::format_of(request.input, io::Use::read_points);
   io::check_columns(request.input, request.columns);
-  if (request.is_on_surface && !request.in_chunks)
-    return triangulate_surface(request, request.surface, request.constraints.points);
+  if (request.is_in_space && !request.in_chunks)
+    return triangulate_in_space(request, request.space, request.constraints.points);
   if (request.in_chunks) return triangulate_in_chunks(request, request.chunks, "");
   if (request.has_constraints) return triangulate_with_constraints(request, request.constraints);
   OutputFiles outputs({request.input});
@@ -233,8 +230,7 @@ void add_triangulate(CLI::App& app, Action& action) {
           "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
           "between them, or all: triangulates in chunks, on each of them");
   add_constraint_options(command, request->constraints);
-  add_surface_options(command, request->surface);
-  add_weighted_options(command, request->weighted);
+  add_space_options(command, request->space);
   add_chunk_options(command, request->chunks);
   add_index(command, request->index);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
@@ -243,14 +239,14 @@ void add_triangulate(CLI::App& app, Action& action) {
   command->footer(mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
-    request->is_on_surface = asks_for_surface(*command, request->surface);
+    request->is_in_space = asks_for_space(*command, request->space);
     action = [request] { return triangulate(*request); };
     request->in_chunks = asks_for_chunks(*command, request->device);
-    if (request->is_on_surface && request->in_chunks) {
-      request->chunks.period = period_of(request->surface.period);
-      request->chunks.offsets = request->surface.offsets;
+    if (request->is_in_space && request->in_chunks) {
+      request->chunks.period = period_of(request->space.period);
+      request->chunks.offsets = request->space.offsets;
     }
-    if (request->is_on_surface || asks_for_weighted(*command, request->weighted)) return;
+    if (request->is_in_space) return;
     request->has_constraints = has_constraints(*command, request->input, request->constraints);
     if (request->in_chunks && request->has_constraints)
       refuse(*command, "--device", "constraints need one device");

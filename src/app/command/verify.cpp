@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -20,8 +21,7 @@
 #include "app/command/options.hpp"
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
-#include "app/command/surfaces.hpp"
-#include "app/command/weighted.hpp"
+#include "app/command/spaces.hpp"
 #include "app/files/formats.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
@@ -194,7 +194,19 @@ std::vector<std::int32_t> representatives_by(std::size_t n, const Key& key) {
   return representatives;
 }
 
-/// Points that no triangle has are hidden, unless they are represented by others; and the hull is where
+/// Points that no triangle has are hidden, unless they are represented by others.
+std::vector<std::int32_t> hidden_points(const Triangulation& mesh) {
+  std::vector<char> is_used(mesh.representatives.size(), 0);
+  for (const std::int32_t v : mesh.triangles) is_used[v] = 1;
+  std::vector<std::int32_t> hidden;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    const auto own = static_cast<std::int32_t>(i);
+    if (is_used[i] == 0 && mesh.representatives[i] == own) hidden.push_back(own);
+  }
+  return hidden;
+}
+
+/// The hull is where
 /// triangles have no neighbours.
 std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const auto [points, weights] = read_weighted(request.points, request.columns);
@@ -209,10 +221,8 @@ std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Pr
   const std::vector<std::int32_t> made = prove::neighbors_of(mesh.triangles, n);
   if (mesh.neighbors.empty()) mesh.neighbors = made;
   std::vector<std::int32_t> next(n, -1);
-  std::vector<char> is_used(n, 0);
   std::int32_t first = -1;
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    is_used[mesh.triangles[c]] = 1;
     if (made[c] >= 0) continue;
     const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
     next[from] = to;
@@ -221,19 +231,35 @@ std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Pr
   }
   for (std::int32_t v = first; v >= 0 && mesh.hull.size() <= n; v = next[v] == first ? -1 : next[v])
     mesh.hull.push_back(v);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto own = static_cast<std::int32_t>(i);
-    if (is_used[i] == 0 && mesh.representatives[i] == own) mesh.hidden.push_back(own);
-  }
+  mesh.hidden = hidden_points(mesh);
   // Which points of a line are hidden, triangles do not say.
   if (mesh.triangles.empty()) return flaunay::verify(at.data(), n, {}).problem;
   mesh.hull_offsets = {0, mesh.hull.size()};
   return flaunay::verify(at.data(), {0, n}, Space::plane().with_weights(weights.data()), mesh);
 }
 
+/// Of weighted points on a torus or a cylinder that are said to have no triangles: they must be on one circle
+/// of a cylinder. Which of them are hidden, triangles do not say.
+std::string problem_without_triangles(const Triangulation& mesh) {
+  const bool is_upright = !std::isfinite(mesh.space.period.x);
+  const bool is_cylinder = is_upright || !std::isfinite(mesh.space.period.y);
+  const std::size_t axis = is_upright ? 0 : 1;
+  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+    if (!is_cylinder || mesh.places[2 * i + axis] != mesh.places[axis])
+      return "there are no triangles, but the points are not on one circle of a cylinder";
+  }
+  return "";
+}
+
 std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   Triangulation mesh;
-  mesh.places = io::read_points(request.points, request.columns).coordinates;
+  WeightedPoints read;
+  if (request.is_weighted) {
+    read = read_weighted(request.points, request.columns);
+  } else {
+    read.points = io::read_points(request.points, request.columns);
+  }
+  mesh.places = std::move(read.points.coordinates);
   n = mesh.places.size() / 2;
   mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {
     return take_to_places(period_of(request.period), mesh.places.data(), n);
@@ -246,10 +272,15 @@ std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progr
   }
   mesh.point_offsets = {0, n};
   progress.update("verifying");
-  mesh.representatives = representatives_by(
-      n, [&](std::int32_t i) { return std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]); });
+  mesh.representatives = representatives_by(n, [&](std::int32_t i) {
+    return std::tuple(mesh.places[2 * i], mesh.places[2 * i + 1], request.is_weighted ? read.weights[i] : 0);
+  });
   if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, mesh.corner_offsets);
-  return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh);
+  if (!request.is_weighted) return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh);
+  if (mesh.triangles.empty()) return problem_without_triangles(mesh);
+  mesh.hidden = hidden_points(mesh);
+  return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(read.weights.data()),
+                         mesh);
 }
 
 std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Progress& progress) {
@@ -276,9 +307,10 @@ std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Prog
 Checked verify_in_space(const VerifyRequest& request, Progress& progress) {
   const Stopwatch stopwatch;
   Checked checked;
-  checked.report.problem = request.is_weighted ? problem_of_weighted(request, checked.report.points, progress)
-                           : request.is_sphere ? problem_on_sphere(request, checked.report.points, progress)
-                                               : problem_on_torus(request, checked.report.points, progress);
+  checked.report.problem =
+      !request.period.empty() ? problem_on_torus(request, checked.report.points, progress)
+      : request.is_sphere     ? problem_on_sphere(request, checked.report.points, progress)
+                              : problem_of_weighted(request, checked.report.points, progress);
   checked.report.ok = checked.report.problem.empty();
   checked.seconds = stopwatch.seconds();
   return checked;
@@ -321,10 +353,11 @@ void check_space(const CLI::App& command, const VerifyRequest& request) {
   const bool is_periodic = !request.period.empty();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
   if (!request.is_in_space()) return;
-  const std::string space = request.is_weighted ? "--weighted" : request.is_sphere ? "--sphere" : "--period";
-  refuse_all_but(command,
-                 is_periodic ? std::vector<std::string>{space, "--offsets"} : std::vector<std::string>{space},
-                 {"--neighbors", "--columns", "--quiet"});
+  std::vector<std::string> own;
+  if (is_periodic) own = {"--period", "--offsets"};
+  if (request.is_weighted) own.emplace_back("--weighted");
+  if (own.empty()) own = {"--sphere"};
+  refuse_all_but(command, own, {"--neighbors", "--columns", "--quiet"});
   if (is_periodic && request.offsets.empty())
     throw Error(ErrorKind::usage, "--period needs --offsets, as triangulate writes them");
 }

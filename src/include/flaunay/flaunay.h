@@ -120,7 +120,10 @@ typedef enum flaunay_part {
   /// corner is in its place, the corner is i (x, 0) + j (shear, y) away from its place. The first corner has
   /// 0, 0; the others -1, 0 or 1. With a shear they are from -2 to 2 if x is at most y, and otherwise |j| < 2
   /// + x / y and |i| < 2 + |j| / 2.
-  FLAUNAY_PART_CORNER_OFFSETS = 128
+  FLAUNAY_PART_CORNER_OFFSETS = 128,
+  /// Of points with weights those without a power cell, in ascending order, but those that another point
+  /// represents. Always computed with weights.
+  FLAUNAY_PART_HIDDEN = 256
 } flaunay_part;
 
 /// The kinds of spaces that points lie in.
@@ -148,7 +151,8 @@ typedef struct flaunay_space {
   /// multiples of period_x. On a cylinder it must be 0. If it is not a multiple of period_x, then period_x
   /// may be at most 64 times period_y.
   double shear;
-  /// In the plane, one per point: squared lengths of any sign; of circles, the squared radii. NULL: none.
+  /// Except on the sphere, one per point: squared lengths of any sign; of circles, the squared radii. NULL:
+  /// none.
   const double* weights;
   uintptr_t reserved[4];  ///< 0
 } flaunay_space;
@@ -317,7 +321,8 @@ typedef struct flaunay_device_points {
   /// Where points of flaunay_triangulate_device lie; NULL: in the plane. On the sphere, the buffer has per
   /// point the numbers of the coordinates: x y z, or longitude and latitude.
   const flaunay_space* space;
-  uintptr_t reserved[3];  ///< 0
+  cl_mem weights;  ///< NULL, or except on the sphere one double per point to use; those of space are NULL
+  uintptr_t reserved[2];  ///< 0
 } flaunay_device_points;
 
 /// How a call on device memory is enqueued. {0}: on the triangulator's own queue, without waiting for events.
@@ -529,10 +534,8 @@ typedef struct flaunay_mesh {
   const double* places;          ///< 2 n values on a torus, a cylinder and the sphere; NULL in the plane
   const int8_t* corner_offsets;  ///< 6 t values on a torus and a cylinder
   size_t hidden_count;           ///< the number of hidden points
-  /// Of points with weights those without a power cell, in ascending order, but those that another point
-  /// represents: hidden_count values.
-  const int32_t* hidden;
-  const size_t* point_offsets;  ///< sets + 1 values; NULL in the plane, but for results in device memory
+  const int32_t* hidden;         ///< hidden_count values
+  const size_t* point_offsets;   ///< sets + 1 values; NULL in the plane, but for results in device memory
   /// On a torus and a cylinder, images that were triangulated besides the points, because empty circles reach
   /// across the border.
   size_t image_count;
@@ -879,8 +882,8 @@ FLAUNAY_API const flaunay_mode_info* flaunay_mode_at(size_t k);
 /// With weights it is the regular triangulation: the lower hull of the points at height x^2 + y^2 - weight.
 /// On a torus or a cylinder, points are any finite numbers, which are taken into the period, and the result
 /// has each triangle of all images of all points once, however few points there are. On the sphere it is
-/// their convex hull in space. FLAUNAY_ERROR_USAGE also for a period that is none, for weights except in the
-/// plane, and for half-edges and areas on a torus or the sphere, which have neighbours always;
+/// their convex hull in space. FLAUNAY_ERROR_USAGE also for a period that is none, for weights on the sphere,
+/// and for half-edges and areas on a torus or the sphere, which have neighbours always;
 /// FLAUNAY_ERROR_INPUT also for a weight that is not finite or beyond the squares of what coordinates may be,
 /// for the direction 0, and for a latitude beyond a pole. O(n log n) work.
 FLAUNAY_API flaunay_status flaunay_triangulate(flaunay_triangulator* triangulator, const double* coordinates,
@@ -1121,8 +1124,8 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_create(flaunay_device_tr
 FLAUNAY_API void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation);
 /// Makes later calls write one part (one bit) to the caller's buffer, which is retained and never replaced.
 /// NULL: flaunay makes its own buffer again. The buffer must have, for n points, 24 n bytes for triangles,
-/// neighbors or halfedges, 4 n bytes for hull or representatives, 16 n bytes for areas or places, and 12 n
-/// bytes for corner offsets.
+/// neighbors or halfedges, 4 n bytes for hull, representatives or hidden points, 16 n bytes for areas or
+/// places, and 12 n bytes for corner offsets.
 /// FLAUNAY_ERROR_USAGE if memory is not a buffer.
 FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
     flaunay_device_triangulation* triangulation, unsigned part, cl_mem memory);
@@ -1311,11 +1314,11 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
 /// neighbours. A polygon that is not finite, convex and counter-clockwise is FLAUNAY_ERROR_INPUT, with a
 /// message that names a corner. The caller destroys the result.
 ///
-/// weights: NULL, or of one set of points with weights: the cells are power cells, of each point the places
-/// whose squared distance less the weight is least for it; decisions are rounded, too. On a torus,
-/// coordinates, n, weights and corners are not read: cells are around their points' places, so that some
-/// reach beyond the period, and the areas of a set's cells sum to that of the period. A cylinder, where cells
-/// have no end, and the sphere are FLAUNAY_ERROR_USAGE.
+/// weights: NULL, or of points with weights: the cells are power cells, of each point the places whose
+/// squared distance less the weight is least for it; in the plane the triangulation is of one set then. On a
+/// torus, coordinates, n and corners are not read: cells are around their points' places, so that some reach
+/// beyond the period, and the areas of a set's cells sum to that of the period. A cylinder, where cells have
+/// no end, and the sphere are FLAUNAY_ERROR_USAGE.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
                                                 const double* weights, size_t n,
                                                 const flaunay_triangulation* triangulation,

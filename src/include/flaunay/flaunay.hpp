@@ -691,9 +691,9 @@ class FLAUNAY_API Locator {
   /// Clough-Tocher, and on the sphere linear interpolation alone: the value where the direction of the query
   /// meets the triangle in space (Renka, 1984). Natural neighbors of so few points on a torus that a circle
   /// without points is wider than the shorter period, on a cylinder one with its centre between the ends, are
-  /// Error(input). values: one row of options.columns numbers per input point; the result has one row per query. At a
-  /// point, every method gives exactly that point's values; for duplicates, those of their representative are
-  /// used. Throws Error(usage) if options.columns is 0.
+  /// Error(input). values: one row of options.columns numbers per input point; the result has one row per
+  /// query. At a point, every method gives exactly that point's values; for duplicates, those of their
+  /// representative are used. Throws Error(usage) if options.columns is 0.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
                                   const InterpolationOptions& options);
   /// Answers several sets of queries; see locate. values: one row per input point, over all sets.

@@ -67,7 +67,7 @@
   X(double, centroids, point, 2)
 
 /// The arrays that flaunay::Triangulation has besides, in other spaces than the plane or with weights: as
-/// above. The first two follow those of FLAUNAY_TRIANGULATION_ARRAYS in the order of the bits of
+/// above. They follow those of FLAUNAY_TRIANGULATION_ARRAYS in the order of the bits of
 /// flaunay_part.
 #define FLAUNAY_SPACE_ARRAYS(X)               \
   X(double, places, point, 2)                 \

@@ -1,4 +1,4 @@
-#include "app/command/surfaces.hpp"
+#include "app/command/spaces.hpp"
 
 #include <fmt/format.h>
 
@@ -13,22 +13,25 @@
 #include "app/command/errors.hpp"
 #include "app/command/progress.hpp"
 #include "app/files/formats.hpp"
-#include "flaunay/periodic.hpp"
+#include "app/files/scan.hpp"
 #include "flaunay/sphere.hpp"
 
 namespace flaunay::cli {
 namespace {
 
-// On the sphere, and with a period also the others.
+// In every space, and besides in some.
 const std::vector<std::string> kCommon = {"--output", "--triangles", "--neighbors", "--duplicates", "--stats",
                                           "--device", "--index",     "--columns",   "--quiet"};
-const std::vector<std::string> kPeriodic = {"--period", "--offsets",      "--points",
-                                            "--memory", "--chunk-points", "--scratch"};
+const std::vector<std::string> kPeriodic = {"--period", "--offsets", "--points"};
+const std::vector<std::string> kChunks = {"--memory", "--chunk-points", "--scratch"};
+const std::vector<std::string> kWeighted = {"--weighted", "--hidden"};
+const std::vector<std::string> kPlanar = {"--halfedges", "--hull", "--areas"};
 
-// What both surfaces have.
+// The result of a call in another space, with statistics of the space.
 research::Triangulation completed(Triangulation mesh, std::size_t n) {
   research::Triangulation result;
   static_cast<Triangulation&>(result) = std::move(mesh);
+  if (result.space.kind == SpaceKind::plane) return result;
   result.statistics.points = n;
   result.statistics.duplicates = 0;
   for (std::size_t i = 0; i < n; ++i)
@@ -40,7 +43,7 @@ research::Triangulation completed(Triangulation mesh, std::size_t n) {
 
 /// The triangles in the plane, each once: corners in another period are points behind the others. Mesh files
 /// have no neighbours.
-void unfold(const Period& period, const std::vector<std::int32_t>& offsets, io::Points& points,
+void unfold(const Period& period, const std::vector<std::int8_t>& offsets, io::Points& points,
             research::Triangulation& mesh) {
   std::map<std::array<std::int32_t, 3>, std::int32_t> images;
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
@@ -71,6 +74,24 @@ io::Points in_space(const std::vector<double>& places) {
   return points;
 }
 
+// Writes the file of the mesh. points: in the plane and on a torus as they are there.
+void write_mesh_in_space(OutputFiles& outputs, const std::string& path, const io::Points& points,
+                         const research::Triangulation& mesh) {
+  if (mesh.space.kind == SpaceKind::plane) return io::write_mesh(outputs, path, {points, mesh});
+  if (mesh.space.kind == SpaceKind::sphere) {
+    if (io::ending_of(path) != ".geojson")
+      return io::write_mesh(outputs, path, {in_space(mesh.places), mesh});
+    io::MeshContents contents{points, mesh};
+    contents.is_on_globe = true;
+    return io::write_mesh(outputs, path, contents);
+  }
+  io::Points images = points;
+  research::Triangulation planar;
+  planar.triangles = mesh.triangles;
+  unfold(mesh.space.period, mesh.corner_offsets, images, planar);
+  io::write_mesh(outputs, path, {images, planar});
+}
+
 }  // namespace
 
 void add_period(CLI::App* command, std::vector<double>& period, const std::string& description) {
@@ -85,7 +106,7 @@ Period period_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0};
 }
 
-void add_surface_options(CLI::App* command, SurfaceRequest& request) {
+void add_space_options(CLI::App* command, SpaceRequest& request) {
   add_period(
       command, request.period,
       "The plane repeats itself after LX in x and LY in y, there moved by SHEAR in x; inf: not in that "
@@ -95,13 +116,27 @@ void add_surface_options(CLI::App* command, SurfaceRequest& request) {
       "With --period: in which period corners are, x and y for each, if the first one is at its place: .npy");
   command->add_flag("--sphere", request.is_sphere,
                     "The points are longitudes and latitudes in degrees, and are triangulated on the sphere");
+  command->add_flag(
+      "--weighted", request.is_weighted,
+      "Each point has a weight behind x and y: the regular triangulation, of .npy, .txt, .csv and .xyz");
+  add_path(command, "--hidden", request.hidden, "With --weighted: points without a power cell: .npy");
 }
 
-bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
+bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   const bool is_periodic = !request.period.empty();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
-  if (!is_periodic && !request.is_sphere) return false;
-  refuse_all_but(command, is_periodic ? kPeriodic : std::vector<std::string>{"--sphere"}, kCommon);
+  if (!request.is_weighted) refuse(command, "--hidden", "needs --weighted");
+  if (!is_periodic && !request.is_sphere && !request.is_weighted) return false;
+  std::vector<std::string> own, common = kCommon;
+  const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  if (is_periodic) add(own, kPeriodic);
+  if (request.is_weighted) add(own, kWeighted);
+  if (is_periodic && !request.is_weighted) add(own, kChunks);
+  if (request.is_sphere) own = {"--sphere"};
+  if (!is_periodic && !request.is_sphere) add(common, kPlanar);
+  refuse_all_but(command, own, common);
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
   const std::string output = command.get_option("--output")->as<std::string>();
   const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh", ".geojson"};
@@ -113,16 +148,30 @@ bool asks_for_surface(const CLI::App& command, const SurfaceRequest& request) {
             "{}: triangles on the sphere are written to .obj, .off, .ply, .vtu, .msh, .geojson and .npy",
             output));
   }
+  if (in_chunks && request.is_weighted) refuse(command, "--device", "weighted points need one device");
   if (in_chunks) refuse(command, "--output", "a triangulation in chunks writes arrays alone");
   if (in_chunks && request.is_sphere) refuse(command, "--device", "the sphere needs one device");
   if (in_chunks) refuse(command, "--points", "a triangulation in chunks does not write places");
   return true;
 }
 
-int triangulate_surface(const Task& task, const SurfaceRequest& request, const std::string& places) {
+WeightedPoints read_weighted(const std::string& path, const io::Columns& columns) {
+  io::Scan file({path}, {}, "", columns, "weight");
+  file.survey([](double) {});
+  const auto n = static_cast<std::size_t>(file.size());
+  WeightedPoints read;
+  read.points.coordinates.resize(2 * n);
+  read.weights.resize(n);
+  file.read(0, n, read.points.coordinates.data());
+  file.read_values(0, n, read.weights.data());
+  return read;
+}
+
+int triangulate_in_space(const Task& task, const SpaceRequest& request, const std::string& places) {
   OutputFiles outputs({task.input});
   announce(outputs, task.results);
   outputs.add(request.offsets, ".npy");
+  outputs.add(request.hidden, ".npy");
   if (!places.empty()) outputs.add_points(places);
 
   RunFacts facts;
@@ -131,7 +180,13 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Points points = io::read_points(task.input, task.columns);
+  WeightedPoints read;
+  if (request.is_weighted) {
+    read = read_weighted(task.input, task.columns);
+  } else {
+    read.points = io::read_points(task.input, task.columns);
+  }
+  io::Points& points = read.points;
   const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(task.index, n, task.results);
@@ -144,50 +199,35 @@ int triangulate_surface(const Task& task, const SurfaceRequest& request, const s
     note_compiling(triangulator.triangulate(coordinates, some), facts);
   });
   progress.update("triangulating");
-  research::Triangulation mesh;
-  std::vector<std::int32_t> offsets;
-  std::vector<double> on_sphere;  // places
-  Period period;
-  const auto named = [&](const auto& work) { return naming_files({{"point ", task.input}}, work); };
-  if (request.is_sphere) {
-    Triangulation found = named(
-        [&] { return triangulator.triangulate(coordinates, n, Space::sphere(SphereCoordinates::degrees)); });
-    on_sphere = std::move(found.places);
-    mesh = completed(std::move(found), n);
-  } else {
-    Triangulation found = named(
-        [&] { return triangulator.triangulate(coordinates, n, Space::torus(period_of(request.period))); });
-    offsets.assign(found.corner_offsets.begin(), found.corner_offsets.end());
-    period = found.space.period;
-    points.coordinates = std::move(found.places);
-    mesh = completed(std::move(found), n);
-  }
+  Space space = request.is_sphere        ? Space::sphere(SphereCoordinates::degrees)
+                : request.period.empty() ? Space::plane()
+                                         : Space::torus(period_of(request.period));
+  if (request.is_weighted) space = space.with_weights(read.weights.data());
+  Options options;
+  ask_for(task.results, options);
+  research::Triangulation mesh =
+      completed(naming_files({{"point ", task.input}},
+                             [&] { return triangulator.triangulate(coordinates, n, space, options); }),
+                n);
+  if (mesh.space.kind == SpaceKind::torus) points.coordinates = mesh.places;
 
   const auto write = [&] {
     write_arrays(kTriangulationArrays, task.results.arrays, mesh, outputs, index);
     constexpr std::size_t kColumns = 6;
-    if (!request.offsets.empty()) io::write_npy(outputs, request.offsets, offsets, kColumns);
-    if (!places.empty()) io::write_points(outputs, places, points);
-    const std::string& output = task.results.mesh;
-    if (output.empty()) return;
-    if (request.is_sphere && io::ending_of(output) == ".geojson") {
-      io::MeshContents contents{points, mesh};
-      contents.is_on_globe = true;
-      io::write_mesh(outputs, output, contents);
-    } else if (request.is_sphere) {
-      io::write_mesh(outputs, output, {in_space(on_sphere), mesh});
-    } else {
-      io::Points images = points;
-      research::Triangulation planar;
-      planar.triangles = mesh.triangles;
-      unfold(period, offsets, images, planar);
-      io::write_mesh(outputs, output, {images, planar});
+    if (!request.offsets.empty()) {
+      const std::vector<std::int32_t> offsets(mesh.corner_offsets.begin(), mesh.corner_offsets.end());
+      io::write_npy(outputs, request.offsets, offsets, kColumns);
     }
+    if (!request.hidden.empty()) io::write_npy(outputs, request.hidden, mesh.hidden, 1, index);
+    if (!places.empty()) io::write_points(outputs, places, points);
+    if (!task.results.mesh.empty()) write_mesh_in_space(outputs, task.results.mesh, points, mesh);
   };
   write_files(task.results, facts, progress, outputs, write, [&] { return statistics_json(mesh, facts); });
-  if (!task.quiet)
-    print(host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
-          summary(mesh.statistics, facts));
+  if (task.quiet) return kSuccess;
+  const bool is_planar = mesh.space.kind == SpaceKind::plane;
+  print(host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
+        (request.is_weighted ? fmt::format("hidden points: {}\n", mesh.hidden.size()) : "") +
+        (is_planar ? degenerate_note(mesh.statistics) : "") + summary(mesh.statistics, facts));
   return kSuccess;
 }
 

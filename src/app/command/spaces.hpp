@@ -1,0 +1,41 @@
+// Triangulations in other spaces than the plane, and of points with weights: the options of `flaunay
+// triangulate` for them, and the work.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "app/command/results.hpp"
+
+namespace flaunay::cli {
+
+struct SpaceRequest {
+  std::vector<double> period;  ///< x, y and perhaps a shear; empty without --period
+  bool is_sphere = false, is_weighted = false;
+  std::string offsets;  ///< the file for the corners' periods
+  std::string hidden;   ///< the file for hidden points
+};
+
+/// Adds --period, of numbers that period_of takes.
+void add_period(CLI::App* command, std::vector<double>& period, const std::string& description);
+Period period_of(const std::vector<double>& numbers);
+
+/// Adds --period, --offsets, --sphere, --weighted and --hidden.
+void add_space_options(CLI::App* command, SpaceRequest& request);
+
+/// Whether the options ask for another space, or for weights. Throws Error(usage) for options that do not go
+/// together.
+bool asks_for_space(const CLI::App& command, const SpaceRequest& request);
+
+struct WeightedPoints {
+  io::Points points;
+  std::vector<double> weights;
+};
+/// Reads points and weights. Throws Error(input) that names the place.
+WeightedPoints read_weighted(const std::string& path, const io::Columns& columns);
+
+/// Reads, triangulates and writes. places: the file for places, if there is one. Returns the exit code.
+int triangulate_in_space(const Task& task, const SpaceRequest& request, const std::string& places);
+
+}  // namespace flaunay::cli
