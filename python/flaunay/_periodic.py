@@ -97,6 +97,7 @@ class PeriodicDelaunay(WithLocator):
         self.weights = weights
         self.hidden: Indices = frozen(made["hidden"])
         self._kept_locator, self._kept_tree = Kept(), Kept()
+        self._has_locator = weights is None
 
     @cached_property
     def cells(self) -> ClippedVoronoi:

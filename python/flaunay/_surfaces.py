@@ -57,6 +57,7 @@ class WithLocator(OfPoints):
     _handle: _calls.InSpace
     _kept_locator: Kept[_calls.SpaceLocator]
     _kept_tree: Kept[_calls.PointTree]
+    _has_locator = True
 
     @property
     def _locator(self) -> _calls.SpaceLocator:
@@ -146,7 +147,8 @@ class WithLocator(OfPoints):
         array([0, 1], dtype=int32)
         """
         queries = self._as_queries(xi)
-        if k is None and distance_upper_bound is None and not return_distances:
+        is_plain = k is None and distance_upper_bound is None and not return_distances
+        if is_plain and self._has_locator:
             return self._find(queries, _calls.SpaceLocator.nearest)
         count, most = count_and_bound(k, distance_upper_bound)
         shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
