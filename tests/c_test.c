@@ -1981,6 +1981,11 @@ static int read_file(uint64_t first, size_t count, double* coordinates, void* fi
   return fread(coordinates, bytes, count, file) == count ? 0 : 2;
 }
 
+static int read_points(uint64_t first, size_t count, double* coordinates, void* all) {
+  memcpy(coordinates, (const double*)all + 2 * first, 2 * count * sizeof *coordinates);
+  return 0;
+}
+
 static int read_nothing(uint64_t first, size_t count, double* coordinates, void* calls) {
   (void)first, (void)count, (void)coordinates;
   ++*(int*)calls;
@@ -2032,6 +2037,11 @@ static int write_areas(unsigned part, uint64_t first, const double* values, size
   return 0;
 }
 
+static int write_corner_offsets(uint64_t first, const int8_t* values, size_t count, void* data) {
+  memcpy((int8_t*)data + first, values, count);
+  return 0;
+}
+
 static void test_chunks_with_a_period(void) {
   const char *neighbors_path = path_of("neighbors.npy"), *offsets_path = path_of("offsets.npy");
   const flaunay_strided_points source = {.coordinates = points,
@@ -2040,11 +2050,14 @@ static void test_chunks_with_a_period(void) {
                                          .coordinate_stride = sizeof *points};
   const flaunay_mesh_arrays arrays = {.triangles = make_indices(6 * kPoints),
                                       .representatives = make_indices(kPoints)};
-  flaunay_mesh_files files = {.neighbors = neighbors_path, .offsets = offsets_path};
+  flaunay_mesh_files files = {.neighbors = neighbors_path, .corner_offsets = offsets_path};
+  const flaunay_space space = on_torus(0.7, INFINITY);
+  flaunay_chunk_options options = kSmallChunks;
+  options.space = &space;
   flaunay_chunk_report* report = NULL;
-  OK(flaunay_triangulate_periodic_chunks(&source, 0.7, INFINITY, 0, &arrays, &files, &kSmallChunks, &report));
+  OK(flaunay_triangulate_chunks_to_files(&source, &arrays, &files, &options, &report));
   flaunay_triangulation* cylinder = NULL;
-  OK(triangulate_in(on_torus(0.7, INFINITY), points, kPoints, NULL, 0, &cylinder));
+  OK(triangulate_in(space, points, kPoints, NULL, 0, &cylinder));
   const flaunay_mesh* const expected = flaunay_triangulation_mesh(cylinder);
   const size_t count = expected->triangle_count;
   const flaunay_chunk_statistics* const statistics = flaunay_chunk_report_statistics(report);
@@ -2069,15 +2082,29 @@ static void test_chunks_with_a_period(void) {
   CHECK(memcmp(places, expected->places, 2 * kPoints * sizeof *places) == 0);
   flaunay_chunk_report_destroy(report);
 
+  int8_t* const streamed = calloc(12 * kPoints, 1);
+  const flaunay_point_source stream = {.count = kPoints, .read = read_points, .data = points};
+  flaunay_mesh_sink sink = {
+      .parts = FLAUNAY_PART_CORNER_OFFSETS, .write_corner_offsets = write_corner_offsets, .data = streamed};
+  OK(flaunay_triangulate_streams(&stream, &sink, &options, &report));
+  CHECK(memcmp(streamed, offsets, 6 * count) == 0);
+  flaunay_chunk_report_destroy(report);
+
   report = NULL;
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 0, 1, 0, NULL, NULL, NULL, &report), "period");
-  const flaunay_mesh_arrays hull = {.hull = arrays.representatives}, own = {.offsets = offsets};
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &hull, NULL, NULL, &report), "hull");
-  REFUSED(flaunay_triangulate_periodic_chunks(&source, 1, 1, 0, &own, &files, NULL, &report),
-          "offsets are wanted");
+  REFUSED(flaunay_triangulate_streams(&stream, &sink, NULL, &report), "no period");
+  sink.write_corner_offsets = NULL;
+  REFUSED(flaunay_triangulate_streams(&stream, &sink, &options, &report), "corner offsets");
+  const flaunay_mesh_arrays hull = {.hull = arrays.representatives}, own = {.corner_offsets = offsets};
+  REFUSED(flaunay_triangulate_chunks_to_files(&source, &hull, NULL, &options, &report), "hull");
+  REFUSED(flaunay_triangulate_chunks_to_files(&source, &own, &files, &options, &report),
+          "corner_offsets are wanted");
+  const flaunay_space none = on_torus(0, 1);
+  options.space = &none;
+  REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, NULL, &options, &report), "period");
   REFUSED(flaunay_triangulate_chunks(points, 4, &own, NULL, &report), "no period");
   REFUSED(flaunay_triangulate_chunks_to_files(&source, NULL, &files, NULL, &report), "no period");
   CHECK(report == NULL);
+  free(streamed);
   CHECK(remove(neighbors_path) == 0 && remove(offsets_path) == 0);
   flaunay_triangulation_destroy(cylinder);
 }
@@ -2203,7 +2230,7 @@ static void test_bad_chunk_options(void) {
           "a triangulator for chunks");
   REFUSED(chunks_with((flaunay_chunk_options){.triangulator_count = 1}), "1 triangulators");
   REFUSED(chunks_with((flaunay_chunk_options){.memory_bytes = 1000}), "too little");
-  REFUSED(chunks_with((flaunay_chunk_options){.reserved = {[7] = 1}}), "flaunay_chunk_options");
+  REFUSED(chunks_with((flaunay_chunk_options){.reserved = {[6] = 1}}), "flaunay_chunk_options");
   WRONG_INPUT(chunks_with((flaunay_chunk_options){.scratch = "/nowhere/at/all"}), "/nowhere/at/all");
 }
 

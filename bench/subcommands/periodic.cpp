@@ -1,7 +1,5 @@
 // flaunay-bench periodic: points on a torus, beside CGAL's triangulation of them, and beside as many in the
 // plane.
-#include "flaunay/periodic.hpp"
-
 #include <cmath>
 #include <deque>
 #include <random>
@@ -9,6 +7,7 @@
 #include "bench/measuring/command.hpp"
 #include "bench/measuring/jobs.hpp"
 #include "bench/peers/peer.hpp"
+#include "flaunay/flaunay.hpp"
 #include "flaunay/verify.hpp"
 
 namespace flaunay::bench::periodic {

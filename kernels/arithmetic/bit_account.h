@@ -9,9 +9,10 @@
 
 BEGIN_SHARED
 
-// The exponents of a largest and a lowest bit before any coordinate is seen.
+// The exponents of a largest and a lowest bit, and the first point that is not finite, before any coordinate is seen.
 INTEGER_CONSTANT(NO_LARGEST, -10000);
 INTEGER_CONSTANT(NO_LOWEST, 10000);
+INTEGER_CONSTANT(NO_BAD, 0x7fffffff);
 
 // The account of coordinates: the largest magnitude, as its bits, and the exponent of the lowest set bit.
 typedef struct {

@@ -18,7 +18,6 @@
 #include "mesh/rings.h"
 #include "operations/search.h"
 #include "operations/spread.h"
-#include "points/codes.h"
 #include "points/cut_tree.h"
 #include "points/records.h"
 #include "predicates/bounds.h"

@@ -14,7 +14,6 @@
 #include "mesh/power_rings.h"
 #include "mesh/records.h"
 #include "operations/spread.h"
-#include "points/codes.h"
 #include "predicates/records.h"
 
 #ifndef FIXED_POINT
@@ -22,7 +21,7 @@
 static inline uint upper_half(double weight) { return (uint)(orderable(weight) >> 32); }
 static inline uint lower_half(double weight) { return (uint)orderable(weight); }
 
-// upper, lower, heaviest: by the point that was kept. The first two are 0 at first, the last one is NO_BAD.
+// upper, lower, heaviest: by the point that was kept. The first two are 0 at first, the last one is the largest int.
 kernel void find_upper_halves(int n, global const int* restrict representatives, global const double* restrict weights,
                               global volatile uint* restrict upper) {
   const int i = get_global_id(0);

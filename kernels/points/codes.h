@@ -12,7 +12,6 @@ INTEGER_CONSTANT(INSPECT_LARGEST, 0);  // the largest exponent of a leading bit
 INTEGER_CONSTANT(INSPECT_LOWEST, 1);   // the lowest exponent of a set bit
 INTEGER_CONSTANT(INSPECT_BAD, 2);      // the first point that is not finite
 INTEGER_CONSTANT(INSPECT_NUMBERS, 3);
-INTEGER_CONSTANT(NO_BAD, 0x7fffffff);
 
 END_SHARED
 

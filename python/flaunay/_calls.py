@@ -1109,6 +1109,7 @@ class Chunks:
     devices: list[str]
     chunk_points: int
     progress: Progress
+    space: Optional[_declarations.Space] = None
 
     def run(self, function: Callable[[_declarations.ChunkOptions, Any], int]) -> dict[str, Any]:
         """Makes a call of the library. Returns its statistics."""
@@ -1130,6 +1131,7 @@ class Chunks:
             devices=ctypes.addressof(devices) if names else None,
             device_count=len(names),
             progress=_declarations.ChunkOptionsProgress(go_on),
+            space=None if self.space is None else ctypes.pointer(self.space),
         )
         aside.run(lambda: function(options, report.place), follow)
         return _chunk_statistics_of(report.read("statistics")[0])
@@ -1166,12 +1168,11 @@ def triangulate_chunks(
     points: FloatArray,
     wanted: dict[str, Optional[bytes]],
     wide: bool,
-    period: Optional[tuple[float, ...]],
     chunks: Chunks,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Triangulates in chunks. wanted: for each array the path of its file, or None for one in memory.
 
-    Returns the arrays in memory, and the statistics. Arrays are those of triangulations, and, with a period, `offsets`.
+    Returns the arrays in memory, and the statistics. Arrays are those of triangulations, and `corner_offsets`.
     """
     given, n = _strided_points(points), len(points)
     places = _declarations.MeshArrays(index_type=INDEX_TYPE["int64" if wide else "int32"])
@@ -1182,7 +1183,7 @@ def triangulate_chunks(
             setattr(files, name, path)
             continue
         # Room for as many rows as there may be. What is never written is never in memory.
-        if name == "offsets":
+        if name == "corner_offsets":
             arrays[name] = np.empty((2 * n, 6), np.int8)
         else:
             dtype, row, columns, _ = TRIANGULATION[name]
@@ -1191,11 +1192,7 @@ def triangulate_chunks(
         setattr(places, name, arrays[name].ctypes.data if n else None)
 
     def call(options: _declarations.ChunkOptions, report: Any) -> int:
-        if period is None:
-            return int(library.triangulate_chunks_to_files(given, places, files, options, report))
-        return int(
-            library.triangulate_periodic_chunks(given, *period, places, files, options, report)
-        )
+        return int(library.triangulate_chunks_to_files(given, places, files, options, report))
 
     statistics = chunks.run(call)
     counts = {
@@ -1203,7 +1200,7 @@ def triangulate_chunks(
         "hull_vertex": statistics["hull_vertices"],
         "point": statistics["points"],
     }
-    rows = {name: row for name, (_, row, _, _) in TRIANGULATION.items()} | {"offsets": "triangle"}
+    rows = {name: row for name, (_, row, _, _) in TRIANGULATION.items()} | {"corner_offsets": "triangle"}
     arrays = {name: array[: counts[rows[name]]] for name, array in arrays.items()}
     if "hull" in arrays:
         # It had room for all points.

@@ -285,19 +285,18 @@ def triangulate_chunks(
     lengths = None if period is None else as_lengths(period)
     if lengths is None and "corner_offsets" in wanted:
         raise UsageError("corner_offsets are wanted, but there is no period")
+    chunks = chunks_of(memory, scratch, devices, chunk_points, progress)
+    if lengths is not None:
+        chunks.space = _calls.space_of("torus", lengths)
     in_memory, statistics = _calls.triangulate_chunks(
         source,
-        {
-            name.removeprefix("corner_"): None if path is None else os.fsencode(path)
-            for name, path in wanted.items()
-        },
+        {name: None if path is None else os.fsencode(path) for name, path in wanted.items()},
         _is_wide(index, len(source), wanted),
-        lengths,
-        chunks_of(memory, scratch, devices, chunk_points, progress),
+        chunks,
     )
     arrays: dict[str, Any] = dict.fromkeys(names)
     for name, path in wanted.items():
-        stored = in_memory[name.removeprefix("corner_")] if path is None else np.load(path, mmap_mode="r")
+        stored = in_memory[name] if path is None else np.load(path, mmap_mode="r")
         arrays[name] = stored.reshape(-1, 3, 2) if name == "corner_offsets" else stored
     if lengths is not None:
         lengths = as_period(_calls.take_to_places(lengths, np.empty(0)))

@@ -332,7 +332,7 @@ def periodic(
     >>> flaunay.periodic(points, (1, None)).nsimplex
     1998
     >>> flaunay.periodic([[0, 0], [2, 0]], (4, 4), weights=[0, 2]).cells.areas.tolist()
-    [6.0, 10.0]
+    [4.0, 12.0]
     """
     given = np.asarray(as_points(points), np.float64)
     lengths, of_points = as_lengths(period), None if weights is None else as_weights(weights, len(given))

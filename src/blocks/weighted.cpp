@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "arithmetic/bit_account.h"
 #include "blocks/halving.h"
 #include "blocks/parts.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/weighted.cl.hpp"
 #include "launchers/blocks/weighted_halves.cl.hpp"
-#include "points/codes.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -101,7 +102,7 @@ void choose_heaviest(Workspace& work, const PointBlocks& blocks, const Buffer<cl
   const auto heaviest = work.scratch().allocate<cl_int>(n);
   runtime.fill<cl_uint>(upper, n, 0);
   runtime.fill<cl_uint>(lower, n, 0);
-  runtime.fill<cl_int>(heaviest, n, kernel::NO_BAD);
+  runtime.fill<cl_int>(heaviest, n, std::numeric_limits<cl_int>::max());
   runtime.map(
       n, kernels::find_upper_halves{.representatives = representatives, .weights = weights, .upper = upper});
   runtime.map(n, kernels::find_lower_halves{

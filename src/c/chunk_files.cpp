@@ -25,7 +25,7 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
     const void* array;
   };
 #define PART(name) Part{#name, files.name, arrays.name},
-  const std::array parts = {FLAUNAY_MESH_ARRAYS(PART) PART(offsets)};
+  const std::array parts = {FLAUNAY_MESH_ARRAYS(PART) PART(corner_offsets)};
 #undef PART
   Paths paths;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -43,15 +43,15 @@ Paths to_paths(const flaunay_mesh_files& files, const flaunay_mesh_arrays& array
 
 // Each part goes to its file, or else to its array.
 template <typename Index>
-class Results : public PeriodicMeshSink {
+class Results : public MeshSink {
  public:
   Results(const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files, std::uint64_t n,
           const std::string& scratch)
       : paths_(to_paths(files, arrays)),
-        offsets_(files.offsets != nullptr ? files.offsets : ""),
-        files_(outputs_, paths_, kType, {}, offsets_),
-        arrays_(to_arrays<Index>(arrays), arrays.offsets) {
-    io::check_room(paths_, n, kType, scratch, offsets_);
+        corner_offsets_(files.corner_offsets != nullptr ? files.corner_offsets : ""),
+        files_(outputs_, paths_, kType, {}, corner_offsets_),
+        arrays_(to_arrays<Index>(arrays)) {
+    io::check_room(paths_, n, kType, scratch, corner_offsets_);
   }
 
   bool wants(MeshArray array) const override { return files_.wants(array) || arrays_.wants(array); }
@@ -62,10 +62,9 @@ class Results : public PeriodicMeshSink {
   void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
     sink_of(array).write_doubles(array, first, values, count);
   }
-
-  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
-    files_.write_offsets(first, offsets, count);
-    arrays_.write_offsets(first, offsets, count);
+  void write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) override {
+    files_.write_corner_offsets(first, values, count);
+    arrays_.write_corner_offsets(first, values, count);
   }
 
   // Gives the files their names, all or none.
@@ -85,9 +84,9 @@ class Results : public PeriodicMeshSink {
 
   io::Outputs outputs_;
   Paths paths_;
-  std::string offsets_;
+  std::string corner_offsets_;
   io::MeshFiles files_;
-  chunks::PeriodicArraySink<Index> arrays_;
+  chunks::ArraySink<Index> arrays_;
 };
 
 // Neighbours refer to triangles, of which there may be twice as many as points.
@@ -101,39 +100,32 @@ void check_index_type(std::uint64_t n, bool has_neighbors) {
 }
 
 template <typename Index>
-ChunkStatistics triangulate(PointSource& source, const Period* period, const flaunay_mesh_arrays& arrays,
+ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arrays,
                             const flaunay_mesh_files& files, const ChunkOptions& options) {
   // First what the input says: it has the same error on every disk.
   check_index_type<Index>(source.size(), arrays.neighbors != nullptr || files.neighbors != nullptr);
   Results<Index> results(arrays, files, source.size(), options.scratch);
-  ChunkStatistics statistics = period != nullptr
-                                   ? triangulate_periodic_chunks(source, *period, results, options)
-                                   : triangulate_chunks(source, results, options);
+  ChunkStatistics statistics = triangulate_chunks(source, results, options);
   results.commit(statistics.triangles);
   return statistics;
 }
 
 }  // namespace
 
-void refuse_offsets(const void* offsets) {
-  if (offsets != nullptr) throw Error(ErrorKind::usage, "offsets are wanted, but there is no period");
-}
-
-ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const Period* period,
-                                     const flaunay_mesh_arrays& arrays, const flaunay_mesh_files& files,
-                                     const ChunkOptions& options) {
+ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
+                                     const flaunay_mesh_files& files, const ChunkOptions& options) {
   check_reserved(arrays, "flaunay_mesh_arrays");
   check_reserved(files, "flaunay_mesh_files");
-  if (period == nullptr) {
-    refuse_offsets(arrays.offsets);
-    refuse_offsets(files.offsets);
+  if (options.space.kind == SpaceKind::plane) {
+    expect(arrays.corner_offsets == nullptr && files.corner_offsets == nullptr,
+           "corner offsets are wanted, but there is no period");
   }
   StridedPoints source(points);
   switch (arrays.index_type) {
     case FLAUNAY_INT32:
-      return triangulate<std::int32_t>(source, period, arrays, files, options);
+      return triangulate<std::int32_t>(source, arrays, files, options);
     case FLAUNAY_INT64:
-      return triangulate<std::int64_t>(source, period, arrays, files, options);
+      return triangulate<std::int64_t>(source, arrays, files, options);
   }
   throw Error(ErrorKind::usage, fmt::format("there is no type of indices {}", arrays.index_type));
 }

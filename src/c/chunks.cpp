@@ -72,6 +72,7 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
   ChunkOptions result;
   if (options == nullptr) return result;
   c::check_reserved(*options, "flaunay_chunk_options");
+  result.space = c::to_space(options->space);
   result.memory_bytes = options->memory_bytes;
   if (options->scratch != nullptr) result.scratch = options->scratch;
   check_array(options->devices, options->device_count, "devices");
@@ -95,7 +96,6 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
 ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const flaunay_mesh_arrays& results,
                             const ChunkOptions& options) {
   c::check_reserved(results, "flaunay_mesh_arrays");
-  c::refuse_offsets(results.offsets);
   switch (results.index_type) {
     case FLAUNAY_INT32:
       return triangulate_chunks(coordinates, n, c::to_arrays<std::int32_t>(results), options);
@@ -185,9 +185,9 @@ unsigned part_of(MeshArray array) { return 1u << kMeshArrayIndices[static_cast<s
 
 class CallersSink : public MeshSink {
  public:
-  explicit CallersSink(const flaunay_mesh_sink& given) : given_(given) {
+  CallersSink(const flaunay_mesh_sink& given, const Space& space) : given_(given) {
     c::check_reserved(given, "flaunay_mesh_sink");
-    unsigned possible = 0;
+    unsigned possible = FLAUNAY_PART_CORNER_OFFSETS;
     for (const std::size_t k : kMeshArrayIndices) possible |= 1u << k;
     if ((given.parts & ~possible) != 0) {
       throw Error(ErrorKind::usage,
@@ -195,8 +195,13 @@ class CallersSink : public MeshSink {
     }
     if (given.parts != 0) parts_ = given.parts;
     const unsigned doubles = part_of(MeshArray::areas);
-    if ((parts_ & ~doubles) != 0) required(given.write, "the function that writes results");
+    if ((parts_ & ~(doubles | FLAUNAY_PART_CORNER_OFFSETS)) != 0)
+      required(given.write, "the function that writes results");
     if ((parts_ & doubles) != 0) required(given.write_doubles, "the function that writes results in doubles");
+    if ((parts_ & FLAUNAY_PART_CORNER_OFFSETS) != 0) {
+      required(given.write_corner_offsets, "the function that writes corner offsets");
+      expect(space.kind == SpaceKind::torus, "corner offsets are wanted, but there is no period");
+    }
   }
   bool wants(MeshArray array) const override { return (parts_ & part_of(array)) != 0; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
@@ -206,22 +211,15 @@ class CallersSink : public MeshSink {
     stop_unless_zero(given_.write_doubles(part_of(array), first, values, count, given_.data),
                      "write_doubles");
   }
+  void write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) override {
+    if ((parts_ & FLAUNAY_PART_CORNER_OFFSETS) == 0) return;
+    stop_unless_zero(given_.write_corner_offsets(first, values, count, given_.data), "write_corner_offsets");
+  }
 
  private:
   const flaunay_mesh_sink& given_;
   unsigned parts_ = FLAUNAY_PART_TRIANGLES;
 };
-
-std::unique_ptr<flaunay_chunk_report> to_files(const flaunay_strided_points* points, const Period* period,
-                                               const flaunay_mesh_arrays* arrays,
-                                               const flaunay_mesh_files* files,
-                                               const flaunay_chunk_options* options) {
-  const flaunay_mesh_arrays no_arrays{};
-  const flaunay_mesh_files no_files{};
-  return std::make_unique<flaunay_chunk_report>(
-      c::triangulate_to_files(required(points, "the points"), period, arrays != nullptr ? *arrays : no_arrays,
-                              files != nullptr ? *files : no_files, to_options(options)));
-}
 
 }  // namespace
 
@@ -241,8 +239,9 @@ flaunay_status flaunay_triangulate_streams(const flaunay_point_source* points,
                                            flaunay_chunk_report** report) {
   return create(report, [&] {
     CallersPoints source(required(points, "the points"));
-    CallersSink sink(required(results, "the results"));
-    return std::make_unique<flaunay_chunk_report>(triangulate_chunks(source, sink, to_options(options)));
+    const ChunkOptions wanted = to_options(options);
+    CallersSink sink(required(results, "the results"), wanted.space);
+    return std::make_unique<flaunay_chunk_report>(triangulate_chunks(source, sink, wanted));
   });
 }
 
@@ -251,18 +250,12 @@ flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_strided_points*
                                                    const flaunay_mesh_files* files,
                                                    const flaunay_chunk_options* options,
                                                    flaunay_chunk_report** report) {
-  return create(report, [&] { return to_files(points, nullptr, arrays, files, options); });
-}
-
-flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points, double period_x,
-                                                   double period_y, double shear,
-                                                   const flaunay_mesh_arrays* arrays,
-                                                   const flaunay_mesh_files* files,
-                                                   const flaunay_chunk_options* options,
-                                                   flaunay_chunk_report** report) {
   return create(report, [&] {
-    const Period period{period_x, period_y, shear};
-    return to_files(points, &period, arrays, files, options);
+    const flaunay_mesh_arrays no_arrays{};
+    const flaunay_mesh_files no_files{};
+    return std::make_unique<flaunay_chunk_report>(
+        c::triangulate_to_files(required(points, "the points"), arrays != nullptr ? *arrays : no_arrays,
+                                files != nullptr ? *files : no_files, to_options(options)));
   });
 }
 

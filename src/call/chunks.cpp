@@ -114,7 +114,10 @@ void check_indices(std::uint64_t n, std::uint64_t most_index) {
 template <typename Index>
 ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
-  call::check_chunk_arrays(coordinates, n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
+  check_array(coordinates, n, "points", kMostPointsInChunks);
+  check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
+  if (options.space.kind == SpaceKind::plane)
+    expect(results.corner_offsets == nullptr, "corner offsets are wanted, but there is no period");
   ArrayPoints points(coordinates, n);
   chunks::ArraySink<Index> sink(results);
   return triangulate_chunks(points, sink, options);
@@ -125,6 +128,7 @@ ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
 PointSource::~PointSource() = default;
 MeshSink::~MeshSink() = default;
 void MeshSink::write_doubles(MeshArray, std::uint64_t, const double*, std::size_t) {}
+void MeshSink::write_corner_offsets(std::uint64_t, const std::int8_t*, std::size_t) {}
 
 void ArrayPoints::read(std::uint64_t first, std::size_t count, double* coordinates) {
   std::memcpy(coordinates, coordinates_ + 2 * first, 2 * count * sizeof(double));
@@ -140,11 +144,6 @@ std::uint64_t call::chunk_memory(const ChunkOptions& options) {
   return memory;
 }
 
-void call::check_chunk_arrays(const double* coordinates, std::uint64_t n, std::uint64_t most_index) {
-  check_array(coordinates, n, "points", kMostPointsInChunks);
-  check_indices(n, most_index);
-}
-
 ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
                                          const ChunkOptions& options, chunks::Folding* folding) {
   if (points.size() == 0) return ChunkStatistics();
@@ -158,7 +157,13 @@ ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Valu
 }
 
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
-  return with_errors([&] { return call::triangulate_chunks(points, nullptr, sink, options); });
+  return with_errors([&] {
+    const Space& space = options.space;
+    expect(space.kind != SpaceKind::sphere && space.weights == nullptr,
+           "chunks are of points without weights in the plane, on a torus or on a cylinder");
+    return space.kind == SpaceKind::torus ? call::triangulate_chunks_on_torus(points, sink, options)
+                                          : call::triangulate_chunks(points, nullptr, sink, options);
+  });
 }
 
 ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,

@@ -1,4 +1,4 @@
-// Triangulations in chunks, with or without values at the points.
+// Triangulations in chunks: with or without values at the points, and on a torus or a cylinder.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,10 @@ constexpr std::uint64_t kLeastChunkBytes = std::uint64_t{128} << 20;
 /// The bytes that a call may use. Throws Error(usage) if they are less.
 std::uint64_t chunk_memory(const ChunkOptions& options);
 
-/// Throws Error(usage) if there are points, but no coordinates; Error(input) for more points than results
-/// with indices up to most_index can refer to.
-void check_chunk_arrays(const double* coordinates, std::uint64_t n, std::uint64_t most_index);
-
-/// See flaunay::triangulate_chunks. values: of the points, or null. folding: if some points are images;
-/// otherwise null.
+/// See flaunay::triangulate_chunks. The first is of the plane. values: of the points, or null. folding: if
+/// some points are images; otherwise null.
 ChunkStatistics triangulate_chunks(PointSource& points, const chunks::Values* values, MeshSink& sink,
                                    const ChunkOptions& options, chunks::Folding* folding = nullptr);
+ChunkStatistics triangulate_chunks_on_torus(PointSource& points, MeshSink& sink, const ChunkOptions& options);
 
 }  // namespace flaunay::call

@@ -101,6 +101,8 @@ ChunkStatistics rasterize_chunks(ValuedPoints& points, Duplicates duplicates, co
   return with_errors([&] {
     const std::size_t count = raster::checked_pixels(grid, options);
     check_enumerator(duplicates);
+    expect(chunks.space.kind == SpaceKind::plane && chunks.space.weights == nullptr,
+           "rasters in chunks are of points without weights in the plane");
     check_array(pixels, count, "pixels", kMostCountable);
     contours::check(heights, options.max_edge);
     Scanner scanner(grid, options, pixels, heights, breaklines);

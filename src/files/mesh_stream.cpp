@@ -50,7 +50,7 @@ void check_stream_output(const std::string& path) {
 }
 
 void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
-                const std::optional<std::string>& scratch, const std::string& offsets) {
+                const std::optional<std::string>& scratch, const std::string& corner_offsets) {
   std::vector<SizedOutput> files;
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     visit_mesh_array(k, [&](const auto& row) {
@@ -58,7 +58,7 @@ void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
       files.push_back({paths[k], most_rows(row.row, n) * row.columns * stored_as(k, type).bytes});
     });
   }
-  files.push_back({offsets, most_rows(RowOf::triangle, n) * kOffsetsPerTriangle});
+  files.push_back({corner_offsets, most_rows(RowOf::triangle, n) * kOffsetsPerTriangle});
   // It may be on the same disk as an output.
   if (scratch) files.push_back({scratch_folder(*scratch), n * kScratchBytesPerPoint, true});
   check_disk_space(files);
@@ -69,15 +69,15 @@ SizedOutput scratch_output(std::uint64_t n, const std::string& scratch) {
 }
 
 MeshFiles::MeshFiles(Outputs& outputs, const Paths& paths, IndexType type, const Paths& partials,
-                     const std::string& offsets)
+                     const std::string& corner_offsets)
     : type_(type) {
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     check_stream_output(paths[k]);
     if (paths[k].empty()) continue;
     files_[k].output = partials[k].empty() ? &outputs.open(paths[k]) : &outputs.join(paths[k], partials[k]);
   }
-  check_stream_output(offsets);
-  if (!offsets.empty()) offsets_.output = &outputs.open(offsets);
+  check_stream_output(corner_offsets);
+  if (!corner_offsets.empty()) corner_offsets_.output = &outputs.open(corner_offsets);
 }
 
 MeshFiles::Paths MeshFiles::partial_paths() const {
@@ -117,10 +117,10 @@ void MeshFiles::write(MeshArray array, std::uint64_t first, const std::int64_t* 
   }
 }
 
-void MeshFiles::write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) {
-  if (offsets_.output == nullptr) return;
-  offsets_.entries = std::max(offsets_.entries, first + count);
-  offsets_.output->write_at(kNpyHeaderBytes + first, offsets, count);
+void MeshFiles::write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) {
+  if (corner_offsets_.output == nullptr) return;
+  corner_offsets_.entries = std::max(corner_offsets_.entries, first + count);
+  corner_offsets_.output->write_at(kNpyHeaderBytes + first, values, count);
 }
 
 void MeshFiles::keep_triangles(std::uint64_t triangles) {
@@ -129,7 +129,7 @@ void MeshFiles::keep_triangles(std::uint64_t triangles) {
       if (row.row == RowOf::triangle) keep(files_[k], triangles * row.columns, stored_as(k, type_).bytes);
     });
   }
-  keep(offsets_, triangles * kOffsetsPerTriangle, 1);
+  keep(corner_offsets_, triangles * kOffsetsPerTriangle, 1);
 }
 
 void MeshFiles::keep(File& file, std::uint64_t entries, std::size_t bytes) {
@@ -146,7 +146,7 @@ void MeshFiles::extend(MeshArray array, std::uint64_t entries) {
 void MeshFiles::finish() {
   for (std::size_t k = 0; k < kMeshArrays; ++k)
     finish(files_[k], stored_as(k, type_).descr, columns_of(static_cast<MeshArray>(k)));
-  finish(offsets_, "|i1", kOffsetsPerTriangle);
+  finish(corner_offsets_, "|i1", kOffsetsPerTriangle);
 }
 
 void MeshFiles::finish(const File& file, const char* descr, std::size_t columns) {

@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
+#include "arithmetic/bit_account.h"
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
 #include "flaunay/flaunay.hpp"
-#include "points/codes.h"
 #include "predicates/records.h"
 
 namespace flaunay::geometry {

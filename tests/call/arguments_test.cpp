@@ -25,7 +25,6 @@
 #include "flaunay/flaunay.h"
 #include "flaunay/flaunay.hpp"
 #include "flaunay/neighbors.hpp"
-#include "flaunay/periodic.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/sphere.hpp"
 #include "flaunay/terrain.hpp"
@@ -422,8 +421,12 @@ TEST(SmallArguments, OfStreamsAndChunks) {
              flaunay_mesh_arrays none{};
              none.index_type = FLAUNAY_INT64;
              flaunay_chunk_report* report = nullptr;
-             throw_error_of(
-                 flaunay_triangulate_periodic_chunks(&points, 8, 8, 1, &none, nullptr, nullptr, &report));
+             flaunay_space space{};
+             space.kind = FLAUNAY_SPACE_TORUS;
+             space.period_x = space.period_y = 8;
+             flaunay_chunk_options options{};
+             options.space = &space;
+             throw_error_of(flaunay_triangulate_chunks_to_files(&points, &none, nullptr, &options, &report));
            }},
           {"values",
            [&](std::size_t count) {
@@ -448,8 +451,10 @@ TEST(SmallArguments, OfStreamsAndChunks) {
            }},
           {"points",
            [&](std::size_t count) {
-             triangulate_periodic_chunks(array_for(count, kPoints), counted(count), {8, 8},
-                                         MeshArrays<std::int64_t>(), nullptr);
+             ChunkOptions options;
+             options.space = Space::torus({8, 8});
+             triangulate_chunks(array_for(count, kPoints), counted(count), MeshArrays<std::int64_t>(),
+                                options);
            }},
       },
       power_of_two(31));

@@ -17,7 +17,6 @@
 #include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.hpp"
-#include "flaunay/periodic.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/result_arrays.hpp"
 #include "tests/support/device.hpp"

@@ -3,8 +3,6 @@
 // its places, and for each point find that. Stops at the first wrong result and prints its points.
 //
 //   fuzz_periodic [--seconds N] [--seed S] [--first CASE]
-#include "flaunay/periodic.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/flaunay.hpp"
 #include "flaunay/verify.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/run.hpp"

@@ -446,8 +446,8 @@ TEST_F(MeshStreamTest, WhatIsBeyondTheLastTriangleIsDropped) {
     files.write(array, 0, values.data(), values.size());
   files.write(MeshArray::neighbors, 0, values.data(), 60);
   files.write_doubles(MeshArray::areas, 0, areas.data(), areas.size());
-  files.write_offsets(60, offsets.data(), 120);
-  files.write_offsets(0, offsets.data(), 60);
+  files.write_corner_offsets(60, offsets.data(), 120);
+  files.write_corner_offsets(0, offsets.data(), 60);
   files.keep_triangles(20);
   files.finish();
   outputs.commit();

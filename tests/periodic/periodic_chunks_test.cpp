@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "flaunay/periodic.hpp"
+#include "flaunay/chunks.hpp"
 #include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
@@ -27,7 +27,7 @@ using Numbers = std::vector<double>;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Arrays that grow.
-class GrowingSink : public PeriodicMeshSink {
+class GrowingSink : public MeshSink {
  public:
   bool wants(MeshArray array) const override { return array != MeshArray::hull; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {
@@ -39,7 +39,7 @@ class GrowingSink : public PeriodicMeshSink {
   void write_doubles(MeshArray, std::uint64_t first, const double* values, std::size_t count) override {
     store(areas, first, values, count);
   }
-  void write_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) override {
+  void write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) override {
     store(offsets, first, values, count);
   }
   std::vector<std::int64_t> triangles, neighbors, representatives;
@@ -79,20 +79,21 @@ std::vector<std::array<Row, 4>> sorted_rows(const std::vector<Index>& triangles,
   return rows;
 }
 
-ChunkOptions in_chunks_of(std::size_t points) {
+ChunkOptions in_chunks_of(std::size_t points, const Period& period = {}) {
   ChunkOptions options;
+  options.space = Space::torus(period);
   options.chunk_points = points;
   options.memory_bytes = std::uint64_t{512} << 20;
   options.triangulators = {&testing::triangulator()};
   return options;
 }
 
-ChunkStatistics compare(const Numbers& points, const Period& period, const ChunkOptions& options) {
+ChunkStatistics compare(const Numbers& points, const Period& period, std::size_t chunk) {
   const std::size_t n = points.size() / 2;
   const Triangulation expected = testing::triangulator().triangulate(points.data(), n, Space::torus(period));
   ArrayPoints source(points.data(), n);
   GrowingSink sink;
-  const ChunkStatistics statistics = triangulate_periodic_chunks(source, period, sink, options);
+  const ChunkStatistics statistics = triangulate_chunks(source, sink, in_chunks_of(chunk, period));
   EXPECT_EQ(expected.triangles.size() / 3, statistics.triangles);
   // With too small a margin there may have been more rows.
   EXPECT_LE(expected.triangles.size(), sink.triangles.size());
@@ -139,7 +140,7 @@ const std::vector<Period>& periods() {
 }
 
 TEST(SmallPeriodicChunks, OfUniformPoints) {
-  const ChunkStatistics statistics = compare(uniform(1500, {}, 1), {}, in_chunks_of(60));
+  const ChunkStatistics statistics = compare(uniform(1500, {}, 1), {}, 60);
   EXPECT_GE(statistics.rounds.size(), 3u);
   EXPECT_GE(statistics.rounds[0].chunks, 25u);
 }
@@ -150,7 +151,7 @@ TEST(PeriodicChunks, OfManySizes) {
       for (const std::size_t chunk : {12, 50, 400}) {
         if (n > (testing::is_sanitized() ? 10 : 30) * chunk) continue;
         SCOPED_TRACE(std::to_string(n) + " points in chunks of " + std::to_string(chunk));
-        compare(uniform(n, period, n + chunk), period, in_chunks_of(chunk));
+        compare(uniform(n, period, n + chunk), period, chunk);
         if (HasFailure()) return;
       }
     }
@@ -172,8 +173,8 @@ TEST(PeriodicChunks, OfTies) {
                                  {size * 0.25, size * 2.0},
                                  {size * 0.5, size * 1.0, 1.5}}) {
       SCOPED_TRACE(size);
-      compare(points, period, in_chunks_of(30));
-      compare(once, period, in_chunks_of(500));
+      compare(points, period, 30);
+      compare(once, period, 500);
       if (HasFailure()) return;
     }
   }
@@ -191,8 +192,8 @@ TEST(PeriodicChunks, OfClustersAtTheBorder) {
         corner.insert(corner.end(), {x + width * a, width * b * a});
       }
       for (const Period& period : periods()) {
-        compare(around, period, in_chunks_of(100));
-        compare(corner, period, in_chunks_of(100));
+        compare(around, period, 100);
+        compare(corner, period, 100);
         if (HasFailure()) return;
       }
     }
@@ -203,7 +204,7 @@ TEST(PeriodicChunks, OfClustersAtTheBorder) {
   for (std::size_t i = 0; i < many.size(); i += 2) {
     if (std::hypot(many[i] - 0.5, many[i + 1] - 0.02) > 0.4) gap.insert(gap.end(), {many[i], many[i + 1]});
   }
-  compare(gap, {}, in_chunks_of(200));
+  compare(gap, {}, 200);
 }
 
 TEST(PeriodicChunks, OfEqualPoints) {
@@ -211,12 +212,12 @@ TEST(PeriodicChunks, OfEqualPoints) {
   for (int k = 0; k < 700; ++k) points.insert(points.begin(), {points[points.size() - 2], 0.0});
   for (int k = 0; k < 300; ++k) points.insert(points.end(), {3.0, -0.0});
   for (const Period& period : periods()) {
-    compare(points, period, in_chunks_of(50));
-    compare(Numbers(2 * 1000, 0.25), period, in_chunks_of(50));
+    compare(points, period, 50);
+    compare(Numbers(2 * 1000, 0.25), period, 50);
   }
   Numbers level = uniform(400, {}, 9);
   for (std::size_t i = 0; i < level.size(); i += 2) level[i + 1] = 0.125;
-  for (const Period& period : periods()) compare(level, period, in_chunks_of(50));
+  for (const Period& period : periods()) compare(level, period, 50);
 }
 
 TEST(PeriodicChunks, GoToArrays) {
@@ -226,10 +227,12 @@ TEST(PeriodicChunks, GoToArrays) {
   const Period period{0.7, 1.3};
   std::vector<std::int32_t> triangles(6 * n), neighbors(6 * n), representatives(n);
   std::vector<std::int8_t> offsets(12 * n);
-  const ChunkStatistics statistics = triangulate_periodic_chunks(
-      points.data(), n, period,
-      MeshArrays<std::int32_t>{triangles.data(), neighbors.data(), nullptr, representatives.data(), nullptr},
-      offsets.data(), in_chunks_of(700));
+  const ChunkOptions options = in_chunks_of(700, period);
+  const ChunkStatistics statistics =
+      triangulate_chunks(points.data(), n,
+                         MeshArrays<std::int32_t>{triangles.data(), neighbors.data(), nullptr,
+                                                  representatives.data(), nullptr, offsets.data()},
+                         options);
   Triangulation mesh;
   mesh.space = Space::torus(take_to_places(period, points.data(), n));
   mesh.places = points;
@@ -244,43 +247,53 @@ TEST(PeriodicChunks, GoToArrays) {
   mesh.triangle_offsets = {0, statistics.triangles};
   EXPECT_EQ("", verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh));
   std::vector<std::int64_t> wide(6 * n);
-  triangulate_periodic_chunks(points.data(), n, period, MeshArrays<std::int64_t>{wide.data()}, nullptr,
-                              in_chunks_of(700));
+  triangulate_chunks(points.data(), n, MeshArrays<std::int64_t>{wide.data()}, options);
   EXPECT_TRUE(std::equal(triangles.begin(), triangles.end(), wide.begin()));
-  const ChunkStatistics none =
-      triangulate_periodic_chunks(nullptr, 0, period, MeshArrays<std::int32_t>{}, nullptr, in_chunks_of(700));
+  const ChunkStatistics none = triangulate_chunks(nullptr, 0, MeshArrays<std::int32_t>{}, options);
   EXPECT_EQ(0u, none.triangles);
 }
 
 TEST(PeriodicChunks, RefuseWrongInput) {
   Numbers points = uniform(100, {}, 2);
-  const auto triangulate = [&](const Period& period, const ChunkOptions& options = in_chunks_of(50)) {
+  const auto triangulate = [&](const ChunkOptions& options) {
     ArrayPoints source(points.data(), points.size() / 2);
     GrowingSink sink;
-    triangulate_periodic_chunks(source, period, sink, options);
+    triangulate_chunks(source, sink, options);
   };
-  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate({1, -1}); });
-  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate({kNone, kNone}); });
-  testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulate({1, 1e10}); });
+  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate(in_chunks_of(50, {1, -1})); });
+  testing::expect_error(ErrorKind::usage, "period", [&] { triangulate(in_chunks_of(50, {kNone, kNone})); });
+  testing::expect_error(ErrorKind::usage, "2^30", [&] { triangulate(in_chunks_of(50, {1, 1e10})); });
   testing::expect_error(ErrorKind::usage, "hull", [&] {
     std::vector<std::int32_t> hull(100);
-    triangulate_periodic_chunks(points.data(), 100, {},
-                                MeshArrays<std::int32_t>{nullptr, nullptr, hull.data()}, nullptr);
+    triangulate_chunks(points.data(), 100, MeshArrays<std::int32_t>{nullptr, nullptr, hull.data()},
+                       in_chunks_of(50));
   });
+  testing::expect_error(ErrorKind::usage, "no period", [&] {
+    std::vector<std::int8_t> offsets(1200);
+    MeshArrays<std::int32_t> results;
+    results.corner_offsets = offsets.data();
+    triangulate_chunks(points.data(), 100, results);
+  });
+  for (const Space& space : {Space::sphere(SphereCoordinates::directions),
+                             Space::plane().with_weights(&kNone), Space::torus({}).with_weights(&kNone)}) {
+    ChunkOptions options = in_chunks_of(50);
+    options.space = space;
+    testing::expect_error(ErrorKind::usage, "without weights", [&] { triangulate(options); });
+  }
   ChunkOptions options = in_chunks_of(50);
   options.memory_bytes = 1000;
-  testing::expect_error(ErrorKind::usage, "memory", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::usage, "memory", [&] { triangulate(options); });
   options.memory_bytes = (128 << 20) + 480;
-  testing::expect_error(ErrorKind::input, "more than 10 images", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::input, "more than 10 images", [&] { triangulate(options); });
   options = in_chunks_of(50);
   options.progress = [](const std::string& stage, int, double) {
     if (stage == "images") throw Error(ErrorKind::usage, "enough");
   };
-  testing::expect_error(ErrorKind::usage, "enough", [&] { triangulate({}, options); });
+  testing::expect_error(ErrorKind::usage, "enough", [&] { triangulate(options); });
   points[150] = std::nan("");
-  testing::expect_error(ErrorKind::input, "point 75 is not finite", [&] { triangulate({}); });
+  testing::expect_error(ErrorKind::input, "point 75 is not finite", [&] { triangulate(in_chunks_of(50)); });
   testing::expect_error(ErrorKind::usage, "pointer to them is NULL", [&] {
-    triangulate_periodic_chunks(nullptr, 5, {}, MeshArrays<std::int32_t>{}, nullptr, in_chunks_of(50));
+    triangulate_chunks(nullptr, 5, MeshArrays<std::int32_t>{}, in_chunks_of(50));
   });
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "flaunay/device_memory.hpp"
-#include "flaunay/periodic.hpp"
+#include "flaunay/flaunay.hpp"
 #include "tests/support/embedded.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"

@@ -1,6 +1,4 @@
 // Triangulations on a torus against rational arithmetic and brute force.
-#include "flaunay/periodic.hpp"
-
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "flaunay/flaunay.hpp"
 #include "flaunay/neighbors.hpp"
 #include "flaunay/verify.hpp"
 #include "tests/support/errors.hpp"

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <vector>
 
-#include "flaunay/periodic.hpp"
+#include "flaunay/flaunay.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/same.hpp"
 #include "tests/support/shared_triangulator.hpp"

@@ -36,7 +36,7 @@ std::vector<std::string> devices_of(const std::string& list) {
 }
 
 ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, PointSource& points,
-                                 PeriodicMeshSink& files, Progress& progress) {
+                                 MeshSink& files, Progress& progress) {
   ChunkOptions options;
   options.memory_bytes = request.memory_bytes;
   options.scratch = request.scratch;
@@ -45,10 +45,8 @@ ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, 
   options.progress = [&progress](const std::string& stage, int round, double done) {
     progress.update(round > 0 ? fmt::format("{}, round {}", stage, round + 1) : stage, -1, done);
   };
-  return naming_files({{"point", task.input}}, [&] {
-    return request.period ? triangulate_periodic_chunks(points, *request.period, files, options)
-                          : triangulate_chunks(points, files, options);
-  });
+  if (request.period) options.space = Space::torus(*request.period);
+  return naming_files({{"point", task.input}}, [&] { return triangulate_chunks(points, files, options); });
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/command/results.hpp"
+#include "flaunay/chunks.hpp"
 #include "flaunay/flaunay.hpp"
-#include "flaunay/periodic.hpp"
 
 namespace flaunay::cli {
 

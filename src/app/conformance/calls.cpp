@@ -10,7 +10,6 @@
 #include "flaunay/constrained.hpp"
 #include "flaunay/dynamic.hpp"
 #include "flaunay/neighbors.hpp"
-#include "flaunay/periodic.hpp"
 #include "flaunay/research.hpp"
 #include "flaunay/sphere.hpp"
 #include "flaunay/terrain.hpp"

@@ -39,6 +39,9 @@ class FLAUNAY_API MeshSink {
   virtual void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) = 0;
   /// As write, for the areas, which are doubles. A sink that does not override it gets none.
   virtual void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count);
+  /// As write, for Triangulation::corner_offsets. It is called for all triangles on a torus or a cylinder. A
+  /// sink that does not override it gets none.
+  virtual void write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count);
 };
 
 /// Bytes in the scratch folder for each point.
@@ -48,6 +51,8 @@ constexpr std::size_t kScratchBytesPerValue = 8;
 
 /// The options of triangulate_chunks.
 struct ChunkOptions {
+  /// The space of the points: the plane, a torus or a cylinder, without weights. Rasters are of the plane.
+  Space space = Space::plane();
   /// Bytes that the call may use on the host, devices that share its memory included, but not what the system
   /// keeps of files. 0: half of what is free.
   std::uint64_t memory_bytes = 0;
@@ -63,9 +68,9 @@ struct ChunkOptions {
   /// Points of a chunk. 0: as many as suit the devices. In any case no more than the memory permits at once,
   /// and not so few that the chunks' buffers would not fit it.
   std::size_t chunk_points = 0;
-  /// If not empty, called from time to time on the calling thread. stage: "images" (with a period alone),
-  /// "sampling", "distributing" or "triangulating"; round: the round of chunks, from 0; done: the finished
-  /// share of the call, 0 to 1. An exception that it throws ends the call.
+  /// If not empty, called from time to time on the calling thread. stage: "images" (on a torus or a
+  /// cylinder), "sampling", "distributing" or "triangulating"; round: the round of chunks, from 0; done: the
+  /// finished share of the call, 0 to 1. An exception that it throws ends the call.
   std::function<void(const std::string& stage, int round, double done)> progress;
 };
 
@@ -94,7 +99,7 @@ struct ChunkStatistics {
   double seconds = 0;                        ///< wall time
   std::uint64_t host_points = 0;  ///< points of the chunks that devices without fp64 left to the host
   std::string note;               ///< as Statistics::note; of such chunks, that of the first
-  std::uint64_t images = 0;  ///< with a period, images of points that were triangulated besides the points
+  std::uint64_t images = 0;       ///< on a torus, images of points that were triangulated besides the points
 };
 
 /// Triangulates one set of points in chunks. What is final in a chunk is written; points around which
@@ -108,6 +113,14 @@ struct ChunkStatistics {
 /// points that are all on one circle; Error(usage) if memory_bytes is too small for any work. What was
 /// written to the sink before an error is without use. A device that fails in the middle of the call leaves
 /// its chunk to the others; the call fails if none is left. O(n log n) work.
+///
+/// On a torus or a cylinder, the triangles have corner offsets, too, and there is no hull. First, all points
+/// are read once more, on a cylinder twice, to find those near the border ("images" for progress). Their
+/// images are held in memory and count as 48 bytes each, beside what chunks need; Error(input) if they do not
+/// fit memory_bytes, as if most points are near the border. If these were too few, which is found out at the
+/// end, all begins again with a wider margin, and everything is written again. So there may be rows of no use
+/// beyond the number of triangles that is returned, but never more than 2 n. Statistics are of the last time;
+/// rounds count images as points. Throws Error(usage) for another space, and if a hull is wanted.
 FLAUNAY_API ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink,
                                                const ChunkOptions& options = {});
 
@@ -133,10 +146,12 @@ struct MeshArrays {
   Index* hull = nullptr;             ///< room for n indices
   Index* representatives = nullptr;  ///< room for n indices
   double* areas = nullptr;           ///< room for 2 n numbers
+  /// Room for 12 n numbers; null in the plane.
+  std::int8_t* corner_offsets = nullptr;
 };
 
 /// Points and results are in memory. Throws Error(input), too, if there are more points than 32-bit indices
-/// can count.
+/// can count, and Error(usage) if the plane is to have corner offsets.
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int32_t>& results,
                                                const ChunkOptions& options = {});
@@ -144,5 +159,10 @@ FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::u
 FLAUNAY_API ChunkStatistics triangulate_chunks(const double* coordinates, std::uint64_t n,
                                                const MeshArrays<std::int64_t>& results,
                                                const ChunkOptions& options = {});
+
+/// Takes n points, x0 y0 x1 y1 ..., to their places on a torus or a cylinder, which are
+/// Triangulation::places of a call that has them in memory. Returns the period as it is rounded. Throws
+/// Error(usage) for a period that is none, and Error(input) for points that are not finite. O(n).
+FLAUNAY_API Period take_to_places(const Period& period, double* points, std::size_t n);
 
 }  // namespace flaunay

@@ -375,24 +375,25 @@ typedef struct flaunay_chunk_options {
   size_t triangulator_count;  ///< number of triangulators; 0: the devices above
   size_t chunk_points;        ///< points of a chunk; 0: as many as suit the devices
   /// If not NULL, called from time to time on the calling thread. stage: "sampling", "distributing",
-  /// "triangulating", and with a period "images"; round: the round of chunks, from 0; done: the finished
+  /// "triangulating", and on a torus "images"; round: the round of chunks, from 0; done: the finished
   /// share of the call, 0 to 1. If it returns anything but 0, the call ends with FLAUNAY_ERROR_STOPPED.
   int (*progress)(const char* stage, int round, double done, void* progress_data);
-  void* progress_data;    ///< passed to progress unchanged
-  uintptr_t reserved[8];  ///< 0
+  void* progress_data;         ///< passed to progress unchanged
+  const flaunay_space* space;  ///< a plane, a torus or a cylinder, without weights; NULL: the plane
+  uintptr_t reserved[7];       ///< 0
 } flaunay_chunk_options;
 
 /// Arrays of the caller's for the results of n points, such as memory-mapped files. There are at most 2 n
 /// triangles and n hull vertices. What is beyond the results is not written. {0}: no array is wanted.
 typedef struct flaunay_mesh_arrays {
-  int index_type;         ///< a flaunay_index_type, of all arrays of indices
-  void* triangles;        ///< room for 6 n indices; NULL: not wanted
-  void* neighbors;        ///< room for 6 n indices; NULL: not wanted
-  void* hull;             ///< room for n indices; NULL: not wanted
-  void* representatives;  ///< room for n indices; NULL: not wanted
-  double* areas;          ///< room for 2 n numbers; NULL: not wanted
-  int8_t* offsets;        ///< with a period alone: room for 12 n numbers; NULL: not wanted
-  uintptr_t reserved[2];  ///< 0
+  int index_type;          ///< a flaunay_index_type, of all arrays of indices
+  void* triangles;         ///< room for 6 n indices; NULL: not wanted
+  void* neighbors;         ///< room for 6 n indices; NULL: not wanted
+  void* hull;              ///< room for n indices; NULL: not wanted
+  void* representatives;   ///< room for n indices; NULL: not wanted
+  double* areas;           ///< room for 2 n numbers; NULL: not wanted
+  int8_t* corner_offsets;  ///< on a torus or a cylinder: room for 12 n numbers; NULL: not wanted
+  uintptr_t reserved[2];   ///< 0
 } flaunay_mesh_arrays;
 
 /// Points in memory, such as a part of a larger table. {0}: no points.
@@ -413,7 +414,7 @@ typedef struct flaunay_mesh_files {
   const char* hull;             ///< the path for an array of one dimension
   const char* representatives;  ///< the path for an array of one dimension
   const char* areas;            ///< the path for an array of one dimension
-  const char* offsets;          ///< with a period alone: the path for an array of six columns of int8
+  const char* corner_offsets;   ///< on a torus or a cylinder: the path for six columns of int8
   uintptr_t reserved[2];        ///< 0
 } flaunay_mesh_files;
 
@@ -456,18 +457,20 @@ typedef struct flaunay_breaklines {
 
 /// Where a function of the caller's writes a triangulation in pieces.
 typedef struct flaunay_mesh_sink {
-  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES. Other arrays are not computed. 0: the triangles
-  /// alone.
+  /// Bits of flaunay_part, without FLAUNAY_PART_HALFEDGES, FLAUNAY_PART_PLACES and FLAUNAY_PART_HIDDEN. Other
+  /// arrays are not computed. 0: the triangles alone.
   unsigned parts;
   /// Stores `count` values as the entries [first, first + count) of one part, where a triangle has three
   /// entries. Returns 0; if it returns anything else, the call ends with FLAUNAY_ERROR_STOPPED. Entries may
   /// be written in any order. Some neighbours are written twice, and the later value counts. It may be called
   /// on any thread, once at a time.
   int (*write)(unsigned part, uint64_t first, const int64_t* values, size_t count, void* data);
-  void* data;  ///< passed to both functions unchanged
+  void* data;  ///< passed to all functions unchanged
   /// As write, for FLAUNAY_PART_AREAS. NULL: it is not wanted.
   int (*write_doubles)(unsigned part, uint64_t first, const double* values, size_t count, void* data);
-  uintptr_t reserved[3];  ///< 0
+  /// As write, for FLAUNAY_PART_CORNER_OFFSETS, where a triangle has six entries. NULL: it is not wanted.
+  int (*write_corner_offsets)(uint64_t first, const int8_t* values, size_t count, void* data);
+  uintptr_t reserved[2];  ///< 0
 } flaunay_mesh_sink;
 
 /// A phase of a call and its wall time.
@@ -1207,6 +1210,10 @@ FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triang
 /// FLAUNAY_ERROR_USAGE if memory_bytes is too small for any work; FLAUNAY_ERROR_STOPPED. After an error the
 /// results are unspecified. A device that fails in the middle of the call leaves its chunk to the others; the
 /// call fails if none is left. O(n log n) work.
+///
+/// On a torus or a cylinder there is no hull. Points are read at least three times; the images of those near
+/// the border are in memory, 48 bytes for each. Further errors: FLAUNAY_ERROR_USAGE for a period that is none
+/// or another space, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
 FLAUNAY_API flaunay_status flaunay_triangulate_chunks(const double* coordinates, uint64_t n,
                                                       const flaunay_mesh_arrays* results,
                                                       const flaunay_chunk_options* options,
@@ -1227,20 +1234,9 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
                                                                const flaunay_mesh_files* files,
                                                                const flaunay_chunk_options* options,
                                                                flaunay_chunk_report** report);
-/// flaunay_triangulate_chunks_to_files on a torus or a cylinder: triangles, neighbours and offsets are those
-/// of flaunay_triangulate, and the representatives, too. There is no hull. Points are read at least three
-/// times; the images of those near the border are in memory, 48 bytes for each. Further errors:
-/// FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT if the images do not fit memory_bytes.
-FLAUNAY_API flaunay_status flaunay_triangulate_periodic_chunks(const flaunay_strided_points* points,
-                                                               double period_x, double period_y, double shear,
-                                                               const flaunay_mesh_arrays* arrays,
-                                                               const flaunay_mesh_files* files,
-                                                               const flaunay_chunk_options* options,
-                                                               flaunay_chunk_report** report);
-/// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as flaunay_triangulate and
-/// flaunay_triangulate_periodic_chunks do. period: x, y and the shear, which become the rounded ones. Errors
-/// are FLAUNAY_ERROR_USAGE for a period that is none, FLAUNAY_ERROR_INPUT for points that are not finite.
-/// O(n).
+/// Takes n points, x0 y0 x1 y1 ..., to their places in the period, as calls on a torus or a cylinder do.
+/// period: x, y and the shear, which become the rounded ones. Errors are FLAUNAY_ERROR_USAGE for a period
+/// that is none, FLAUNAY_ERROR_INPUT for points that are not finite. O(n).
 FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);

@@ -7,14 +7,13 @@
 #include <type_traits>
 
 #include "flaunay/chunks.hpp"
-#include "flaunay/periodic.hpp"
 #include "flaunay/result_arrays.hpp"
 
 namespace flaunay::chunks {
 
 /// Writes to arrays in memory, which it does not own.
-template <typename Index, typename Base = MeshSink>
-class ArraySink : public Base {
+template <typename Index>
+class ArraySink : public MeshSink {
  public:
   explicit ArraySink(const MeshArrays<Index>& arrays) : arrays_(arrays) {}
   bool wants(MeshArray array) const override {
@@ -27,6 +26,9 @@ class ArraySink : public Base {
   }
   void write_doubles(MeshArray array, std::uint64_t first, const double* values, std::size_t count) override {
     store(array, first, values, count);
+  }
+  void write_corner_offsets(std::uint64_t first, const std::int8_t* values, std::size_t count) override {
+    if (arrays_.corner_offsets != nullptr) std::copy_n(values, count, arrays_.corner_offsets + first);
   }
 
  private:
@@ -48,20 +50,6 @@ class ArraySink : public Base {
   }
 
   MeshArrays<Index> arrays_;
-};
-
-/// With offsets; null: they are not wanted.
-template <typename Index>
-class PeriodicArraySink : public ArraySink<Index, PeriodicMeshSink> {
- public:
-  PeriodicArraySink(const MeshArrays<Index>& arrays, std::int8_t* offsets)
-      : ArraySink<Index, PeriodicMeshSink>(arrays), offsets_(offsets) {}
-  void write_offsets(std::uint64_t first, const std::int8_t* offsets, std::size_t count) override {
-    if (offsets_ != nullptr) std::copy_n(offsets, count, offsets_ + first);
-  }
-
- private:
-  std::int8_t* offsets_;
 };
 
 }  // namespace flaunay::chunks

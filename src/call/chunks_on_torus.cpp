@@ -1,23 +1,20 @@
-// The public calls for more points on a torus or a cylinder than fit memory: chunks of the points and of
-// images of those near the border, which are in memory.
+// More points on a torus or a cylinder than fit memory: chunks of the points and of images of those near the
+// border, which are in memory.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "call/chunks.hpp"
 #include "call/periodic.hpp"
-#include "call/with_errors.hpp"
 #include "derived/periodic/torus.hpp"
 #include "geometry/arguments.hpp"
 #include "host/clock.hpp"
 #include "host/memory/system_memory.hpp"
-#include "large/chunks/array_sink.hpp"
 #include "large/chunks/runs.hpp"
 
 namespace flaunay {
@@ -140,7 +137,7 @@ class UnrolledPlane : public PointSource, public chunks::Folding {
 // Turns images into points and offsets, and counts duplicates.
 class FoldedSink : public MeshSink {
  public:
-  FoldedSink(PeriodicMeshSink& sink, const UnrolledPlane& plane, std::uint64_t points)
+  FoldedSink(MeshSink& sink, const UnrolledPlane& plane, std::uint64_t points)
       : sink_(sink), plane_(plane), points_(points) {}
 
   std::uint64_t duplicates() const { return duplicates_; }
@@ -153,7 +150,7 @@ class FoldedSink : public MeshSink {
     if (count == 0) return;
     if (array == MeshArray::triangles) {
       values = without_images(values, count);
-      sink_.write_offsets(2 * first, offsets_.data(), offsets_.size());
+      sink_.write_corner_offsets(2 * first, offsets_.data(), offsets_.size());
     } else if (array == MeshArray::representatives) {
       for (std::size_t k = 0; k < count; ++k)
         duplicates_ += static_cast<std::uint64_t>(values[k]) != first + k;
@@ -189,7 +186,7 @@ class FoldedSink : public MeshSink {
     return corners_.data();
   }
 
-  PeriodicMeshSink& sink_;
+  MeshSink& sink_;
   const UnrolledPlane& plane_;
   std::uint64_t points_, duplicates_ = 0;
   std::vector<std::int64_t> corners_;
@@ -197,7 +194,7 @@ class FoldedSink : public MeshSink {
 };
 
 // Returns nothing if the margin is too small.
-std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& box, PeriodicMeshSink& sink,
+std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& box, MeshSink& sink,
                                               ChunkOptions options) {
   const std::uint64_t n = places.size(), memory = call::chunk_memory(options);
   const double begin = host::now();
@@ -216,19 +213,7 @@ std::optional<ChunkStatistics> triangulate_in(const Places& places, const Box& b
   return statistics;
 }
 
-template <typename Index>
-ChunkStatistics triangulate_into(const double* coordinates, std::uint64_t n, const Period& period,
-                                 const MeshArrays<Index>& results, std::int8_t* offsets,
-                                 const ChunkOptions& options) {
-  call::check_chunk_arrays(coordinates, n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
-  ArrayPoints points(coordinates, n);
-  chunks::PeriodicArraySink<Index> sink(results, offsets);
-  return triangulate_periodic_chunks(points, period, sink, options);
-}
-
 }  // namespace
-
-PeriodicMeshSink::~PeriodicMeshSink() = default;
 
 Period take_to_places(const Period& period, double* points, std::size_t n) {
   check_array(points, n, "points", kMostPointsInChunks);
@@ -238,37 +223,23 @@ Period take_to_places(const Period& period, double* points, std::size_t n) {
   return periodic::period_of(lattice);
 }
 
-ChunkStatistics triangulate_periodic_chunks(PointSource& points, const Period& period, PeriodicMeshSink& sink,
-                                            const ChunkOptions& options) {
-  return with_errors([&] {
-    call::check(period);
-    check_count(points.size(), "points", kMostPointsInChunks);
-    expect(!sink.wants(MeshArray::hull), "a torus or a cylinder has no hull");
-    const double begin = host::now();
-    const periodic::Lattice lattice = periodic::lattice_of(period);
-    const Places places(points, lattice, options);
-    Box box = box_of(places, lattice);
-    box.margin = periodic::first_margin(box, places.size());
-    for (;; periodic::widen(box, 0)) {
-      if (places.size() == 0) return ChunkStatistics();
-      if (std::optional<ChunkStatistics> done = triangulate_in(places, box, sink, options)) {
-        done->seconds = host::now() - begin;
-        return std::move(*done);
-      }
+ChunkStatistics call::triangulate_chunks_on_torus(PointSource& points, MeshSink& sink,
+                                                  const ChunkOptions& options) {
+  check(options.space.period);
+  check_count(points.size(), "points", kMostPointsInChunks);
+  expect(!sink.wants(MeshArray::hull), "a torus or a cylinder has no hull");
+  const double begin = host::now();
+  const periodic::Lattice lattice = periodic::lattice_of(options.space.period);
+  const Places places(points, lattice, options);
+  Box box = box_of(places, lattice);
+  box.margin = periodic::first_margin(box, places.size());
+  for (;; periodic::widen(box, 0)) {
+    if (places.size() == 0) return ChunkStatistics();
+    if (std::optional<ChunkStatistics> done = triangulate_in(places, box, sink, options)) {
+      done->seconds = host::now() - begin;
+      return std::move(*done);
     }
-  });
-}
-
-ChunkStatistics triangulate_periodic_chunks(const double* coordinates, std::uint64_t n, const Period& period,
-                                            const MeshArrays<std::int32_t>& results, std::int8_t* offsets,
-                                            const ChunkOptions& options) {
-  return triangulate_into(coordinates, n, period, results, offsets, options);
-}
-
-ChunkStatistics triangulate_periodic_chunks(const double* coordinates, std::uint64_t n, const Period& period,
-                                            const MeshArrays<std::int64_t>& results, std::int8_t* offsets,
-                                            const ChunkOptions& options) {
-  return triangulate_into(coordinates, n, period, results, offsets, options);
+  }
 }
 
 }  // namespace flaunay
