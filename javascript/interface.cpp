@@ -35,7 +35,8 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const double* coo
 flaunay_status voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
                        const flaunay_triangulation* mesh, flaunay_voronoi** result) {
   return flaunay::c::create(result, [&] {
-    return std::make_unique<flaunay_voronoi>(triangulator->cpp.voronoi(coordinates, n, mesh->plain()));
+    return std::make_unique<flaunay_voronoi>(
+        flaunay_voronoi{triangulator->cpp.voronoi(coordinates, n, mesh->plain())});
   });
 }
 flaunay_status clipped_voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
