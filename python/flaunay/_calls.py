@@ -342,10 +342,21 @@ def space_of(
     weights: Optional[_Doubles] = None,
 ) -> _declarations.Space:
     """A flaunay_space. kind: "plane", "torus" or "sphere". period: in x and y, and perhaps the shear."""
-    numbers = {"kind": SPACE_KINDS[kind], "coordinates": coordinates}
-    lengths = dict(zip(("period_x", "period_y", "shear"), period))
-    space: _declarations.Space = _struct(_declarations.Space, **numbers, **lengths, weights=weights)
+    if weights is None:
+        return _space_without_weights(kind, period, coordinates)
+    space: _declarations.Space = _struct(_declarations.Space, **_members_of(kind, period, coordinates), weights=weights)
     return space
+
+
+def _members_of(kind: str, period: tuple[float, ...], coordinates: int) -> dict[str, Any]:
+    lengths = dict(zip(("period_x", "period_y", "shear"), period))
+    return {"kind": SPACE_KINDS[kind], "coordinates": coordinates, **lengths}
+
+
+@functools.lru_cache(maxsize=64)
+def _space_without_weights(kind: str, period: tuple[float, ...], coordinates: int) -> _declarations.Space:
+    """One struct for all calls in a space, which only read it."""
+    return _declarations.Space(**_members_of(kind, period, coordinates))
 
 
 def _period_of(space: Any) -> tuple[float, float, float]:
@@ -1656,15 +1667,16 @@ class SpaceLocator(_Locator):
 
     def __init__(self, triangulator: Triangulator, mesh: InSpace) -> None:
         super().__init__(triangulator)
-        self._on_sphere = mesh.on_sphere
+        self._on_sphere, self._coordinates = mesh.on_sphere, -1
         triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
 
     def _ask(self, function: Any, queries: _Doubles, *after: Any, before: tuple[Any, ...] = ()) -> None:
         """Calls a function of queries. before, after: what it takes before these, and behind their sets."""
         queries = _as_doubles(queries)
         with self._triangulator.turn:
-            if self._on_sphere:
-                self._call(library.locator_set_coordinates, sphere_coordinates(queries.shape[1]))
+            if self._on_sphere and (coordinates := sphere_coordinates(queries.shape[1])) != self._coordinates:
+                self._call(library.locator_set_coordinates, coordinates)
+                self._coordinates = coordinates
             self._call(function, *before, queries, len(queries), None, 0, *after)
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:

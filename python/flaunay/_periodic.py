@@ -25,7 +25,6 @@ from flaunay._cells import ClippedVoronoi
 from flaunay._declarations import INTERPOLATION
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
-from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator, as_weights
 
 if TYPE_CHECKING:
@@ -74,6 +73,9 @@ class PeriodicDelaunay(WithLocator):
         Set s has the triangles ``simplices[simplex_offsets[s]:simplex_offsets[s + 1]]``.
     """
 
+    hidden: Indices
+    _names = WithLocator._names | {"hidden": "hidden"}
+
     def __init__(
         self,
         points: Doubles,
@@ -82,22 +84,16 @@ class PeriodicDelaunay(WithLocator):
         weights: Optional[Doubles],
         device: Optional[str],
     ) -> None:
-        self._given = points, period, offsets, weights, device
         space = _calls.space_of("torus", period, weights=weights)
-        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
-        made = self._handle.arrays()
-        self.points = points
+        super().__init__((points, period, offsets, weights, device), space, offsets)
         self.period: tuple[float, ...] = as_period(self._handle.period())
-        self.places: Doubles = frozen(made["places"])
-        self.simplices: Indices = frozen(made["triangles"])
-        self.corner_offsets: npt.NDArray[np.int8] = frozen(made["corner_offsets"].reshape(-1, 3, 2))
-        self.neighbors: Indices = frozen(made["neighbors"])
-        self.representatives: Indices = frozen(made["representatives"])
-        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
         self.weights = weights
-        self.hidden: Indices = frozen(made["hidden"])
-        self._kept_locator, self._kept_tree = Kept(), Kept()
         self._has_locator = weights is None
+
+    @cached_property
+    def corner_offsets(self) -> npt.NDArray[np.int8]:
+        """In which period each corner of a triangle is, shape (nsimplex, 3, 2)."""
+        return frozen(self._made["corner_offsets"].reshape(-1, 3, 2))
 
     @cached_property
     def cells(self) -> ClippedVoronoi:

@@ -9,10 +9,9 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _triangulators
+from flaunay import _calls
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, hint_for, summary
 from flaunay._errors import UsageError
-from flaunay._queries import Kept
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
 
@@ -151,18 +150,12 @@ class SphericalDelaunay(WithLocator):
         offsets: Optional[npt.NDArray[np.int64]],
         device: Optional[str],
     ) -> None:
-        self._given = points, offsets, device
-        space = _calls.sphere(points.shape[1])
-        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
-        made = self._handle.arrays()
-        self.points = points
-        self.places: Doubles = frozen(made["places"])
-        self.xyz: Doubles = frozen(_calls.directions_of(self.places))
-        self.simplices: Indices = frozen(made["triangles"])
-        self.neighbors: Indices = frozen(made["neighbors"])
-        self.representatives: Indices = frozen(made["representatives"])
-        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
-        self._kept_locator, self._kept_tree = Kept(), Kept()
+        super().__init__((points, offsets, device), _calls.sphere(points.shape[1]), offsets)
+
+    @cached_property
+    def xyz(self) -> Doubles:
+        """The points' unit vectors, rounded."""
+        return frozen(_calls.directions_of(self.places))
 
     @cached_property
     def voronoi(self) -> SphericalVoronoi:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable, Literal, Optional, Union, overload
+from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -26,11 +26,41 @@ def as_weights(given: ArrayLike, n: int) -> Doubles:
 
 
 class OfPoints:
-    """A result that is a function of what was given: the arguments of its class, the device last."""
+    """A result that is a function of what was given: the arguments of its class, the device last.
+
+    Its arrays are those that the library has made, each read when it is first asked for.
+    """
 
     points: Doubles
     simplices: Indices
+    neighbors: Indices
+    representatives: Indices
+    simplex_offsets: npt.NDArray[np.int64]
     _given: tuple[Any, ...]
+    _handle: _calls.InSpace
+    _made: _calls.Made
+    # Of each array, what the library calls it.
+    _names: ClassVar[dict[str, str]] = {
+        "simplices": "triangles",
+        "neighbors": "neighbors",
+        "representatives": "representatives",
+        "simplex_offsets": "triangle_offsets",
+    }
+
+    def __init__(self, given: tuple[Any, ...], space: Any, offsets: Optional[npt.NDArray[np.int64]]) -> None:
+        self._given, self.points = given, given[0]
+        self._handle = _calls.InSpace(self._triangulator, self.points, offsets, space)
+        self._made = self._handle.arrays()
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name):
+            if name not in self._names:
+                return object.__getattribute__(self, name)  # its error
+            return self.__dict__.setdefault(name, frozen(self._made[self._names[name]]))
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._names]
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex)
@@ -54,10 +84,14 @@ class OfPoints:
 class WithLocator(OfPoints):
     """One that answers queries, by a locator and a tree that are made when they are first needed."""
 
-    _handle: _calls.InSpace
-    _kept_locator: Kept[_calls.SpaceLocator]
-    _kept_tree: Kept[_calls.PointTree]
+    places: Doubles
+    _names = OfPoints._names | {"places": "places"}
     _has_locator = True
+
+    def __init__(self, given: tuple[Any, ...], space: Any, offsets: Optional[npt.NDArray[np.int64]]) -> None:
+        super().__init__(given, space, offsets)
+        self._kept_locator: Kept[_calls.SpaceLocator] = Kept()
+        self._kept_tree: Kept[_calls.PointTree] = Kept()
 
     @property
     def _locator(self) -> _calls.SpaceLocator:

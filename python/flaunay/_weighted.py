@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _triangulators
+from flaunay import _calls
 from flaunay._arrays import ArrayLike, as_offsets, as_points, frozen, summary
 from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._errors import UsageError
@@ -38,6 +38,11 @@ class WeightedDelaunay(OfPoints):
     hull_offsets : ndarray of int64, shape (nsets + 1,)
     """
 
+    hull: Indices
+    hidden: Indices
+    hull_offsets: npt.NDArray[np.int64]
+    _names = OfPoints._names | {name: name for name in ("hull", "hidden", "hull_offsets")}
+
     def __init__(
         self,
         points: Doubles,
@@ -45,19 +50,9 @@ class WeightedDelaunay(OfPoints):
         offsets: Optional[npt.NDArray[np.int64]],
         device: Optional[str],
     ) -> None:
-        self._given = points, weights, offsets, device
         space = _calls.space_of("plane", weights=weights)
-        self._handle = _calls.InSpace(_triangulators.of_device(device), points, offsets, space)
-        made = self._handle.arrays()
-        self.points = points
+        super().__init__((points, weights, offsets, device), space, offsets)
         self.weights = weights
-        self.simplices: Indices = frozen(made["triangles"])
-        self.neighbors: Indices = frozen(made["neighbors"])
-        self.hull: Indices = frozen(made["hull"])
-        self.hidden: Indices = frozen(made["hidden"])
-        self.representatives: Indices = frozen(made["representatives"])
-        self.simplex_offsets: npt.NDArray[np.int64] = frozen(made["triangle_offsets"])
-        self.hull_offsets: npt.NDArray[np.int64] = frozen(made["hull_offsets"])
 
     def __repr__(self) -> str:
         return summary(self, points=self.npoints, triangles=self.nsimplex, hidden=len(self.hidden))
