@@ -574,6 +574,8 @@ class Triangulator(DeviceHandle):
 class _InTurns(DeviceHandle):
     """A handle that takes the turns of its triangulator."""
 
+    _coordinates = -1  # of the last queries on the sphere
+
     def __init__(self, triangulator: Triangulator) -> None:
         super().__init__()
         self._triangulator = triangulator
@@ -581,6 +583,13 @@ class _InTurns(DeviceHandle):
     def _call(self, function: Any, *arguments: Any) -> None:
         """Calls a function that takes the handle first."""
         self._triangulator.call(function, self.pointer, *arguments)
+
+    def _expect(self, queries: _Doubles, set_coordinates: Any) -> None:
+        """Says how queries on the sphere are given, unless the last ones were given so. In a turn."""
+        coordinates = sphere_coordinates(queries.shape[1])
+        if coordinates != self._coordinates:
+            self._call(set_coordinates, coordinates)
+            self._coordinates = coordinates
 
     def _release(self) -> None:
         with self._triangulator.turn:
@@ -1507,7 +1516,7 @@ class PointTree(_InTurns):
     ) -> tuple[_Indices, _Doubles]:
         """As `nearest`, with angles. queries: longitudes and latitudes, or x, y and z."""
         with self._triangulator.turn:
-            self._call(library.point_tree_set_coordinates, sphere_coordinates(queries.shape[1]))
+            self._expect(queries, library.point_tree_set_coordinates)
             return self.nearest(queries, count, max_distance)
 
     def nearest(
@@ -1606,11 +1615,10 @@ class InSpace(_Triangulation):
         space: _declarations.Space,
     ) -> None:
         super().__init__()
-        self._given = _as_doubles(points), _as_offsets(offsets, len(points))[0], space
+        self._given = _as_doubles(points), *_as_offsets(offsets, len(points)), space
         self.on_sphere = bool(space.kind == SPACE_KINDS["sphere"])
-        coordinates, starts, _ = self._given
+        coordinates, starts, sets, _ = self._given
         options = _struct(_declarations.Options, parts=PART["neighbors"], space=space)
-        sets = 0 if starts is None else len(starts) - 1
         given = (coordinates, len(points), starts, sets, options, self.place)
         triangulator.call(library.triangulate, triangulator, *given)
 
@@ -1625,13 +1633,12 @@ class InSpace(_Triangulation):
         return _period_of(self._mesh[0].space)
 
     def verify(self) -> None:
-        points, starts, space = self._given
+        points, starts, _, space = self._given
         check(library.mesh_verify(self._mesh, _address_of(points), _address_or_none(starts), space))
 
     def hiding_triangles(self, triangulator: Triangulator) -> _Indices:
-        points, starts, _ = self._given
+        points, starts, sets, _ = self._given
         triangles = np.empty(self._mesh[0].hidden_count, np.int32)
-        sets = 0 if starts is None else len(starts) - 1
         triangulator.call(library.hiding_triangles, triangulator, points, starts, sets, self, triangles)
         return triangles
 
@@ -1667,16 +1674,15 @@ class SpaceLocator(_Locator):
 
     def __init__(self, triangulator: Triangulator, mesh: InSpace) -> None:
         super().__init__(triangulator)
-        self._on_sphere, self._coordinates = mesh.on_sphere, -1
+        self._on_sphere = mesh.on_sphere
         triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
 
     def _ask(self, function: Any, queries: _Doubles, *after: Any, before: tuple[Any, ...] = ()) -> None:
         """Calls a function of queries. before, after: what it takes before these, and behind their sets."""
         queries = _as_doubles(queries)
         with self._triangulator.turn:
-            if self._on_sphere and (coordinates := sphere_coordinates(queries.shape[1])) != self._coordinates:
-                self._call(library.locator_set_coordinates, coordinates)
-                self._coordinates = coordinates
+            if self._on_sphere:
+                self._expect(queries, library.locator_set_coordinates)
             self._call(function, *before, queries, len(queries), None, 0, *after)
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:
