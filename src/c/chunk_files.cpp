@@ -116,10 +116,8 @@ ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const
                                      const flaunay_mesh_files& files, const ChunkOptions& options) {
   check_reserved(arrays, "flaunay_mesh_arrays");
   check_reserved(files, "flaunay_mesh_files");
-  if (options.space.kind == SpaceKind::plane) {
-    expect(arrays.corner_offsets == nullptr && files.corner_offsets == nullptr,
-           "corner offsets are wanted, but there is no period");
-  }
+  chunks::check_corner_offsets(options.space,
+                               arrays.corner_offsets != nullptr || files.corner_offsets != nullptr);
   StridedPoints source(points);
   switch (arrays.index_type) {
     case FLAUNAY_INT32:

@@ -15,6 +15,7 @@
 #include "c/strided_points.hpp"
 #include "flaunay/flaunay.h"
 #include "flaunay/terrain.hpp"
+#include "large/chunks/array_sink.hpp"
 
 using namespace flaunay;
 
@@ -195,13 +196,12 @@ class CallersSink : public MeshSink {
     }
     if (given.parts != 0) parts_ = given.parts;
     const unsigned doubles = part_of(MeshArray::areas);
+    const bool has_corner_offsets = (parts_ & FLAUNAY_PART_CORNER_OFFSETS) != 0;
     if ((parts_ & ~(doubles | FLAUNAY_PART_CORNER_OFFSETS)) != 0)
       required(given.write, "the function that writes results");
     if ((parts_ & doubles) != 0) required(given.write_doubles, "the function that writes results in doubles");
-    if ((parts_ & FLAUNAY_PART_CORNER_OFFSETS) != 0) {
-      required(given.write_corner_offsets, "the function that writes corner offsets");
-      expect(space.kind == SpaceKind::torus, "corner offsets are wanted, but there is no period");
-    }
+    if (has_corner_offsets) required(given.write_corner_offsets, "the function that writes corner offsets");
+    chunks::check_corner_offsets(space, has_corner_offsets);
   }
   bool wants(MeshArray array) const override { return (parts_ & part_of(array)) != 0; }
   void write(MeshArray array, std::uint64_t first, const std::int64_t* values, std::size_t count) override {

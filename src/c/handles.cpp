@@ -103,8 +103,24 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
   return result;
 }
 
-flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics) {
+namespace {
+
+// What triangulations in host and in device memory have alike.
+template <typename Mesh>
+flaunay_mesh view_of_sets(const Mesh& triangulation, const StatisticsView& statistics) {
   flaunay_mesh view{};
+  view.image_count = triangulation.images;
+  view.triangle_offsets = elements(triangulation.triangle_offsets);
+  view.hull_offsets = elements(triangulation.hull_offsets);
+  view.point_offsets = elements(triangulation.point_offsets);
+  view.statistics = statistics.get();
+  return view;
+}
+
+}  // namespace
+
+flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics) {
+  flaunay_mesh view = view_of_sets(triangulation, statistics);
   view.point_count = triangulation.representatives.size();
   view.set_count = set_count(triangulation.triangle_offsets);
   view.triangle_count = triangulation.triangles.size() / 3;
@@ -114,26 +130,16 @@ flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& s
   FLAUNAY_SPACE_ARRAYS(VIEW)
 #undef VIEW
   view.hidden_count = triangulation.hidden.size();
-  view.image_count = triangulation.images;
-  view.triangle_offsets = elements(triangulation.triangle_offsets);
-  view.hull_offsets = elements(triangulation.hull_offsets);
-  view.point_offsets = elements(triangulation.point_offsets);
-  view.statistics = statistics.get();
   return view;
 }
 
 flaunay_mesh view_of(const DeviceTriangulation& triangulation, const StatisticsView& statistics) {
-  flaunay_mesh view{};
+  flaunay_mesh view = view_of_sets(triangulation, statistics);
   view.point_count = triangulation.points;
   view.set_count = set_count(triangulation.point_offsets);
   view.triangle_count = total(triangulation.triangle_offsets);
   view.hull_count = total(triangulation.hull_offsets);
-  view.image_count = triangulation.images;
   view.hidden_count = triangulation.hidden_count;
-  view.triangle_offsets = elements(triangulation.triangle_offsets);
-  view.hull_offsets = elements(triangulation.hull_offsets);
-  view.point_offsets = elements(triangulation.point_offsets);
-  view.statistics = statistics.get();
   return view;
 }
 

@@ -116,8 +116,7 @@ ChunkStatistics triangulate_arrays(const double* coordinates, std::uint64_t n,
                                    const MeshArrays<Index>& results, const ChunkOptions& options) {
   check_array(coordinates, n, "points", kMostPointsInChunks);
   check_indices(n, static_cast<std::uint64_t>(std::numeric_limits<Index>::max()));
-  if (options.space.kind == SpaceKind::plane)
-    expect(results.corner_offsets == nullptr, "corner offsets are wanted, but there is no period");
+  chunks::check_corner_offsets(options.space, results.corner_offsets != nullptr);
   ArrayPoints points(coordinates, n);
   chunks::ArraySink<Index> sink(results);
   return triangulate_chunks(points, sink, options);

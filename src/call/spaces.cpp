@@ -8,9 +8,8 @@
 namespace flaunay {
 namespace {
 
-void check_weights(const Space& space) {
-  call::expect(space.weights == nullptr || space.kind != SpaceKind::sphere,
-               "points on the sphere have no weights");
+void check_weights(const Space& space, bool has_weights) {
+  call::expect(!has_weights || space.kind != SpaceKind::sphere, "points on the sphere have no weights");
 }
 
 }  // namespace
@@ -26,7 +25,7 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
   return call::take_turn(self, [&] {
     check_offsets(offsets);
     check_enumerator(space.kind);
-    check_weights(space);
+    check_weights(space, space.weights != nullptr);
     const call::HostPoints given{points, nullptr, offsets.back()};
     if (space.kind == SpaceKind::plane && space.weights != nullptr)
       return call::triangulate_with_weights(self, given, space.weights, offsets, options);
@@ -46,8 +45,7 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
   call::take_turn(self, enqueue, [&] {
     check_enumerator(points.space.kind);
     call::expect(points.space.weights == nullptr, "points in device memory have weights there");
-    call::expect(points.weights == nullptr || points.space.kind != SpaceKind::sphere,
-                 "points on the sphere have no weights");
+    check_weights(points.space, points.weights != nullptr);
     result.space = points.space;
     result.hidden_count = 0;
     if (points.space.kind == SpaceKind::torus) {
@@ -66,7 +64,7 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
                    const Triangulation& mesh) {
   check_offsets(offsets);
   check_enumerator(space.kind);
-  check_weights(space);
+  check_weights(space, space.weights != nullptr);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
   if (space.kind == SpaceKind::torus) return call::problem_on_torus(points, offsets, space, mesh);
   if (space.kind == SpaceKind::sphere)

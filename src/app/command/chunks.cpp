@@ -136,7 +136,6 @@ int triangulate_in_chunks(const Task& task, const ChunkRequest& request, const s
 
   RunFacts facts;
   facts.input = task.input;
-  facts.mode = "blocks";
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");

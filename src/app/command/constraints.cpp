@@ -451,7 +451,6 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
 
   RunFacts facts;
   facts.input = task.input;
-  facts.mode = "blocks";
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");

@@ -21,10 +21,10 @@ struct ConstraintFacts {
 /// What the command itself knows about a run, besides the library's statistics.
 struct RunFacts {
   std::string input;
-  std::string mode;
-  std::string cut;             // empty if the mode has none
-  std::string dividing_paths;  // empty if the mode has none
-  bool counted = false;        ///< Triangulation::work is filled
+  std::string mode = "blocks";  ///< the one of commands that have no choice
+  std::string cut;              // empty if the mode has none
+  std::string dividing_paths;   // empty if the mode has none
+  bool counted = false;         ///< Triangulation::work is filled
   std::string what_was_done = "triangulated";
   std::optional<ConstraintFacts> constraints;
   std::optional<RefinementReport> refinement;

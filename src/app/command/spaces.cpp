@@ -155,7 +155,8 @@ bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   return true;
 }
 
-WeightedPoints read_weighted(const std::string& path, const io::Columns& columns) {
+WeightedPoints read_points(const std::string& path, const io::Columns& columns, bool is_weighted) {
+  if (!is_weighted) return {io::read_points(path, columns), {}};
   io::Scan file({path}, {}, "", columns, "weight");
   file.survey([](double) {});
   const auto n = static_cast<std::size_t>(file.size());
@@ -176,16 +177,10 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
 
   RunFacts facts;
   facts.input = task.input;
-  facts.mode = "blocks";
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  WeightedPoints read;
-  if (request.is_weighted) {
-    read = read_weighted(task.input, task.columns);
-  } else {
-    read.points = io::read_points(task.input, task.columns);
-  }
+  WeightedPoints read = read_points(task.input, task.columns, request.is_weighted);
   io::Points& points = read.points;
   const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();

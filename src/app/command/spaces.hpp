@@ -32,8 +32,8 @@ struct WeightedPoints {
   io::Points points;
   std::vector<double> weights;
 };
-/// Reads points and weights. Throws Error(input) that names the place.
-WeightedPoints read_weighted(const std::string& path, const io::Columns& columns);
+/// Reads points, and their weights if they have some. Throws Error(input) that names the place.
+WeightedPoints read_points(const std::string& path, const io::Columns& columns, bool is_weighted);
 
 /// Reads, triangulates and writes. places: the file for places, if there is one. Returns the exit code.
 int triangulate_in_space(const Task& task, const SpaceRequest& request, const std::string& places);

@@ -209,7 +209,7 @@ std::vector<std::int32_t> hidden_points(const Triangulation& mesh) {
 /// The hull is where
 /// triangles have no neighbours.
 std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
-  const auto [points, weights] = read_weighted(request.points, request.columns);
+  const auto [points, weights] = read_points(request.points, request.columns, true);
   n = points.size();
   Triangulation mesh;
   read_rows(request, n, mesh);
@@ -253,12 +253,7 @@ std::string problem_without_triangles(const Triangulation& mesh) {
 
 std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   Triangulation mesh;
-  WeightedPoints read;
-  if (request.is_weighted) {
-    read = read_weighted(request.points, request.columns);
-  } else {
-    read.points = io::read_points(request.points, request.columns);
-  }
+  WeightedPoints read = read_points(request.points, request.columns, request.is_weighted);
   mesh.places = std::move(read.points.coordinates);
   n = mesh.places.size() / 2;
   mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {

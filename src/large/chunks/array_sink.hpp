@@ -8,8 +8,14 @@
 
 #include "flaunay/chunks.hpp"
 #include "flaunay/result_arrays.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::chunks {
+
+/// Throws Error(usage) if corner offsets are wanted in the plane, where there are none.
+inline void check_corner_offsets(const Space& space, bool are_wanted) {
+  expect(!are_wanted || space.kind != SpaceKind::plane, "corner offsets are wanted, but there is no period");
+}
 
 /// Writes to arrays in memory, which it does not own.
 template <typename Index>
