@@ -6,7 +6,8 @@
 
 #include "blocks/memory.hpp"
 #include "call/device_info.hpp"
-#include "call/triangulate.hpp"
+#include "call/handles.hpp"
+#include "call/implementation.hpp"
 
 namespace flaunay {
 namespace {
@@ -40,14 +41,6 @@ boost::compute::device checked_member(cl_context context, cl_device_id device) {
     throw Error(ErrorKind::usage, "the device is not one of the context");
   }
   return boost::compute::device(device);
-}
-
-// One of wide and narrow is null.
-Triangulation checked_call(call::Implementation& self, const double* wide, const float* narrow,
-                           const std::vector<std::size_t>& offsets, const Options& options) {
-  return call::take_turn(self, [&] {
-    return call::triangulate(self, call::checked_points(wide, narrow, offsets), offsets, options);
-  });
 }
 
 }  // namespace
@@ -85,24 +78,6 @@ cl_command_queue Triangulator::queue() const {
 
 std::size_t Triangulator::capacity() const {
   return with_errors([&] { return implementation_->for_host_memory().capacity(); });
-}
-
-Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
-  return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
-}
-
-Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n, const Options& options) {
-  return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
-}
-
-Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
-                                        const Options& options) {
-  return checked_call(*implementation_, coordinates, nullptr, offsets, options);
-}
-
-Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
-                                        const Options& options) {
-  return checked_call(*implementation_, nullptr, coordinates, offsets, options);
 }
 
 std::size_t Triangulator::workspace_bytes(std::size_t n, std::size_t sets) const {

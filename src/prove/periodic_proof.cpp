@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
-#include "derived/periodic/torus.hpp"
 #include "geometry/magnitudes.hpp"
 #include "prove/exact.hpp"
 #include "prove/rows.hpp"
+#include "space/periodic/torus.hpp"
 
 namespace flaunay::prove {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "call/constrained.hpp"
 #include "constrained/crossings/lines.hpp"
+#include "constrained/stages.hpp"
 #include "host/opencl/device.hpp"
 #include "tests/support/runtimes.hpp"
 

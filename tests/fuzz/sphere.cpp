@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "derived/sphere/predicates.hpp"
 #include "flaunay/verify.hpp"
+#include "space/sphere/predicates.hpp"
 #include "tests/fuzz/degenerate.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/support/shared_triangulator.hpp"

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "derived/periodic/fold.hpp"
 #include "launchers/periodic/fold.cl.hpp"
 #include "periodic/torus.h"
+#include "space/periodic/fold.hpp"
 #include "tests/locate/support.hpp"
 
 namespace flaunay::locate {

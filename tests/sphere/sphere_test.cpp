@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "derived/sphere/places.hpp"
-#include "derived/sphere/plane.hpp"
 #include "flaunay/verify.hpp"
+#include "space/sphere/places.hpp"
+#include "space/sphere/plane.hpp"
 #include "tests/support/errors.hpp"
 #include "tests/support/fixtures.hpp"
 #include "tests/support/shared_triangulator.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "call/constrained.hpp"
+#include "constrained/stages.hpp"
 
 namespace flaunay::sequential {
 

@@ -1,0 +1,176 @@
+// The public calls for Voronoi diagrams, clipped cells, and Lloyd's relaxation.
+#include "blocks/memory.hpp"
+#include "blocks/run.hpp"
+#include "call/mesh_of.hpp"
+#include "derived/voronoi/clip.hpp"
+#include "derived/voronoi/voronoi.hpp"
+
+namespace flaunay {
+namespace {
+
+template <typename Points, typename Mesh, typename Result>
+void compute(call::Frame& call, const Points& points, const Mesh& triangulation, Result& result) {
+  call.check_size(points.count);
+  points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
+  const std::size_t triangles = mesh.triangle_count();
+  const voronoi::Buffers buffers{call.out<cl_double>(result.circumcentres, 2 * triangles, "circumcentres"),
+                                 call.out<cl_int>(result.cell_offsets, points.count + 1, "cell offsets"),
+                                 call.out<cl_int>(result.cells, 3 * triangles, "cells"),
+                                 call.out<cl_uchar>(result.unbounded, points.count, "unbounded cells")};
+  call.check_distinct();
+  mesh.coordinates = call.points(points);
+  voronoi::compute(call.runtime, mesh, buffers);
+  call.end();
+}
+
+}  // namespace
+
+Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
+  return call::take_turn(*implementation_, [&] {
+    Voronoi result;
+    call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
+    compute(call, call::HostPoints{coordinates, nullptr, n}, triangulation, result);
+    return result;
+  });
+}
+
+void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
+                           DeviceVoronoi& result, const Enqueue& enqueue) {
+  call::take_turn(*implementation_, enqueue, [&] {
+    call::Frame call(*implementation_, call::with_doubles(*implementation_, implementation_->on_device()),
+                     enqueue);
+    call.check(points, "points");
+    call.begin();
+    compute(call, points, triangulation, result);
+  });
+}
+
+// ---- Clipped cells
+
+namespace {
+
+// set_count: takes the number of vertices.
+template <typename Points, typename Mesh, typename Result, typename SetCount>
+void compute_clipped(call::Frame& call, const Points& points, const Mesh& triangulation,
+                     const voronoi::ClipPolygon& polygon, Result& result, const SetCount& set_count) {
+  const std::size_t n = points.count;
+  call.check_size(n);
+  points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
+  const voronoi::ClippedBuffers buffers{call.out<cl_int>(result.offsets, n + 1, "cell offsets"),
+                                        call.out<cl_double>(result.areas, n, "areas"),
+                                        call.out<cl_double>(result.centroids, 2 * n, "centroids")};
+  mesh.coordinates = call.points(points);
+  host::Buffer<cl_double> vertices;
+  std::size_t count = 0;
+  voronoi::compute_clipped(call.runtime, mesh, polygon, buffers, [&](std::size_t found) {
+    count = found;
+    vertices = call.out<cl_double>(result.vertices, 2 * count, "vertices");
+    call.check_distinct();
+    return vertices;
+  });
+  count = voronoi::mend_clipped(call.runtime, mesh, polygon, buffers.offsets, vertices, count);
+  call.end();
+  set_count(count);
+}
+
+}  // namespace
+
+ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::size_t n,
+                                             const Triangulation& triangulation, const double* corners,
+                                             std::size_t corner_count) {
+  return call::take_turn(*implementation_, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    ClippedVoronoi result;
+    call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
+    compute_clipped(call, call::HostPoints{coordinates, nullptr, n}, triangulation, polygon, result,
+                    [&result](std::size_t vertices) { result.vertices.resize(2 * vertices); });
+    return result;
+  });
+}
+
+void Triangulator::clipped_voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
+                                   const double* corners, std::size_t corner_count,
+                                   DeviceClippedVoronoi& result, const Enqueue& enqueue) {
+  call::take_turn(*implementation_, enqueue, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    call::Frame call(*implementation_, call::with_doubles(*implementation_, implementation_->on_device()),
+                     enqueue);
+    call.check(points, "points");
+    call.begin();
+    compute_clipped(call, points, triangulation, polygon, result,
+                    [&result](std::size_t vertices) { result.vertex_count = vertices; });
+  });
+}
+
+// ---- Relaxation: triangulate, clip cells, move points to centroids, again. Points, triangles and cells stay
+// where kernels run.
+
+namespace {
+
+// Moves the points in this buffer. Everything else comes from the engine's arenas; its own, since the
+// caller's workspace has room for a triangulation alone.
+void relax_points(call::Engine& engine, const host::Buffer<cl_double>& points, std::size_t n,
+                  const voronoi::ClipPolygon& polygon, std::size_t iterations) {
+  if (n == 0) return;
+  host::Runtime& runtime = engine.runtime;
+  engine.persistent.reserve(blocks::workspace_bytes(runtime, n, 1).persistent);
+  host::Arena::Scope kept(engine.even);
+  const voronoi::ClippedBuffers cells{engine.even.allocate<cl_int>(n + 1), engine.even.allocate<cl_double>(n),
+                                      engine.even.allocate<cl_double>(2 * n)};
+  for (std::size_t i = 0; i < iterations; ++i) {
+    host::Arena::Scope mesh_scope(engine.even);
+    const points::DeviceMesh mesh = [&] {
+      host::Arena::Scope scope(engine.persistent), scratch_scope(runtime.arena());
+      return blocks::run(runtime, engine.persistent, {0, n}, points, engine.even);
+    }();
+    voronoi::compute_clipped(runtime, mesh, polygon, cells, [&](std::size_t vertices) {
+      return runtime.arena().allocate<cl_double>(2 * vertices);
+    });
+    voronoi::move_to_centroids(runtime, n, cells, points);
+  }
+}
+
+template <typename Points, typename Result>
+void relax_in(call::Frame& call, const Points& points, const voronoi::ClipPolygon& polygon,
+              std::size_t iterations, Result& result) {
+  const std::size_t n = points.count;
+  call.check_size(n);
+  const auto relaxed = call.out<cl_double>(result, 2 * n, "relaxed points");
+  call.check_distinct();
+  {
+    host::Arena::Scope scope(call.runtime.arena());
+    call.runtime.copy(call.points(points), 0, relaxed, 0, 2 * n);
+  }
+  relax_points(call.engine, relaxed, n, polygon, iterations);
+  call.end();
+}
+
+}  // namespace
+
+std::vector<double> Triangulator::relax(const double* coordinates, std::size_t n, const double* corners,
+                                        std::size_t corner_count, std::size_t iterations) {
+  return call::take_turn(*implementation_, [&] {
+    check_points(coordinates, n);
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    std::vector<double> relaxed;
+    call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
+    relax_in(call, call::HostPoints{coordinates, nullptr, n}, polygon, iterations, relaxed);
+    return relaxed;
+  });
+}
+
+void Triangulator::relax(const DevicePoints& points, const double* corners, std::size_t corner_count,
+                         std::size_t iterations, DeviceBuffer& result, const Enqueue& enqueue) {
+  call::take_turn(*implementation_, enqueue, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    const call::Place place = call::with_doubles(*implementation_, implementation_->on_device());
+    call::Frame call(*implementation_, place, enqueue);
+    call.check(points, "points");
+    place.device->check_size(points.count);
+    call.begin();
+    call::expect(call.offsets(points).size() <= 2, "points of several sets cannot be relaxed in one call");
+    relax_in(call, points, polygon, iterations, result);
+  });
+}
+
+}  // namespace flaunay

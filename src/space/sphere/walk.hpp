@@ -1,0 +1,62 @@
+// Walks over a triangulation on the sphere.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "space/sphere/predicates.hpp"
+
+namespace flaunay::sphere {
+
+/// A triangle, and on which sides of its arcs a query lies: 1 inside, 0 on the arc opposite to the corner.
+struct Found {
+  std::int32_t triangle = -1;
+  std::array<int, 3> sides{};
+};
+
+/// A triangulation of one set, on which any number of threads can walk at once. Refers to its arrays.
+class Walker {
+ public:
+  /// O(t). The mesh is one on the sphere, as a call made it.
+  explicit Walker(const Triangulation& mesh);
+
+  Point place(std::int32_t v) const { return place_at(mesh_.places, static_cast<std::size_t>(v)); }
+  std::int32_t corner(std::int32_t t, int k) const {
+    return mesh_.triangles[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
+  }
+
+  /// From vertex v to that which is nearest, and of several the first one: each step goes to a better
+  /// neighbour. The nearest points are the corners of one face of the hull in space, in which all are
+  /// neighbours of the first, so that no step is missing.
+  std::int32_t nearest(Point query, std::int32_t v) const;
+  /// The nearest points in their order, equal ones by their indices; fewer than `count` only if there are no
+  /// more. The first one is the vertex v. Each of the others is a neighbour of one that is nearer: a circle
+  /// through it, within the circle of what is nearer, has no point inside but for some that are nearer than
+  /// itself.
+  std::vector<std::int32_t> nearest_points(Point query, std::int32_t v, std::size_t count) const;
+  /// From a triangle at vertex v across arcs that the query lies beyond. In space, its ray's distance to the
+  /// triangles' planes grows from step to step, and so the walk ends. No triangle, if none has the query.
+  Found locate(Point query, std::int32_t v) const;
+  /// The weights of the triangle's corners where the query's direction meets it.
+  std::array<double, 3> weights(const Found& found, Point query) const;
+
+ private:
+  std::int32_t beyond(std::int32_t t, int k) const {
+    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
+  }
+  int corner_of(std::int32_t t, std::int32_t v) const;
+  Found found(std::int32_t t, Point query) const;
+  Found smallest(Found here, Point query) const;
+
+  const Triangulation& mesh_;
+  /// Of each triangle whether it turns left, as seen from the sphere's centre: all do unless the points lie
+  /// within a hemisphere.
+  std::vector<std::uint8_t> is_seen_;
+  /// Of each point the next one that the same point represents, or -1.
+  std::vector<std::int32_t> next_equal_;
+  /// Of each vertex a triangle, one that is seen if there is one; -1 if it has none.
+  std::vector<std::int32_t> triangle_at_;
+};
+
+}  // namespace flaunay::sphere

@@ -1,0 +1,95 @@
+// Triangulations of points with weights, and their power cells.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "arithmetic/coordinates.h"
+#include "blocks/weighted.hpp"
+#include "call/frame.hpp"
+#include "derived/voronoi/clip_polygon.hpp"
+#include "flaunay/weighted.hpp"
+#include "geometry/arguments.hpp"
+#include "geometry/magnitudes.hpp"
+#include "predicates/bounds.h"
+#include "prove/arguments.hpp"
+#include "prove/planar_proof.hpp"
+#include "space/spaces.hpp"
+#include "space/triangulate.hpp"
+#include "space/weighted/cells.hpp"
+
+namespace flaunay {
+namespace {
+
+using Ids = std::vector<std::int32_t>;
+
+void check_hidden(const Ids& hidden, std::size_t n) {
+  call::expect(are_indices(hidden, n) && std::is_sorted(hidden.begin(), hidden.end()),
+               "the hidden points are not those of these points");
+}
+
+void check(const double* points, const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
+  prove::check_arrays(points, offsets, mesh);
+  check_hidden(mesh.hidden, offsets.back());
+  call::expect(mesh.neighbors.size() == mesh.triangles.size(), "the triangulation must have its neighbours");
+}
+
+}  // namespace
+
+Triangulation call::triangulate_with_weights(Implementation& self, const HostPoints& points,
+                                             const double* weights, const std::vector<std::size_t>& offsets,
+                                             const Options& options) {
+  const HostPoints given = checked_points(points.wide, nullptr, offsets);
+  check_array(weights, given.count, "weights");
+  Ids hidden;
+  Triangulation mesh =
+      triangulate(self, given, HostWeights{weights, &blocks::kWeightedSolver, hidden}, offsets, options);
+  mesh.hidden = std::move(hidden);
+  return mesh;
+}
+
+void call::triangulate_with_weights(Implementation& self, const DevicePoints& points,
+                                    DeviceTriangulation& result, const Parts& parts, const Enqueue& enqueue) {
+  const DeviceWeights with{points.weights, &blocks::kWeightedSolver, result.hidden, &result.hidden_count};
+  triangulate(self, points, with, result, parts, enqueue);
+}
+
+Ids hiding_triangles(Triangulator& triangulator, const double* points,
+                     const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
+  check(points, offsets, mesh);
+  if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
+  const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
+  Locator locator(triangulator, visible.coordinates.data(), visible.offsets, visible.mesh);
+  std::vector<double> queries;
+  queries.reserve(2 * mesh.hidden.size());
+  for (const std::int32_t i : mesh.hidden) queries.insert(queries.end(), {points[2 * i], points[2 * i + 1]});
+  std::vector<std::size_t> of_sets;
+  for (const std::size_t offset : offsets) {
+    of_sets.push_back(static_cast<std::size_t>(
+        std::lower_bound(mesh.hidden.begin(), mesh.hidden.end(), static_cast<std::int64_t>(offset)) -
+        mesh.hidden.begin()));
+  }
+  return locator.locate(queries.data(), of_sets);
+}
+
+ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
+                                             const Triangulation& mesh, const double* corners,
+                                             std::size_t corner_count) {
+  return call::take_turn(*implementation_, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    check(coordinates, {0, n}, mesh);
+    check_array(weights, n, "weights");
+    return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
+                                polygon.corners);
+  });
+}
+
+std::string call::problem_with_weights(const double* points, const double* weights,
+                                       const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
+  check(points, offsets, mesh);
+  check_array(weights, offsets.back(), "weights");
+  return prove::find_problem({points, weights, offsets, mesh, mesh.neighbors, mesh.hidden});
+}
+
+}  // namespace flaunay
