@@ -1,7 +1,7 @@
 // Triangles in the plane of points and their images, turned into those of a torus or a cylinder. Segments: sets, as
 // unroll.cl has them.
 //
-// fold_representatives, over points: which are the same, and how many triangles are missing for that or at ends.
+// fold_representatives, over points: which are the same, and how many triangles are missing at ends.
 // keep_triangles, over triangles: of all images of a triangle, the one is kept whose smallest corner is in its place.
 // The host scans this to ranks. find_seams, over triangles: which kept ones have an edge that is a seam. list_seams,
 // over these: their edges, of which the host finds out which belong together. link_seams, over seams: the triangles
@@ -14,8 +14,8 @@
 
 #ifndef FIXED_POINT
 
-// n points, with arguments as of unroll.cl. planar: representatives in the plane. missing: per set, of two triangles a
-// point.
+// n points, with arguments as of unroll.cl. planar: representatives in the plane. missing: per set the number of
+// duplicates, and of the triangles that ends lack, two of which a point has otherwise.
 kernel void fold_representatives(int n, periodic_lattice lattice, int sets, global const int* restrict offsets,
                                  global const unrolled_set* restrict all, global const uint* restrict counts,
                                  global const double* restrict coordinates, global const int* restrict planar,
@@ -27,13 +27,13 @@ kernel void fold_representatives(int n, periodic_lattice lattice, int sets, glob
     const int back = at - planar[at], point = all[k].first + i - offsets[k];
     representatives[point] = point - back;
     if (back == 0 && all[k].has_ends == 0) return;
-    uint fewer = 2;
+    uint fewer = 1;
     if (back == 0) {
       const periodic_box box = all[k].box;
       const double2 p = vload2(at, coordinates);
       fewer = (uint)(ends_at(p.x, 0, &lattice, &box) + ends_at(p.y, 1, &lattice, &box));
     }
-    if (fewer > 0) atomic_add(&missing[k], fewer);
+    if (fewer > 0) atomic_add(&missing[2 * k + (back == 0)], fewer);
   }
 }
 

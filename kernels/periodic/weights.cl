@@ -31,7 +31,7 @@ kernel void flag_hidden_points(int n, int own, periodic_lattice lattice, int set
     const int k = segment_near(v, sets, offsets);
     const periodic_box box = all[k].box;
     const double2 p = vload2(v, coordinates);
-    atomic_add(&missing[k], (uint)(2 - ends_at(p.x, 0, &lattice, &box) - ends_at(p.y, 1, &lattice, &box)));
+    atomic_add(&missing[2 * k + 1], (uint)(2 - ends_at(p.x, 0, &lattice, &box) - ends_at(p.y, 1, &lattice, &box)));
   }
 }
 

@@ -15,6 +15,16 @@ namespace flaunay::call {
 /// What triangulations in device memory have in another space than the plane.
 constexpr Parts kPartsInSpace{true, true, false, false, true, false};
 
+/// Counts the points and triangles of a result, and not those in the plane.
+template <typename Result>
+void write_counts(std::size_t duplicates, Result& result) {
+  Statistics& statistics = result.statistics;
+  statistics.points = result.point_offsets.back();
+  statistics.duplicates = duplicates;
+  statistics.triangles = result.triangle_offsets.back();
+  statistics.hull_vertices = 0;
+}
+
 // It is the triangulator's turn, and offsets have been checked.
 // weights: null if points have none.
 Triangulation triangulate_on_torus(Implementation& self, const HostPoints& points, const double* weights,

@@ -19,7 +19,10 @@
 namespace flaunay::testing::spaces {
 namespace {
 
-constexpr Parts kWanted{true, true, false, true, true, false};
+Triangulator& on_host() {
+  static Triangulator host("host");
+  return host;
+}
 
 class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
  protected:
@@ -48,6 +51,8 @@ class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
     return coordinates;
   }
 
+  Parts wanted() const { return {true, true, space_.is_plane(), true, true, space_.is_plane()}; }
+
   static Enqueue on_own() {
     Enqueue enqueue;
     enqueue.queue = embedder().queue();
@@ -60,32 +65,43 @@ class DeviceLaws : public ::testing::TestWithParam<TestSpace> {
   }
 
   // That a call writes what a call for host memory returns, twice: the second has the memory of the first.
-  void expect_same(const DevicePoints& points, const Numbers& numbers, const Offsets& offsets) const {
-    const Triangulation expected = space_.triangulate(triangulator(), numbers, offsets);
+  DeviceTriangulation expect_same(const DevicePoints& points, const Numbers& numbers,
+                                  const Offsets& offsets) const {
+    const Triangulation expected = space_.triangulate(on_host(), numbers, offsets);
     DeviceTriangulation found;
     for (int call = 0; call < 2; ++call) {
-      embedded().triangulate(points, found, kWanted, on_own());
+      embedded().triangulate(points, found, wanted(), on_own());
       EXPECT_EQ(found.points, offsets.back());
       EXPECT_EQ(found.images, expected.images);
       EXPECT_EQ(found.space.period.x, expected.space.period.x);
       EXPECT_EQ(found.space.period.y, expected.space.period.y);
+      EXPECT_EQ(found.space.period.shear, expected.space.period.shear);
       EXPECT_EQ(found.point_offsets, offsets);
-      EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
-      EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+      expect_same_sizes(found, expected);
       EXPECT_TRUE(found.parts.triangles && found.parts.neighbors && found.parts.representatives);
       expect_array(found.places, expected.places);
       expect_array(found.triangles, expected.triangles);
       expect_array(found.corner_offsets, expected.corner_offsets);
       expect_array(found.neighbors, expected.neighbors);
+      expect_array(found.halfedges, expected.halfedges);
       expect_array(found.hull, expected.hull);
       expect_array(found.representatives, expected.representatives);
-      ASSERT_EQ(found.hidden_count, expected.hidden.size());
+      expect_array(found.areas, expected.areas);
+      EXPECT_EQ(found.hidden_count, expected.hidden.size());
       expect_array(found.hidden, expected.hidden);
     }
+    return found;
+  }
+  DeviceTriangulation expect_same(const Numbers& numbers, Offsets offsets = {}) const {
+    if (offsets.empty()) offsets = {0, numbers.size() / space_.width};
+    const Memory memory = embedder().upload(without_weights(numbers)), weights = weights_of(numbers);
+    DevicePoints points = points_in(memory, weights, offsets.back());
+    points.offsets = offsets;
+    return expect_same(points, numbers, offsets);
   }
 
   const TestSpace space_ = GetParam();
-  const std::vector<Case> cases_ = cases(space_.width);
+  const std::vector<Case> cases_ = cases(space_);
 };
 INSTANTIATE_TEST_SUITE_P(SmallSpaces, DeviceLaws, ::testing::ValuesIn(all_spaces()),
                          [](const auto& of) { return of.param.name; });
@@ -93,11 +109,31 @@ INSTANTIATE_TEST_SUITE_P(SmallSpaces, DeviceLaws, ::testing::ValuesIn(all_spaces
 TEST_P(DeviceLaws, ResultsAreThoseOfTheHost) {
   for (const Case& given : cases_) {
     SCOPED_TRACE(given.name);
-    const std::size_t n = given.numbers.size() / space_.width;
-    const Memory memory = embedder().upload(without_weights(given.numbers)),
-                 weights = weights_of(given.numbers);
-    expect_same(points_in(memory, weights, n), given.numbers, {0, n});
+    expect_same(given.numbers);
   }
+}
+
+class LargeDeviceLaws : public DeviceLaws {};
+INSTANTIATE_TEST_SUITE_P(Spaces, LargeDeviceLaws, ::testing::ValuesIn(all_spaces()),
+                         [](const auto& of) { return of.param.name; });
+
+TEST_P(LargeDeviceLaws, ResultsAreThoseOfTheHost) {
+  const std::vector<Case> large = large_cases(space_);
+  for (const Case& given : large) {
+    SCOPED_TRACE(given.name);
+    const DeviceTriangulation found = expect_same(given.numbers);
+    // Less than triangles take.
+    if (&given == &large[0] && embedded().device().fp64) {
+      EXPECT_LT(found.statistics.bytes_to_host, 24 * found.points);
+    }
+  }
+  // Some sets are done before others.
+  Offsets offsets;
+  const Numbers sets = joined(large, space_.width, offsets);
+  expect_same(sets, offsets);
+  // With the sizes of GPUs.
+  expect_same_arrays(space_.triangulate(triangulator_with("gpu:32"), sets, offsets),
+                     space_.triangulate(on_host(), sets, offsets));
 }
 
 TEST_P(DeviceLaws, PointsOfSetsBeginAnywhereInEitherPrecision) {
@@ -134,22 +170,22 @@ TEST_P(DeviceLaws, ResultsGoToTheCallersBuffers) {
   const Numbers& numbers = cases_[6].numbers;
   const std::size_t n = numbers.size() / space_.width;
   const Memory memory = embedder().upload(without_weights(numbers)), weights = weights_of(numbers);
-  const Triangulation expected = space_.triangulate(triangulator(), numbers, {0, n});
+  const Triangulation expected = space_.triangulate(on_host(), numbers, {0, n});
   DeviceTriangulation found;
   struct Wanted {
     DeviceBuffer* buffer;
     std::size_t bytes;
   };
-  std::vector<Wanted> wanted = {{&found.triangles, 24}, {&found.neighbors, 24}, {&found.representatives, 4}};
-  if (!expected.places.empty()) wanted.push_back({&found.places, 16});
-  if (!expected.corner_offsets.empty()) wanted.push_back({&found.corner_offsets, 12});
-  if (space_.has_weights) wanted.push_back({&found.hidden, 4});
-  for (const auto& [buffer, bytes] : wanted) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
-  const auto run = [&] { embedded().triangulate(points_in(memory, weights, n), found, kWanted, on_own()); };
+  std::vector<Wanted> buffers = {{&found.triangles, 24}, {&found.neighbors, 24}, {&found.representatives, 4}};
+  if (!expected.places.empty()) buffers.push_back({&found.places, 16});
+  if (!expected.corner_offsets.empty()) buffers.push_back({&found.corner_offsets, 12});
+  if (space_.has_weights) buffers.push_back({&found.hidden, 4});
+  for (const auto& [buffer, bytes] : buffers) *buffer = DeviceBuffer(embedder().make_buffer(bytes * n).get());
+  const auto run = [&] { embedded().triangulate(points_in(memory, weights, n), found, wanted(), on_own()); };
   run();
   expect_array(found.triangles, expected.triangles);
   expect_array(found.neighbors, expected.neighbors);
-  for (const auto& [buffer, bytes] : wanted) {
+  for (const auto& [buffer, bytes] : buffers) {
     const DeviceBuffer kept = *buffer;
     *buffer = DeviceBuffer(embedder().make_buffer(bytes * n - 1).get());
     expect_error(ErrorKind::usage, "too small", run);
@@ -170,10 +206,43 @@ TEST_P(DeviceLaws, ErrorsNameThePoint) {
   enqueue.event = &done;
   DeviceTriangulation found;
   expect_error(ErrorKind::input, "point 13 is not finite",
-               [&] { embedded().triangulate(points_in(memory, weights, n), found, kWanted, enqueue); });
+               [&] { embedded().triangulate(points_in(memory, weights, n), found, wanted(), enqueue); });
   EXPECT_EQ(done, nullptr);
   expect_error(ErrorKind::usage, "too small",
-               [&] { embedded().triangulate(points_in(memory, weights, n + 1), found, kWanted, on_own()); });
+               [&] { embedded().triangulate(points_in(memory, weights, n + 1), found, wanted(), on_own()); });
+  if (!space_.has_weights) return;
+  const Memory finite = embedder().upload(without_weights(cases_[6].numbers)),
+               few = embedder().upload(Numbers(n - 1)), wrong = embedder().upload(Numbers(n, HUGE_VAL));
+  expect_error(ErrorKind::usage, {"weights", "too small"},
+               [&] { embedded().triangulate(points_in(finite, few, n), found, wanted(), on_own()); });
+  expect_error(ErrorKind::input, "point 0 has a weight that is not finite: inf",
+               [&] { embedded().triangulate(points_in(finite, wrong, n), found, wanted(), on_own()); });
+}
+
+TEST(SmallSpacesOnDevice, PointsThatAreNotOnTheSphereAreNamed) {
+  const Memory memory = embedder().upload(Numbers{1, 0, 0, 0, 0, 0, 3, 91});
+  const auto expect = [&](const char* problem, SphereCoordinates coordinates, std::size_t first,
+                          std::size_t count) {
+    DevicePoints points;
+    points.memory = memory.get();
+    points.first = first;
+    points.count = count;
+    points.space = Space::sphere(coordinates);
+    DeviceTriangulation found;
+    expect_error(ErrorKind::input, problem, [&] { embedded().triangulate(points, found); });
+  };
+  expect("point 1 is the vector 0", SphereCoordinates::directions, 0, 2);
+  expect("point 3: the latitude 91", SphereCoordinates::degrees, 0, 4);
+  expect("point 0: the latitude 91", SphereCoordinates::degrees, 3, 1);
+}
+
+TEST(SmallSpacesOnDevice, ANoteSaysWhatTheDeviceLeavesToTheHost) {
+  const TestSpace weighted = all_spaces()[1];
+  const Statistics made =
+      weighted.triangulate(triangulator(), cases(weighted)[6].numbers, {0, 60}).statistics;
+  const bool is_left = !triangulator().device().fp64;
+  EXPECT_EQ(made.device == "host", is_left);
+  EXPECT_EQ(made.note.find("for weights: triangulated on the host") != std::string::npos, is_left);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <limits>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flaunay/neighbors.hpp"
@@ -44,9 +45,14 @@ struct TestSpace {
     }
     return work(coordinates, space.with_weights(weights.data()));
   }
+  bool is_plane() const { return space.kind == SpaceKind::plane; }
+  /// All arrays that triangulations in this space have.
   Triangulation triangulate(Triangulator& triangulator, const Numbers& points, const Offsets& offsets) const {
+    Options options;
+    options.neighbors = true;
+    options.halfedges = options.areas = is_plane();
     return with_columns(points, [&](const Numbers& coordinates, const Space& given) {
-      return triangulator.triangulate(coordinates.data(), offsets, given);
+      return triangulator.triangulate(coordinates.data(), offsets, given, options);
     });
   }
   std::string verify(const Numbers& points, const Offsets& offsets, const Triangulation& mesh) const {
@@ -57,9 +63,9 @@ struct TestSpace {
   Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
                   const Numbers& queries, const NeighborOptions& options) const {
     const std::size_t n = points.size() / width, m = queries.size() / width;
-    const bool is_plane = space.kind == SpaceKind::plane;
-    Locator locator = is_plane ? Locator(triangulator, points.data(), n, mesh) : Locator(triangulator, mesh);
-    PointTree tree = is_plane ? PointTree(triangulator, points.data(), n) : PointTree(triangulator, mesh);
+    Locator locator =
+        is_plane() ? Locator(triangulator, points.data(), n, mesh) : Locator(triangulator, mesh);
+    PointTree tree = is_plane() ? PointTree(triangulator, points.data(), n) : PointTree(triangulator, mesh);
     return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
             tree.nearest(queries.data(), m, options)};
   }
@@ -78,7 +84,8 @@ inline std::vector<TestSpace> all_spaces() {
           {"weighted_cylinder", 3, Space::torus({0.75, kWhole}), true},
           {"cylinder", 2, Space::torus({0.75, kWhole})},
           {"upright_cylinder", 2, Space::torus({kWhole, 1})},
-          {"sphere", 3, Space::sphere(SphereCoordinates::directions)}};
+          {"sphere", 3, Space::sphere(SphereCoordinates::directions)},
+          {"globe", 2, Space::sphere(SphereCoordinates::degrees)}};
 }
 
 struct Case {
@@ -86,20 +93,46 @@ struct Case {
   Numbers numbers;
 };
 
-/// Sets of points of so many numbers each, none of which are all 0, for directions: few and many, on a
-/// lattice, on a line, in one place, and in two.
-inline std::vector<Case> cases(std::size_t width) {
-  FixtureRandom random(width);
-  const auto make = [&](std::size_t n, const auto& number) {
-    Numbers numbers;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < width; ++k) numbers.push_back(number(i, k));
-      if (std::all_of(numbers.end() - static_cast<std::ptrdiff_t>(width), numbers.end(),
-                      [](double x) { return x == 0; }))
-        numbers.back() = 1;
-    }
-    return numbers;
+/// Points of so many numbers each, none of which are all 0, for directions. number(i, k): the k-th of point
+/// i.
+template <typename Number>
+Numbers points_of(std::size_t n, std::size_t width, const Number& number) {
+  Numbers numbers;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < width; ++k) numbers.push_back(number(i, k));
+    if (std::all_of(numbers.end() - static_cast<std::ptrdiff_t>(width), numbers.end(),
+                    [](double x) { return x == 0; }))
+      numbers.back() = 1;
+  }
+  return numbers;
+}
+
+/// The points with other weights: light, equal, and heavier in one place; by which all but corners are
+/// hidden, by a plane or by one point.
+inline std::vector<Case> with_other_weights(const Numbers& points) {
+  FixtureRandom random(points.size());
+  std::vector<Case> all;
+  const auto n = static_cast<double>(points.size() / 3);
+  const auto add = [&](const std::string& name, auto weight) {
+    all.push_back({name, points});
+    for (std::size_t i = 0; i < points.size(); i += 3)
+      all.back().numbers[i + 2] = weight(points[i], points[i + 1]);
   };
+  add("light", [&](double, double) { return random.unit() / n; });
+  add("equal", [](double, double) { return 0.25; });
+  add("on a plane", [](double x, double y) { return std::fma(x, x, y * y); });
+  add("one heavy",
+      [is_first = true](double, double) mutable { return std::exchange(is_first, false) * 2.0; });
+  double up = 0;
+  add("up and down", [&](double x, double y) { return (x < 0 ? ++up : y < 0 ? -++up : 0) / n; });
+  return all;
+}
+
+/// Sets of points: few and some, on a lattice, on a line, in one place, and in two.
+inline std::vector<Case> cases(const TestSpace& space) {
+  const std::size_t width = space.width;
+  FixtureRandom random(width);
+  const auto make = [&](std::size_t n, const auto& number) { return points_of(n, width, number); };
   std::vector<Case> all;
   for (const std::size_t n : {0, 1, 2, 3, 4, 9, 60}) {
     all.push_back({"uniform " + std::to_string(n),
@@ -119,6 +152,46 @@ inline std::vector<Case> cases(std::size_t width) {
   all.push_back({"one place", make(7, [](std::size_t, std::size_t) { return 0.5; })});
   all.push_back({"two places",
                  make(9, [](std::size_t i, std::size_t k) { return k == 0 && i % 2 == 0 ? 0.5 : 0.25; })});
+  if (space.has_weights) {
+    for (const std::size_t k : {6, 7}) {
+      for (Case& weighted : with_other_weights(all[k].numbers)) all.push_back(std::move(weighted));
+    }
+  } else if (space.space.kind == SpaceKind::sphere && width == 3) {
+    all.push_back(
+        {"of any length", {1e30, 0, 1e30, 3e-30, 0, 4e-30, -1, 0, 0, 2, 0, 0, -5, 0, -7, 4, 0, 0, 0, 0, -2}});
+  } else if (space.space.kind == SpaceKind::sphere) {
+    all.push_back({"around the globe", make(54, [](std::size_t i, std::size_t k) {
+                     return k == 0 ? static_cast<double>(i % 9) * 90 - 300
+                                   : static_cast<double>(i / 9) * 36 - 90;
+                   })});
+  }
+  return all;
+}
+
+/// Sets of thousands of points: as they come, with ties, in a corner, twice, and around a gap, over which a
+/// torus needs more images.
+inline std::vector<Case> large_cases(const TestSpace& space) {
+  constexpr std::size_t kPoints = 2500;
+  FixtureRandom random(space.width);
+  const Numbers uniform =
+      points_of(kPoints, space.width, [&](std::size_t, std::size_t) { return random.unit() - 0.5; });
+  const auto changed = [&](const auto& number) {
+    return points_of(kPoints, space.width,
+                     [&](std::size_t i, std::size_t k) { return number(uniform[space.width * i + k]); });
+  };
+  std::vector<Case> all = {{"uniform", uniform},
+                           {"lattice", changed([](double x) { return std::floor(50 * x) / 50; })},
+                           {"corner", changed([](double x) { return x / 64; })},
+                           {"twice", uniform},
+                           {"gap", {}}};
+  all[3].numbers.insert(all[3].numbers.end(), uniform.begin(), uniform.end());
+  for (auto row = uniform.begin(); row != uniform.end(); row += static_cast<std::ptrdiff_t>(space.width)) {
+    if (std::hypot(row[0], row[1]) > 0.3)
+      all[4].numbers.insert(all[4].numbers.end(), row, row + static_cast<std::ptrdiff_t>(space.width));
+  }
+  if (space.has_weights) {
+    for (Case& weighted : with_other_weights(uniform)) all.push_back(std::move(weighted));
+  }
   return all;
 }
 

@@ -71,6 +71,9 @@ inline void expect_same_arrays(const Triangulation& found, const Triangulation& 
   for_each_array([&](const auto& array, std::size_t) {
     EXPECT_TRUE(same(found.*array.values, expected.*array.values)) << array.name;
   });
+#define FLAUNAY_EXPECT_SAME(type, name, ...) EXPECT_TRUE(same(found.name, expected.name)) << #name;
+  FLAUNAY_SPACE_ARRAYS(FLAUNAY_EXPECT_SAME)
+#undef FLAUNAY_EXPECT_SAME
   expect_same_sizes(found, expected);
 }
 

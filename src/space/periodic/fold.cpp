@@ -167,8 +167,8 @@ FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets&
       triangle_offsets_(runtime.upload(arena, integers(mesh.triangle_offsets))),
       is_done_(plane.sets()) {
   const std::size_t sets = plane.sets(), count = mesh.triangle_count();
-  const auto missing = arena.allocate<cl_uint>(sets);
-  runtime.fill(missing, sets, cl_uint{0});
+  const auto missing = arena.allocate<cl_uint>(2 * sets);
+  runtime.fill(missing, 2 * sets, cl_uint{0});
   runtime.map(plane.points_, kernels::fold_representatives{.lattice = plane.boxes_.front().lattice,
                                                            .sets = sets,
                                                            .offsets = plane.point_offsets_,
@@ -197,18 +197,21 @@ FoldedSets::FoldedSets(host::Runtime& runtime, Arena& arena, const UnrolledSets&
   }
   host::exclusive_scan(runtime, ranks_, count, ranks_);
 
-  std::vector<cl_uint> fewer(sets);
+  std::vector<cl_uint> fewer(2 * sets);
   const host::Runtime::Settled settled(runtime);
   Arena::Scope scope(runtime.arena());
   const auto flags = runtime.arena().allocate<cl_uchar>(count);
   runtime.map(count, kernels::find_seams{.neighbors = mesh.neighbors, .ranks = ranks_, .flags = flags});
   read_totals_later(runtime, ranks_, triangle_offsets_, kept_before_);
-  runtime.read_later(missing, 0, sets, fewer.data());
+  runtime.read_later(missing, 0, 2 * sets, fewer.data());
   const auto list = runtime.arena().allocate<cl_int>(count);
   const auto found = runtime.arena().allocate<cl_uint>(1);
   host::pack_positions(runtime, flags, count, 1, list, found);
   const std::size_t seams = runtime.read_one(found, 0);
-  for (std::size_t k = 0; k < sets; ++k) expected_.push_back(2 * plane.counts_[k] - fewer[k]);
+  for (std::size_t k = 0; k < sets; ++k) {
+    duplicates_ += fewer[2 * k];
+    expected_.push_back(2 * (plane.counts_[k] - fewer[2 * k]) - fewer[2 * k + 1]);
+  }
   join(arena, list, seams);
 }
 

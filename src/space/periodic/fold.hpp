@@ -85,6 +85,8 @@ class FoldedSets {
 
   /// How many triangles a set must have.
   std::size_t expected(std::size_t k) const { return expected_[k]; }
+  /// The points of all sets that another one represents.
+  std::size_t duplicates() const { return duplicates_; }
   bool is_done(std::size_t k) const { return is_done_[k] != 0; }
   /// Writes the triangles of the sets that are done, of each from a row on. Natively, those of a single set
   /// that is done may be written to the arrays of the plane. Does not wait.
@@ -101,6 +103,7 @@ class FoldedSets {
   Buffer<cl_uint> ranks_{};
   std::vector<cl_uint> kept_before_;
   std::vector<std::size_t> expected_;
+  std::size_t duplicates_ = 0;
   std::vector<char> is_done_;
 };
 

@@ -115,6 +115,7 @@ class Rounds {
       const points::DeviceMesh mesh = triangulate(plane, result_);
       const periodic::FoldedSets folded(call_.runtime, engine_.even, plane, mesh, representatives,
                                         weights_ != nullptr ? &hidden_ : nullptr);
+      if (is_first) duplicates_ = folded.duplicates();
       if (weights_ != nullptr && !are_done(folded, waiting.size())) {
         // How many triangles there are is known when all sets are done.
         widened(waiting, plane, folded);
@@ -142,6 +143,7 @@ class Rounds {
       waiting = widened(waiting, plane, folded);
     }
     if (weights_ != nullptr) write_hidden();
+    call::write_counts(duplicates_, result_);
   }
 
  private:
@@ -262,6 +264,7 @@ class Rounds {
   Result& result_;
   const std::vector<std::size_t>& offsets_;
   std::vector<periodic::Box> boxes_;
+  std::size_t duplicates_ = 0;
   Triangulation planar_;  // in host memory
   std::vector<cl_int> planar_hidden_;
   periodic::HiddenPoints hidden_;  // if points have weights
@@ -332,8 +335,6 @@ void call::triangulate_on_torus(Implementation& self, const DevicePoints& points
   result.hull_offsets.clear();
   Statistics& statistics = result.statistics;
   statistics.device = call.runtime.name();
-  statistics.points = points.count;
-  statistics.triangles = result.triangle_offsets.back();
   statistics.seconds = place.device->runtime.working_clock() - begin;
   place.device->write_accounts(statistics);
   add_note(*place.device, call.engine, "a torus", "triangulated", statistics);

@@ -244,6 +244,9 @@ Triangulation call::triangulate_on_sphere(Implementation& self, const double* po
   call.end();
   result.representatives = std::move(planar.representatives);
   result.statistics = std::move(planar.statistics);
+  std::size_t duplicates = 0;
+  for (std::size_t i = 0; i < n; ++i) duplicates += result.representatives[i] != static_cast<std::int32_t>(i);
+  write_counts(duplicates, result);
   return result;
 }
 
@@ -275,6 +278,7 @@ void call::triangulate_on_sphere(Implementation& self, const DevicePoints& point
     Plane plane;
     plane.poles.resize(result.point_offsets.size() - 1);
     write_triangles(call, plane, *result.planar, result);
+    write_counts(result.statistics.duplicates, result);
   }
   call.end();
 }
