@@ -114,8 +114,8 @@ ChunkStatistics triangulate(PointSource& source, const flaunay_mesh_arrays& arra
 
 ChunkStatistics triangulate_to_files(const flaunay_strided_points& points, const flaunay_mesh_arrays& arrays,
                                      const flaunay_mesh_files& files, const ChunkOptions& options) {
-  check_reserved(arrays, "flaunay_mesh_arrays");
-  check_reserved(files, "flaunay_mesh_files");
+  check_reserved(arrays);
+  check_reserved(files);
   chunks::check_corner_offsets(options.space,
                                arrays.corner_offsets != nullptr || files.corner_offsets != nullptr);
   StridedPoints source(points);

@@ -33,23 +33,13 @@ struct flaunay_chunk_report {
       devices.push_back({cpp.devices[k].c_str(), cpp.device_points[k]});
     }
     for (const PhaseStatistics& phase : cpp.phases) phases.push_back({phase.name.c_str(), phase.seconds});
-    view.points = cpp.points;
-    view.duplicates = cpp.duplicates;
-    view.triangles = cpp.triangles;
-    view.hull_vertices = cpp.hull_vertices;
-    view.undecided = cpp.undecided;
-    view.scratch_bytes = cpp.scratch_bytes;
-    view.chunk_points = cpp.chunk_points;
-    view.seconds = cpp.seconds;
+    c::show<"rounds", "round_count", "devices", "device_count", "phases", "phase_count">(cpp, view);
     view.rounds = c::elements(rounds);
     view.round_count = rounds.size();
     view.devices = c::elements(devices);
     view.device_count = devices.size();
     view.phases = c::elements(phases);
     view.phase_count = phases.size();
-    view.host_points = cpp.host_points;
-    view.note = cpp.note.c_str();
-    view.images = cpp.images;
   }
   // The view refers to the other members.
   flaunay_chunk_report(const flaunay_chunk_report&) = delete;
@@ -72,10 +62,9 @@ void stop_unless_zero(int returned, const char* function) {
 ChunkOptions to_options(const flaunay_chunk_options* options) {
   ChunkOptions result;
   if (options == nullptr) return result;
-  c::check_reserved(*options, "flaunay_chunk_options");
+  c::take<"devices", "device_count", "triangulators", "triangulator_count", "progress", "progress_data",
+          "space">(*options, result);
   result.space = c::to_space(options->space);
-  result.memory_bytes = options->memory_bytes;
-  if (options->scratch != nullptr) result.scratch = options->scratch;
   check_array(options->devices, options->device_count, "devices");
   for (std::size_t k = 0; k < options->device_count; ++k) {
     result.devices.emplace_back(options->devices[k] != nullptr ? options->devices[k] : "");
@@ -84,7 +73,6 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
   for (std::size_t k = 0; k < options->triangulator_count; ++k) {
     result.triangulators.push_back(&required(options->triangulators[k], "a triangulator for chunks").cpp);
   }
-  result.chunk_points = options->chunk_points;
   if (options->progress != nullptr) {
     result.progress = [call = options->progress, data = options->progress_data](const std::string& stage,
                                                                                 int round, double done) {
@@ -96,7 +84,7 @@ ChunkOptions to_options(const flaunay_chunk_options* options) {
 
 ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const flaunay_mesh_arrays& results,
                             const ChunkOptions& options) {
-  c::check_reserved(results, "flaunay_mesh_arrays");
+  c::check_reserved(results);
   switch (results.index_type) {
     case FLAUNAY_INT32:
       return triangulate_chunks(coordinates, n, c::to_arrays<std::int32_t>(results), options);
@@ -109,7 +97,7 @@ ChunkStatistics triangulate(const double* coordinates, std::uint64_t n, const fl
 class CallersPoints : public PointSource {
  public:
   explicit CallersPoints(const flaunay_point_source& given) : given_(given) {
-    c::check_reserved(given, "flaunay_point_source");
+    c::check_reserved(given);
     if (given.count > 0) required(given.read, "the function that reads points");
   }
   std::uint64_t size() const override { return given_.count; }
@@ -125,7 +113,7 @@ class StridedValuedPoints : public ValuedPoints {
  public:
   StridedValuedPoints(const flaunay_strided_points& points, const flaunay_strided_values& values)
       : points_(points), values_(values.values, values.precision, values.stride) {
-    c::check_reserved(values, "flaunay_strided_values");
+    c::check_reserved(values);
     check_array(values.values, points.count, "values", kMostPointsInChunks);
   }
   std::uint64_t size() const override { return points_.size(); }
@@ -145,7 +133,7 @@ class CallersValuedPoints : public ValuedPoints {
  public:
   CallersValuedPoints(const flaunay_point_source& points, const flaunay_value_source& values)
       : points_(points), values_(values) {
-    c::check_reserved(values, "flaunay_value_source");
+    c::check_reserved(values);
     if (points.count > 0) required(values.read, "the function that reads values");
   }
   std::uint64_t size() const override { return points_.size(); }
@@ -169,14 +157,14 @@ std::unique_ptr<flaunay_chunk_report> rasterize(ValuedPoints& points, int duplic
                                                 const flaunay_chunk_options* options) {
   Breaklines edges;
   if (breaklines != nullptr) {
-    c::check_reserved(*breaklines, "flaunay_breaklines");
-    edges = {breaklines->coordinates, breaklines->values, breaklines->count, breaklines->segments,
-             breaklines->segment_count};
+    c::take<"count">(*breaklines, edges);
+    edges.points = breaklines->count;
   }
+  const c::AskedRaster asked = c::to_raster(raster);
   auto lines = std::make_unique<flaunay_contours>();
   auto report = std::make_unique<flaunay_chunk_report>(
-      rasterize_chunks(points, c::to_enum<flaunay_duplicates, Duplicates>(duplicates), c::to_grid(raster),
-                       c::to_options(raster), pixels, heights, lines->cpp, edges, to_options(options)));
+      rasterize_chunks(points, c::to_enum<Duplicates>(duplicates), asked, asked, pixels, heights, lines->cpp,
+                       edges, to_options(options)));
   if (contours != nullptr) *contours = lines.release();
   return report;
 }
@@ -187,7 +175,7 @@ unsigned part_of(MeshArray array) { return 1u << kMeshArrayIndices[static_cast<s
 class CallersSink : public MeshSink {
  public:
   CallersSink(const flaunay_mesh_sink& given, const Space& space) : given_(given) {
-    c::check_reserved(given, "flaunay_mesh_sink");
+    c::check_reserved(given);
     unsigned possible = FLAUNAY_PART_CORNER_OFFSETS;
     for (const std::size_t k : kMeshArrayIndices) possible |= 1u << k;
     if ((given.parts & ~possible) != 0) {

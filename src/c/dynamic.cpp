@@ -24,16 +24,10 @@ struct flaunay_dynamic {
 
   void show(Changes made) {
     changes = std::move(made);
-    view.first_point = changes.first_point;
+    c::show<"representative_count", "removed_count", "made_count">(changes, view);
     view.representative_count = changes.representatives.size();
     view.removed_count = changes.removed.size();
     view.made_count = changes.made.size();
-    view.representatives = elements(changes.representatives);
-    view.removed = elements(changes.removed);
-    view.made = elements(changes.made);
-    view.made_corners = elements(changes.made_corners);
-    view.is_anew = changes.is_anew;
-    view.seconds = changes.seconds;
   }
 
   DynamicTriangulation cpp;
@@ -77,9 +71,8 @@ flaunay_status flaunay_dynamic_create(flaunay_triangulator* triangulator, const 
     if (constraints == nullptr) {
       return DynamicTriangulation(cpp, coordinates, n, to_plain_options(options));
     }
-    c::check_reserved(*constraints, "flaunay_constraints");
-    return DynamicTriangulation(cpp, coordinates, n, c::to_constraints(*constraints, 1),
-                                c::to_constrained_options(*constraints, options));
+    const auto asked = c::to_constraints(*constraints, 1, options);
+    return DynamicTriangulation(cpp, coordinates, n, asked, asked);
   });
 }
 

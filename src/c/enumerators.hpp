@@ -7,8 +7,14 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
+#include "flaunay/constrained.hpp"
+#include "flaunay/device_memory.hpp"
+#include "flaunay/flaunay.h"
+#include "flaunay/research.hpp"
+#include "flaunay/terrain.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/enumerators.hpp"
 
@@ -56,12 +62,39 @@ constexpr bool are_parts(const std::array<std::string_view, kSize>& arrays) {
   (std::make_index_sequence<kSize>());
 }
 
-/// The enumerator of a number. Throws Error(usage), which names the type of C.
-template <typename OfC, typename Enum>
+/// C's enumeration for one of C++.
+template <typename Enum>
+struct OfC;
+
+#define FLAUNAY_ENUMERATION(name, Enum)                                         \
+  template <>                                                                   \
+  struct OfC<Enum> {                                                            \
+    static_assert(agree<flaunay_##name, Enum, std::is_same_v<Enum, Excuse>>()); \
+    using type = flaunay_##name;                                                \
+  };
+FLAUNAY_ENUMERATION(mode, research::Mode)
+FLAUNAY_ENUMERATION(cut, research::Cut)
+FLAUNAY_ENUMERATION(hull, research::Hull)
+FLAUNAY_ENUMERATION(finish, research::Finish)
+FLAUNAY_ENUMERATION(precision, Precision)
+FLAUNAY_ENUMERATION(space_kind, SpaceKind)
+FLAUNAY_ENUMERATION(sphere_coordinates, SphereCoordinates)
+FLAUNAY_ENUMERATION(crossings, Crossings)
+FLAUNAY_ENUMERATION(outside, Outside)
+FLAUNAY_ENUMERATION(fill_rule, FillRule)
+FLAUNAY_ENUMERATION(overlaps, Overlaps)
+FLAUNAY_ENUMERATION(interpolation, Interpolation)
+FLAUNAY_ENUMERATION(duplicates, Duplicates)
+FLAUNAY_ENUMERATION(kept_edges, KeptEdges)
+FLAUNAY_ENUMERATION(excuse, Excuse)
+#undef FLAUNAY_ENUMERATION
+
+/// The enumerator of a number, which count up from 0. Throws Error(usage), which names the type of C.
+template <typename Enum>
 Enum to_enum(int value) {
-  static_assert(agree<OfC, Enum>());
-  expect(value >= 0 && value < end_of_enumerators<Enum>(),
-         [value] { return fmt::format("{} is no {}", value, name_of_enumeration<OfC>()); });
+  expect(value >= 0 && value < end_of_enumerators<Enum>(), [value] {
+    return fmt::format("{} is no {}", value, name_of_enumeration<typename OfC<Enum>::type>());
+  });
   return static_cast<Enum>(value);
 }
 

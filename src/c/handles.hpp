@@ -15,6 +15,7 @@
 
 #include "c/enumerators.hpp"
 #include "c/errors.hpp"
+#include "c/members.hpp"
 #include "flaunay/constrained.hpp"
 #include "flaunay/device_memory.hpp"
 #include "flaunay/flaunay.h"
@@ -24,18 +25,6 @@
 #include "geometry/arguments.hpp"
 
 namespace flaunay::c {
-
-/// Throws Error(usage) unless all reserved members of a C struct are 0.
-template <typename Struct>
-void check_reserved(const Struct& given, const char* name) {
-  const auto is_set = [](std::uintptr_t member) { return member != 0; };
-  if (std::any_of(std::begin(given.reserved), std::end(given.reserved), is_set)) {
-    throw Error(ErrorKind::usage,
-                fmt::format("{} has members that flaunay {} does not know: initialise it with {{0}}, or take "
-                            "a later version",
-                            name, version()));
-  }
-}
 
 /// Statistics as a C struct. It refers to the statistics that were shown, which must outlive it.
 class StatisticsView {
@@ -57,7 +46,6 @@ flaunay_device_info view_of(const DeviceInfo& info);
 flaunay_mesh view_of(const Triangulation& triangulation, const StatisticsView& statistics);
 flaunay_mesh view_of(const DeviceTriangulation& triangulation, const StatisticsView& statistics);
 flaunay_constrained_arrays view_of(const ConstrainedTriangulation& triangulation);
-flaunay_refinement_report view_of(const RefinementReport& report);
 
 flaunay_space view_of(const Space& space);
 /// Null: the plane. Throws Error(usage) for unknown enumerators and for reserved members that are not 0.
@@ -86,9 +74,11 @@ std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t 
 /// for a space, which calls that have spaces read by to_space.
 research::Options to_options(const flaunay_options* options, bool has_space = false);
 
-Constraints to_constraints(const flaunay_constraints& given, std::size_t sets);
+/// What flaunay_constraints asks for.
+struct AskedConstraints : Constraints, ConstrainedOptions {};
 /// Throws Error(usage) for unknown enumerators, and for another mode than blocks.
-ConstrainedOptions to_constrained_options(const flaunay_constraints& given, const flaunay_options* options);
+AskedConstraints to_constraints(const flaunay_constraints& given, std::size_t sets,
+                                const flaunay_options* options);
 
 /// Null: the defaults. Throws Error(usage) for an unknown method and for reserved members that are not 0.
 InterpolationOptions to_interpolation(const flaunay_interpolation_options* options);
@@ -155,9 +145,6 @@ auto& buffer_of(Result& result, const Buffers& buffers, unsigned part, const cha
 /// Null: one set. Throws Error(usage) unless the offsets go from 0 to n without decreasing.
 std::vector<std::size_t> to_offsets(const std::size_t* offsets, std::size_t sets, std::size_t n);
 
-/// Throws Error(usage) for a number that is no flaunay_precision.
-Precision to_precision(int precision);
-
 DevicePoints to_points(const flaunay_device_points* points, const char* what = "the points");
 
 /// Null: the defaults. Sets *enqueue->event to null.
@@ -214,7 +201,8 @@ struct flaunay_triangulation {
   explicit flaunay_triangulation(flaunay::ConstrainedTriangulation computed) : held_(std::move(computed)) {
     show(*constrained());
     constraints = flaunay::c::view_of(*constrained());
-    refinement = flaunay::c::view_of(constrained()->refinement);
+    flaunay::c::show<"bad_count">(constrained()->refinement, refinement);
+    refinement.bad_count = constrained()->refinement.bad_triangles.size();
   }
   // The views refer to the other members.
   flaunay_triangulation(const flaunay_triangulation&) = delete;

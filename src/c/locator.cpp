@@ -73,8 +73,7 @@ flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const 
 
 flaunay_status flaunay_locator_set_coordinates(flaunay_locator* locator, int coordinates) {
   return guarded([&] {
-    required(locator, "the locator")
-        .cpp.set_coordinates(c::to_enum<flaunay_sphere_coordinates, SphereCoordinates>(coordinates));
+    required(locator, "the locator").cpp.set_coordinates(c::to_enum<SphereCoordinates>(coordinates));
   });
 }
 
@@ -158,7 +157,7 @@ flaunay_status flaunay_natural_weights_compute(flaunay_locator* locator, const d
                                                int method, flaunay_natural_weights** weights) {
   return create(weights, [&] {
     Locator& cpp = required(locator, "the locator").cpp;
-    const auto by = c::to_enum<flaunay_interpolation, Interpolation>(method);
+    const auto by = c::to_enum<Interpolation>(method);
     return std::make_unique<flaunay_natural_weights>(
         flaunay_natural_weights{cpp.natural_weights(queries, m, by)});
   });
@@ -184,10 +183,8 @@ flaunay_status flaunay_point_tree_create_in_space(flaunay_triangulator* triangul
 }
 
 flaunay_status flaunay_point_tree_set_coordinates(flaunay_point_tree* tree, int coordinates) {
-  return guarded([&] {
-    required(tree, "the tree")
-        .cpp.set_coordinates(c::to_enum<flaunay_sphere_coordinates, SphereCoordinates>(coordinates));
-  });
+  return guarded(
+      [&] { required(tree, "the tree").cpp.set_coordinates(c::to_enum<SphereCoordinates>(coordinates)); });
 }
 
 flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, const double* queries, size_t m,

@@ -20,13 +20,13 @@ inline double to_longest(double max_edge) {
   return max_edge == 0 ? std::numeric_limits<double>::infinity() : max_edge;
 }
 
-inline RasterGrid to_grid(const flaunay_raster& raster) {
-  check_reserved(raster, "flaunay_raster");
-  return {raster.x, raster.y, raster.dx, raster.dy, raster.rows, raster.columns};
-}
-
-inline RasterOptions to_options(const flaunay_raster& raster) {
-  return {to_longest(raster.max_edge), raster.fill};
+/// What flaunay_raster asks for.
+struct AskedRaster : RasterGrid, RasterOptions {};
+inline AskedRaster to_raster(const flaunay_raster& raster) {
+  AskedRaster result;
+  take<"max_edge">(raster, result);
+  result.max_edge = to_longest(raster.max_edge);
+  return result;
 }
 
 /// The heights of contours.

@@ -16,7 +16,7 @@ class StridedNumbers {
  public:
   /// precision: a flaunay_precision. stride: bytes from one number to the next.
   StridedNumbers(const void* first, int precision, std::ptrdiff_t stride)
-      : data_(static_cast<const char*>(first)), precision_(to_precision(precision)), stride_(stride) {}
+      : data_(static_cast<const char*>(first)), precision_(to_enum<Precision>(precision)), stride_(stride) {}
 
   /// Writes the numbers [first, first + count) to every step-th place.
   void read(std::uint64_t first, std::size_t count, double* to, std::size_t step) const {
@@ -52,7 +52,7 @@ class StridedPoints : public PointSource {
                ? nullptr
                : static_cast<const char*>(given.coordinates) + (n_ > 0 ? given.coordinate_stride : 0),
            given.precision, given.point_stride) {
-    check_reserved(given, "flaunay_strided_points");
+    check_reserved(given);
     check_array(given.coordinates, n_, "points", kMostPointsInChunks);
   }
 

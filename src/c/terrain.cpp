@@ -14,9 +14,8 @@ flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const doubl
                                  const int32_t* triangles, const int32_t* neighbors, size_t t,
                                  const double* values, const flaunay_raster* raster, double* pixels) {
   return c::with(triangulator, [&](Triangulator& cpp) {
-    const flaunay_raster& wanted = required(raster, "the raster");
-    rasterize(cpp, {coordinates, n, triangles, neighbors, t}, values, c::to_grid(wanted),
-              c::to_options(wanted), pixels);
+    const c::AskedRaster wanted = c::to_raster(required(raster, "the raster"));
+    rasterize(cpp, {coordinates, n, triangles, neighbors, t}, values, wanted, wanted, pixels);
   });
 }
 
