@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "app/command/chunks.hpp"
@@ -22,11 +24,35 @@
 namespace flaunay::cli {
 namespace {
 
-// Those that ask for refinement, and those that say how.
-const std::vector<std::string> kRefining = {"--min-angle", "--max-area", "--region-areas", "--mesh-areas",
-                                            "--conforming"};
-const std::vector<std::string> kRefinementLimits = {"--keep-edges", "--min-edge", "--most-points",
-                                                    "--smooth"};
+// The options that ask for refinement, or those that say how.
+std::vector<std::string> refinement_options(bool asking) {
+  std::vector<std::string> options;
+  if (asking) options = {"--region-areas", "--mesh-areas"};
+#define ADD(member, option, asks, ...) \
+  if (asks == asking) options.push_back(option);
+  FLAUNAY_REFINEMENT_OPTIONS(ADD)
+#undef ADD
+  return options;
+}
+
+// An option for a member of Refinement. unit: a word for its value.
+template <typename Value>
+void add_member(CLI::App* command, const char* option, Value& value, const char* unit, const char* text) {
+  if constexpr (std::is_enum_v<Value>) {
+    add_named_choice(command, option, value, text, all_of<Value>())->default_str(word_of(Value{}));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    command->add_flag(option, value, text);
+  } else {
+    CLI::Option* const added = command->add_option(option, value, text)->type_name(unit);
+    if (std::is_same_v<Value, std::size_t>) return;
+    constexpr double kLargestAngle = 34;
+    if (unit == std::string_view("DEGREES")) {
+      added->check(CLI::Range(0.0, kLargestAngle));
+    } else {
+      added->check(CLI::NonNegativeNumber);
+    }
+  }
+}
 
 const std::vector<std::string> kChoices = {"--crossings", "--outside",  "--fill",
                                            "--hole",      "--separate", "--overlaps"};
@@ -327,19 +353,12 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                    "GeoJSON: what is in several polygons belongs to the first one, or is an error",
                    all_of<Overlaps>())
       ->default_str("first");
-  Refinement& refinement = request.refinement;
-  command
-      ->add_option("--min-angle", refinement.min_angle,
-                   "Add points until no triangle has a smaller angle, in degrees, from 0 to 34")
-      ->check(CLI::Range(0.0, 34.0))
-      ->type_name("DEGREES");
-  command->add_option("--max-area", refinement.max_area, "Add points until no triangle is larger")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("AREA");
+#define ADD(member, option, asks, unit, text) \
+  add_member(command, option, request.refinement.member, unit, text);
+  FLAUNAY_REFINEMENT_OPTIONS(ADD)
+#undef ADD
   command->add_flag("--region-areas", request.region_areas,
                     ".poly: add points until no triangle is larger than its region allows");
-  command->add_flag("--conforming", refinement.conforming,
-                    "Split constraints until all triangles are Delaunay without them, too");
   add_path(
       command, "--mesh", request.mesh,
       fmt::format("Triangles of the points, such as those of a mesh that is refined further: only what they "
@@ -347,22 +366,6 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                   io::endings_for(io::Use::read_triangles)));
   add_path(command, "--mesh-areas", request.areas,
            "With --mesh: the largest area within each of its triangles, in an .area file of Triangle");
-  add_named_choice(command, "--keep-edges", refinement.kept,
-                   "Which edges points must not be put on: none, those at the border, or all constraints",
-                   all_of<KeptEdges>())
-      ->default_str("none");
-  command
-      ->add_option(
-          "--min-edge", refinement.min_edge,
-          "Put no two points nearer to each other; default: 2^-40 of the extent, or 2^-48 of the largest "
-          "coordinate if that is more")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("LENGTH");
-  command->add_option("--most-points", refinement.most_points, "Add no more points")->type_name("N");
-  command
-      ->add_option("--smooth", refinement.smoothing_steps,
-                   "So often, move added points to where triangles are more regular")
-      ->type_name("N");
   for_each_file([&](const auto& array, std::size_t k) { add_array(command, array, request.arrays[k]); });
   add_path(command, "--points", request.points,
            fmt::format("The points of the map and those that were added, to which indices refer: {}",
@@ -403,8 +406,10 @@ Rings rings_of(const io::Map& map, FillRule fill) {
 bool has_constraints(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
   const bool is_map = io::is_map(input);
   const auto was_given = [&command](const std::string& option) { return command.count(option) > 0; };
-  const bool is_refined = std::any_of(kRefining.begin(), kRefining.end(), was_given);
-  if (!is_refined) refuse_all(command, kRefinementLimits, "needs --min-angle, --max-area or --region-areas");
+  const std::vector<std::string> asking = refinement_options(true);
+  const bool is_refined = std::any_of(asking.begin(), asking.end(), was_given);
+  if (!is_refined)
+    refuse_all(command, refinement_options(false), "needs --min-angle, --max-area or --region-areas");
   if (request.mesh.empty()) {
     refuse(command, "--mesh-areas", "needs the triangles: --mesh");
   } else {

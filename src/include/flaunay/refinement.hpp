@@ -99,3 +99,21 @@ struct RefinementReport {
 };
 
 }  // namespace flaunay
+
+/// The members of flaunay::Refinement that are numbers, flags or words, as options of the command: X(member,
+/// option, whether it asks for points, a word for its value, a line for users).
+#define FLAUNAY_REFINEMENT_OPTIONS(X)                                                                \
+  X(min_angle, "--min-angle", true, "DEGREES",                                                       \
+    "Add points until no triangle has a smaller angle, in degrees, from 0 to 34")                    \
+  X(max_area, "--max-area", true, "AREA", "Add points until no triangle is larger")                  \
+  X(conforming, "--conforming", true, "",                                                            \
+    "Split constraints until all triangles are Delaunay without them, too")                          \
+  X(kept, "--keep-edges", false, "",                                                                 \
+    "Which edges points must not be put on: none, those at the border, or all constraints")          \
+  X(min_edge, "--min-edge", false, "LENGTH",                                                         \
+    "Put no two points nearer to each other; default: 2^-40 of the extent, or 2^-48 of the largest " \
+    "coordinate if "                                                                                 \
+    "that is more")                                                                                  \
+  X(most_points, "--most-points", false, "N", "Add no more points")                                  \
+  X(smoothing_steps, "--smooth", false, "N",                                                         \
+    "So often, move added points to where triangles are more regular")
