@@ -1,5 +1,7 @@
 /** flaunay: exact two-dimensional Delaunay triangulation. */
-import type {Crossings, FillRule, Interpolation, Outside} from './declarations.js';
+import type {
+  ConstraintsOptions, Crossings, Interpolation, PolygonsOptions, TriangulationArrays, TriangulationOptions,
+} from './declarations.js';
 
 /** x0, y0, x1, y1, ... */
 export type Coordinates = ArrayLike<number>;
@@ -34,21 +36,10 @@ export default class Delaunator<T extends Coordinates = Coordinates> {
  * freed, or until any call lets that memory grow: then its length is 0. So read the property again after other calls,
  * or keep a copy: `triangulation.triangles.slice()`.
  */
+declare interface Mesh extends TriangulationArrays {}
 declare abstract class Mesh {
   /** The number of points of all sets. */
   readonly pointCount: number;
-  /** 3 points per triangle, counter-clockwise if y goes up, the smallest first. */
-  readonly triangles: Int32Array;
-  /** 3 per triangle: the triangle opposite to each corner, -1 beyond the hull. */
-  readonly neighbors: Int32Array;
-  /** 3 per triangle: the twin of the halfedge that begins at each corner, -1 on the hull. */
-  readonly halfedges: Int32Array;
-  /** The points on the hull, counter-clockwise from the lexicographically smallest. */
-  readonly hull: Int32Array;
-  /** One per point: the first point with the same coordinates. */
-  readonly representatives: Int32Array;
-  /** One per triangle, rounded; empty unless asked for. */
-  readonly areas: Float64Array;
   /** Set s has triangles [triangleOffsets[s], triangleOffsets[s + 1]). */
   readonly triangleOffsets: Uint32Array;
   readonly hullOffsets: Uint32Array;
@@ -56,12 +47,8 @@ declare abstract class Mesh {
   free(): void;
 }
 
-export interface MeshOptions {
-  /** Whether halfedges are computed; true by default. */
-  halfedges?: boolean;
-  /** Whether areas are computed; false by default. */
-  areas?: boolean;
-}
+/** Neighbours are always computed, and halfedges unless they are refused. */
+export interface MeshOptions extends Omit<TriangulationOptions, 'neighbors'> {}
 
 export interface SetOptions extends MeshOptions {
   /** Many sets at once: set s has points [offsets[s], offsets[s + 1]). */
@@ -128,17 +115,10 @@ export interface ClippedVoronoi {
   free(): void;
 }
 
-export interface PolygonOptions extends MeshOptions {
-  /** What becomes of segments that cross where no point is; 'error' by default. */
-  crossings?: Crossings;
-  /** Which triangles are left out: none, those outside, or those outside and in holes. */
-  outside?: Outside;
-  fillRule?: FillRule;
-  /** Whether depths and regions are computed; false by default. */
-  labels?: boolean;
-}
+/** By default only what is inside by the even-odd rule is kept. */
+export interface PolygonOptions extends MeshOptions, PolygonsOptions {}
 
-export interface ConstraintOptions extends PolygonOptions {
+export interface ConstraintOptions extends MeshOptions, ConstraintsOptions {
   /** 2 points per segment. */
   segments?: ArrayLike<number>;
   /** x and y per hole: what this place is in is left out. */
@@ -152,9 +132,9 @@ export class ConstrainedTriangulation extends Mesh {
   constructor(coords: Coordinates, options?: ConstraintOptions);
   /**
    * The insides of polygons, each a list of rings of [x, y], as in a MultiPolygon of GeoJSON: points are numbered in
-   * their order. map: whether they are one map, in which they share edges and `polygons` says which a triangle is in.
+   * their order. Of a map, `polygons` says which of them a triangle is in.
    */
-  static polygons(polygons: ArrayLike<number>[][][], options?: PolygonOptions & {map?: boolean}):
+  static polygons(polygons: ArrayLike<number>[][][], options?: PolygonOptions):
     ConstrainedTriangulation;
   /** x and y of points that crossings have added, whose numbers follow those of the given points. */
   readonly addedPoints: Float64Array;

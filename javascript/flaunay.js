@@ -162,11 +162,21 @@ class Arguments {
     return pointer;
   }
 
-  // A struct of C with these members, all of which have 32 bits.
-  struct({words, at}, values) {
+  // A struct of C with these members, and with its words and flags that are among options.
+  struct({words, at, doubles, kinds}, values, options = {}) {
     const pointer = this.room(4 * words);
     const all = arrayAt('uint32', pointer, words).fill(0);
-    for (const name in values) all[at[name]] = values[name];
+    const put = (name, value) => {
+      if (name in doubles) views().float64[(pointer >>> 3) + doubles[name]] = value;
+      else all[at[name]] = value;
+      const counts = at[`has${name[0].toUpperCase()}${name.slice(1)}`];
+      if (counts !== undefined) all[counts] = 1;
+    };
+    for (const name in values) put(name, values[name]);
+    for (const [name, kind] of Object.entries(kinds)) {
+      const value = options[name];
+      if (value !== undefined) put(name, kind === 'flag' ? Number(value) : enumerator(kind, value));
+    }
     return pointer;
   }
 
@@ -190,9 +200,16 @@ function membersAt(pointer, {words, at}) {
   return Object.fromEntries(Object.entries(at).map(([name, k]) => [name, all[k]]));
 }
 
-function enumerator(words, value, what) {
-  const found = words.indexOf(value);
-  if (found < 0) throw new FlaunayError(`${value} is no ${what}: ${words.join(', ')}`, 'usage');
+// What the words of an enumeration are called, unless by its name.
+const CALLED = {
+  crossings: 'rule for crossings', interpolation: 'method of interpolation', outside: 'choice of what is left out',
+};
+
+function enumerator(kind, value) {
+  const words = c[kind.toUpperCase()], found = words.indexOf(value);
+  if (found < 0) {
+    throw new FlaunayError(`${value} is no ${CALLED[kind] ?? kind.replace('_', ' ')}: ${words.join(', ')}`, 'usage');
+  }
   return found;
 }
 
@@ -291,6 +308,13 @@ export default class Delaunator {
   }
 }
 
+// How many rows of something there are, by the counts that structs of C have.
+function rowsIn(counts, row) {
+  if (row === 'halfedge') return 3 * counts.triangleCount;
+  const of = row.replace('_offset', '');
+  return counts[`${of}Count`] + Number(of !== row);
+}
+
 // Defines a property for each array of a table. read(object, name): its address, and how many rows of what there are.
 function defineArrays(owner, table, read) {
   for (const [name, [type, row, columns]] of Object.entries(table)) {
@@ -312,7 +336,7 @@ class Mesh {
   static {
     defineArrays(this, {...c.TRIANGULATION_ARRAYS, ...OFFSETS}, (mesh, name, row) => {
       void mesh.handle;
-      return [mesh.#mesh[name], mesh.rowsOf(row)];
+      return [mesh.#mesh[name], rowsIn(mesh.#mesh, row)];
     });
   }
 
@@ -321,12 +345,8 @@ class Mesh {
     this.#mesh = membersAt(mesh, c.Mesh);
   }
 
-  rowsOf(row) {
-    const {pointCount, setCount, triangleCount, hullCount} = this.#mesh;
-    return {
-      triangle: triangleCount, halfedge: 3 * triangleCount, hull_vertex: hullCount, point: pointCount,
-      set_offset: setCount + 1,
-    }[row];
+  get counts() {
+    return this.#mesh;
   }
 
   get handle() {
@@ -430,13 +450,13 @@ export class Triangulation extends Mesh {
 
   /** Values between points, one row of `columns` numbers per query. */
   interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
-    const number = enumerator(c.INTERPOLATION, method, 'method of interpolation');
     if (values.length !== columns * this.pointCount) {
       throw new FlaunayError(`${values.length} values are not ${columns} for each of ${this.pointCount} points`,
         'usage');
     }
-    return this.#query((given, locator, passed, results) => wasm.interpolate(locator, given.array('float64', values),
-      ...passed, number, columns, fill, results), 'float64', queries, offsets, columns);
+    return this.#query((given, locator, passed, results) => wasm.flaunay_locator_interpolate(locator,
+      given.array('float64', values), ...passed, given.struct(c.InterpolationOptions, {columns, fill}, {method}), results),
+    'float64', queries, offsets, columns);
   }
 
   free() {
@@ -504,19 +524,15 @@ class ClippedVoronoi extends Result {
 
 // ---- Constraints
 
-function constraintsOf(given, {segments = [], holes, holeOffsets, crossings = 'error', outside = 'keep',
-  fillRule = 'nesting', labels = false}) {
-  return given.struct(c.Constraints, {
-    segments: given.array('int32', segments),
+function constraintsOf(passed, given) {
+  const {segments = [], holes, holeOffsets} = given;
+  return passed.struct(c.Constraints, {
+    segments: passed.array('int32', segments),
     segmentCount: segments.length >> 1,
-    holes: given.array('float64', holes),
+    holes: passed.array('float64', holes),
     holeCount: (holes?.length ?? 0) >> 1,
-    holeOffsets: given.array('uint32', holeOffsets),
-    crossings: enumerator(c.CROSSINGS, crossings, 'rule for crossings'),
-    outside: enumerator(c.OUTSIDE, outside, 'choice of what is left out'),
-    fillRule: enumerator(c.FILL_RULE, fillRule, 'fill rule'),
-    labels: Number(labels),
-  });
+    holeOffsets: passed.array('uint32', holeOffsets),
+  }, given);
 }
 
 /** A triangulation with segments as edges. */
@@ -525,12 +541,8 @@ export class ConstrainedTriangulation extends Mesh {
 
   static {
     defineArrays(this, c.CONSTRAINED_ARRAYS, (mesh, name, row) => {
-      const {addedCount, constraintCount, segmentCount, pieceCount} = mesh.#arrays;
-      const counts = {
-        added_point: addedCount, constraint: constraintCount, segment_offset: segmentCount + 1, piece: pieceCount,
-      };
       void mesh.handle;
-      return [mesh.#arrays[name], counts[row] ?? mesh.rowsOf(row)];
+      return [mesh.#arrays[name], rowsIn({...mesh.counts, ...mesh.#arrays}, row)];
     });
   }
 
@@ -544,7 +556,6 @@ export class ConstrainedTriangulation extends Mesh {
       }
       polygonOffsets.push(ringOffsets.length - 1);
     }
-    const {crossings = 'error', outside = 'holes', fillRule = 'even-odd', labels = false, map = false} = given;
     const handle = call((passed) => create(wasm.flaunay_triangulate_polygons, triangulator,
       passed.struct(c.Polygons, {
         coordinates: passed.array('float64', coordinates),
@@ -552,14 +563,7 @@ export class ConstrainedTriangulation extends Mesh {
         ringCount: ringOffsets.length - 1,
         polygonOffsets: passed.array('uint32', polygonOffsets),
         polygonCount: polygons.length,
-        crossings: enumerator(c.CROSSINGS, crossings, 'rule for crossings'),
-        hasOutside: 1,
-        outside: enumerator(c.OUTSIDE, outside, 'choice of what is left out'),
-        hasFillRule: 1,
-        fillRule: enumerator(c.FILL_RULE, fillRule, 'fill rule'),
-        labels: Number(labels),
-        map: Number(map),
-      }), optionsOf(passed, partsOf(given))));
+      }, given), optionsOf(passed, partsOf(given))));
     return new ConstrainedTriangulation(handle);
   }
 

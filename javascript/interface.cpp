@@ -70,15 +70,4 @@ void turn_clockwise(std::int32_t* triangles, std::int32_t* halfedges, std::size_
   }
   if (t > 0) std::reverse(hull + 1, hull + h);
 }
-
-flaunay_status interpolate(flaunay_locator* locator, const double* values, const double* queries,
-                           std::size_t m, const std::size_t* offsets, std::size_t sets, int method,
-                           std::size_t columns, double fill, double* results) {
-  flaunay_interpolation_options options{};
-  options.method = method;
-  options.columns = columns;
-  options.has_fill = 1;
-  options.fill = fill;
-  return flaunay_locator_interpolate(locator, values, queries, m, offsets, sets, &options, results);
-}
 }

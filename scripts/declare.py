@@ -1,12 +1,16 @@
 """Writes what other languages know of the C interface, from its headers.
 
     declare.py FLAUNAY_H RESULT_ARRAYS_HPP OUTPUT...
+    declare.py --words [--check]
 
-An output's ending says what is written: .py: ctypes declarations for Python; .js: enumerators, structs and tables of
-arrays for JavaScript; .ts: types of its enumerators; .h: a check that a compiler for WebAssembly has these structs.
+An output's ending says what is written: .py: ctypes declarations and types of options for Python; .js: enumerators,
+structs and tables of arrays for JavaScript; .ts: types of its enumerators and options; .h: a check that a compiler for
+WebAssembly has these structs. --words: brings lists of enumerators' words in documents and docstrings up to date, those
+of options and parameters that have the name of an enumeration; --check: fails if a word is missing.
 
 Reads what those headers have, not C: what it does not know is an error. Names are those of the header without
-`flaunay_`. Handles, arrays and OpenCL's handles are addresses.
+`flaunay_`. Handles, arrays and OpenCL's handles are addresses. An int is one of an enumeration's numbers if its comment
+says "a flaunay_...", and a flag if that says what is so "other than 0" or "1 if".
 """
 
 from __future__ import annotations
@@ -48,9 +52,11 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_ssize_t, c_uint, c_uint64, c_void_p
-from typing import Any
+from typing import Any, Optional, TypedDict
 
 '''
+# Structs whose options users of other languages give by their names.
+OPTIONS = ("refinement", "constraints")
 ABOUT_ARRAYS = "For each array its type, of what it has rows, the elements of a row, and what asks for it."
 JAVASCRIPT_HEAD = """// What flaunay.h and result_arrays.hpp declare. Written by scripts/declare.py.
 
@@ -73,20 +79,36 @@ class Member(NamedTuple):
     type: str  # of a function, that of its result
     length: int = 1
     arguments: Optional[str] = None  # of a function
+    kind: str = ""  # "flag", or the name of an enumeration
+    about: str = ""
+
+
+def text_of(comment: str) -> str:
+    return " ".join(re.sub(r"///<?", "", comment).split())
+
+
+def sentence(comment: str) -> str:
+    """The first one of a comment, without what a flag says of numbers."""
+    text = re.sub(r"^[Oo]ther than 0: ", "", text_of(comment)).partition(". ")[0].rstrip(".")
+    return text[:1].upper() + text[1:] + "."
 
 
 class Header:
     """What flaunay.h has."""
 
     def __init__(self, text: str) -> None:
+        about_enums = re.findall(r"((?:^/// .*\n)+)typedef enum flaunay_(\w+)", text, re.MULTILINE)
+        self.about_enums = {name: sentence(comment) for comment, name in about_enums}
+        about_parts = re.findall(r"((?:^ */// .*\n)+) *FLAUNAY_PART_(\w+) =", text, re.MULTILINE)
+        self.about_parts = {name.lower(): text_of(comment) for comment, name in about_parts}
+        documented = dict(re.findall(r"typedef struct flaunay_(\w+) \{\n(.*?)\} flaunay_\1;", text, re.DOTALL))
         text = " ".join(re.sub(r"//[^\n]*|^#.*?$", "", text, flags=re.MULTILINE).split())
         enums = re.findall(r"typedef enum flaunay_(\w+) \{(.*?)\} flaunay_\1;", text)
-        structs = re.findall(r"typedef struct flaunay_(\w+) \{(.*?)\} flaunay_\1;", text)
         self.functions = re.findall(r"FLAUNAY_API ([\w* ]+?) ?\bflaunay_(\w+)\(([^)]*)\);", text)
-        if not (enums and structs and self.functions):
+        if not (enums and documented and self.functions):
             raise SystemExit("declare: the header is not as expected")
         self.enums = {name: self.values(body) for name, body in enums}
-        self.structs = {name: self.members(body) for name, body in structs}
+        self.structs = {name: self.members(body) for name, body in documented.items()}
 
     @staticmethod
     def values(body: str) -> dict[str, int]:
@@ -98,14 +120,27 @@ class Header:
     @staticmethod
     def members(body: str) -> list[Member]:
         members = []
-        for member in filter(None, (one.strip() for one in body.split(";"))):
-            function = re.fullmatch(r"(\w+) \(\*(\w+)\)\((.*)\)", member)
+        for before, member, after in re.findall(r"((?:^ */// .*\n)*)([^;/]+);((?: *///< .*\n)*)", body, re.MULTILINE):
+            declared, comment = " ".join(member.split()), before + after
+            function = re.fullmatch(r"(\w+) \(\*(\w+)\)\((.*)\)", declared)
             if function:
                 members.append(Member(function[2], function[1], arguments=function[3]))
                 continue
-            ((declared, name, length),) = re.findall(r"^(.*?)(\w+)(?:\[(\d+)\])?$", member)
-            members.append(Member(name, declared.strip(), int(length or 1)))
+            ((kind, name, length),) = re.findall(r"^(.*?)(\w+)(?:\[(\d+)\])?$", declared)
+            of = re.search(r"\ba flaunay_(\w+)|([Oo]ther than 0|\b1 if)\b", comment)
+            is_one = kind.strip() == "int" and of is not None and not name.startswith("has_")
+            kind_of = (of[1] or "flag") if is_one else ""
+            members.append(Member(name, kind.strip(), int(length or 1), None, kind_of, sentence(comment)))
         return members
+
+    def options(self, struct: str) -> list[Member]:
+        """The members that users of other languages give by the same names: numbers, flags and words."""
+        return [
+            member
+            for member in self.structs[struct]
+            if member.kind in ("flag", member.name)
+            or (member.type in ("double", "size_t") and not member.name.endswith("_count"))
+        ]
 
 
 class Array(NamedTuple):
@@ -168,6 +203,19 @@ class Python:
             fields += f'        ("{member.name}", {kind}),\n'
         return f"{callbacks}\n\nclass {class_name(name)}(ctypes.Structure):\n    _fields_ = [\n{fields}    ]\n"
 
+    def options(self, name: str) -> dict[str, str]:
+        """The types of a struct's options."""
+        types, names = {}, {member.name for member in self.header.structs[name]}
+        for member in self.header.options(name):
+            kind = {"double": "float", "size_t": "int", "flag": "bool"}.get(member.kind or member.type, "str")
+            types[member.name] = f"Optional[{kind}]" if f"has_{member.name}" in names else kind
+        return types
+
+    @staticmethod
+    def keywords(name: str, types: dict[str, str]) -> str:
+        members = "".join(f"    {member}: {kind}\n" for member, kind in types.items())
+        return f"\n\nclass {class_name(name)}Options(TypedDict, total=False):\n{members}"
+
     def function(self, result: str, name: str, arguments: str) -> str:
         types = ", ".join(self.argument_types(arguments))
         return f'    "{name}": ({self.type_of(result)}, [{types}]),\n'
@@ -176,6 +224,14 @@ class Python:
         header = self.header
         lines = [f"{name.upper()} = {json.dumps(values)}\n" for name, values in header.enums.items()]
         lines += [self.struct(*one) for one in header.structs.items()]
+        flags = {
+            class_name(name): [member.name for member in members if member.kind == "flag"]
+            for name, members in header.structs.items()
+        }
+        lines += [f"\n\n# Members that are 0 or not.\nFLAGS = {json.dumps(flags)}\n"]
+        lines += [self.keywords(name, self.options(name)) for name in OPTIONS]
+        wanted = {array.name: "bool" for array in tables["TRIANGULATION"] if array.asked == "on_request"}
+        lines += [self.keywords("triangulation", wanted)]
         lines += ["\n\n# The type of the result, and those of the arguments.\n"]
         lines += ["FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {\n"]
         lines += [self.function(*one) for one in header.functions] + ["}\n"]
@@ -198,16 +254,25 @@ def words_of(values: dict[str, int]) -> list[str]:
     return [name.replace("_", "-") for name in values]
 
 
-def layout_of(members: list[Member]) -> tuple[dict[str, int], int]:
-    """Where a struct has those of its members that are one word, in words, and how many words it has."""
-    places, end, alignment = {}, 0, 1
+class Layout(NamedTuple):
+    """Where a struct has those of its members that are one word, in words, and doubles, in their size."""
+
+    places: dict[str, int]
+    doubles: dict[str, int]
+    words: int
+
+
+def layout_of(members: list[Member]) -> Layout:
+    places, doubles, end, alignment = {}, {}, 0, 1
     for member in members:
         size = 2 if member.type in TWO_WORDS else 1
         end, alignment = -(-end // size) * size, max(size, alignment)
-        if size == 1 and member.name != "reserved":
+        if member.type == "double":
+            doubles[member.name] = end // 2
+        elif size == 1 and member.name != "reserved":
             places[member.name] = end
         end += size * member.length
-    return places, -(-end // alignment) * alignment
+    return Layout(places, doubles, -(-end // alignment) * alignment)
 
 
 def javascript(header: Header, tables: dict[str, list[Array]]) -> str:
@@ -216,11 +281,14 @@ def javascript(header: Header, tables: dict[str, list[Array]]) -> str:
         counts_up = list(values.values()) == list(range(len(values)))
         shown = words_of(values) if counts_up else {camel(key): bit for key, bit in values.items()}
         text += f"export const {name.upper()} = {json.dumps(shown)};\n"
-    text += "\n// How many words of 32 bits a struct has, and where it has those members that are one.\n"
+    text += "\n// How many words of 32 bits a struct has, where it has those members that are one, and doubles, by their size;\n"
+    text += "// the enumerations of members that are words for users, and flags.\n"
     for name, members in header.structs.items():
-        places, size = layout_of(members)
-        at = {camel(key): place for key, place in places.items()}
-        text += f"export const {class_name(name)} = {json.dumps({'words': size, 'at': at})};\n"
+        layout = layout_of(members)
+        at, doubles = ({camel(key): place for key, place in places.items()} for places in layout[:2])
+        kinds = {camel(member.name): member.kind for member in members if member.kind}
+        shown = {"words": layout.words, "at": at, "doubles": doubles, "kinds": kinds}
+        text += f"export const {class_name(name)} = {json.dumps(shown)};\n"
     text += f"\n// {ABOUT_ARRAYS}\n"
     for table, arrays in tables.items():
         if arrays[0].type:
@@ -231,21 +299,77 @@ def javascript(header: Header, tables: dict[str, list[Array]]) -> str:
     return JAVASCRIPT_HEAD + text
 
 
-def typescript(header: Header, _: dict[str, list[Array]]) -> str:
+def interface(name: str, members: dict[str, tuple[str, str]]) -> str:
+    """members: the type of each and what it is about."""
+    lines = "".join(f"  /** {about} */\n  {member}: {kind};\n" for member, (kind, about) in members.items())
+    return f"export interface {name} {{\n{lines}}}\n"
+
+
+def typescript(header: Header, tables: dict[str, list[Array]]) -> str:
     lines = ""
     for name, values in header.enums.items():
         lines += f"export type {class_name(name)} = {' | '.join(map(repr, words_of(values)))};\n"
+    for struct in ("constraints", "polygons"):
+        options = {}
+        for name, _, _, _, kind, about in header.options(struct):
+            is_word = kind != "flag"
+            options[f"{camel(name)}?"] = (
+                class_name(kind) if is_word else "boolean", header.about_enums[kind] if is_word else about
+            )
+        lines += interface(f"{class_name(struct)}Options", options)
+    views, wanted = {}, {}
+    for name, kind, _, _, asked in tables["TRIANGULATION"]:
+        views[f"readonly {camel(name)}"] = f"{ELEMENTS[kind][1].capitalize()}Array", header.about_parts[name]
+        if asked == "on_request":
+            wanted[f"{camel(name)}?"] = "boolean", f"Whether {name} are computed."
+    lines += interface("TriangulationArrays", views) + interface("TriangulationOptions", wanted)
     return JAVASCRIPT_HEAD + lines
 
 
 def layout_check(header: Header, _: dict[str, list[Array]]) -> str:
     lines = '#include "flaunay/flaunay.h"\n\n'
     for name, members in header.structs.items():
-        places, size = layout_of(members)
-        lines += f"static_assert(sizeof(flaunay_{name}) == {4 * size});\n"
-        for member, place in places.items():
-            lines += f"static_assert(offsetof(flaunay_{name}, {member}) == {4 * place});\n"
+        layout = layout_of(members)
+        lines += f"static_assert(sizeof(flaunay_{name}) == {4 * layout.words});\n"
+        bytes_at = {name: 4 * place for name, place in layout.places.items()}
+        bytes_at |= {name: 8 * place for name, place in layout.doubles.items()}
+        for member, place in bytes_at.items():
+            lines += f"static_assert(offsetof(flaunay_{name}, {member}) == {place});\n"
     return JAVASCRIPT_HEAD + lines
+
+
+# ---- Lists of words in documents
+
+# Parameters and options that are named otherwise than the enumeration.
+NAMED = {"keep_edges": "kept_edges", "fill": "fill_rule"}
+DOCUMENTS = {"docs/*.md": r"--([\w-]+) ([\w-]+(?:\\\|[\w-]+)+)", "python/flaunay/*.py": r"( {4}\w+) : \{(\".+?\")\}"}
+
+
+def with_all_words(header: Header, match: re.Match[str]) -> str:
+    """A list of words with those that it lacks at its end, if it is one of an enumeration of its name."""
+    text, name, listed = match[0], match[1].strip().replace("-", "_"), match[2]
+    words = list(header.enums.get(NAMED.get(name, name), []))
+    is_python = listed.startswith('"')
+    there = re.findall(r"[\w-]+", listed)
+    if not is_python:
+        words = [word.replace("_", "-") for word in words]
+    if not set(there) <= set(words):
+        return text
+    words.sort(key=lambda word: there.index(word) if word in there else len(there))
+    return text.replace(listed, ", ".join(f'"{word}"' for word in words) if is_python else "\\|".join(words))
+
+
+def bring_words_up_to_date(check: bool) -> None:
+    root = Path(__file__).resolve().parent.parent
+    header = Header((root / "src/include/flaunay/flaunay.h").read_text(encoding="utf-8"))
+    for files, pattern in DOCUMENTS.items():
+        for path in sorted(root.glob(files)):
+            text = path.read_text(encoding="utf-8")
+            changed = re.sub(pattern, lambda match: with_all_words(header, match), text)
+            if changed != text and check:
+                raise SystemExit(f"declare: {path} does not list all words: scripts/format.sh adds them")
+            if changed != text:
+                path.write_text(changed, encoding="utf-8")
 
 
 WRITERS = {
@@ -263,4 +387,7 @@ def main(header: str, arrays: str, *outputs: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1:2] == ["--words"]:
+        bring_words_up_to_date("--check" in sys.argv)
+    else:
+        main(*sys.argv[1:])

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Formats the C++ and OpenCL files of the repository in place, by .clang-format and kernels/.clang-format.
-#   scripts/format.sh           formats them
-#   scripts/format.sh --check   changes nothing; lists the files that are not formatted, and fails if there are any
+# Formats the C++ and OpenCL files of the repository in place, by .clang-format and kernels/.clang-format, and adds words
+# of enumerators that lists in documents lack.
+#   scripts/format.sh           does it
+#   scripts/format.sh --check   changes nothing; lists the files that are not as they should be, and fails if there are any
 # Needs clang-format 14, the version of Debian 12. Other versions format slightly differently, so they are not used.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,6 +16,10 @@ case "${1-}" in
     exit 2
     ;;
 esac
+
+words=(python3 scripts/declare.py --words)
+if $check; then words+=(--check); fi
+"${words[@]}"
 
 format=
 for candidate in clang-format-14 clang-format; do

@@ -1055,8 +1055,8 @@ static void test_bad_constraints(void) {
                                      {.segment_count = 1},
                                      {.hole_count = 1},
                                      {.seed_count = 1},
-                                     {.crossings = 2},
-                                     {.outside = 3},
+                                     {.crossings = 99},
+                                     {.outside = 99},
                                      {.fill_rule = -1},
                                      {.reserved = {1}}};
   const char* const texts[] = {"4",
@@ -1147,13 +1147,13 @@ static void test_bad_polygons(void) {
   bad[0].ring_offsets = NULL;
   bad[1].coordinates = NULL;
   bad[2].polygon_count = 1;
-  bad[3].overlaps = 2;
-  bad[4].crossings = 2;
+  bad[3].overlaps = 99;
+  bad[4].crossings = 99;
   bad[5].reserved[1] = 1;
-  bad[6].has_outside = 1, bad[6].outside = 3;
-  bad[7].has_fill_rule = 1, bad[7].fill_rule = 3;
+  bad[6].has_outside = 1, bad[6].outside = 99;
+  bad[7].has_fill_rule = 1, bad[7].fill_rule = 99;
   for (int k = 0; k < 8; ++k) REFUSED(polygons_with(bad[k]), texts[k]);
-  bad[8].outside = bad[8].fill_rule = 3;  // neither counts
+  bad[8].outside = bad[8].fill_rule = 99;  // neither counts
   OK(polygons_with(bad[8]));
   OK(polygons_with((flaunay_polygons){0}));
   const double bow[] = {0, 0, 2, 2, 2, 0, 0, 2};

@@ -65,19 +65,19 @@ _MADE: _Arrays = {
     for name, (dtype, row, columns, asked) in {**TRIANGULATION, **_CONSTRAINED}.items()
 }
 _MADE |= _SPACE | dict.fromkeys(["triangle_offsets", "hull_offsets"], _OFFSETS)
-# How many rows there are of what, in flaunay_mesh and flaunay_constrained_arrays.
-_ROWS: dict[str, Callable[[Any, Any], int]] = {
-    "triangle": lambda mesh, _: mesh.triangle_count,
-    "halfedge": lambda mesh, _: 3 * mesh.triangle_count,
-    "hull_vertex": lambda mesh, _: mesh.hull_count,
-    "point": lambda mesh, _: mesh.point_count,
-    "hidden": lambda mesh, _: mesh.hidden_count,
-    "set_offset": lambda mesh, _: mesh.set_count + 1,
-    "added_point": lambda _, arrays: arrays.added_count,
-    "constraint": lambda _, arrays: arrays.constraint_count,
-    "segment_offset": lambda _, arrays: arrays.segment_count + 1,
-    "piece": lambda _, arrays: arrays.piece_count,
-}
+
+def _counter(row: str) -> Callable[[Any, Any], int]:
+    """What counts rows of something in a flaunay_mesh and flaunay_constrained_arrays."""
+    if row == "halfedge":
+        return lambda mesh, _: 3 * cast(int, mesh.triangle_count)
+    of, offset, _ = row.partition("_offset")
+    count, more = operator.attrgetter(f"{of}_count"), int(bool(offset))
+    if hasattr(_declarations.Mesh, f"{of}_count"):
+        return lambda mesh, _: count(mesh) + more
+    return lambda _, arrays: count(arrays) + more
+
+
+_ROWS = {row: _counter(row) for _, row, *_ in _MADE.values()}
 
 # ---- Arrays
 
@@ -243,11 +243,11 @@ def _struct(of: Callable[..., Any], /, **members: Any) -> Any:
 
 
 def _members(struct: type[ctypes.Structure], *without: str) -> Callable[[Any], dict[str, Any]]:
-    """What reads all members of a struct but these: numbers and texts."""
+    """What reads all members of a struct but these: numbers, texts and flags."""
     names = [field[0] for field in struct._fields_ if field[0] not in without]
-    read = operator.attrgetter(*names)
+    read, flags = operator.attrgetter(*names), _declarations.FLAGS[struct.__name__]
     return lambda given: {
-        name: text_of(value) if isinstance(value, bytes) else value
+        name: text_of(value) if isinstance(value, bytes) else bool(value) if name in flags else value
         for name, value in zip(names, read(given))
     }
 
@@ -260,9 +260,8 @@ _CHUNK_STATISTICS = _members(
     *("rounds", "round_count", "devices", "device_count", "phases", "phase_count", "seconds"),
     "note",
 )
-_DEVICE = _members(
-    _declarations.DeviceInfo, "fp64", "fixed_point", "self_test_passed", "self_test_failure"
-)
+_DEVICE = _members(_declarations.DeviceInfo, "self_test_passed", "self_test_failure")
+_MODE = _members(_declarations.ModeInfo, "mode")
 
 
 def _phases_of(statistics: Any) -> dict[str, float]:
@@ -288,10 +287,6 @@ def _chunk_statistics_of(statistics: Any) -> dict[str, Any]:
     }
 
 
-def _info_of(info: Any) -> dict[str, Any]:
-    return {**_DEVICE(info), "fp64": bool(info.fp64), "fixed_point": bool(info.fixed_point)}
-
-
 # ---- Devices and modes
 
 
@@ -299,7 +294,7 @@ def devices() -> list[dict[str, Any]]:
     """Every OpenCL device, in the order in which ``"#k"`` names them."""
     found = _Result("device_list")
     check(library.device_list_create(0, found.place))
-    return [_info_of(library.device_list_at(found, k)[0]) for k in range(found.read("count"))]
+    return [_DEVICE(library.device_list_at(found, k)[0]) for k in range(found.read("count"))]
 
 
 _MODES = [library.mode_at(k)[0] for k in range(library.mode_count())]
@@ -308,14 +303,7 @@ _MODE_NUMBERS: dict[str, int] = {text_of(info.name): info.mode for info in _MODE
 
 def modes() -> list[dict[str, Any]]:
     """Every mode, the default first."""
-    return [
-        {
-            "name": text_of(info.name),
-            "description": text_of(info.description),
-            "on_host": bool(info.on_host),
-        }
-        for info in _MODES
-    ]
+    return [_MODE(info) for info in _MODES]
 
 
 _options: dict[tuple[str, int], _declarations.Options] = {}
@@ -1073,7 +1061,7 @@ class DeviceTriangulation(_DeviceArrays):
     def computed(self) -> _Places:
         """The arrays that were computed."""
         halfedges, hull = 3 * self.read("triangle_count"), self.read("hull_count")
-        places, parts = self.arrays(halfedge=halfedges, hull_vertex=hull), self.read("parts")
+        places, parts = self.arrays(halfedge=halfedges, hull=hull), self.read("parts")
         return {name: place for name, place in places.items() if parts & PART[name]}
 
     @property
@@ -1217,7 +1205,7 @@ def triangulate_chunks(
     statistics = chunks.run(call)
     counts = {
         "triangle": statistics["triangles"],
-        "hull_vertex": statistics["hull_vertices"],
+        "hull": statistics["hull_vertices"],
         "point": statistics["points"],
     }
     rows = {name: row for name, (_, row, _, _) in TRIANGULATION.items()} | {"corner_offsets": "triangle"}

@@ -5,13 +5,13 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Optional, TypedDict
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay._arrays import as_count, as_floats, as_int32, as_integers, frozen
-from flaunay._declarations import EXCUSE, KEPT_EDGES, Refinement
+from flaunay._declarations import EXCUSE, FLAGS, KEPT_EDGES, Refinement, RefinementOptions
 from flaunay._errors import UsageError
 
 # Members of flaunay_refinement: those that need not be there, numbers and counts.
@@ -26,23 +26,16 @@ Indices = npt.NDArray[np.int32]
 _EXCUSES = np.array([""] + sorted(EXCUSE, key=EXCUSE.__getitem__))
 
 
-class Refining(TypedDict, total=False):
+class Refining(RefinementOptions, total=False):
     """The keywords of `refine` that say what a mesh is refined to."""
 
-    min_angle: float
-    max_area: float
     seed_areas: Optional[npt.ArrayLike]
     areas_at: Optional[Callable[[Doubles], npt.ArrayLike]]
     triangles: Optional[npt.ArrayLike]
     triangle_areas: Optional[npt.ArrayLike]
     triangle_attributes: Optional[npt.ArrayLike]
-    conforming: bool
     keep_edges: str
     kept_segments: Optional[npt.ArrayLike]
-    min_edge: Optional[float]
-    most_points: Optional[int]
-    most_rounds: Optional[int]
-    smoothing_steps: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,10 +144,11 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
             f"keep_edges must be one of {', '.join(map(repr, KEPT_EDGES))}, not {kept!r}"
         )
     wanted["kept"] = KEPT_EDGES[kept]
-    wanted["conforming"] = int(bool(wanted.get("conforming", False)))
     wanted["mesh"] = _mesh(wanted)
     for name in _OPTIONAL:
         wanted[f"has_{name}"] = int(name in wanted)
+    for name in FLAGS["Refinement"]:
+        wanted[name] = int(bool(wanted.get(name, False)))
     for name in _NUMBERS.intersection(wanted):
         wanted[name] = _number(wanted[name], name)
     for name in _COUNTS.intersection(wanted):

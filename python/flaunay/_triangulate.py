@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union, overload
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from flaunay._constrained import (
     arrays_of_constrained,
     rules_of,
 )
+from flaunay._declarations import ConstraintsOptions, TriangulationOptions
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._refinement import Doubles, Refining
@@ -27,7 +28,7 @@ Indices = npt.NDArray[np.int32]
 Out = Union[Mapping[str, Indices], Triangulation, None]
 
 
-class _Constraining(TypedDict, total=False):
+class _Constraining(ConstraintsOptions, TriangulationOptions, total=False):
     """The keywords of `triangulate` with segments, but for those that refine."""
 
     offsets: Optional[npt.ArrayLike]
@@ -36,14 +37,7 @@ class _Constraining(TypedDict, total=False):
     point_markers: Optional[npt.ArrayLike]
     seeds: Optional[npt.ArrayLike]
     seed_offsets: Optional[npt.ArrayLike]
-    outside: str
-    crossings: str
-    fill_rule: str
-    labels: bool
     device: Optional[str]
-    neighbors: bool
-    halfedges: bool
-    areas: bool
     mode: str
     out: Out
 

@@ -95,7 +95,7 @@ std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t 
 void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh) {
   check_count(mesh.triangle_count, "triangles", kMostIndexed / 3);
   constexpr bool always = true, on_request = false;
-  const std::size_t triangle = mesh.triangle_count, halfedge = 3 * triangle, hull_vertex = mesh.hull_count,
+  const std::size_t triangle = mesh.triangle_count, halfedge = 3 * triangle, hull = mesh.hull_count,
                     point = mesh.point_count;
 #define COPY_IN_SPACE(type, name, row, columns) COPY(type, name, row, columns, on_request)
 #define COPY(type, name, row, columns, asked, ...) \

@@ -54,7 +54,7 @@ void check_room(const MeshFiles::Paths& paths, std::uint64_t n, IndexType type,
   std::vector<SizedOutput> files;
   for (std::size_t k = 0; k < kMeshArrays; ++k) {
     visit_mesh_array(k, [&](const auto& row) {
-      if (row.row == RowOf::hull_vertex) return;
+      if (row.row == RowOf::hull) return;
       files.push_back({paths[k], most_rows(row.row, n) * row.columns * stored_as(k, type).bytes});
     });
   }

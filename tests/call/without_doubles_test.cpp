@@ -226,10 +226,10 @@ Triangulation read(const DeviceTriangulation& mesh, cl_command_queue queue) {
   Triangulation result;
   const std::size_t triangles = mesh.triangle_offsets.back();
   for_each_array([&](const auto& array, std::size_t) {
-    const std::size_t rows = array.row == RowOf::triangle      ? triangles
-                             : array.row == RowOf::halfedge    ? 3 * triangles
-                             : array.row == RowOf::hull_vertex ? mesh.hull_offsets.back()
-                                                               : mesh.points;
+    const std::size_t rows = array.row == RowOf::triangle   ? triangles
+                             : array.row == RowOf::halfedge ? 3 * triangles
+                             : array.row == RowOf::hull     ? mesh.hull_offsets.back()
+                                                            : mesh.points;
     using Element = typename std::decay_t<decltype(array)>::Element;
     const cl_mem memory = (mesh.*array.buffer).memory();
     result.*array.values = embedder().download<Element>(memory, rows * array.columns, queue);

@@ -15,13 +15,14 @@
 
 /// The arrays of flaunay::Triangulation, in the order of the bits of flaunay_part. A row is X(type of the
 /// elements, name, of what there is one row per thing, elements per row, by what it is asked for, a line for
-/// users). An array is computed always or on request, by the member of its name in flaunay::Options.
+/// users). flaunay_mesh and flaunay_constrained_arrays have the counts of these things. An array is computed
+/// always or on request, by the member of its name in flaunay::Options.
 #define FLAUNAY_TRIANGULATION_ARRAYS(X)                                                               \
   X(std::int32_t, triangles, triangle, 3, always, "Triangles, 3 point indices per row")               \
   X(std::int32_t, neighbors, triangle, 3, on_request,                                                 \
     "Neighbours, the triangle opposite to each vertex, -1 on the hull")                               \
   X(std::int32_t, halfedges, halfedge, 1, on_request, "Halfedges, the opposite ones, -1 on the hull") \
-  X(std::int32_t, hull, hull_vertex, 1, always, "Hull, counter-clockwise")                            \
+  X(std::int32_t, hull, hull, 1, always, "Hull, counter-clockwise")                                   \
   X(std::int32_t, representatives, point, 1, always,                                                  \
     "Duplicates, for each point the smallest index of an equal point")                                \
   X(double, areas, triangle, 1, on_request, "Areas of triangles")
@@ -33,7 +34,7 @@
 /// is empty for arrays that the command does not write to files. An array is computed always, or if there is
 /// what it is computed from: labels, a map, or a member of flaunay::Constraints.
 #define FLAUNAY_CONSTRAINED_ARRAYS(X)                                                                   \
-  X(double, added_points, added_point, 2, always, "")                                                   \
+  X(double, added_points, added, 2, always, "")                                                         \
   X(std::size_t, added_offsets, set_offset, 1, always, "")                                              \
   X(std::int32_t, constraint_edges, constraint, 2, always, "Constraint edges, 2 point indices per row") \
   X(std::int32_t, edge_segments, constraint, 1, always,                                                 \
@@ -90,7 +91,7 @@
 namespace flaunay {
 
 /// Of what an array of a triangulation has one row per thing.
-enum class RowOf { triangle, halfedge, hull_vertex, point };
+enum class RowOf { triangle, halfedge, hull, point };
 
 /// The largest number of rows for n points.
 constexpr std::size_t most_rows(RowOf row, std::size_t n) {
