@@ -52,7 +52,14 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_ssize_t, c_uint, c_uint64, c_void_p
-from typing import Any, Optional, TypedDict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Optional, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pyopencl.array
 
 '''
 # Structs whose options users of other languages give by their names.
@@ -216,6 +223,29 @@ class Python:
         members = "".join(f"    {member}: {kind}\n" for member, kind in types.items())
         return f"\n\nclass {class_name(name)}Options(TypedDict, total=False):\n{members}"
 
+    @staticmethod
+    def attributes(name: str, about: str, types: dict[str, str]) -> str:
+        members = "".join(f"    {member}: {kind}\n" for member, kind in types.items())
+        head = "@dataclass(frozen=True, eq=False, repr=False)"
+        return f'\n\n{head}\nclass {name}:\n    """{about}"""\n\n{members}'
+
+    def triangulation(self, arrays: list[Array]) -> str:
+        """What classes have that have the arrays of triangulations, and the keywords that ask for these."""
+        in_memory, on_device = {}, {}
+        for name, kind, _, _, asked in arrays:
+            array = f"npt.NDArray[np.{ELEMENTS[kind][0]}]"
+            in_memory[name] = array if asked == "always" else f"Optional[{array}]"
+            on_device[name] = "Optional[pyopencl.array.Array]"
+        on_device["triangles"] = "pyopencl.array.Array"
+        wanted = {array.name: "bool" for array in arrays if array.asked == "on_request"}
+        parts = {array.name: "bool" for array in arrays if array.name != "triangles"}
+        return (
+            self.keywords("triangulation", wanted)
+            + self.keywords("device_triangulation", parts)
+            + self.attributes("TriangulationArrays", "The arrays of triangulations.", in_memory)
+            + self.attributes("DeviceTriangulationArrays", "The arrays of triangulations in device memory.", on_device)
+        )
+
     def function(self, result: str, name: str, arguments: str) -> str:
         types = ", ".join(self.argument_types(arguments))
         return f'    "{name}": ({self.type_of(result)}, [{types}]),\n'
@@ -230,8 +260,7 @@ class Python:
         }
         lines += [f"\n\n# Members that are 0 or not.\nFLAGS = {json.dumps(flags)}\n"]
         lines += [self.keywords(name, self.options(name)) for name in OPTIONS]
-        wanted = {array.name: "bool" for array in tables["TRIANGULATION"] if array.asked == "on_request"}
-        lines += [self.keywords("triangulation", wanted)]
+        lines += [self.triangulation(tables["TRIANGULATION"])]
         lines += ["\n\n# The type of the result, and those of the arguments.\n"]
         lines += ["FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {\n"]
         lines += [self.function(*one) for one in header.functions] + ["}\n"]
@@ -331,10 +360,9 @@ def layout_check(header: Header, _: dict[str, list[Array]]) -> str:
     for name, members in header.structs.items():
         layout = layout_of(members)
         lines += f"static_assert(sizeof(flaunay_{name}) == {4 * layout.words});\n"
-        bytes_at = {name: 4 * place for name, place in layout.places.items()}
-        bytes_at |= {name: 8 * place for name, place in layout.doubles.items()}
-        for member, place in bytes_at.items():
-            lines += f"static_assert(offsetof(flaunay_{name}, {member}) == {place});\n"
+        for size, places in (4, layout.places), (8, layout.doubles):
+            for member, place in places.items():
+                lines += f"static_assert(offsetof(flaunay_{name}, {member}) == {size * place});\n"
     return JAVASCRIPT_HEAD + lines
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
 from flaunay._cells import corners_of
+from flaunay._declarations import DeviceTriangulationArrays
 from flaunay._device_arrays import DeviceCall, Offsets, import_pyopencl, queue_for, view
 from flaunay._device_queries import DeviceLocator
 from flaunay._device_voronoi import DeviceClippedVoronoi, DeviceVoronoi
@@ -21,12 +22,15 @@ from flaunay._triangulation import Triangulation
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
+    from typing_extensions import Unpack
+
+    from flaunay._declarations import DeviceTriangulationOptions
 
 _Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DeviceTriangulation:
+class DeviceTriangulation(DeviceTriangulationArrays):
     """A triangulation in device memory, of one or more sets of points.
 
     The arrays are views of buffers that flaunay made for this result: nothing is copied to make
@@ -37,10 +41,8 @@ class DeviceTriangulation:
     ----------
     points : pyopencl.array.Array
         The points that were given.
-    triangles, neighbors, halfedges, hull, representatives : pyopencl.array.Array or None
-        As those of `Triangulation`, with its shapes, int32; None if not asked for.
-    areas : pyopencl.array.Array or None
-        As of `Triangulation`, float64; None if not asked for.
+    triangles, neighbors and so on : pyopencl.array.Array or None
+        The arrays of `Triangulation`, with its shapes and types; None if not asked for.
     triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
         As those of `Triangulation`, in host memory. Without `hull`, the latter are known all the same.
     statistics : dict
@@ -50,12 +52,6 @@ class DeviceTriangulation:
     """
 
     points: pyopencl.array.Array
-    triangles: pyopencl.array.Array
-    neighbors: Optional[pyopencl.array.Array]
-    halfedges: Optional[pyopencl.array.Array]
-    hull: Optional[pyopencl.array.Array]
-    representatives: Optional[pyopencl.array.Array]
-    areas: Optional[pyopencl.array.Array]
     triangle_offsets: npt.NDArray[np.int64]
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
@@ -215,12 +211,8 @@ def triangulate_device(
     points: pyopencl.array.Array,
     queue: Optional[pyopencl.CommandQueue] = None,
     offsets: Offsets = None,
-    neighbors: bool = False,
-    halfedges: bool = False,
-    hull: bool = False,
-    representatives: bool = False,
     wait_for: Optional[Sequence[pyopencl.Event]] = None,
-    areas: bool = False,
+    **parts: Unpack[DeviceTriangulationOptions],
 ) -> DeviceTriangulation:
     """Triangulates points in device memory into device memory.
 
@@ -237,10 +229,10 @@ def triangulate_device(
         Of the points' context, in order or not. Without it, the points' own.
     offsets : array_like of int or pyopencl.array.Array of int32, shape (sets + 1,), optional
         As of `triangulate`. From device memory, they cross to the host.
-    neighbors, halfedges, hull, representatives, areas : bool
-        Which of these to compute beside the triangles.
     wait_for : sequence of pyopencl.Event, optional
         What must be done before; what the arrays have in their own ``events`` is waited for anyway.
+    **parts : bool
+        Which arrays of `Triangulation` to compute beside the triangles, such as ``neighbors=True``.
 
     Returns
     -------
@@ -290,8 +282,10 @@ def triangulate_device(
     >>> locator.interpolate(values, queries, fill_value=-1)
     cl.Array([ 4.,  7., -1.])
     """
-    arguments = locals()
-    wanted = {"triangles", *(name for name in _calls.TRIANGULATION if arguments.get(name))}
+    for name in parts:
+        if name not in _calls.TRIANGULATION:
+            raise TypeError(f"unexpected keyword argument {name!r}")
+    wanted = {"triangles", *(name for name, is_wanted in parts.items() if is_wanted)}
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points = call.points(points, offsets, "points")
     triangulator = _triangulators.of_queue(call.queue)

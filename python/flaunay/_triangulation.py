@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, as_offsets, as_points, summary
+from flaunay._declarations import TriangulationArrays
 from flaunay._errors import UsageError
 
 _Kind = TypeVar("_Kind", bound="Triangulation")
@@ -19,7 +20,7 @@ _MODES_ON_HOST = {mode["name"] for mode in _calls.modes() if mode["on_host"]}
 
 # Without __eq__ and __repr__ of all fields: arrays have no single truth value, and can be long.
 @dataclass(frozen=True, eq=False, repr=False)
-class Triangulation:
+class Triangulation(TriangulationArrays):
     """The triangulations of one or more sets of points.
 
     All indices of points are those of the input, over all sets; indices of triangles count over all
@@ -50,12 +51,6 @@ class Triangulation:
         device without double precision has left to the host, and is empty otherwise.
     """
 
-    triangles: npt.NDArray[np.int32]
-    neighbors: Optional[npt.NDArray[np.int32]]
-    halfedges: Optional[npt.NDArray[np.int32]]
-    hull: npt.NDArray[np.int32]
-    representatives: npt.NDArray[np.int32]
-    areas: Optional[npt.NDArray[np.float64]]
     triangle_offsets: npt.NDArray[np.int64]
     hull_offsets: npt.NDArray[np.int64]
     statistics: dict[str, Any]
