@@ -66,6 +66,7 @@ _MADE: _Arrays = {
 }
 _MADE |= _SPACE | dict.fromkeys(["triangle_offsets", "hull_offsets"], _OFFSETS)
 
+
 def _counter(row: str) -> Callable[[Any, Any], int]:
     """What counts rows of something in a flaunay_mesh and flaunay_constrained_arrays."""
     if row == "halfedge":
@@ -78,6 +79,7 @@ def _counter(row: str) -> Callable[[Any, Any], int]:
 
 
 _ROWS = {row: _counter(row) for _, row, *_ in _MADE.values()}
+
 
 # ---- Arrays
 
@@ -696,23 +698,22 @@ def triangulate_polygons(
     return _make_constrained(triangulator, function, (), polygons, refinement, wanted, asked)
 
 
-def _mesh_of(arrays: dict[str, Any], n: int) -> Any:
-    """A flaunay_mesh of n points. arrays: by their names, contiguous, which must outlive it; there are all but links."""
-    return _struct(
-        _declarations.Mesh,
-        **{name: arrays.get(name) for name in (*TRIANGULATION, "triangle_offsets", "hull_offsets")},
-        point_count=n,
-        set_count=len(arrays["triangle_offsets"]) - 1,
-        triangle_count=len(arrays["triangles"]),
-        hull_count=len(arrays["hull"]),
-    )
+def _counted(struct: type[ctypes.Structure], arrays: dict[str, Any], **others: Any) -> Any:
+    """A struct of arrays, which are contiguous and must outlive it, with the counts of their rows."""
+    members: dict[str, Any] = dict(others)
+    for name, (_, row, *_) in _MADE.items():
+        if name in arrays:
+            of, offset, _ = row.partition("_offset")
+            members[name] = arrays[name]
+            members.setdefault(f"{of}_count", len(arrays[name]) - bool(offset))
+    return _struct(struct, **{name: members[name] for name in members if hasattr(struct, name)})
 
 
 def verify(points: _Doubles, offsets: Optional[_Offsets], arrays: dict[str, Any]) -> None:
-    """Checks a triangulation. arrays: as of `_mesh_of`."""
+    """Checks a triangulation. arrays: by their names, contiguous; there are all but links."""
     points, n = _as_doubles(points), len(points)
     sizes, sets = _as_offsets(offsets, n)
-    mesh = _mesh_of(arrays, n)
+    mesh = _counted(_declarations.Mesh, arrays, point_count=n)
     if mesh.set_count != max(sets, 1):
         raise UsageError(f"the triangulation has {mesh.set_count} sets, but there are {max(sets, 1)}")
     if len(arrays["representatives"]) != n:
@@ -726,28 +727,21 @@ def verify_constrained(
     refined: Optional[tuple[int, _Indices]],
     asked: dict[str, Any],
 ) -> None:
-    """Checks a triangulation with constraints. points: with those that were added. arrays: as of `_mesh_of`.
+    """Checks a triangulation with constraints. points: with those that were added. arrays: as of `verify`.
 
     refined: how many points refinement added, and the triangles that are worse. asked: members of
     flaunay_constraints or flaunay_polygons, of flaunay_refinement in its member `refinement`, the number of `points`
     that were given, and their `offsets`.
     """
     given, n = _as_doubles(points), asked["points"]
-    more = _struct(
-        _declarations.ConstrainedArrays,
-        **{name: arrays.get(name) for name in _CONSTRAINED} | {"added_points": given[n:]},
-        added_count=len(points) - n,
-        constraint_count=len(arrays["constraint_edges"]),
-        segment_count=len(arrays["piece_offsets"]) - 1,
-        piece_count=len(arrays["piece_edges"]),
-    )
+    more = _counted(_declarations.ConstrainedArrays, {**arrays, "added_points": given[n:]})
     report = None
     if refined is not None:
         kind, (count, bad) = _declarations.RefinementReport, refined
         report = _struct(kind, added_points=count, bad_count=len(bad), bad_triangles=bad)
     wanted = {name: value for name, value in asked.items() if name not in ("offsets", "points")}
     wanted["refinement"] = _Refinement(asked["refinement"]).struct
-    result = (_mesh_of(arrays, len(points)), more, report)
+    result = (_counted(_declarations.Mesh, arrays, point_count=len(points)), more, report)
     if "ring_offsets" in wanted:
         polygons = _struct(_declarations.Polygons, **wanted, coordinates=given)
         check(library.mesh_verify_polygons(*result, polygons))
