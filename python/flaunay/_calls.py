@@ -301,11 +301,12 @@ def devices() -> list[dict[str, Any]]:
 
 _MODES = [library.mode_at(k)[0] for k in range(library.mode_count())]
 _MODE_NUMBERS: dict[str, int] = {text_of(info.name): info.mode for info in _MODES}
+_MODE_INFOS = [_MODE(info) for info in _MODES]
 
 
 def modes() -> list[dict[str, Any]]:
     """Every mode, the default first."""
-    return [_MODE(info) for info in _MODES]
+    return [dict(mode) for mode in _MODE_INFOS]
 
 
 _options: dict[tuple[str, int], _declarations.Options] = {}
