@@ -136,7 +136,7 @@ kernel void rows_before_sets(int n, global const int* restrict set_blocks, globa
   if (s < n) rows[s] = first_rows[offsets[set_blocks[s]]];
 }
 
-// By point, whether it is in the place of a heavier one.
+// Whether each point is in the place of a heavier one.
 kernel void flag_lighter(int n, global const int* restrict representatives, global uchar* restrict flags) {
   const int i = get_global_id(0);
   if (i < n) flags[i] = representatives[i] < 0;

@@ -2,10 +2,11 @@
 // blocks/weighted.cl: the leaves and the merges of halves, as in blocks/merge.cl. Nothing stops; exact power tests are
 // in the same launch.
 //
-// Of points in one place, blocks/halve.cl has kept one and made it the others' representative; the heaviest is to be
-// kept, of several the first. Three passes over the points find it by atomic operations on halves of the weights' bits
-// and on numbers, whose results depend on no order; name_by_weight makes it the representative, and weigh_vertices, per
-// vertex, the vertex. merge_weighted_halves has a launch per height, with one work-item per cell of blocks/halves.h.
+// blocks/halve.cl has kept one of several points in one place and made it the others' representative; the heaviest is
+// to be kept, of several the first. Three passes over the points find it by atomic operations on halves of the weights'
+// bits and on numbers, whose results depend on no order; name_by_weight makes it the representative, and
+// weigh_vertices, per vertex, the vertex. merge_weighted_halves has a launch per height, with one work-item per cell of
+// blocks/halves.h.
 
 #include "arithmetic/coordinates.h"
 #include "blocks/arguments.h"

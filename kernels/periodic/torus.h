@@ -7,7 +7,7 @@
 
 BEGIN_SHARED
 
-// What remains of x >= period when the period is subtracted as often as possible; without a rounding, on every device.
+// The remainder of x >= period when the period is subtracted as often as possible; without a rounding, on every device.
 // step: 0, or what is added to *steps each time, modulo whole < 2^52.
 static inline double remaining(double x, double period, uint64 step, uint64 whole, uint64* steps) {
   const uint64 leading = (uint64)1 << 52, x_bits = as_ulong(x), bits = as_ulong(period);
@@ -61,7 +61,7 @@ static inline double place_along(double x, int axis, const periodic_lattice* lat
       periods = -periods;
       passed = 0 - passed;
     }
-    // Of both ends, the lower one.
+    // Halfway between both ends, the lower one.
     if (!(rest < middle)) {
       rest -= period;
       ++periods;
@@ -99,13 +99,13 @@ static inline uint64 image_beside(uint64 image, uint64 to) {
   return image_of(point_of(image), vectors_across(image) - vectors_across(to), vectors_up(image) - vectors_up(to));
 }
 
-// Of all images of a triangle in the plane, the one is kept whose smallest corner is the point itself. Rows begin with
+// The image of a triangle in the plane is kept whose smallest corner is the point itself. Rows begin with
 // the corner of the smallest number, and points come before images: such a corner is the first one.
 static inline int is_kept(uint64 first, uint64 second, uint64 third) {
   return is_in_place(first) && first < second && first < third;
 }
 
-// What is at a place of the plane. Places below `own` are those of the points with these numbers.
+// The point or image at a place of the plane. Places below `own` are those of the points with these numbers.
 static inline uint64 image_at(int v, int own, GLOBAL const uint64* images) {
   return v < own ? image_of(v, 0, 0) : images[v];
 }

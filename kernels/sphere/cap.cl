@@ -1,7 +1,7 @@
-// What closes the gap around the south pole in a triangulation of sets of places. Few triangles do; they are made on
-// the host, which learns the hull from gather_hull, after open_edges has found the edges there: one work-item per hull
-// vertex, and one per triangle. place_sphere_rows then puts those of each set behind its triangles of the plane, with
-// one work-item per row, and link_cap joins both, with one per edge between them. One pass each.
+// The triangles that close the gap around the south pole in a triangulation of sets of places. Few triangles do; they
+// are made on the host, which learns the hull from gather_hull, after open_edges has found the edges there: one
+// work-item per hull vertex, and one per triangle. place_sphere_rows then puts those of each set behind its triangles
+// of the plane, with one work-item per row, and link_cap joins both, with one per edge between them. One pass each.
 
 #include "arithmetic/language.h"
 #include "operations/segment_near.h"

@@ -34,7 +34,7 @@ static inline int are_no_degrees(double longitude, double latitude) {
   return !(fabs(longitude) < HUGE_VAL && fabs(latitude) <= 90);
 }
 
-// Of a vector whose squares neither overflow nor vanish.
+// The place of a vector whose squares neither overflow nor vanish.
 static inline double2 place_of_vector(double x, double y, double z) {
   const double across = x * x + y * y, length = sqrt(across + z * z);
   // In the south without a difference of nearly equal numbers. Without a branch, as half of all points are there.
@@ -74,7 +74,7 @@ static inline turn_ratios small_turn(double degrees) {
   return turn;
 }
 
-// Of any angle; exact at multiples of 90 degrees.
+// Sine and cosine of any angle; exact at multiples of 90 degrees.
 static inline turn_ratios turn_of(double degrees) {
   const double turned = remainder(degrees, 360.0);
   const double quarters = rint(turned / 90);  // -2 to 2

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import shapely
     from typing_extensions import Unpack
 
-# Of the default alpha: relative, and in units in the last place of the largest coordinate.
+# The tolerance of the default alpha: relative, and in units in the last place of the largest coordinate.
 _TOLERANCE, _ROUNDINGS = 1e-6, 8
 
 Indices = npt.NDArray[np.int32]

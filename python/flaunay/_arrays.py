@@ -87,7 +87,7 @@ _DEVICE_MEMORY = {
 _IN_TWO_ARRAYS = "; if x and y are two arrays, take numpy.column_stack([x, y])"
 
 _INTERPOLATE = "call triangulate_device(...).locator().interpolate, or "
-# What takes arrays of pyopencl as they are.
+# The functions that take arrays of pyopencl as they are.
 _DEVICE_CALLS = {
     "points": "call triangulate_device, or ",
     "xi": _INTERPOLATE,
@@ -98,7 +98,7 @@ _DEVICE_CALLS = {
 # Rows of a part; a few arrays of so many doubles fit a processor's cache.
 _ROWS = 1 << 14
 
-# What has another singular than itself without an s at its end.
+# Words whose singular is not the word without the s at its end.
 _SINGULAR = {
     "values per point": "value per point",
     "hull vertices": "hull vertex",

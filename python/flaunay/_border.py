@@ -16,7 +16,7 @@ Indices = npt.NDArray[np.intp]
 # From a corner of a triangle to its next one, and to its previous one.
 _NEXT, _PREVIOUS = np.array([1, 1, -2]), np.array([2, -1, -1])
 
-# Of distances that are computed at a time.
+# The most distances that are computed at a time.
 _MOST_PAIRS = 1 << 22
 
 

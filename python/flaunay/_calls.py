@@ -51,7 +51,7 @@ def _arrays(table: dict[str, tuple[str, str, int, str]]) -> _Arrays:
     return {name: (np.dtype(kind), *others) for name, (kind, *others) in table.items()}  # type: ignore[misc]
 
 
-# By the names of results.
+# Tables of arrays by the names of results.
 _TABLES = {
     name[: -len("_ARRAYS")].lower(): _arrays(table)
     for name, table in vars(_declarations).items()
@@ -59,7 +59,7 @@ _TABLES = {
 }
 TRIANGULATION, _CONSTRAINED, _SPACE = (_TABLES[name] for name in ("triangulation", "constrained", "space"))
 _OFFSETS = (_INT64, "set_offset", 1, "always")
-# Those of triangulations are asked for by their own names.
+# Arrays of triangulations are asked for by their own names.
 _MADE: _Arrays = {
     name: (dtype, row, columns, name if asked == "on_request" else asked)
     for name, (dtype, row, columns, asked) in {**TRIANGULATION, **_CONSTRAINED}.items()
@@ -1064,7 +1064,7 @@ class DeviceTriangulation(_DeviceArrays):
         return _statistics_of(self.read("statistics")[0])
 
 
-# What these calls make: the first takes a `Dynamic`, the others a `Triangulator` and points.
+# The functions that make results: the first takes a `Dynamic`, the others a `Triangulator` and points.
 DeviceRows = functools.partial(_DeviceArrays, "rows", library.dynamic_rows_device)
 DeviceVoronoi = functools.partial(_DeviceArrays, "voronoi", library.voronoi_compute_device)
 DeviceClippedVoronoi = functools.partial(_DeviceArrays, "clipped_voronoi", library.voronoi_clip_device)
@@ -1232,7 +1232,7 @@ def rasterize_chunks(
         values=_first_of(values), precision=_precision_of(values, "values"), stride=values.strides[0]
     )
     raster = _raster_of(grid, max_edge, fill, pixels)
-    # Of pixels the address: what a call refers to is freed late, and a mapped file would be open until then.
+    # The address of the pixels: what a call refers to is freed late, and a mapped file would be open until then.
     place, made = _address_of(pixels), _Result("contours")
     edges = None
     if breaklines is not None:

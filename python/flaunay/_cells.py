@@ -19,7 +19,7 @@ from flaunay._optional import optional
 
 _Doubles = npt.NDArray[np.float64]
 
-# Of a call that relaxes points: Ctrl-C takes effect between such calls.
+# The longest time of a call that relaxes points: Ctrl-C takes effect between such calls.
 _SECONDS = 0.1
 
 

@@ -444,7 +444,7 @@ def sorted_edges(
     if neighbors is None:
         corners = np.arange(triangles.size) if chosen is None else chosen.reshape(-1).nonzero()[0]
         return np.unique(edge_keys(*ends_opposite(triangles, corners)))
-    # Of the two triangles of an edge, the second one has it.
+    # The second of an edge's two triangles has it.
     is_second = neighbors < np.arange(len(triangles), dtype=np.int32)[:, None]
     corners = (is_second if chosen is None else chosen & is_second).reshape(-1).nonzero()[0]
     keys = edge_keys(*ends_opposite(triangles, corners))
@@ -504,7 +504,7 @@ def as_segments(given: npt.ArrayLike, n: int) -> Indices:
     if segments.ndim != 2 or segments.shape[1] != 2:
         hint = "; offsets of sets are given as offsets" if segments.ndim == 1 else ""
         raise UsageError(f"segments must have the shape (k, 2), not {segments.shape}{hint}")
-    # Of negative ones, the largest.
+    # As unsigned numbers, negative ones are the largest.
     if int(segments.astype(np.uint64).max()) >= n:
         row, column = np.argwhere((segments < 0) | (segments >= n))[0].tolist()
         index = segments[row, column]

@@ -176,7 +176,7 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
             self, points=self.npoints, triangles=self.nsimplex, hull_vertices=len(self.hull)
         )
 
-    # Those of a triangulation that changes are read when they are asked for after a change.
+    # Arrays of a triangulation that changes are read when they are asked for after a change.
 
     def _dynamic(self) -> DynamicTriangulation:
         if self._living is None:
@@ -580,7 +580,7 @@ class Delaunay(Queries, GraphMethods, ExportMethods, MapMethods, Frozen):
         return _calls.Locator(_triangulators.of_device(self._device), self)
 
     def __getstate__(self) -> dict[str, Any]:
-        # What lives is the object's own, and what is in device memory is made again where it is needed.
+        # The living mesh is the object's own, and what is in device memory is made again where it is needed.
         self._settle()
         return {**self.__dict__, "_living": None, "_kept_locator": KeptLocator()}
 

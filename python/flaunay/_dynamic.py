@@ -200,7 +200,7 @@ class DynamicTriangulation:
         pairs: Optional[Indices] = None
         self._queue: Optional[pyopencl.CommandQueue] = None
         self._device = device
-        # Of a copy, the segment that each edge is of from which it was made.
+        # For a copy, the segment of each edge from which it was made.
         self._segments: Optional[Indices] = None
         if is_on_device(points):
             if segments is not None or device is not None:

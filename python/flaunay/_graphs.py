@@ -98,7 +98,7 @@ def edge_lengths(tri: Mesh) -> Doubles:
 
 def edge_order(tri: Mesh) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     """A triangle that has each of the edges, and its corner opposite to the edge."""
-    # Of two triangles the one of the larger index; -1 is the smallest.
+    # The triangle with the larger index; -1 is the smallest.
     triangle, corner = np.nonzero(tri.neighbors < np.arange(len(tri.simplices))[:, None])
     ends = [tri.simplices[triangle, (corner + k) % 3].astype(np.int64) for k in (1, 2)]
     order = np.argsort(np.minimum(*ends) * len(tri.points) + np.maximum(*ends))
@@ -144,7 +144,7 @@ def is_gabriel(tri: Mesh) -> Mask:
     """
     if len(tri.simplices) == 0:
         return frozen(np.ones(len(tri.edges), np.bool_))
-    # Of all points, a corner opposite to the edge is first in its disc, if any is.
+    # If any point is in an edge's disc, a corner opposite to the edge is.
     acute = _calls.angles(tri._stand_ins[0], tri.simplices) > 0
     triangle, corner = tri._edge_order
     beyond = tri.neighbors[triangle, corner]

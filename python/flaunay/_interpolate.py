@@ -41,10 +41,10 @@ Indices = npt.NDArray[np.int32]
 Points = Union[npt.ArrayLike, Delaunay, ConstrainedTriangulation]
 _Answers = TypeVar("_Answers", Indices, Doubles)
 
-# Of the tolerances of gradients; each iteration multiplies their error by this.
+# Each iteration multiplies the error of gradients by this.
 _RATE = 2 - 3**0.5
 
-# Of natural neighbours.
+# The methods of natural neighbours.
 _WEIGHTS = ("sibson", "laplace")
 
 

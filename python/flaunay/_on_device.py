@@ -60,7 +60,7 @@ class DeviceTriangulation(DeviceTriangulationArrays):
     _queue: pyopencl.CommandQueue = field(repr=False)
 
     def __repr__(self) -> str:
-        # Of the sizes alone, since the arrays are in device memory.
+        # Counts from the sizes alone, since the arrays are in device memory.
         return summary(
             self,
             points=self.statistics["points"],

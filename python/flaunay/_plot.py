@@ -63,7 +63,7 @@ def draw_edges(
 
 Bounds = Sequence[float]
 
-# Of the points' extent, what a plot without bounds shows around them.
+# The share of the points' extent that a plot without bounds shows around them.
 _MARGIN = 0.1
 
 
@@ -118,7 +118,7 @@ def _ridges_in_box(
 ) -> Doubles:
     """The Voronoi edges in a box, shape (k, 2, 2)."""
     if len(vertices) == 0:
-        # Of points on one line, edges are lines.
+        # The edges of points on one line are lines.
         start, step = _bisectors(points[hull[:-1]], points[hull[1:]])
         everywhere = np.full(len(start), np.inf)
         return _clipped_to_box(start, step, -everywhere, everywhere, box)

@@ -20,7 +20,7 @@ Doubles = npt.NDArray[np.float64]
 _Answers = TypeVar("_Answers", Indices, Doubles)
 _Made = TypeVar("_Made")
 
-# Of values and of results in a call that interpolates: 512 MiB of each.
+# The most bytes of values, and of results, in a call that interpolates.
 _MOST_NUMBERS = 1 << 26
 
 

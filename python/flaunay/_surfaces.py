@@ -39,7 +39,7 @@ class OfPoints:
     _given: tuple[Any, ...]
     _handle: _calls.InSpace
     _made: _calls.Made
-    # Of each array, what the library calls it.
+    # The library's name of each array.
     _names: ClassVar[dict[str, str]] = {
         "simplices": "triangles",
         "neighbors": "neighbors",

@@ -56,7 +56,7 @@ _POINTS_AT_ONCE = 1 << 20
 _NOISE = (7, 18)
 # 32 GiB as float64.
 _MOST_PIXELS = 1 << 32
-# Of GeoTIFF, in .las files: the keys that have the numbers of EPSG, of projected and of other systems.
+# GeoTIFF in .las files: the keys that have the numbers of EPSG, of projected and of other systems.
 _EPSG_KEYS = (3072, 2048)
 
 
@@ -979,7 +979,7 @@ def terrain(
         _check_place(name, geometries, measured[:, :2])
     left_out = sum((source.left_out for source in sources), Counter(withheld=0, noise=0))
     if bounds is None:
-        # Those of the points that are left.
+        # The box of the points that are left.
         box = np.concatenate([measured[:, :2].min(axis=0), measured[:, :2].max(axis=0)])
     grid = _Grid(box, resolution, is_point)
     if chunks is not None:

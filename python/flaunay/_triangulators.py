@@ -26,7 +26,7 @@ _log = logging.getLogger("flaunay")
 _HOST = "host"
 
 _lock = threading.Lock()
-# By name, and whether they call functions of the caller.
+# Triangulators by name, and whether they call functions of the caller.
 _by_name: dict[tuple[str, bool], _calls.Triangulator] = {}
 _by_handles: OrderedDict[tuple[int, int], _calls.Triangulator] = OrderedDict()
 _inherited: list[Any] = []

@@ -152,7 +152,7 @@ class Voronoi(Frozen):
     def _ridges(self) -> tuple[Indices, Indices]:
         """Each Delaunay edge once, and the triangles on its sides."""
         corners, neighbors = self.delaunay.simplices, self.delaunay.neighbors
-        # Of two triangles the one of the larger index has the edge; -1 is the smallest.
+        # The triangle with the larger index has the edge; -1 is the smallest.
         triangle, corner = np.nonzero(neighbors < np.arange(len(corners))[:, None])
         ends = [corners[triangle, (corner + k) % 3] for k in (1, 2)]
         sides = [neighbors[triangle, corner], triangle.astype(np.int32)]

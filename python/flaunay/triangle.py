@@ -233,7 +233,7 @@ def _are_in_mesh(mesh: Members, border: tuple[Array, Array]) -> tuple[Array, Arr
     else:
         # A vertex with several parts of the border.
         is_border = np.isin(edge_keys(first, second), edge_keys(*border))
-    # Those inside are in two triangles.
+    # Edges inside are in two triangles.
     inside = mesh["constrained"] & (mesh["neighbors"] >= 0)
     if 2 * np.count_nonzero(is_border) + np.count_nonzero(inside) == 2 * len(first):
         return np.full(len(first), True), is_border

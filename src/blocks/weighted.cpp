@@ -91,7 +91,7 @@ void solve_weighted(Workspace& work, const Blocks& blocks, const Rings& rings, c
                                                      .scratch_axes = launch.scratch_axes});
 }
 
-// Of points in one place makes the heaviest one the vertex. block_of_place: as of halve.
+// Makes the heaviest of several points in one place the vertex. block_of_place: as of halve.
 void choose_heaviest(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& block_of_place,
                      const Buffer<cl_int>& representatives, const Rings& rings) {
   host::Runtime& runtime = work.runtime;

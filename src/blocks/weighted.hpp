@@ -24,7 +24,7 @@ struct BlocksLaunch {
 
 namespace flaunay::points {
 
-/// What regular triangulations have in place of the stages for points without weights, or besides.
+/// The stages of regular triangulations, in place of those for points without weights or besides them.
 struct WeightedSolver {
   /// Scales weights of points that were multiplied by these powers of two: one for all sets, or one per set.
   /// Throws Error(input) for a weight that is not finite, or beyond the squares of what coordinates may be.

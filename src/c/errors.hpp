@@ -33,7 +33,7 @@ flaunay_status guarded(const Work& work) noexcept {
   }
 }
 
-/// What the pointer points to. Throws Error(usage) if it is null; what: its name in the message.
+/// The object that the pointer points to. Throws Error(usage) if it is null; what: its name in the message.
 template <typename T>
 T& required(T* pointer, const char* what) {
   if (pointer == nullptr) throw Error(ErrorKind::usage, fmt::format("{} must not be NULL", what));

@@ -16,7 +16,7 @@ namespace {
 constexpr unsigned bit_of(std::size_t k) { return 1u << k; }
 
 void check_parts(unsigned parts) {
-  // Those of spaces are computed whatever is asked for.
+  // Arrays of spaces are computed whatever is asked for.
   constexpr unsigned kAll = bit_of(kTriangulationArrayCount) - 1;
   if (parts & ~kAll) throw_usage(fmt::format("there are no parts {:#x}", parts & ~kAll));
 }
@@ -63,7 +63,7 @@ InterpolationOptions to_interpolation(const flaunay_interpolation_options* optio
 
 namespace {
 
-// What triangulations in host and in device memory have alike.
+// The members that triangulations in host and in device memory have alike.
 template <typename Mesh>
 flaunay_mesh view_of_arrays(const Mesh& triangulation, const StatisticsView& statistics) {
   flaunay_mesh view{};

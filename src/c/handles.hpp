@@ -1,4 +1,4 @@
-// What the handles of the C interface hold, and conversions between its structs and those of C++.
+// The objects behind the handles of the C interface, and conversions between its structs and those of C++.
 #pragma once
 
 #include <algorithm>

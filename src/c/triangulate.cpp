@@ -36,7 +36,7 @@ flaunay_status triangulate(flaunay_triangulator* triangulator, const Coordinate*
     const research::Options wanted = c::to_options(options, true);
     if (options != nullptr && options->space != nullptr)
       return triangulate_in(cpp, coordinates, all, c::to_space(options->space), wanted);
-    // What is about the paper's modes has a call of its own, which refuses what does not go together.
+    // The paper's modes have a call of their own, which refuses options that do not go together.
     const bool is_plain =
         wanted.mode == research::Mode::blocks && wanted.hull != research::Hull::monotone_chain;
     return is_plain ? cpp.triangulate(coordinates, all, static_cast<const Options&>(wanted))

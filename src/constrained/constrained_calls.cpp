@@ -115,7 +115,7 @@ std::optional<ConstrainedTriangulation> constrain_small(
   return result;
 }
 
-// What the stages before refinement have made.
+// The results of the stages before refinement.
 struct Staged {
   ConstrainedTriangulation result;
   Ids seeds{};               // per triangle that of its region, or -1; empty if there are none

@@ -10,8 +10,8 @@
 
 namespace flaunay {
 
-/// What a function's text says that it has as its template argument: "flaunay::FillRule::even_odd", or for a
-/// number that has no enumerator "(flaunay::FillRule)3".
+/// The name of a function's template argument, as the compiler writes it: "flaunay::FillRule::even_odd", or
+/// for a number that has no enumerator "(flaunay::FillRule)3".
 constexpr std::string_view argument_in(std::string_view function) {
   const std::size_t first = function.find('=') + 2;
   return function.substr(first, function.size() - first - 1);

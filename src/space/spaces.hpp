@@ -12,7 +12,7 @@
 
 namespace flaunay::call {
 
-/// What triangulations in device memory have in another space than the plane.
+/// The arrays of triangulations in device memory in another space than the plane.
 constexpr Parts kPartsInSpace{true, true, false, false, true, false};
 
 /// Counts the points and triangles of a result, and not those in the plane.

@@ -10,7 +10,7 @@
 
 namespace flaunay::cli {
 
-/// What the progress says while a device is being prepared, if that takes long.
+/// The text of the progress line while a device is being prepared, if that takes long.
 constexpr const char* kCompiling = "compiling kernels, cached for next time";
 
 /// Calls `call` with a number of points, and returns how many seconds that took. Drivers may compile a kernel

@@ -31,7 +31,8 @@ struct ConstraintRequest {
 };
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);
-/// Those of them that say what the segments are and what they bound: --constraints, --outside, --fill,
+/// The options among them that say what the segments are and what they bound: --constraints, --outside,
+/// --fill,
 /// --hole.
 void add_domain_options(CLI::App* command, ConstraintRequest& request);
 /// Checks the options of add_domain_options for an input with segments. Throws Error(usage).

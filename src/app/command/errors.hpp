@@ -47,7 +47,7 @@ inline int report_error(const char* program, int code, std::string_view message)
   return code;
 }
 
-/// What the messages of an Error about an element begin with, such as "point", and the file with these
+/// The word that messages of an Error about an element begin with, such as "point", and the file with these
 /// elements.
 struct ElementFile {
   std::string element;

@@ -99,7 +99,7 @@ Json constraints_json(const std::optional<ConstraintFacts>& constraints) {
           {"fill", constraints->fill}};
 }
 
-// What excuses are called in statistics and in notes, from the first one on.
+// The names of excuses in statistics and in notes, from the first one on.
 struct ExcuseNames {
   const char *key, *text;
 };

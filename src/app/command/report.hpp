@@ -12,13 +12,13 @@
 
 namespace flaunay::cli {
 
-/// What a triangulation with constraints has, and others do not.
+/// The facts that only triangulations with constraints have.
 struct ConstraintFacts {
   std::size_t sets = 0, segments = 0, pieces = 0, edges = 0, added_points = 0, holes = 0;
   std::string crossings, outside, fill;  // as the options call them
 };
 
-/// What the command itself knows about a run, besides the library's statistics.
+/// Facts about a run that the command itself knows, besides the library's statistics.
 struct RunFacts {
   std::string input;
   std::string mode = "blocks";  ///< the one of commands that have no choice

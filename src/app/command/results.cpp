@@ -16,7 +16,7 @@ bool is_in_chunks(std::size_t k) {
 }  // namespace
 
 std::string option_of(std::string_view name) {
-  // Of representatives, users know what they tell.
+  // For users, representatives tell duplicates.
   std::string option = fmt::format("--{}", name == "representatives" ? "duplicates" : name);
   std::replace(option.begin(), option.end(), '_', '-');
   return option;

@@ -48,7 +48,7 @@ void add_array(CLI::App* command, const Array& array, std::string& path) {
   add_path(command, option_of(array.name), path, fmt::format("{}: .npy", array.text));
 }
 
-/// What every way to triangulate is asked for.
+/// The request of a user who triangulates, whichever way.
 struct Task {
   std::string input;
   io::Columns columns;
@@ -79,7 +79,7 @@ void write_arrays(const Table& table, const ArrayPaths<Table>& paths, const Mesh
                   io::IndexType index) {
   for_each_array(table, [&]<typename Array>(const Array& array, std::size_t k) {
     using Element = typename Array::Element;
-    // Those of other elements have no file.
+    // Arrays with other elements have no file.
     if constexpr (std::is_same_v<Element, std::int32_t> || std::is_same_v<Element, double>) {
       if (!paths[k].empty()) io::write_npy(outputs, paths[k], mesh.*array.values, array.columns, index);
     }

@@ -36,7 +36,7 @@ namespace {
 
 using Returns = io::ScanChoice::Returns;
 
-// Of a picture, for which there are two bytes per pixel in memory.
+// The most pixels of a picture, which takes two bytes per pixel of memory.
 constexpr std::size_t kMostPicturePixels = std::size_t{1} << 28;
 
 struct TerrainRequest {
@@ -102,7 +102,7 @@ io::ScanChoice choice_of(const TerrainRequest& request) {
   return choice;
 }
 
-// What was left out of the points, for messages; empty if nothing was.
+// The points that were left out, for messages; empty if none were.
 std::string left_out_text(const io::LeftOut& left_out) {
   std::string text;
   if (left_out.withheld > 0) text += fmt::format(", without {} withheld ones", left_out.withheld);
@@ -171,7 +171,7 @@ std::vector<double> contour_heights(const std::vector<double>& given, const Rang
   return heights;
 }
 
-// What is wrong with the request is found before the points are read; so are errors of the outputs.
+// Errors in the request and in the outputs are found before the points are read.
 int make_terrain(const TerrainRequest& request) {
   const std::vector<std::string> scans = io::scan_files(request.inputs);
   std::vector<std::string> inputs = scans;

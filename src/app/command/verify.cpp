@@ -80,7 +80,7 @@ std::uint64_t memory_for_chunks(const VerifyRequest& request) {
                 fmt::format("{}: --memory needs an .npy file, which can be read in pieces", path));
   }
   if (is_asked_for) return request.memory_bytes;
-  // What the check in memory holds at most, with the points and int32 rows themselves.
+  // The most bytes that the check in memory holds, with the points and int32 rows themselves.
   constexpr std::uint64_t kPointBytes = 64, kRowBytes = 84, kRowBytesOfFile = 3 * sizeof(std::int32_t);
   constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;  // rows that always fit
   const std::uint64_t rows = size_of_file(request.triangles) / kRowBytesOfFile;

@@ -41,7 +41,7 @@ struct Request {
   bool quiet = false;
 };
 
-// What a rank used.
+// The resources that a rank used.
 struct Use {
   std::uint64_t triangles, bytes_sent, peak_bytes;
   double cpu_seconds;  // of the triangulation
@@ -313,7 +313,7 @@ int main(int argc, char** argv) {
     flaunay::mpi::Ranks ranks(MPI_COMM_WORLD);
     code = flaunay::mpi::run(ranks, argc, argv);
   } catch (const std::exception& error) {
-    // Of this rank alone; others may wait for it.
+    // The error is that of this rank alone; others may wait for it.
     flaunay::cli::report_error("flaunay-mpi", code, fmt::format("internal error: {}", error.what()));
     MPI_Abort(MPI_COMM_WORLD, code);
   }

@@ -21,7 +21,7 @@ struct SetNumbers {
     const auto i = static_cast<std::size_t>(v);
     return static_cast<std::int32_t>(i >= first_split ? i - first_split + points : i - first_point);
   }
-  /// By how much numbers among all sets exceed the set's own: for its points, for points that splitting
+  /// How much larger numbers among all sets are than the set's own: for its points, for points that splitting
   /// added, and for points that refinement added. These begin with number `first_added` among all sets.
   std::array<std::int32_t, 3> shifts(std::size_t first_added) const {
     return {static_cast<std::int32_t>(first_point), static_cast<std::int32_t>(first_split - points),

@@ -83,7 +83,7 @@ struct ChunkRound {
   std::uint64_t handed_on = 0;  ///< points that went on to the next round
 };
 
-/// What triangulate_chunks did.
+/// The statistics of triangulate_chunks.
 struct ChunkStatistics {
   std::uint64_t points = 0;                  ///< input points
   std::uint64_t duplicates = 0;              ///< input points that are not their own representative

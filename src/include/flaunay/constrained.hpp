@@ -117,7 +117,7 @@ struct Polygons {
 /// The options of a triangulation of polygons. Unlike for segments, only what is inside is kept, and insides
 /// are those of the even-odd rule, unless these options say otherwise.
 struct PolygonOptions : ConstrainedOptions {
-  /// What is inside by the even-odd rule is kept.
+  /// Triangles that are inside by the even-odd rule are kept.
   PolygonOptions() {
     outside = Outside::holes;
     fill_rule = FillRule::even_odd;

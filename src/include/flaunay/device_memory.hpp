@@ -120,7 +120,7 @@ struct DeviceTriangulation {
   /// sets + 1 values in host memory, known when the call returns, whatever the parts: set s has hull vertices
   /// [hull_offsets[s], hull_offsets[s + 1]).
   std::vector<std::size_t> hull_offsets;
-  /// What the call did and how long it took; Statistics::seconds lasts until everything was enqueued.
+  /// The work of the call and its time; Statistics::seconds lasts until everything was enqueued.
   Statistics statistics;
 };
 
@@ -131,8 +131,8 @@ struct DeviceSegments {
   std::size_t count = 0;  ///< number of segments
 };
 
-/// What a ConstrainedTriangulation has besides its triangles, in device memory. The caller's buffers must
-/// have the sizes given here.
+/// The arrays of a ConstrainedTriangulation besides its triangles, in device memory. The caller's buffers
+/// must have the sizes given here.
 struct DeviceConstraintEdges {
   DeviceBuffer constrained;  ///< ConstrainedTriangulation::constrained, uchar, 6 bytes per point
   DeviceBuffer piece_edges;  ///< ConstrainedTriangulation::piece_edges, int32, 8 bytes per segment

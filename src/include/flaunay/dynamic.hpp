@@ -12,7 +12,7 @@
 
 namespace flaunay {
 
-/// What a batch has changed.
+/// The changes that a batch has made.
 struct Changes {
   std::size_t first_point = 0;  ///< the number of the first point that was inserted; the others follow it
   /// One per point that was inserted or moved: the smallest number of a point in its place, which is the one

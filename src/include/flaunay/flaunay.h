@@ -274,10 +274,10 @@ typedef struct flaunay_device_clipped_voronoi flaunay_device_clipped_voronoi;
 typedef struct flaunay_locator flaunay_locator;
 /// The OpenCL devices of the machine.
 typedef struct flaunay_device_list flaunay_device_list;
-/// What a triangulation in chunks did.
+/// The statistics of a triangulation in chunks.
 typedef struct flaunay_chunk_report flaunay_chunk_report;
 
-/// What programs need to offer a choice of modes.
+/// The facts about a mode that programs need to offer a choice of modes.
 typedef struct flaunay_mode_info {
   int mode;                 ///< a flaunay_mode
   const char* name;         ///< "blocks", "recursive-device" and so on, as on the command line
@@ -558,7 +558,7 @@ typedef struct flaunay_given_triangles {
   uintptr_t reserved[4];  ///< 0
 } flaunay_given_triangles;
 
-/// What a mesh is refined to. {0}: nothing is added, but the report has angles.
+/// The goals of a refinement. {0}: nothing is added, but the report has angles.
 typedef struct flaunay_refinement {
   double min_angle;  ///< in degrees, from 0 to 34: no angle of a triangle is smaller; 0 for any
   double max_area;   ///< no triangle is larger; 0 for any
@@ -669,7 +669,7 @@ typedef struct flaunay_polygons {
   uintptr_t reserved[5];                 ///< 0
 } flaunay_polygons;
 
-/// What a constrained triangulation has besides its triangles. Arrays are NULL if they are empty.
+/// The arrays of a constrained triangulation besides its triangles. Arrays are NULL if they are empty.
 typedef struct flaunay_constrained_arrays {
   size_t added_count;           ///< a, the number of points that were added
   size_t constraint_count;      ///< e, the number of constraint edges
@@ -703,7 +703,7 @@ typedef struct flaunay_constrained_arrays {
   const double* triangle_attributes;
 } flaunay_constrained_arrays;
 
-/// What a batch has changed in a flaunay_dynamic. Arrays are NULL if they are empty.
+/// The changes that a batch has made in a flaunay_dynamic. Arrays are NULL if they are empty.
 typedef struct flaunay_changes {
   size_t first_point;           ///< the number of the first point that was inserted; the others follow it
   size_t representative_count;  ///< number of points that were inserted or moved
@@ -740,7 +740,7 @@ typedef struct flaunay_chunk_device {
   uint64_t points;   ///< points of the chunks that it triangulated
 } flaunay_chunk_device;
 
-/// What a triangulation in chunks did and how long it took.
+/// The work of a triangulation in chunks and its time.
 typedef struct flaunay_chunk_statistics {
   uint64_t points;                      ///< input points
   uint64_t duplicates;                  ///< input points that are not their own representative
@@ -778,8 +778,8 @@ typedef struct flaunay_device_info {
   int fp64;                       ///< 1 if it has double precision
   int self_test_passed;           ///< 1 if the arithmetic self test was run and passed
   const char* self_test_failure;  ///< what failed, or ""
-  /// What can be used of memory_bytes now. A device that shares the host's memory has at most what is free
-  /// there, and what the limits of the process and of its control group leave.
+  /// The part of memory_bytes that can be used now. A device that shares the host's memory has at most what
+  /// is free there, and what the limits of the process and of its control group leave.
   size_t available_bytes;
   /// 1 if it computes in fixed point: it lacks fp64 or, as far as the self test was run, its doubles are not
   /// exact or slower. What fixed point cannot do is done with its doubles or, if there are none, natively on
@@ -843,8 +843,8 @@ FLAUNAY_API flaunay_status flaunay_triangulator_create_in_context(cl_context con
                                                                   flaunay_triangulator** triangulator);
 /// Waits for the work that was enqueued. Locators and results of the triangulator stay valid.
 FLAUNAY_API void flaunay_triangulator_destroy(flaunay_triangulator* triangulator);
-/// What calls on host memory use, which passed the self test; NULL if it cannot be used. The host's name is
-/// "host".
+/// The device that calls on host memory use, which passed the self test; NULL if it cannot be used. The
+/// host's name is "host".
 FLAUNAY_API const flaunay_device_info* flaunay_triangulator_device(const flaunay_triangulator* triangulator);
 /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
 /// functions for device memory use the device that was named, or else the first GPU with fp64, the first GPU,
@@ -999,8 +999,8 @@ FLAUNAY_API flaunay_status flaunay_triangulate_polygons(flaunay_triangulator* tr
                                                         const flaunay_polygons* polygons,
                                                         const flaunay_options* options,
                                                         flaunay_triangulation** result);
-/// What a triangulation with constraints has besides its flaunay_mesh; NULL without constraints. In the mesh,
-/// point_count, hull and representatives include points that were added. Where triangles are left out,
+/// The arrays of a triangulation with constraints besides its flaunay_mesh; NULL without constraints. In the
+/// mesh, point_count, hull and representatives include points that were added. Where triangles are left out,
 /// neighbours and halfedges are -1; the hull remains that of the points.
 FLAUNAY_API const flaunay_constrained_arrays* flaunay_triangulation_constraints(
     const flaunay_triangulation* triangulation);
@@ -1064,7 +1064,7 @@ FLAUNAY_API flaunay_status flaunay_dynamic_remove(flaunay_dynamic* dynamic, cons
 /// Moves the points of these m numbers to these places, all at once.
 FLAUNAY_API flaunay_status flaunay_dynamic_move(flaunay_dynamic* dynamic, const int32_t* points,
                                                 const double* coordinates, size_t m);
-/// What the last of these calls has changed that did not fail. Valid until the next one.
+/// The changes of the last of these calls that did not fail. Valid until the next one.
 FLAUNAY_API const flaunay_changes* flaunay_dynamic_changes(const flaunay_dynamic* dynamic);
 /// One more than the largest number that a point has had. This and the next three functions take O(1).
 FLAUNAY_API size_t flaunay_dynamic_numbers(const flaunay_dynamic* dynamic);
@@ -1136,8 +1136,8 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
 /// call clRetainMemObject.
 FLAUNAY_API cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation,
                                                        unsigned part);
-/// What the last call computed, as bits of flaunay_part; 0 before the first call. This and the following
-/// values are known when the call returns.
+/// The arrays that the last call computed, as bits of flaunay_part; 0 before the first call. This and the
+/// following values are known when the call returns.
 FLAUNAY_API unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation);
 /// Its sizes, offsets, space and statistics, which are in host memory; the pointers to other arrays are NULL.
 FLAUNAY_API const flaunay_mesh* flaunay_device_triangulation_mesh(

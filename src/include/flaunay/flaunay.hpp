@@ -240,8 +240,8 @@ struct DeviceInfo {
   unsigned compute_units = 0;    ///< CL_DEVICE_MAX_COMPUTE_UNITS
   unsigned clock_mhz = 0;        ///< CL_DEVICE_MAX_CLOCK_FREQUENCY
   std::size_t memory_bytes = 0;  ///< CL_DEVICE_GLOBAL_MEM_SIZE
-  /// What can be used of it now. A device that shares the host's memory has at most what is free there, and
-  /// what the limits of the process and of its control group leave.
+  /// The part of it that can be used now. A device that shares the host's memory has at most what is free
+  /// there, and what the limits of the process and of its control group leave.
   std::size_t available_bytes = 0;
   std::size_t largest_buffer_bytes = 0;  ///< CL_DEVICE_MAX_MEM_ALLOC_SIZE
   std::size_t local_memory_bytes = 0;    ///< CL_DEVICE_LOCAL_MEM_SIZE
@@ -251,7 +251,7 @@ struct DeviceInfo {
   /// not exact or slower. What fixed point cannot do is done with its doubles or, if there are none, natively
   /// on the host. Results are the same.
   bool fixed_point = false;
-  /// What the arithmetic self test found wrong; empty if it passed or was not run.
+  /// The fault that the arithmetic self test found; empty if it passed or was not run.
   std::string self_test_failure;
   bool self_test_passed = false;  ///< whether the arithmetic self test was run and passed
 };
@@ -359,8 +359,8 @@ class FLAUNAY_API Triangulator {
   /// assigned to.
   Triangulator& operator=(Triangulator&&) noexcept;
 
-  /// What calls on host memory use; it passed the self test. The host's name is "host". Throws Error(device)
-  /// if it cannot be used.
+  /// The device that calls on host memory use; it passed the self test. The host's name is "host". Throws
+  /// Error(device) if it cannot be used.
   DeviceInfo device() const;
   /// The context, for the caller's own buffers, kernels and queues. Owned by the triangulator. This and other
   /// functions for device memory use the device that was named, or else the first GPU with fp64, the first
@@ -594,7 +594,7 @@ struct InterpolationOptions {
   GradientOptions estimation;         ///< how gradients are estimated if none are given
 };
 
-/// What points count for at queries: query i has the points and weights [offsets[i], offsets[i + 1]).
+/// The weights of points at queries: query i has the points and weights [offsets[i], offsets[i + 1]).
 struct NaturalWeights {
   std::vector<std::size_t> offsets;  ///< one more than there are queries
   std::vector<std::int32_t> points;  ///< without an order; of duplicates the representative

@@ -36,7 +36,7 @@ struct Round {
   std::uint64_t handed_on = 0;  ///< points that went on to the next round
 };
 
-/// What a call did. The first members are the same on all ranks.
+/// The statistics of a call. The first members are the same on all ranks.
 struct Statistics {
   std::uint64_t points = 0;         ///< input points of all ranks
   std::uint64_t duplicates = 0;     ///< input points that are not their own representative

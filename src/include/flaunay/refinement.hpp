@@ -37,7 +37,7 @@ struct GivenTriangles {
 /// In the place of a smallest edge: the default.
 constexpr double kDefaultMinEdge = -1;
 
-/// What a mesh is refined to. By default, nothing is added.
+/// The goals of a refinement. By default, nothing is added.
 struct Refinement {
   /// In degrees, from 0 to 34: no angle of a triangle is smaller, except where docs/refinement.md says that
   /// it cannot be helped. Up to 30 the number of points is near the least known; above 33, many inputs do not
@@ -88,7 +88,8 @@ struct RefinementReport {
   std::size_t rounds = 0;        ///< in which points were added; of several sets the most
   std::size_t added_points = 0;  ///< on constraints or not
   std::size_t split_points = 0;  ///< those of them that are on constraints
-  /// Of all triangles, in degrees, rounded; 0 if there are none, or if nothing was asked for.
+  /// The smallest angle of all triangles, in degrees, rounded; 0 if there are none, or if nothing was asked
+  /// for.
   double smallest_angle = 0;
   double largest_angle = 0;  ///< as smallest_angle
   double mean_angle = 0;     ///< of the smallest angle of each triangle, in degrees, if there was smoothing

@@ -108,7 +108,7 @@ struct LevelStatistics {
   double seconds = 0;               ///< wall time
 };
 
-/// What is recorded of the launches of a call.
+/// The record of a call's launches.
 enum class Record {
   nothing,   ///< the default, which costs nothing
   launches,  ///< every launch: its kernel and work-items, and with Options::profile its time
@@ -149,7 +149,7 @@ struct Triangulation : flaunay::Triangulation {
   std::vector<LaunchStatistics> launches;  ///< empty without Options::record and in modes without a device
 };
 
-/// What programs need to list the modes and to check options.
+/// The facts about a mode that programs need to list modes and to check options.
 struct ModeInfo {
   Mode mode;                ///< the mode
   const char* name;         ///< to_string(mode)

@@ -90,7 +90,7 @@
 
 namespace flaunay {
 
-/// Of what an array of a triangulation has one row per thing.
+/// The things for each of which an array of a triangulation has a row.
 enum class RowOf { triangle, halfedge, hull, point };
 
 /// The largest number of rows for n points.
@@ -132,7 +132,7 @@ inline constexpr std::tuple kTriangulationArrays{FLAUNAY_TRIANGULATION_ARRAYS(FL
 /// The number of arrays of a triangulation.
 inline constexpr std::size_t kTriangulationArrayCount = std::tuple_size_v<decltype(kTriangulationArrays)>;
 
-/// By what an array of a constrained triangulation is asked for.
+/// The input or option that asks for an array of a constrained triangulation.
 enum class AskedBy { always, labels, map, segment_markers, point_markers, seeds };
 
 /// One array that constrained triangulations have besides, with elements of type T.
@@ -162,7 +162,7 @@ constexpr void for_each_array(const Table& table, const Visit& visit) {
       },
       table);
 }
-/// Those of a triangulation.
+/// The arrays of a triangulation.
 template <typename Visit>
 constexpr void for_each_array(const Visit& visit) {
   for_each_array(kTriangulationArrays, visit);

@@ -29,7 +29,7 @@ FLAUNAY_API std::string verify(const double* points, const std::vector<std::size
 /// Checks a constrained triangulation, refined or not, by the definitions in docs/constrained.md: that
 /// segments are edges or chains of edges; that other edges are Delaunay, and canonical; that just those
 /// triangles are there which constraints and options ask for, with depths, regions and other arrays that fit.
-/// Of a refined mesh it checks the smallest angle and the largest area, except of triangles that the result
+/// For a refined mesh it checks the smallest angle and the largest area, except of triangles that the result
 /// lists as worse, and whether it is conforming if it has none of these; areas by seeds, triangles and
 /// functions are not checked, nor is the hull where triangles are left out. A mesh that was refined from
 /// given triangles must cover as much as these. constraints, options: those of the call. Errors as above.

@@ -16,7 +16,7 @@ class Folding {
   virtual ~Folding() = default;
   /// Points with numbers from here on are images. Triangles without images get rows.
   virtual std::int64_t first_image() const = 0;
-  /// What a number is, as kernels/periodic/torus.h has it. Several threads may call it.
+  /// The image that a number stands for, as kernels/periodic/torus.h has it. Several threads may call it.
   virtual std::uint64_t image(std::int64_t v) const = 0;
   /// No two calls are made at a time.
   virtual void add(const std::vector<kernel::seam_record>& seams) = 0;

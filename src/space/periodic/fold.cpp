@@ -74,7 +74,7 @@ std::vector<Box> find_boxes(host::Runtime& runtime, const Buffer<cl_double>& pla
                                             .ends = found});
   std::vector<double> ends(4 * count);
   runtime.read(found, 0, ends.size(), ends.data());
-  // Of a piece the lowest and the highest place.
+  // The lowest and the highest place of a piece.
   for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
     boxes.push_back(box_of(ends.data(), 2 * set_pieces[s], 2 * set_pieces[s + 1], lattice));
   return boxes;

@@ -67,7 +67,7 @@ class UnrolledSets {
 /// One set of places in host memory, unrolled natively.
 Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
 
-/// What is known of hidden points when planes are folded.
+/// The hidden points, as they are known when planes are folded.
 struct HiddenPoints {
   Buffer<cl_int> in_plane{};  ///< the hidden vertices of the plane
   std::size_t count = 0;

@@ -196,8 +196,8 @@ bool is_at_end(const Box& box, Point a, Point b) {
 
 void Seams::add(const kernel::seam_record& seam) {
   const Point from{seam.ends[0], seam.ends[1]}, to{seam.ends[2], seam.ends[3]};
-  // What is kept is joined at all edges, so it covers the torus or the cylinder as many times as its area
-  // says: once. (The area is rounded, and computed from the border.)
+  // The triangles that are kept are joined at all edges, so it covers the torus or the cylinder as many times
+  // as its area says: once. (The area is rounded, and computed from the border.)
   const Point a = in_box(box_, from), b = in_box(box_, to);
   area_ += (a.x + b.x) / 2 * (b.y - a.y);
   if (seam.beyond == NO_IMAGE && is_at_end(box_, from, to)) {

@@ -39,7 +39,7 @@ struct Box : kernel::periodic_box {
 };
 /// Whether a point and all its neighbours are within the margin, whatever the points are.
 bool is_whole(const Box& box);
-/// Of no points, without a margin.
+/// The box of no points, without a margin.
 Box box_of(const Lattice& lattice);
 /// Widens a box to n more places.
 void extend(Box& box, const double* places, std::size_t n);
@@ -48,7 +48,7 @@ Box box_of(const double* places, std::size_t first, std::size_t last, const Latt
 
 /// How wide the gaps of so many uniform points may be, with some to spare.
 double first_margin(const Box& box, std::size_t n);
-/// By what a margin grows that was too small.
+/// The factor by which a margin grows that was too small.
 constexpr double kWider = 4;
 /// Widens the margin of set s. Throws Error(internal) if its box is whole.
 void widen(Box& box, std::size_t s);
@@ -110,7 +110,7 @@ struct Plane {
     const std::size_t at = 2 * static_cast<std::size_t>(v);
     return {coordinates[at], coordinates[at + 1]};
   }
-  /// What is at a place; points are numbered from 0.
+  /// The point or image at a place; points are numbered from 0.
   std::uint64_t image(std::int32_t v) const {
     const auto i = static_cast<std::size_t>(v);
     return i < points() ? kernel::image_of(v, 0, 0) : images[i - points()];

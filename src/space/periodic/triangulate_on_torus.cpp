@@ -150,7 +150,7 @@ class Rounds {
   // Whether the rows of a set in host memory stay in the arrays that they have in the plane.
   bool is_in_place() const { return std::is_same_v<Result, Triangulation> && boxes_.size() == 1; }
 
-  // Of a set in host memory, images go behind the places.
+  // The images of a set in host memory go behind the places.
   periodic::UnrolledSets::MakeRoom make_room(Triangulation& result) {
     if (!is_in_place()) return nullptr;
     return [&](std::size_t count) {

@@ -1,4 +1,4 @@
-// What calls for points on a torus or a cylinder share.
+// Checks that calls for points on a torus or a cylinder share.
 #pragma once
 
 #include "flaunay/flaunay.hpp"

@@ -1,4 +1,4 @@
-// What a triangulation of places in the plane lacks on the sphere: the triangles around the south pole.
+// The triangles around the south pole, which a triangulation of places in the plane lacks.
 #pragma once
 
 #include <array>

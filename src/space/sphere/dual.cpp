@@ -61,7 +61,7 @@ Direction centre_of_triangle(const Triangulation& mesh, std::size_t t) {
 
 // From a to b in space, times a positive number: accurate also if they are near each other.
 Direction chord(Point a, Point b) {
-  // By the one that is nearer to the origin, beside which nothing cancels.
+  // Starts from the one that is nearer to the origin, beside which nothing cancels.
   if (square_of(a.x, a.y) > square_of(b.x, b.y)) return Direction{0, 0, 0} - chord(b, a);
   if (is_pole(b)) return {-a.x, -a.y, -1};
   const double x = b.x - a.x, y = b.y - a.y, scale = 1 + a.x * a.x + a.y * a.y;

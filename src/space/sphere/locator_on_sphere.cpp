@@ -31,7 +31,7 @@ SphereLocator::SphereLocator(Triangulator& used, const Triangulation& triangulat
   });
 }
 
-// Of each query a vertex near it, in the order given; -1 if there are no points.
+// A vertex near each query, in the order given; -1 if there are no points.
 SphereLocator::Ids SphereLocator::starts(const std::vector<double>& places, const Ids& order) {
   const std::int32_t other = plane_.poles[0].empty() ? -1 : plane_.poles[0].front();
   if (!locator_) return Ids(order.size(), other);

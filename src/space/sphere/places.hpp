@@ -56,7 +56,7 @@ constexpr std::size_t width_of(SphereCoordinates coordinates) {
 template <typename T>
 bool find_places(host::Runtime& runtime, const host::Buffer<T>& points, std::size_t first, std::size_t n,
                  SphereCoordinates coordinates, const host::Buffer<cl_double>& places, const char* what);
-/// Of points in host memory, natively.
+/// Computes places of points in host memory, natively.
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
 

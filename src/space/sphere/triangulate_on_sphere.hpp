@@ -1,4 +1,4 @@
-// What calls for points on a sphere share, and the locator there.
+// Functions that calls for points on a sphere share, and the locator there.
 #pragma once
 
 #include <array>

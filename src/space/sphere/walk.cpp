@@ -97,7 +97,7 @@ Found Walker::found(std::int32_t t, Point query) const {
   return result;
 }
 
-// Of all that have the query on an arc or at a corner, the triangle with the smallest number.
+// The triangle with the smallest number of all that have the query on an arc or at a corner.
 Found Walker::smallest(Found here, Point query) const {
   const std::int32_t t = here.triangle;
   std::int32_t least = t;
@@ -136,13 +136,13 @@ std::array<double, 3> Walker::weights(const Found& found, Point query) const {
   const Direction to = direction_of(query);
   double whole = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    // Of small differences, for small triangles.
+    // The volume from small differences, for small triangles.
     const double volume = dot(to, cross(corners[(k + 1) % 3] - to, corners[(k + 2) % 3] - to));
     weights[k] = found.sides[k] == 0 ? 0 : std::fmax(volume, 0);
     whole += weights[k];
   }
   if (!(whole > 0)) {
-    // What rounding has left nothing of.
+    // Rounding has left nothing of these weights.
     whole = 0;
     for (int k = 0; k < 3; ++k) {
       const Point p = place(corner(found.triangle, k));

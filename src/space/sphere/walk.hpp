@@ -50,12 +50,12 @@ class Walker {
   Found smallest(Found here, Point query) const;
 
   const Triangulation& mesh_;
-  /// Of each triangle whether it turns left, as seen from the sphere's centre: all do unless the points lie
+  /// Whether each triangle turns left, as seen from the sphere's centre: all do unless the points lie
   /// within a hemisphere.
   std::vector<std::uint8_t> is_seen_;
-  /// Of each point the next one that the same point represents, or -1.
+  /// The next point that the same point represents, for each point, or -1.
   std::vector<std::int32_t> next_equal_;
-  /// Of each vertex a triangle, one that is seen if there is one; -1 if it has none.
+  /// A triangle of each vertex, one that is seen if there is one; -1 if it has none.
   std::vector<std::int32_t> triangle_at_;
 };
 
