@@ -1250,34 +1250,31 @@ static void test_constrained_on_device(void) {
   const flaunay_device_points square = {.memory = make_buffer(context, sizeof kSquare, kSquare), .count = 4};
   cl_mem segments = make_buffer(context, sizeof diagonal, diagonal);
   flaunay_device_triangulation* mesh = make_device_triangulation();
-  flaunay_device_constraints* edges = NULL;
-  OK(flaunay_device_constraints_create(&edges));
-  CHECK(flaunay_device_constraints_edge_count(edges) == 0);
+  CHECK(flaunay_device_triangulation_constraint_count(mesh) == 0);
   const flaunay_enqueue plain = {.queue = queue};
-  OK(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges));
+  OK(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh));
   CHECK(flaunay_device_triangulation_mesh(mesh)->triangle_count == 2);
-  REQUIRE(flaunay_device_constraints_edge_count(edges) == 1);
+  REQUIRE(flaunay_device_triangulation_constraint_count(mesh) == 1);
   int32_t ends[2] = {0, 0}, range[2] = {9, 9};
-  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_EDGES), sizeof ends, ends);
+  read_buffer(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_CONSTRAINT_EDGES), sizeof ends, ends);
   CHECK((ends[0] == 1 && ends[1] == 3) || (ends[0] == 3 && ends[1] == 1));
-  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_PIECE_EDGES), sizeof range, range);
+  read_buffer(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_PIECE_EDGES), sizeof range, range);
   CHECK(range[0] == 0 && range[1] == 1);
   unsigned char constrained[6] = {0};
-  read_buffer(flaunay_device_constraints_buffer(edges, FLAUNAY_CONSTRAINT_CONSTRAINED), sizeof constrained,
+  read_buffer(flaunay_device_triangulation_buffer(mesh, FLAUNAY_PART_CONSTRAINED), sizeof constrained,
               constrained);
   int sum = 0;
   for (int k = 0; k < 6; ++k) sum += constrained[k];
   CHECK(sum == 2);
 
   cl_mem small = make_buffer(context, 1, NULL);
-  OK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, small));
-  REFUSED(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh, edges),
+  OK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_CONSTRAINT_EDGES, small));
+  REFUSED(flaunay_triangulate_constrained_device(triangulator, &square, segments, 1, &plain, mesh),
           "constraint edges");
-  OK(flaunay_device_constraints_set_buffer(edges, FLAUNAY_CONSTRAINT_EDGES, NULL));
-  REFUSED(flaunay_device_constraints_set_buffer(edges, 3, NULL), "not one part");
-  REFUSED(flaunay_triangulate_constrained_device(triangulator, &square, segments, 2, &plain, mesh, edges),
+  OK(flaunay_device_triangulation_set_buffer(mesh, FLAUNAY_PART_CONSTRAINT_EDGES, NULL));
+  REFUSED(flaunay_device_triangulation_set_buffer(mesh, 3, NULL), "not one part");
+  REFUSED(flaunay_triangulate_constrained_device(triangulator, &square, segments, 2, &plain, mesh),
           "segments");
-  flaunay_device_constraints_destroy(edges);
 }
 
 static void test_relax(void) {
@@ -2474,29 +2471,28 @@ static void test_dynamic_rows_on_device(void) {
   int32_t* const expected = allocate(12 * count * sizeof *expected);
   OK(flaunay_dynamic_rows(dynamic, expected, expected + 3 * count));
 
-  flaunay_device_rows* rows = NULL;
-  OK(flaunay_device_rows_create(&rows));
-  CHECK(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_TRIANGLES) == NULL);
+  flaunay_device_triangulation* rows = make_device_triangulation();
+  CHECK(flaunay_device_triangulation_buffer(rows, FLAUNAY_PART_TRIANGLES) == NULL);
   cl_mem own = make_buffer(context, 12 * count, NULL), small = make_buffer(context, 1, NULL);
-  OK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_NEIGHBORS, own));
+  OK(flaunay_device_triangulation_set_buffer(rows, FLAUNAY_PART_NEIGHBORS, own));
   const flaunay_enqueue plain = {.queue = queue};
   OK(flaunay_dynamic_rows_device(dynamic, &plain, rows));
-  CHECK(flaunay_device_rows_row_count(rows) == count && flaunay_device_rows_numbers(rows) == 5);
+  CHECK(flaunay_device_triangulation_mesh(rows)->triangle_count == count &&
+        flaunay_device_triangulation_mesh(rows)->point_count == 5);
   int32_t* const found = expected + 6 * count;
-  read_buffer(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_TRIANGLES), 12 * count, found);
+  read_buffer(flaunay_device_triangulation_buffer(rows, FLAUNAY_PART_TRIANGLES), 12 * count, found);
   read_buffer(own, 12 * count, found + 3 * count);
   CHECK(same(found, expected, 6 * count));
   double places[10];
-  read_buffer(flaunay_device_rows_buffer(rows, FLAUNAY_ROWS_COORDINATES), sizeof places, places);
+  read_buffer(flaunay_device_triangulation_buffer(rows, FLAUNAY_PART_COORDINATES), sizeof places, places);
   CHECK(isnan(places[0]) && isnan(places[1]) && memcmp(places + 2, kSquare + 2, 6 * sizeof *places) == 0);
   CHECK(places[8] == 1 && places[9] == 2);
 
-  OK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_TRIANGLES, small));
+  OK(flaunay_device_triangulation_set_buffer(rows, FLAUNAY_PART_TRIANGLES, small));
   REFUSED(flaunay_dynamic_rows_device(dynamic, &plain, rows), "triangles");
-  OK(flaunay_device_rows_set_buffer(rows, FLAUNAY_ROWS_TRIANGLES, own));
+  OK(flaunay_device_triangulation_set_buffer(rows, FLAUNAY_PART_TRIANGLES, own));
   REFUSED(flaunay_dynamic_rows_device(dynamic, &plain, rows), "two things");
-  REFUSED(flaunay_device_rows_set_buffer(rows, 3, NULL), "not one part of rows");
-  flaunay_device_rows_destroy(rows);
+  REFUSED(flaunay_device_triangulation_set_buffer(rows, 3, NULL), "not one part");
   flaunay_dynamic_destroy(dynamic);
 }
 

@@ -58,6 +58,7 @@ _TABLES = {
     if name.endswith("_ARRAYS") and isinstance(table, dict)
 }
 TRIANGULATION, _CONSTRAINED, _SPACE = (_TABLES[name] for name in ("triangulation", "constrained", "space"))
+_ON_DEVICE = TRIANGULATION | _SPACE | _TABLES["device"]
 _OFFSETS = (_INT64, "set_offset", 1, "always")
 # Arrays of triangulations are asked for by their own names.
 _MADE: _Arrays = {
@@ -1034,6 +1035,13 @@ class DeviceTriangulation(_DeviceArrays):
         given = (triangulator, points, _parts_of(wanted), enqueue)
         super().__init__("triangulation", library.triangulate_device, *given)
 
+    @classmethod
+    def of_rows(cls, dynamic: Dynamic, enqueue: Enqueue) -> DeviceTriangulation:
+        """The rows and coordinates of a triangulation that changes."""
+        made = cls.__new__(cls)
+        _DeviceArrays.__init__(made, "triangulation", library.dynamic_rows_device, dynamic, enqueue)
+        return made
+
     def read(self, member: str, *given: Any) -> Any:
         """A member of its flaunay_mesh, or what a function says."""
         if member in self._MEMBERS:
@@ -1048,10 +1056,13 @@ class DeviceTriangulation(_DeviceArrays):
     def period(self) -> tuple[float, float, float]:
         return _period_of(self.read("space"))
 
+    def arrays_of(self, *names: str) -> _Places:
+        """These arrays, none of halfedges or of the hull."""
+        return self._places({name: _ON_DEVICE[name] for name in names}, PART)
+
     def arrays_in_space(self, *names: str) -> _Places:
         """The arrays that there are in another space than the plane, and these."""
-        parts = {name: row for name, row in {**TRIANGULATION, **_SPACE}.items() if name in (*self._IN_SPACE, *names)}
-        return self._places(parts, PART)
+        return self.arrays_of(*self._IN_SPACE, *names)
 
     def computed(self) -> _Places:
         """The arrays that were computed."""
@@ -1064,8 +1075,7 @@ class DeviceTriangulation(_DeviceArrays):
         return _statistics_of(self.read("statistics")[0])
 
 
-# The functions that make results: the first takes a `Dynamic`, the others a `Triangulator` and points.
-DeviceRows = functools.partial(_DeviceArrays, "rows", library.dynamic_rows_device)
+# The functions that make results take a `Triangulator` and points.
 DeviceVoronoi = functools.partial(_DeviceArrays, "voronoi", library.voronoi_compute_device)
 DeviceClippedVoronoi = functools.partial(_DeviceArrays, "clipped_voronoi", library.voronoi_clip_device)
 

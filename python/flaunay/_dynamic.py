@@ -382,8 +382,8 @@ class DynamicTriangulation:
         if self._queue is None:
             raise UsageError("the triangulation was made of points in host memory")
         call = DeviceCall(self._queue if queue is None else queue, wait_for)
-        made, event = call.run(_calls.DeviceRows, self._handle)
-        places = made.arrays(number=made.read("numbers"))
+        made, event = call.run(_calls.DeviceTriangulation.of_rows, self._handle)
+        places = made.arrays_of("triangles", "neighbors", "coordinates")
         views = {name: view(*place, call.queue, event) for name, place in places.items()}
         return DeviceRows(points=views.pop("coordinates"), **views, event=event)
 

@@ -17,8 +17,6 @@ using namespace flaunay;
 using c::elements;
 using c::required;
 
-FLAUNAY_HANDLE(device_constraints, DeviceConstraintEdges)
-
 namespace {
 
 // Values that do not count must be 0, so that no has_... is forgotten.
@@ -197,20 +195,14 @@ flaunay_status flaunay_mesh_verify_polygons(const flaunay_mesh* mesh,
   });
 }
 
-FLAUNAY_DEVICE_RESULT(constraints, flaunay_constraint_part, FLAUNAY_CONSTRAINT_ARRAYS, "the constraint edges",
-                      "constraint edges")
-FLAUNAY_ACCESSOR(size_t, device_constraints, edge_count, handle.cpp.edge_count)
-
 flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                       const flaunay_device_points* points, cl_mem segments,
                                                       size_t segment_count, const flaunay_enqueue* enqueue,
-                                                      flaunay_device_triangulation* mesh,
-                                                      flaunay_device_constraints* edges) {
+                                                      flaunay_device_triangulation* mesh) {
   return c::with(triangulator, enqueue, [&](Triangulator& cpp, const Enqueue& queued) {
     flaunay_device_triangulation& handle = required(mesh, "the mesh");
-    DeviceConstraintEdges& result = required(edges, "the constraint edges").cpp;
     handle.clear();
-    cpp.constrained(c::to_points(points), {segments, segment_count}, handle.cpp, result, queued);
+    cpp.constrained(c::to_points(points), {segments, segment_count}, handle.cpp, queued);
     handle.show();
   });
 }

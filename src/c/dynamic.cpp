@@ -38,7 +38,6 @@ struct flaunay_dynamic {
 };
 
 FLAUNAY_DESTROY(dynamic)
-FLAUNAY_HANDLE(device_rows, DeviceRows)
 
 namespace {
 
@@ -141,15 +140,14 @@ const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* d
   return found;
 }
 
-FLAUNAY_DEVICE_RESULT(rows, flaunay_rows_part, FLAUNAY_ROWS_ARRAYS, "the rows", "rows")
-FLAUNAY_ACCESSOR(size_t, device_rows, row_count, handle.cpp.row_count)
-FLAUNAY_ACCESSOR(size_t, device_rows, numbers, handle.cpp.numbers)
-
 flaunay_status flaunay_dynamic_rows_device(flaunay_dynamic* dynamic, const flaunay_enqueue* enqueue,
-                                           flaunay_device_rows* rows) {
+                                           flaunay_device_triangulation* result) {
   return guarded([&] {
     const Enqueue queued = c::to_enqueue(enqueue);
     DynamicTriangulation& cpp = required(dynamic, kName).cpp;
-    cpp.rows(required(rows, "the rows").cpp, queued);
+    flaunay_device_triangulation& handle = required(result, "the result");
+    handle.clear();
+    cpp.rows(handle.cpp, queued);
+    handle.show();
   });
 }

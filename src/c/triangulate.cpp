@@ -149,11 +149,12 @@ FLAUNAY_DESTROY(triangulation)
 FLAUNAY_ACCESSOR(const flaunay_mesh*, triangulation, mesh, &handle.view)
 
 FLAUNAY_DESTROY(device_triangulation)
-#define ARRAYS(X) FLAUNAY_TRIANGULATION_ARRAYS(X) FLAUNAY_SPACE_ARRAYS(X)
+#define ARRAYS(X) FLAUNAY_TRIANGULATION_ARRAYS(X) FLAUNAY_SPACE_ARRAYS(X) FLAUNAY_DEVICE_ARRAYS(X)
 FLAUNAY_DEVICE_RESULT(triangulation, flaunay_part, ARRAYS, "the triangulation", "a triangulation")
 #undef ARRAYS
 FLAUNAY_ACCESSOR(unsigned, device_triangulation, parts, c::to_bits(handle.cpp.parts))
 FLAUNAY_ACCESSOR(const flaunay_mesh*, device_triangulation, mesh, &handle.view)
+FLAUNAY_ACCESSOR(size_t, device_triangulation, constraint_count, handle.cpp.constraint_count)
 
 flaunay_status flaunay_triangulate_device(flaunay_triangulator* triangulator,
                                           const flaunay_device_points* points, unsigned parts,

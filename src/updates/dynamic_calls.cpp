@@ -143,7 +143,7 @@ TriangleRows DynamicTriangulation::rows() {
   return implementation_->take_turn([&] { return implementation_->mesh->rows(); });
 }
 
-void DynamicTriangulation::rows(DeviceRows& result, const Enqueue& enqueue) {
+void DynamicTriangulation::rows(DeviceTriangulation& result, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
   call::take_turn(*self.owner, enqueue, [&] {
     TriangleRows all = self.mesh->rows();
@@ -155,8 +155,15 @@ void DynamicTriangulation::rows(DeviceRows& result, const Enqueue& enqueue) {
     const auto coordinates = frame.out<cl_double>(result.coordinates, places.size(), "coordinates");
     frame.check_distinct();
     frame.begin();
-    result.row_count = all.triangles.size() / 3;
-    result.numbers = places.size() / 2;
+    result.parts = {true, true, false, false, false, false};
+    result.space = Space::plane();
+    result.is_constrained = false;
+    result.constraint_count = result.hidden_count = result.images = 0;
+    result.points = places.size() / 2;
+    result.point_offsets = {0, result.points};
+    result.triangle_offsets = {0, all.triangles.size() / 3};
+    result.hull_offsets = {0, 0};
+    result.statistics = {};
     call::write_result(frame.runtime, triangles, std::move(all.triangles));
     call::write_result(frame.runtime, neighbors, std::move(all.neighbors));
     call::write_result(frame.runtime, coordinates, std::move(places));

@@ -69,8 +69,6 @@ void make(flaunay_locator** made) {
 }
 void make(flaunay_point_tree** made) { flaunay_point_tree_create(triangulator(), kPoints, kCount, made); }
 void make(flaunay_device_triangulation** made) { flaunay_device_triangulation_create(made); }
-void make(flaunay_device_constraints** made) { flaunay_device_constraints_create(made); }
-void make(flaunay_device_rows** made) { flaunay_device_rows_create(made); }
 void make(flaunay_device_voronoi** made) { flaunay_device_voronoi_create(made); }
 void make(flaunay_device_clipped_voronoi** made) { flaunay_device_clipped_voronoi_create(made); }
 
@@ -359,8 +357,8 @@ TEST(SmallArguments, InStructsOfC) {
        [&](std::size_t count) {
          const cl_event none[kCount] = {};
          const flaunay_enqueue given = {.wait_for = array_for(count, none), .wait_for_count = counted(count)};
-         throw_error_of(
-             flaunay_dynamic_rows_device(good<flaunay_dynamic*>(), &given, good<flaunay_device_rows*>()));
+         throw_error_of(flaunay_dynamic_rows_device(good<flaunay_dynamic*>(), &given,
+                                                    good<flaunay_device_triangulation*>()));
        }},
       {"points of breaklines",
        [&](std::size_t count) {

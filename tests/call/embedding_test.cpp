@@ -1142,19 +1142,18 @@ TEST(SmallConstrainedOnDevice, IsThatOfTheHost) {
 
   const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
   DeviceTriangulation mesh;
-  DeviceConstraintEdges edges;
   for (int call = 0; call < 2; ++call) {
-    embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, mesh, edges);
+    embedded().constrained({memory.get(), n}, {ends.get(), segments.size() / 2}, mesh);
   }
   const auto read = [](const DeviceBuffer& buffer, std::size_t count) {
     return embedder().download<std::int32_t>(buffer.memory(), count, embedded().queue());
   };
-  EXPECT_EQ(edges.edge_count, expected.constraint_edges.size() / 2);
+  EXPECT_EQ(mesh.constraint_count, expected.constraint_edges.size() / 2);
   EXPECT_EQ(read(mesh.triangles, expected.triangles.size()), expected.triangles);
   EXPECT_EQ(read(mesh.neighbors, expected.neighbors.size()), expected.neighbors);
-  EXPECT_EQ(read(edges.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
-  EXPECT_EQ(read(edges.piece_edges, expected.piece_edges.size()), expected.piece_edges);
-  EXPECT_EQ(embedder().download<std::uint8_t>(edges.constrained.memory(), expected.constrained.size(),
+  EXPECT_EQ(read(mesh.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
+  EXPECT_EQ(read(mesh.piece_edges, expected.piece_edges.size()), expected.piece_edges);
+  EXPECT_EQ(embedder().download<std::uint8_t>(mesh.constrained.memory(), expected.constrained.size(),
                                               embedded().queue()),
             expected.constrained);
   DeviceVoronoi dual;
@@ -1166,9 +1165,8 @@ TEST(SmallConstrainedOnDevice, CrossingSegmentsAreNamed) {
   const std::vector<std::int32_t> segments = {0, 1, 2, 3};
   const Memory memory = embedder().upload(points), ends = embedder().upload(segments);
   DeviceTriangulation mesh;
-  DeviceConstraintEdges edges;
   expect_error(ErrorKind::input, "segments 0", [&] {
-    embedded().constrained({memory.get(), 4}, {ends.get(), 2}, mesh, edges);
+    embedded().constrained({memory.get(), 4}, {ends.get(), 2}, mesh);
   });
 }
 

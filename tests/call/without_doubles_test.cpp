@@ -498,15 +498,14 @@ TEST(WithoutDoubles, Constraints) {
 
     const Memory memory = embedder().upload(rows.points), ends = embedder().upload(rows.segments);
     DeviceTriangulation mesh;
-    DeviceConstraintEdges edges;
-    embedded().constrained({memory.get(), rows.n()}, {ends.get(), rows.segments.size() / 2}, mesh, edges);
+    embedded().constrained({memory.get(), rows.n()}, {ends.get(), rows.segments.size() / 2}, mesh);
     const auto array = [](const DeviceBuffer& buffer, std::size_t count) {
       return embedder().download<std::int32_t>(buffer.memory(), count, embedded().queue());
     };
     EXPECT_EQ(array(mesh.triangles, expected.triangles.size()), expected.triangles);
     EXPECT_EQ(array(mesh.neighbors, expected.neighbors.size()), expected.neighbors);
-    EXPECT_EQ(array(edges.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
-    EXPECT_EQ(array(edges.piece_edges, expected.piece_edges.size()), expected.piece_edges);
+    EXPECT_EQ(array(mesh.constraint_edges, expected.constraint_edges.size()), expected.constraint_edges);
+    EXPECT_EQ(array(mesh.piece_edges, expected.piece_edges.size()), expected.piece_edges);
     expect_note(mesh.statistics, smallest < 1e-9, "triangulated on the host");
   }
 }

@@ -54,7 +54,7 @@ geometry::Fitted<constrained::DomainMesh> insert(Frame& call, const points::Devi
 // The mesh is that of the points, and whole.
 geometry::Fitted<geometry::Done> insert(Implementation& self, const Place& place, const DevicePoints& points,
                                         const DeviceSegments& segments, DeviceTriangulation& mesh,
-                                        DeviceConstraintEdges& edges, const Enqueue& enqueue) {
+                                        const Enqueue& enqueue) {
   Frame call(self, place, enqueue);
   call.check(points, "points");
   call.begin();
@@ -62,10 +62,10 @@ geometry::Fitted<geometry::Done> insert(Implementation& self, const Place& place
   points::DeviceMesh delaunay = mesh_to_change(call, mesh.point_offsets, mesh);
   const auto ends = call.in<cl_int>(segments.memory, 2 * segments.count, "segments");
   delaunay.coordinates = call.points(points);
-  const auto inserted = insert(call, delaunay, ends, segments.count, {}, edges);
+  const auto inserted = insert(call, delaunay, ends, segments.count, {}, mesh);
   if (!inserted) return inserted.too_wide();
   call.end();
-  edges.edge_count = inserted->edges;
+  mesh.constraint_count = inserted->edges;
   return geometry::Done();
 }
 
@@ -100,8 +100,7 @@ geometry::Fitted<constrained::DomainMesh> insert_segments(Frame& call, const poi
 namespace flaunay {
 
 void Triangulator::constrained(const DevicePoints& points, const DeviceSegments& segments,
-                               DeviceTriangulation& mesh, DeviceConstraintEdges& edges,
-                               const Enqueue& enqueue) {
+                               DeviceTriangulation& mesh, const Enqueue& enqueue) {
   call::take_turn(*implementation_, enqueue, [&] {
     call::Implementation& self = *implementation_;
     call::Engine& engine = self.on_device();
@@ -118,7 +117,7 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
     rest.wait_for.clear();
     const auto insert_on = [&](const call::Place& place) {
       mesh.is_constrained = false;
-      return call::insert(self, place, points, segments, mesh, edges, rest);
+      return call::insert(self, place, points, segments, mesh, rest);
     };
     call::in_fixed_point_or(
         [&] {

@@ -100,6 +100,13 @@ struct DeviceTriangulation {
   DeviceBuffer places;           ///< except in the plane, double2, 16 n bytes
   DeviceBuffer corner_offsets;   ///< on a torus and a cylinder, char, 12 n bytes
   DeviceBuffer hidden;           ///< of points with weights, 4 n bytes; 1 per hidden point
+  /// With constraints, ConstrainedTriangulation::constrained, uchar, 6 n bytes.
+  DeviceBuffer constrained;
+  DeviceBuffer piece_edges;  ///< ConstrainedTriangulation::piece_edges, 8 bytes per segment
+  /// ConstrainedTriangulation::constraint_edges, 8 bytes per edge: one per segment at least, and as many more
+  /// as there are points on segments.
+  DeviceBuffer constraint_edges;
+  DeviceBuffer coordinates;  ///< of a DynamicTriangulation, its coordinates, double2, 16 n bytes
   /// The arrays that the last call computed. On a torus, a cylinder and the sphere these are triangles,
   /// neighbors, representatives, places and corner offsets, whatever was asked for.
   Parts parts{false, false, false, false, false, false};
@@ -109,8 +116,9 @@ struct DeviceTriangulation {
   /// On the sphere, the triangulation of the places in the plane, kept for the memory that the next call
   /// needs for it.
   std::shared_ptr<DeviceTriangulation> planar;
-  bool is_constrained = false;  ///< whether segments were made edges of it
-  std::size_t points = 0;       ///< number of points over all sets
+  bool is_constrained = false;       ///< whether segments were made edges of it
+  std::size_t constraint_count = 0;  ///< the number of constraint edges, known when the call returns
+  std::size_t points = 0;            ///< number of points over all sets
   /// sets + 1 values in host memory, known when the call returns: set s has points [point_offsets[s],
   /// point_offsets[s + 1]).
   std::vector<std::size_t> point_offsets;
@@ -131,17 +139,6 @@ struct DeviceSegments {
   std::size_t count = 0;  ///< number of segments
 };
 
-/// The arrays of a ConstrainedTriangulation besides its triangles, in device memory. The caller's buffers
-/// must have the sizes given here.
-struct DeviceConstraintEdges {
-  DeviceBuffer constrained;  ///< ConstrainedTriangulation::constrained, uchar, 6 bytes per point
-  DeviceBuffer piece_edges;  ///< ConstrainedTriangulation::piece_edges, int32, 8 bytes per segment
-  /// ConstrainedTriangulation::constraint_edges, int32, 8 bytes per edge: one per segment at least, and as
-  /// many more as there are points on segments.
-  DeviceBuffer constraint_edges;
-  std::size_t edge_count = 0;  ///< number of constraint edges, known when the call returns
-};
-
 /// The Voronoi diagram of n points in device memory.
 struct DeviceVoronoi {
   DeviceBuffer circumcentres;  ///< Voronoi::circumcentres, double2, 16 bytes per triangle
@@ -158,16 +155,6 @@ struct DeviceClippedVoronoi {
   DeviceBuffer areas;            ///< ClippedVoronoi::areas, double, 8 n bytes
   DeviceBuffer centroids;        ///< ClippedVoronoi::centroids, double2, 16 n bytes
   std::size_t vertex_count = 0;  ///< v
-};
-
-/// A DynamicTriangulation of r rows and n numbers in device memory. The caller's buffers must have the sizes
-/// given here.
-struct DeviceRows {
-  DeviceBuffer triangles;     ///< TriangleRows::triangles, int32, 12 r bytes
-  DeviceBuffer neighbors;     ///< TriangleRows::neighbors, int32, 12 r bytes
-  DeviceBuffer coordinates;   ///< DynamicTriangulation::coordinates, double2, 16 n bytes
-  std::size_t row_count = 0;  ///< r, known when the call returns
-  std::size_t numbers = 0;    ///< n, known when the call returns
 };
 
 }  // namespace flaunay

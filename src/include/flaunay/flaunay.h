@@ -123,7 +123,14 @@ typedef enum flaunay_part {
   FLAUNAY_PART_CORNER_OFFSETS = 128,
   /// Of points with weights those without a power cell, in ascending order, but those that another point
   /// represents. Always computed with weights.
-  FLAUNAY_PART_HIDDEN = 256
+  FLAUNAY_PART_HIDDEN = 256,
+  /// As flaunay_constrained_arrays has them, and the following two, which
+  /// flaunay_triangulate_constrained_device
+  /// computes always: uchar, 3 per triangle.
+  FLAUNAY_PART_CONSTRAINED = 512,
+  FLAUNAY_PART_PIECE_EDGES = 1024,       ///< 2 per segment
+  FLAUNAY_PART_CONSTRAINT_EDGES = 2048,  ///< 2 per constraint edge
+  FLAUNAY_PART_COORDINATES = 4096        ///< x and y per point, of flaunay_dynamic_rows_device
 } flaunay_part;
 
 /// The kinds of spaces that points lie in.
@@ -254,12 +261,8 @@ typedef enum flaunay_excuse {
   FLAUNAY_EXCUSE_MOST_ROUNDS = 7   ///< most_rounds were made
 } flaunay_excuse;
 
-/// Constraint edges in device memory.
-typedef struct flaunay_device_constraints flaunay_device_constraints;
 /// A triangulation to which batches of points are inserted, removed and moved.
 typedef struct flaunay_dynamic flaunay_dynamic;
-/// The rows and points of a flaunay_dynamic, in device memory.
-typedef struct flaunay_device_rows flaunay_device_rows;
 /// The triangulations of one or more point sets, in device memory.
 typedef struct flaunay_device_triangulation flaunay_device_triangulation;
 /// The dual of a triangulation, in host memory.
@@ -1090,33 +1093,12 @@ FLAUNAY_API flaunay_status flaunay_dynamic_triangulation(flaunay_dynamic* dynami
 /// The edges that segments are made of now; NULL after an error. Valid until this is called again.
 FLAUNAY_API const flaunay_living_constraints* flaunay_dynamic_constraints(flaunay_dynamic* dynamic);
 
-/// The rows and points of a flaunay_dynamic in device memory, as bits, with their types and their sizes in
-/// bytes for r rows and n numbers.
-typedef enum flaunay_rows_part {
-  FLAUNAY_ROWS_TRIANGLES = 1,   ///< int32, 12 r
-  FLAUNAY_ROWS_NEIGHBORS = 2,   ///< int32, 12 r
-  FLAUNAY_ROWS_COORDINATES = 4  ///< double2, 16 n
-} flaunay_rows_part;
-
-/// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
-FLAUNAY_API flaunay_status flaunay_device_rows_create(flaunay_device_rows** rows);
-/// Releases its buffers; what is enqueued with them goes on.
-FLAUNAY_API void flaunay_device_rows_destroy(flaunay_device_rows* rows);
-/// Makes later calls write one part, one bit of flaunay_rows_part, to the caller's buffer. Its size must be
-/// that given there. Otherwise see flaunay_device_triangulation_set_buffer.
-FLAUNAY_API flaunay_status flaunay_device_rows_set_buffer(flaunay_device_rows* rows, unsigned part,
-                                                          cl_mem memory);
-/// The buffer of one part; see flaunay_device_triangulation_buffer.
-FLAUNAY_API cl_mem flaunay_device_rows_buffer(const flaunay_device_rows* rows, unsigned part);
-/// r, the number of rows that the last call wrote.
-FLAUNAY_API size_t flaunay_device_rows_row_count(const flaunay_device_rows* rows);
-/// n, the number of places of points that the last call wrote.
-FLAUNAY_API size_t flaunay_device_rows_numbers(const flaunay_device_rows* rows);
-/// flaunay_dynamic_rows and flaunay_dynamic_coordinates in device memory. The work is enqueued like that of
-/// flaunay_triangulate_device, with the same errors. O(rows).
+/// flaunay_dynamic_rows and flaunay_dynamic_coordinates in device memory: the parts triangles, neighbors and
+/// coordinates of a mesh whose points are all numbers, and whose triangles are all rows. The work is enqueued
+/// like that of flaunay_triangulate_device, with the same errors. O(rows).
 FLAUNAY_API flaunay_status flaunay_dynamic_rows_device(flaunay_dynamic* dynamic,
                                                        const flaunay_enqueue* enqueue,
-                                                       flaunay_device_rows* rows);
+                                                       flaunay_device_triangulation* result);
 
 // ---- Points and results in device memory
 
@@ -1127,8 +1109,10 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_create(flaunay_device_tr
 FLAUNAY_API void flaunay_device_triangulation_destroy(flaunay_device_triangulation* triangulation);
 /// Makes later calls write one part (one bit) to the caller's buffer, which is retained and never replaced.
 /// NULL: flaunay makes its own buffer again. The buffer must have, for n points, 24 n bytes for triangles,
-/// neighbors or halfedges, 4 n bytes for hull, representatives or hidden points, 16 n bytes for areas or
-/// places, and 12 n bytes for corner offsets.
+/// neighbors or halfedges, 4 n bytes for hull, representatives or hidden points, 16 n bytes for areas,
+/// places or coordinates, and 12 n bytes for corner offsets; 6 n bytes for constrained, 8 bytes per segment
+/// for piece edges and 8 per edge for constraint edges; and for r rows of a flaunay_dynamic 12 r bytes for
+/// triangles and neighbors each.
 /// FLAUNAY_ERROR_USAGE if memory is not a buffer.
 FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
     flaunay_device_triangulation* triangulation, unsigned part, cl_mem memory);
@@ -1142,6 +1126,9 @@ FLAUNAY_API unsigned flaunay_device_triangulation_parts(const flaunay_device_tri
 /// Its sizes, offsets, space and statistics, which are in host memory; the pointers to other arrays are NULL.
 FLAUNAY_API const flaunay_mesh* flaunay_device_triangulation_mesh(
     const flaunay_device_triangulation* triangulation);
+/// The number of its constraint edges, known when the call returns.
+FLAUNAY_API size_t
+flaunay_device_triangulation_constraint_count(const flaunay_device_triangulation* triangulation);
 
 /// Triangulates points in device memory into device memory, in mode blocks. Points and results are not copied
 /// to the host, only sizes are; the host waits 5 or 6 times for them, on GPUs once or twice per round. The
@@ -1164,36 +1151,16 @@ FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* tria
                                                       const flaunay_enqueue* enqueue,
                                                       flaunay_device_triangulation* result);
 
-/// The arrays of constraint edges in device memory, as bits, with their types and their sizes in bytes for n
-/// points, s segments and e constraint edges.
-typedef enum flaunay_constraint_part {
-  FLAUNAY_CONSTRAINT_CONSTRAINED = 1,  ///< uchar, 6 n
-  FLAUNAY_CONSTRAINT_PIECE_EDGES = 2,  ///< int32, 8 s
-  FLAUNAY_CONSTRAINT_EDGES = 4         ///< int32, 8 e
-} flaunay_constraint_part;
-
-/// Makes an empty result, like flaunay_device_triangulation_create.
-FLAUNAY_API flaunay_status flaunay_device_constraints_create(flaunay_device_constraints** edges);
-/// Releases its buffers; what is enqueued with them goes on.
-FLAUNAY_API void flaunay_device_constraints_destroy(flaunay_device_constraints* edges);
-/// Like flaunay_device_triangulation_set_buffer, for one part (one bit of flaunay_constraint_part).
-FLAUNAY_API flaunay_status flaunay_device_constraints_set_buffer(flaunay_device_constraints* edges,
-                                                                 unsigned part, cl_mem memory);
-/// Like flaunay_device_triangulation_buffer.
-FLAUNAY_API cl_mem flaunay_device_constraints_buffer(const flaunay_device_constraints* edges, unsigned part);
-/// e, the number of constraint edges, known when the call returns.
-FLAUNAY_API size_t flaunay_device_constraints_edge_count(const flaunay_device_constraints* edges);
 /// flaunay_triangulate_constrained for points and segments in device memory, into device memory. segments: 2
 /// int32 per segment. FLAUNAY_ERROR_INPUT if segments cross where no point is; no triangles are left out. The
-/// mesh has all parts but halfedges and areas; Voronoi diagrams and locators refuse it. The work is enqueued
-/// like that of flaunay_triangulate_device, with the same errors; the host waits once more per round of
-/// segments.
+/// mesh has all parts but halfedges and areas, and those of constraints; Voronoi diagrams and locators refuse
+/// it. The work is enqueued like that of flaunay_triangulate_device, with the same errors; the host waits
+/// once more per round of segments.
 FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                                   const flaunay_device_points* points,
                                                                   cl_mem segments, size_t segment_count,
                                                                   const flaunay_enqueue* enqueue,
-                                                                  flaunay_device_triangulation* mesh,
-                                                                  flaunay_device_constraints* edges);
+                                                                  flaunay_device_triangulation* mesh);
 
 // ---- More points than fit memory
 

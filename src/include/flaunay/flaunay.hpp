@@ -269,7 +269,6 @@ struct DeviceVoronoi;
 struct Enqueue;
 struct Parts;
 class DeviceBuffer;
-struct DeviceConstraintEdges;
 struct DeviceSegments;
 // Types for triangulations with constraints. Include flaunay/constrained.hpp to use them.
 struct ConstrainedOptions;
@@ -470,13 +469,11 @@ class FLAUNAY_API Triangulator {
 
   /// Triangulates points in device memory with segments as edges, into device memory. Segments that cross
   /// where no point is are Error(input); no triangles are left out. The mesh has all parts but halfedges and
-  /// areas;
-  /// Voronoi diagrams and locators refuse it. The host waits once per round of segments, about 8 times more
-  /// than for triangulate.
-  /// Otherwise the work is enqueued like that of triangulate for device memory, with the same errors and
-  /// those of constrained for host memory.
+  /// areas, and the arrays of constraints; Voronoi diagrams and locators refuse it. The host waits once per
+  /// round of segments, about 8 times more than for triangulate. Otherwise the work is enqueued like that of
+  /// triangulate for device memory, with the same errors and those of constrained for host memory.
   void constrained(const DevicePoints& points, const DeviceSegments& segments, DeviceTriangulation& mesh,
-                   DeviceConstraintEdges& edges, const Enqueue& enqueue = own_queue());
+                   const Enqueue& enqueue = own_queue());
 
   /// An upper bound of the device memory, in bytes, that a call on n points in `sets` sets needs besides
   /// points and results. Throws Error(input) or Error(device) if n is above the capacity.

@@ -75,18 +75,13 @@
   X(std::int8_t, corner_offsets, triangle, 6) \
   X(std::int32_t, hidden, hidden, 1)
 
-/// The arrays of flaunay::DeviceRows, in the order of the bits of flaunay_rows_part: as above.
-#define FLAUNAY_ROWS_ARRAYS(X)       \
-  X(std::int32_t, triangles, row, 3) \
-  X(std::int32_t, neighbors, row, 3) \
-  X(double, coordinates, number, 2)
-
-/// The arrays of flaunay::DeviceConstraintEdges, in the order of the bits of flaunay_constraint_part: as
-/// above.
-#define FLAUNAY_CONSTRAINT_ARRAYS(X)        \
-  X(std::uint8_t, constrained, triangle, 3) \
-  X(std::int32_t, piece_edges, segment, 2)  \
-  X(std::int32_t, constraint_edges, constraint, 2)
+/// The arrays that flaunay::DeviceTriangulation has besides, of constraints and of triangulations that
+/// change: as above. They follow in the order of the bits of flaunay_part.
+#define FLAUNAY_DEVICE_ARRAYS(X)                   \
+  X(std::uint8_t, constrained, triangle, 3)        \
+  X(std::int32_t, piece_edges, segment, 2)         \
+  X(std::int32_t, constraint_edges, constraint, 2) \
+  X(double, coordinates, point, 2)
 
 namespace flaunay {
 
