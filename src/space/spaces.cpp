@@ -1,6 +1,8 @@
 // The public calls that triangulate and verify: each hands its points to the calls of their space.
 #include "space/spaces.hpp"
 
+#include <iterator>
+
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "space/triangulate.hpp"
@@ -8,8 +10,25 @@
 namespace flaunay {
 namespace {
 
-void check_weights(const Space& space, bool has_weights) {
-  call::expect(!has_weights || space.kind != SpaceKind::sphere, "points on the sphere have no weights");
+const call::SpaceCalls kInPlane{
+    nullptr,
+    [](call::Implementation& self, const call::HostPoints& points, const std::vector<std::size_t>& offsets,
+       const Space&, const Options& options) {
+      return call::triangulate(self, call::checked_points(points.wide, nullptr, offsets), offsets, options);
+    },
+    call::triangulate,
+    [](const double* points, const std::vector<std::size_t>& offsets, const Space&,
+       const Triangulation& mesh) { return verify(points, offsets, mesh); }};
+
+// The calls of a kind of space, for points with weights or without.
+const call::SpaceCalls& calls_in(SpaceKind kind, bool has_weights) {
+  static constexpr const call::SpaceCalls* kByKind[] = {&kInPlane, &call::kOnTorus, &call::kOnSphere};
+  static_assert(std::size(kByKind) == names_of_enumerators<SpaceKind>().size());
+  check_enumerator(kind);
+  if (kind == SpaceKind::plane && has_weights) return call::kWithWeights;
+  const call::SpaceCalls& calls = *kByKind[static_cast<std::size_t>(kind)];
+  call::expect(!has_weights || calls.refusal_of_weights == nullptr, calls.refusal_of_weights);
+  return calls;
 }
 
 // One of wide and narrow is null.
@@ -50,18 +69,10 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
   call::Implementation& self = *implementation_;
   return call::take_turn(self, [&] {
     check_offsets(offsets);
-    check_enumerator(space.kind);
-    check_weights(space, space.weights != nullptr);
-    const call::HostPoints given{points, nullptr, offsets.back()};
-    if (space.kind == SpaceKind::plane && space.weights != nullptr)
-      return call::triangulate_with_weights(self, given, space.weights, offsets, options);
-    if (space.kind == SpaceKind::plane)
-      return call::triangulate(self, call::checked_points(points, nullptr, offsets), offsets, options);
-    call::expect(!options.halfedges && !options.areas,
+    const call::SpaceCalls& calls = calls_in(space.kind, space.weights != nullptr);
+    call::expect(space.kind == SpaceKind::plane || (!options.halfedges && !options.areas),
                  "triangulations on a torus, a cylinder or the sphere have neither half-edges nor areas");
-    return space.kind == SpaceKind::torus
-               ? call::triangulate_on_torus(self, given, space.weights, offsets, space.period)
-               : call::triangulate_on_sphere(self, points, offsets, space.coordinates);
+    return calls.triangulate(self, {points, nullptr, offsets.back()}, offsets, space, options);
   });
 }
 
@@ -69,34 +80,20 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
                                const Enqueue& enqueue) {
   call::Implementation& self = *implementation_;
   call::take_turn(self, enqueue, [&] {
-    check_enumerator(points.space.kind);
+    const call::SpaceCalls& calls = calls_in(points.space.kind, points.weights != nullptr);
     call::expect(points.space.weights == nullptr, "points in device memory have weights there");
-    check_weights(points.space, points.weights != nullptr);
     result.space = points.space;
     result.hidden_count = 0;
-    if (points.space.kind == SpaceKind::torus) {
-      call::triangulate_on_torus(self, points, result, enqueue);
-    } else if (points.space.kind == SpaceKind::sphere) {
-      call::triangulate_on_sphere(self, points, result, enqueue);
-    } else if (points.weights != nullptr) {
-      call::triangulate_with_weights(self, points, result, parts, enqueue);
-    } else {
-      call::triangulate(self, points, result, parts, enqueue);
-    }
+    calls.triangulate_on_device(self, points, result, parts, enqueue);
   });
 }
 
 std::string verify(const double* points, const std::vector<std::size_t>& offsets, const Space& space,
                    const Triangulation& mesh) {
   check_offsets(offsets);
-  check_enumerator(space.kind);
-  check_weights(space, space.weights != nullptr);
+  const call::SpaceCalls& calls = calls_in(space.kind, space.weights != nullptr);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
-  if (space.kind == SpaceKind::torus) return call::problem_on_torus(points, offsets, space, mesh);
-  if (space.kind == SpaceKind::sphere)
-    return call::problem_on_sphere(points, offsets, space.coordinates, mesh);
-  return space.weights != nullptr ? call::problem_with_weights(points, space.weights, offsets, mesh)
-                                  : verify(points, offsets, mesh);
+  return calls.find_problem(points, offsets, space, mesh);
 }
 
 ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {

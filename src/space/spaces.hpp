@@ -25,31 +25,22 @@ void write_counts(std::size_t duplicates, Result& result) {
   statistics.hull_vertices = 0;
 }
 
-// It is the triangulator's turn, and offsets have been checked.
-// weights: null if points have none.
-Triangulation triangulate_on_torus(Implementation& self, const HostPoints& points, const double* weights,
-                                   const std::vector<std::size_t>& offsets, const Period& period);
-void triangulate_on_torus(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
-                          const Enqueue& enqueue);
-Triangulation triangulate_on_sphere(Implementation& self, const double* points,
-                                    const std::vector<std::size_t>& offsets, SphereCoordinates coordinates);
-void triangulate_on_sphere(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
-                           const Enqueue& enqueue);
-Triangulation triangulate_with_weights(Implementation& self, const HostPoints& points, const double* weights,
-                                       const std::vector<std::size_t>& offsets, const Options& options);
-void triangulate_with_weights(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
-                              const Parts& parts, const Enqueue& enqueue);
+/// What the public calls do in a kind of space. It is the triangulator's turn; offsets have been checked.
+struct SpaceCalls {
+  const char* refusal_of_weights;  ///< what a call with weights says; null: points can have weights
+  Triangulation (*triangulate)(Implementation& self, const HostPoints& points,
+                               const std::vector<std::size_t>& offsets, const Space& space,
+                               const Options& options);
+  void (*triangulate_on_device)(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                                const Parts& parts, const Enqueue& enqueue);
+  /// See verify.
+  std::string (*find_problem)(const double* points, const std::vector<std::size_t>& offsets,
+                              const Space& space, const Triangulation& mesh);
+};
+extern const SpaceCalls kOnTorus, kOnSphere, kWithWeights;  // the last one: in the plane
 
 /// See Triangulator::clipped_voronoi. Takes a turn.
 ClippedVoronoi cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh);
-
-// See verify. Offsets have been checked.
-std::string problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
-                             const Space& space, const Triangulation& mesh);
-std::string problem_on_sphere(const double* points, const std::vector<std::size_t>& offsets,
-                              SphereCoordinates coordinates, const Triangulation& mesh);
-std::string problem_with_weights(const double* points, const double* weights,
-                                 const std::vector<std::size_t>& offsets, const Triangulation& mesh);
 
 /// Answers queries on one set of points in a space that is not the plane; see Locator. Each query is a turn
 /// of the triangulator.

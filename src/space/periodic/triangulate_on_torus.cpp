@@ -305,20 +305,23 @@ void compute(call::Implementation& self, call::Frame& call, const Points& points
 
 }  // namespace
 
-Triangulation call::triangulate_on_torus(Implementation& self, const HostPoints& points,
-                                         const double* weights, const std::vector<std::size_t>& offsets,
-                                         const Period& period) {
-  check(period);
+namespace call {
+namespace {
+
+Triangulation triangulate_on_torus(Implementation& self, const HostPoints& points,
+                                   const std::vector<std::size_t>& offsets, const Space& space,
+                                   const Options& /*options*/) {
+  check(space.period);
   check_points(points.wide, points.count);
   Triangulation result;
-  const HostWeights with{weights, &blocks::kWeightedSolver, result.hidden};
+  const HostWeights with{space.weights, &blocks::kWeightedSolver, result.hidden};
   Frame call(self.native_for(points.count));
-  compute(self, call, points, offsets, period, result, weights != nullptr ? &with : nullptr);
+  compute(self, call, points, offsets, space.period, result, space.weights != nullptr ? &with : nullptr);
   return result;
 }
 
-void call::triangulate_on_torus(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
-                                const Enqueue& enqueue) {
+void triangulate_on_torus(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                          const Parts& /*parts*/, const Enqueue& enqueue) {
   check(points.space.period);
   const Place place = with_doubles(self, self.on_device());
   Frame call(self, place, enqueue);
@@ -340,18 +343,8 @@ void call::triangulate_on_torus(Implementation& self, const DevicePoints& points
   add_note(*place.device, call.engine, "a torus", "triangulated", statistics);
 }
 
-ClippedVoronoi call::cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh) {
-  return take_turn(self, [&] {
-    check_with_places(mesh);
-    expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
-           "cells on a cylinder have no end");
-    expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
-    return periodic::make_cells(self.native().runtime, mesh, weights);
-  });
-}
-
-std::string call::problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
-                                   const Space& space, const Triangulation& mesh) {
+std::string find_problem_on_torus(const double* points, const std::vector<std::size_t>& offsets,
+                                  const Space& space, const Triangulation& mesh) {
   check(space.period);
   check_on_torus(mesh);
   if (offsets != mesh.point_offsets) return "the sets have other points";
@@ -368,6 +361,22 @@ std::string call::problem_on_torus(const double* points, const std::vector<std::
     if (places[k] != mesh.places[k]) return fmt::format("point {} has another place", k / 2);
   }
   return problem;
+}
+
+}  // namespace
+
+const SpaceCalls kOnTorus{nullptr, triangulate_on_torus, triangulate_on_torus, find_problem_on_torus};
+
+}  // namespace call
+
+ClippedVoronoi call::cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh) {
+  return take_turn(self, [&] {
+    check_with_places(mesh);
+    expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
+           "cells on a cylinder have no end");
+    expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
+    return periodic::make_cells(self.native().runtime, mesh, weights);
+  });
 }
 
 }  // namespace flaunay

@@ -224,10 +224,14 @@ void check_arrays(const Triangulation& mesh) {
 
 }  // namespace
 
-Triangulation call::triangulate_on_sphere(Implementation& self, const double* points, const Offsets& offsets,
-                                          SphereCoordinates coordinates) {
-  const std::size_t n = offsets.back();
-  check_points(points, n);
+namespace call {
+namespace {
+
+Triangulation triangulate_on_sphere(Implementation& self, const HostPoints& points, const Offsets& offsets,
+                                    const Space& space, const Options& /*options*/) {
+  const std::size_t n = points.count;
+  const SphereCoordinates coordinates = space.coordinates;
+  check_points(points.wide, n);
   check_enumerator(coordinates);
   Triangulation result;
   result.space = Space::sphere(coordinates);
@@ -235,8 +239,8 @@ Triangulation call::triangulate_on_sphere(Implementation& self, const double* po
   Triangulation planar;
   Frame call(self.native_for(n));
   const bool has_pole =
-      sphere::find_places(call.runtime, call.in<cl_double>(points, n * sphere::width_of(coordinates)), 0, n,
-                          coordinates, call.out<cl_double>(result.places, 2 * n), "point");
+      sphere::find_places(call.runtime, call.in<cl_double>(points.wide, n * sphere::width_of(coordinates)), 0,
+                          n, coordinates, call.out<cl_double>(result.places, 2 * n), "point");
   const Plane plane = sphere::make_plane(result.places, offsets, has_pole);
   planar = triangulate(self, {plane.places().data(), nullptr, plane.offsets.back()}, plane.offsets, {});
   sphere::number_by_points(plane, n, planar);
@@ -250,8 +254,8 @@ Triangulation call::triangulate_on_sphere(Implementation& self, const double* po
   return result;
 }
 
-void call::triangulate_on_sphere(Implementation& self, const DevicePoints& points,
-                                 DeviceTriangulation& result, const Enqueue& enqueue) {
+void triangulate_on_sphere(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                           const Parts& /*parts*/, const Enqueue& enqueue) {
   const SphereCoordinates coordinates = points.space.coordinates;
   check_enumerator(coordinates);
   result.points = points.count;
@@ -263,7 +267,8 @@ void call::triangulate_on_sphere(Implementation& self, const DevicePoints& point
   rest.wait_for.clear();
   const std::vector<double> for_host = write_places(self, points, coordinates, result, first);
   if (!for_host.empty()) {
-    Triangulation mesh = triangulate_on_sphere(self, for_host.data(), result.point_offsets, coordinates);
+    Triangulation mesh = triangulate_on_sphere(self, {for_host.data(), nullptr, points.count},
+                                               result.point_offsets, points.space, {});
     // Copies alone need no doubles.
     Engine& device = self.on_device();
     Frame call(self, Place{device, &device}, rest);
@@ -283,12 +288,19 @@ void call::triangulate_on_sphere(Implementation& self, const DevicePoints& point
   call.end();
 }
 
-std::string call::problem_on_sphere(const double* points, const Offsets& offsets,
-                                    SphereCoordinates coordinates, const Triangulation& mesh) {
+std::string find_problem_on_sphere(const double* points, const Offsets& offsets, const Space& space,
+                                   const Triangulation& mesh) {
   check_arrays(mesh);
   if (offsets != mesh.point_offsets) return "the sets have other points";
-  return prove::find_problem(places_on_sphere(points, offsets.back(), coordinates), mesh);
+  return prove::find_problem(places_on_sphere(points, offsets.back(), space.coordinates), mesh);
 }
+
+}  // namespace
+
+const SpaceCalls kOnSphere{"points on the sphere have no weights", triangulate_on_sphere,
+                           triangulate_on_sphere, find_problem_on_sphere};
+
+}  // namespace call
 
 void call::check_on_sphere(const Triangulation& mesh) {
   check_arrays(mesh);

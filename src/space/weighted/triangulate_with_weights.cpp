@@ -37,23 +37,40 @@ void check(const double* points, const std::vector<std::size_t>& offsets, const 
 
 }  // namespace
 
-Triangulation call::triangulate_with_weights(Implementation& self, const HostPoints& points,
-                                             const double* weights, const std::vector<std::size_t>& offsets,
-                                             const Options& options) {
+namespace call {
+namespace {
+
+Triangulation triangulate_with_weights(Implementation& self, const HostPoints& points,
+                                       const std::vector<std::size_t>& offsets, const Space& space,
+                                       const Options& options) {
   const HostPoints given = checked_points(points.wide, nullptr, offsets);
-  check_array(weights, given.count, "weights");
+  check_array(space.weights, given.count, "weights");
   Ids hidden;
-  Triangulation mesh =
-      triangulate(self, given, HostWeights{weights, &blocks::kWeightedSolver, hidden}, offsets, options);
+  Triangulation mesh = triangulate(self, given, HostWeights{space.weights, &blocks::kWeightedSolver, hidden},
+                                   offsets, options);
   mesh.hidden = std::move(hidden);
   return mesh;
 }
 
-void call::triangulate_with_weights(Implementation& self, const DevicePoints& points,
-                                    DeviceTriangulation& result, const Parts& parts, const Enqueue& enqueue) {
+void triangulate_with_weights(Implementation& self, const DevicePoints& points, DeviceTriangulation& result,
+                              const Parts& parts, const Enqueue& enqueue) {
   const DeviceWeights with{points.weights, &blocks::kWeightedSolver, result.hidden, &result.hidden_count};
   triangulate(self, points, with, result, parts, enqueue);
 }
+
+std::string find_problem_with_weights(const double* points, const std::vector<std::size_t>& offsets,
+                                      const Space& space, const Triangulation& mesh) {
+  check(points, offsets, mesh);
+  check_array(space.weights, offsets.back(), "weights");
+  return prove::find_problem({points, space.weights, offsets, mesh, mesh.neighbors, mesh.hidden});
+}
+
+}  // namespace
+
+const SpaceCalls kWithWeights{nullptr, triangulate_with_weights, triangulate_with_weights,
+                              find_problem_with_weights};
+
+}  // namespace call
 
 Ids hiding_triangles(Triangulator& triangulator, const double* points,
                      const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
@@ -83,13 +100,6 @@ ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const do
     return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
                                 polygon.corners);
   });
-}
-
-std::string call::problem_with_weights(const double* points, const double* weights,
-                                       const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
-  check(points, offsets, mesh);
-  check_array(weights, offsets.back(), "weights");
-  return prove::find_problem({points, weights, offsets, mesh, mesh.neighbors, mesh.hidden});
 }
 
 }  // namespace flaunay
