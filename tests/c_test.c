@@ -1434,8 +1434,8 @@ static void test_weighted(void) {
           "space");
   const float narrow[] = {0, 0, 1, 0, 0, 1};
   REFUSED(flaunay_triangulate_float(triangulator, narrow, 3, NULL, 0, &with_space, &none), "space");
-  torus = (flaunay_space){.kind = 3};
-  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "3 is no flaunay_space_kind");
+  torus = (flaunay_space){.kind = 99};
+  REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "99 is no flaunay_space_kind");
   torus = (flaunay_space){.reserved = {1}};
   REFUSED(triangulate_in(torus, places, 6, NULL, 0, &none), "flaunay_space has members");
 }
