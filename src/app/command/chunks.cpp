@@ -45,7 +45,7 @@ ChunkStatistics triangulate_file(const Task& task, const ChunkRequest& request, 
   options.progress = [&progress](const std::string& stage, int round, double done) {
     progress.update(round > 0 ? fmt::format("{}, round {}", stage, round + 1) : stage, -1, done);
   };
-  if (request.period) options.space = Space::torus(*request.period);
+  options.space = request.space;
   return naming_files({{"point", task.input}}, [&] { return triangulate_chunks(points, files, options); });
 }
 

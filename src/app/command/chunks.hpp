@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,7 @@ struct ChunkRequest {
   std::uint64_t memory_bytes = 0;  ///< 0: the library's choice
   std::size_t chunk_points = 0;    ///< 0: the library's choice
   std::string scratch;
-  std::optional<Period> period;
+  Space space = Space::plane();
   std::string offsets;  ///< with a period, the file for those of corners
 };
 

@@ -102,8 +102,11 @@ void add_period(CLI::App* command, std::vector<double>& period, const std::strin
       ->type_name("LX,LY[,SHEAR]");
 }
 
-Period period_of(const std::vector<double>& numbers) {
-  return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0};
+Space space_of(const SpaceRequest& request) {
+  const std::vector<double>& period = request.period;
+  if (request.is_sphere) return Space::sphere(SphereCoordinates::degrees);
+  if (!request.is_periodic()) return Space::plane();
+  return Space::torus({period[0], period[1], period.size() > 2 ? period[2] : 0});
 }
 
 void add_space_options(CLI::App* command, SpaceRequest& request) {
@@ -123,10 +126,10 @@ void add_space_options(CLI::App* command, SpaceRequest& request) {
 }
 
 bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
-  const bool is_periodic = !request.period.empty();
+  const bool is_periodic = request.is_periodic();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
   if (!request.is_weighted) refuse(command, "--hidden", "needs --weighted");
-  if (!is_periodic && !request.is_sphere && !request.is_weighted) return false;
+  if (!request.is_in_space()) return false;
   std::vector<std::string> own, common = kCommon;
   const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -194,9 +197,7 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
     note_compiling(triangulator.triangulate(coordinates, some), facts);
   });
   progress.update("triangulating");
-  Space space = request.is_sphere        ? Space::sphere(SphereCoordinates::degrees)
-                : request.period.empty() ? Space::plane()
-                                         : Space::torus(period_of(request.period));
+  Space space = space_of(request);
   if (request.is_weighted) space = space.with_weights(read.weights.data());
   Options options;
   ask_for(task.results, options);

@@ -15,11 +15,17 @@ struct SpaceRequest {
   bool is_sphere = false, is_weighted = false;
   std::string offsets;  ///< the file for the corners' periods
   std::string hidden;   ///< the file for hidden points
+
+  bool is_periodic() const { return !period.empty(); }
+  /// Whether points lie in another space than the plane, or have weights.
+  bool is_in_space() const { return is_weighted || is_sphere || is_periodic(); }
 };
 
-/// Adds --period, of numbers that period_of takes.
+/// The space that is asked for, without weights.
+Space space_of(const SpaceRequest& request);
+
+/// Adds --period.
 void add_period(CLI::App* command, std::vector<double>& period, const std::string& description);
-Period period_of(const std::vector<double>& numbers);
 
 /// Adds --period, --offsets, --sphere, --weighted and --hidden.
 void add_space_options(CLI::App* command, SpaceRequest& request);

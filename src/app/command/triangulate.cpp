@@ -243,7 +243,7 @@ void add_triangulate(CLI::App& app, Action& action) {
     action = [request] { return triangulate(*request); };
     request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->is_in_space && request->in_chunks) {
-      request->chunks.period = period_of(request->space.period);
+      request->chunks.space = space_of(request->space);
       request->chunks.offsets = request->space.offsets;
     }
     if (request->is_in_space) return;

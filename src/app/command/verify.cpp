@@ -41,10 +41,7 @@ namespace flaunay::cli {
 
 namespace {
 
-struct VerifyRequest {
-  bool is_weighted = false, is_sphere = false;
-  std::vector<double> period;  // x, y and perhaps a shear; empty: none
-  std::string offsets;         // of corners, with a period
+struct VerifyRequest : SpaceRequest {
   std::string points;
   io::Columns columns;
   std::string triangles;
@@ -59,7 +56,6 @@ struct VerifyRequest {
   std::string constraint_edges;
 
   bool is_refined() const { return min_angle > 0 || max_area > 0 || conforming; }
-  bool is_in_space() const { return is_weighted || is_sphere || !period.empty(); }
 };
 
 /// 0 if it is no regular file.
@@ -257,7 +253,7 @@ std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progr
   mesh.places = std::move(read.points.coordinates);
   n = mesh.places.size() / 2;
   mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {
-    return take_to_places(period_of(request.period), mesh.places.data(), n);
+    return take_to_places(space_of(request).period, mesh.places.data(), n);
   }));
   mesh.corner_offsets = io::read_corner_offsets(request.offsets);
   read_rows(request, n, mesh);
@@ -282,7 +278,7 @@ std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Prog
   const io::Points points = io::read_points(request.points, request.columns);
   n = points.size();
   Triangulation mesh;
-  mesh.space = Space::sphere(SphereCoordinates::degrees);
+  mesh.space = space_of(request);
   read_rows(request, n, mesh);
   mesh.point_offsets = {0, n};
   progress.update("verifying");
@@ -302,10 +298,10 @@ std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Prog
 Checked verify_in_space(const VerifyRequest& request, Progress& progress) {
   const Stopwatch stopwatch;
   Checked checked;
-  checked.report.problem =
-      !request.period.empty() ? problem_on_torus(request, checked.report.points, progress)
-      : request.is_sphere     ? problem_on_sphere(request, checked.report.points, progress)
-                              : problem_of_weighted(request, checked.report.points, progress);
+  checked.report.problem = request.is_periodic() ? problem_on_torus(request, checked.report.points, progress)
+                           : request.is_sphere
+                               ? problem_on_sphere(request, checked.report.points, progress)
+                               : problem_of_weighted(request, checked.report.points, progress);
   checked.report.ok = checked.report.problem.empty();
   checked.seconds = stopwatch.seconds();
   return checked;
@@ -345,7 +341,7 @@ int verify(const VerifyRequest& request) {
 /// Whether the points lie in another space than the plane. Throws Error(usage) for options that do not go
 /// together.
 void check_space(const CLI::App& command, const VerifyRequest& request) {
-  const bool is_periodic = !request.period.empty();
+  const bool is_periodic = request.is_periodic();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");
   if (!request.is_in_space()) return;
   std::vector<std::string> own;
