@@ -411,10 +411,10 @@ TEST_F(CommandVerifyTest, OtherSpaces) {
   const Arguments torus = {points, path("t.npy"), "--offsets", path("o.npy"), "--period"};
   expect_right(joined(torus, {"5,inf"}));
   expect_wrong({}, joined(torus, {"5,5"}));
-  run_well(
-      {"triangulate", points, "--period", "5,6,2", "--triangles", path("t.npy"), "--offsets", path("o.npy")});
-  expect_right(joined(torus, {"5,6,2"}));
-  expect_wrong({}, joined(torus, {"5,6,-2"}));
+  run_well({"triangulate", points, "--period", "30,2,7", "--triangles", path("t.npy"), "--offsets",
+            path("o.npy")});
+  expect_right(joined(torus, {"30,2,7"}));
+  expect_wrong({}, joined(torus, {"30,2,-7"}));
   const Arguments with_weights = {"--weighted", "--offsets", path("o.npy"), "--period"};
   run_well(joined({"triangulate", weighted, "--triangles", path("t.npy")}, joined(with_weights, {"8,8,1"})));
   expect_right(joined({weighted, path("t.npy")}, joined(with_weights, {"8,8,1"})));
@@ -434,9 +434,9 @@ TEST_F(CommandVerifyTest, OtherSpaces) {
   expect_error(
       kBadInput, {"o.npy", "4 rows", "0 triangles"},
       {"verify", points, none, "--period", "5,5", "--offsets", write_rows("o.npy", std::vector<int>(24), 6)});
-  expect_error(kBadInput, {"o.npy", "row 0 has offset 7"},
+  expect_error(kBadInput, {"o.npy", "row 0 has offset 700"},
                {"verify", points, none, "--period", "5,5", "--offsets",
-                write_rows("o.npy", std::vector<int>(6, 7), 6)});
+                write_rows("o.npy", std::vector<int>(6, 700), 6)});
 }
 
 TEST_F(CommandVerifyTest, RefinedMeshes) {

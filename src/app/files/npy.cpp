@@ -349,8 +349,8 @@ std::vector<std::int8_t> read_corner_offsets(const std::string& path) {
   const Layout layout = {"m", 6, {"<i4", "<i8", "|i1"}};
   Array array(path, file, layout);
   const auto check = [&](auto value, std::size_t i) {
-    if (-1 <= value && value <= 1) return;
-    fail(path, "row {} has offset {}, but offsets are -1, 0 or 1", i / 6, +value);
+    if (value == static_cast<std::int8_t>(value)) return;
+    fail(path, "row {} has offset {}, but offsets are from -128 to 127", i / 6, +value);
   };
   const std::string& dtype = array.dtype();
   const std::vector<std::int32_t> values = dtype == "<i4"   ? indices_of<std::int32_t>(array, check)
