@@ -135,16 +135,6 @@ class PeriodicDelaunay(WithLocator):
         vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
         return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
-    def verify(self) -> None:
-        """Checks exactly that this is the canonical triangulation of its places.
-
-        Raises
-        ------
-        InternalError
-            If it is not; the message says what is wrong.
-        """
-        self._handle.verify()
-
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """Triangles that contain points, exactly.
 

@@ -174,16 +174,6 @@ class SphericalDelaunay(WithLocator):
         arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
-    def verify(self) -> None:
-        """Checks exactly that this is the canonical triangulation of its points.
-
-        Raises
-        ------
-        InternalError
-            If it is not; the message says what is wrong.
-        """
-        self._handle.verify()
-
     def find_simplex(self, xi: ArrayLike) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
 

@@ -80,6 +80,16 @@ class OfPoints:
     def nsimplex(self) -> int:
         return len(self.simplices)
 
+    def verify(self) -> None:
+        """Checks exactly that this is the canonical triangulation of its points in their space, with their weights.
+
+        Raises
+        ------
+        InternalError
+            If it is not; the message says what is wrong.
+        """
+        self._handle.verify()
+
 
 class WithLocator(OfPoints):
     """One that answers queries, by a locator and a tree that are made when they are first needed."""

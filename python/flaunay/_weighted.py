@@ -65,16 +65,6 @@ class WeightedDelaunay(OfPoints):
         """
         return frozen(self._handle.hiding_triangles(self._triangulator))
 
-    def verify(self) -> None:
-        """Checks exactly that this is the canonical regular triangulation of its points.
-
-        Raises
-        ------
-        InternalError
-            If it is not; the message says what is wrong.
-        """
-        self._handle.verify()
-
     def cells(self, bounds: Any) -> ClippedVoronoi:
         """The power cells of one set, clipped to a box or a convex polygon, with areas and centroids.
 
