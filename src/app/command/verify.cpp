@@ -1,4 +1,3 @@
-
 #include "flaunay/verify.hpp"
 
 #include <fmt/format.h>
@@ -31,6 +30,7 @@
 #include "app/verify/chunks.hpp"
 #include "constrained/refinement/bounds.hpp"
 #include "files/file.hpp"
+#include "flaunay/sphere.hpp"
 #include "host/memory/system_memory.hpp"
 #include "mesh/corners.hpp"
 #include "prove/constrained_proof.hpp"
