@@ -7,7 +7,7 @@
 namespace flaunay::call {
 namespace {
 
-constexpr const char* kOtherSpace = "the triangulation is one on a torus, a cylinder or the sphere";
+constexpr const char* kOtherSpace = "the triangulation is not one in the plane";
 
 }  // namespace
 

@@ -71,7 +71,7 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
     check_offsets(offsets);
     const call::SpaceCalls& calls = calls_in(space.kind, space.weights != nullptr);
     call::expect(space.kind == SpaceKind::plane || (!options.halfedges && !options.areas),
-                 "triangulations on a torus, a cylinder or the sphere have neither half-edges nor areas");
+                 "triangulations in other spaces than the plane have neither half-edges nor areas");
     return calls.triangulate(self, {points, nullptr, offsets.back()}, offsets, space, options);
   });
 }
