@@ -158,10 +158,11 @@ ChunkStatistics call::triangulate_chunks(PointSource& points, const chunks::Valu
 ChunkStatistics triangulate_chunks(PointSource& points, MeshSink& sink, const ChunkOptions& options) {
   return with_errors([&] {
     const Space& space = options.space;
-    expect(space.kind != SpaceKind::sphere && space.weights == nullptr,
+    const bool is_on_torus = space.kind == SpaceKind::torus;
+    expect((is_on_torus || space.kind == SpaceKind::plane) && space.weights == nullptr,
            "chunks are of points without weights in the plane, on a torus or on a cylinder");
-    return space.kind == SpaceKind::torus ? call::triangulate_chunks_on_torus(points, sink, options)
-                                          : call::triangulate_chunks(points, nullptr, sink, options);
+    return is_on_torus ? call::triangulate_chunks_on_torus(points, sink, options)
+                       : call::triangulate_chunks(points, nullptr, sink, options);
   });
 }
 
