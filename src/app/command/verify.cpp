@@ -202,8 +202,7 @@ std::vector<std::int32_t> hidden_points(const Triangulation& mesh) {
   return hidden;
 }
 
-/// The hull is where
-/// triangles have no neighbours.
+/// Of points with weights in the plane. The hull is where triangles have no neighbours.
 std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const auto [points, weights] = read_points(request.points, request.columns, true);
   n = points.size();
@@ -247,17 +246,27 @@ std::string problem_without_triangles(const Triangulation& mesh) {
   return "";
 }
 
-std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progress& progress) {
+/// Returns the places of points, and rounds the period of the space.
+std::vector<double> places_of(const io::Points& points, Space& space) {
+  std::vector<double> places = points.coordinates;
+  if (space.kind == SpaceKind::sphere)
+    return places_on_sphere(places.data(), points.size(), space.coordinates);
+  space = Space::torus(take_to_places(space.period, places.data(), points.size()));
+  return places;
+}
+
+std::string problem_in_space(const VerifyRequest& request, std::size_t& n, Progress& progress) {
+  const WeightedPoints read = read_points(request.points, request.columns, request.is_weighted);
+  const Space space = space_of(request).with_weights(request.is_weighted ? read.weights.data() : nullptr);
+  n = read.points.size();
   Triangulation mesh;
-  WeightedPoints read = read_points(request.points, request.columns, request.is_weighted);
-  mesh.places = std::move(read.points.coordinates);
-  n = mesh.places.size() / 2;
-  mesh.space = Space::torus(naming_files({{"point ", request.points}}, [&] {
-    return take_to_places(space_of(request).period, mesh.places.data(), n);
-  }));
-  mesh.corner_offsets = io::read_corner_offsets(request.offsets);
+  mesh.space = space_of(request);
+  mesh.places =
+      naming_files({{"point ", request.points}}, [&] { return places_of(read.points, mesh.space); });
+  const bool has_offsets = !request.offsets.empty();
+  if (has_offsets) mesh.corner_offsets = io::read_corner_offsets(request.offsets);
   read_rows(request, n, mesh);
-  if (mesh.corner_offsets.size() != 2 * mesh.triangles.size()) {
+  if (has_offsets && mesh.corner_offsets.size() != 2 * mesh.triangles.size()) {
     throw Error(ErrorKind::input, fmt::format("{}: there are {} rows, but {} triangles", request.offsets,
                                               mesh.corner_offsets.size() / 6, mesh.triangles.size() / 3));
   }
@@ -266,42 +275,24 @@ std::string problem_on_torus(const VerifyRequest& request, std::size_t& n, Progr
   mesh.representatives = representatives_by(n, [&](std::int32_t i) {
     return std::tuple(mesh.places[2 * i], mesh.places[2 * i + 1], request.is_weighted ? read.weights[i] : 0);
   });
-  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, mesh.corner_offsets);
-  if (!request.is_weighted) return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space, mesh);
-  if (mesh.triangles.empty()) return problem_without_triangles(mesh);
-  mesh.hidden = hidden_points(mesh);
-  return flaunay::verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(read.weights.data()),
-                         mesh);
-}
-
-std::string problem_on_sphere(const VerifyRequest& request, std::size_t& n, Progress& progress) {
-  const io::Points points = io::read_points(request.points, request.columns);
-  n = points.size();
-  Triangulation mesh;
-  mesh.space = space_of(request);
-  read_rows(request, n, mesh);
-  mesh.point_offsets = {0, n};
-  progress.update("verifying");
-  mesh.places = naming_files({{"point ", request.points}}, [&] {
-    return places_on_sphere(points.coordinates.data(), n, SphereCoordinates::degrees);
-  });
-  mesh.representatives = representatives_by(
-      n, [&](std::int32_t i) { return std::pair(mesh.places[2 * i], mesh.places[2 * i + 1]); });
-  if (mesh.neighbors.empty()) mesh.neighbors = prove::neighbors_of(mesh.triangles, n);
-  const auto open = std::find(mesh.neighbors.begin(), mesh.neighbors.end(), -1);
-  if (open != mesh.neighbors.end()) {
-    return fmt::format("triangle {} has no neighbor at an edge", (open - mesh.neighbors.begin()) / 3);
+  if (mesh.neighbors.empty()) {
+    mesh.neighbors = has_offsets ? prove::neighbors_of(mesh.triangles, mesh.corner_offsets)
+                                 : prove::neighbors_of(mesh.triangles, n);
   }
-  return flaunay::verify(points.coordinates.data(), {0, n}, mesh.space, mesh);
+  const auto open = std::find(mesh.neighbors.begin(), mesh.neighbors.end(), -1);
+  if (space.kind == SpaceKind::sphere && open != mesh.neighbors.end())
+    return fmt::format("triangle {} has no neighbor at an edge", (open - mesh.neighbors.begin()) / 3);
+  if (request.is_weighted && mesh.triangles.empty()) return problem_without_triangles(mesh);
+  if (request.is_weighted) mesh.hidden = hidden_points(mesh);
+  return flaunay::verify(read.points.coordinates.data(), mesh.point_offsets, space, mesh);
 }
 
 Checked verify_in_space(const VerifyRequest& request, Progress& progress) {
   const Stopwatch stopwatch;
   Checked checked;
-  checked.report.problem = request.is_periodic() ? problem_on_torus(request, checked.report.points, progress)
-                           : request.is_sphere
-                               ? problem_on_sphere(request, checked.report.points, progress)
-                               : problem_of_weighted(request, checked.report.points, progress);
+  const bool is_planar = space_of(request).kind == SpaceKind::plane;
+  checked.report.problem = is_planar ? problem_of_weighted(request, checked.report.points, progress)
+                                     : problem_in_space(request, checked.report.points, progress);
   checked.report.ok = checked.report.problem.empty();
   checked.seconds = stopwatch.seconds();
   return checked;
