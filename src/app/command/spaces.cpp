@@ -94,14 +94,6 @@ void write_mesh_in_space(OutputFiles& outputs, const std::string& path, const io
 
 }  // namespace
 
-void add_period(CLI::App* command, std::vector<double>& period, const std::string& description) {
-  command->add_option("--period", period, description)
-      ->delimiter(',')
-      ->expected(2, 3)
-      ->allow_extra_args(false)
-      ->type_name("LX,LY[,SHEAR]");
-}
-
 Space space_of(const SpaceRequest& request) {
   const std::vector<double>& period = request.period;
   if (request.is_sphere) return Space::sphere(SphereCoordinates::degrees);
@@ -110,19 +102,23 @@ Space space_of(const SpaceRequest& request) {
 }
 
 void add_space_options(CLI::App* command, SpaceRequest& request) {
-  add_period(
-      command, request.period,
-      "The plane repeats itself after LX in x and LY in y, there moved by SHEAR in x; inf: not in that "
-      "direction");
+  command
+      ->add_option(
+          "--period", request.period,
+          "The plane repeats itself after LX in x and LY in y, there moved by SHEAR in x; inf: not in "
+          "that direction")
+      ->delimiter(',')
+      ->expected(2, 3)
+      ->allow_extra_args(false)
+      ->type_name("LX,LY[,SHEAR]");
   add_path(
       command, "--offsets", request.offsets,
       "With --period: in which period corners are, x and y for each, if the first one is at its place: .npy");
   command->add_flag("--sphere", request.is_sphere,
-                    "The points are longitudes and latitudes in degrees, and are triangulated on the sphere");
+                    "The points are longitudes and latitudes in degrees, for a triangulation on the sphere");
   command->add_flag(
       "--weighted", request.is_weighted,
       "Each point has a weight behind x and y: the regular triangulation, of .npy, .txt, .csv and .xyz");
-  add_path(command, "--hidden", request.hidden, "With --weighted: points without a power cell: .npy");
 }
 
 bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {

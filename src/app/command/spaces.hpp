@@ -24,10 +24,7 @@ struct SpaceRequest {
 /// The space that is asked for, without weights.
 Space space_of(const SpaceRequest& request);
 
-/// Adds --period.
-void add_period(CLI::App* command, std::vector<double>& period, const std::string& description);
-
-/// Adds --period, --offsets, --sphere, --weighted and --hidden.
+/// Adds --period, --offsets, --sphere and --weighted.
 void add_space_options(CLI::App* command, SpaceRequest& request);
 
 /// Whether the options ask for another space, or for weights. Throws Error(usage) for options that do not go

@@ -231,6 +231,7 @@ void add_triangulate(CLI::App& app, Action& action) {
           "between them, or all: triangulates in chunks, on each of them");
   add_constraint_options(command, request->constraints);
   add_space_options(command, request->space);
+  add_path(command, "--hidden", request->space.hidden, "With --weighted: points without a power cell: .npy");
   add_chunk_options(command, request->chunks);
   add_index(command, request->index);
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");

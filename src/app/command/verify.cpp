@@ -382,15 +382,7 @@ void add_verify(CLI::App& app, Action& action) {
       ->required();
   add_columns(command, request->columns, "x and y");
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
-  command->add_flag("--weighted", request->is_weighted,
-                    "Each point has a weight behind x and y: check the regular triangulation");
-  command->add_flag(
-      "--sphere", request->is_sphere,
-      "The points are longitudes and latitudes in degrees: check the triangulation on the sphere");
-  add_period(command, request->period,
-             "Check the triangulation of a plane that repeats itself, as that of triangulate");
-  add_path(command, "--offsets", request->offsets,
-           "With --period: the corners' periods, as triangulate writes them: .npy");
+  add_space_options(command, *request);
   add_domain_options(command, request->constraints);
   add_path(command, "--constraint-edges", request->constraint_edges,
            "Constraint edges to check too, as triangulate writes them: .npy");
