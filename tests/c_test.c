@@ -1670,7 +1670,7 @@ static void test_sphere_on_device(void) {
   REFUSED(flaunay_locator_create_device(triangulator, &given, sphere, &enqueue, &locator), "space");
   space.coordinates = FLAUNAY_SPHERE_DIRECTIONS;
   REFUSED(flaunay_triangulate_device(triangulator, &given, 0, &enqueue, sphere), "too small");
-  REFUSED(flaunay_device_triangulation_set_buffer(sphere, 512, own), "512");
+  REFUSED(flaunay_device_triangulation_set_buffer(sphere, 1 << 20, own), "1048576");
   flaunay_device_triangulation_destroy(sphere);
 }
 
