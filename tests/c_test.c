@@ -1281,10 +1281,16 @@ static void test_relax(void) {
   const double box[] = {0, 0, 4, 0, 4, 4, 0, 4};
   double places[] = {1, 1, 1, 3, 9, 9}, expected[] = {2, 1, 2, 3, 9, 9};
   // The third point's cell does not meet the box.
-  OK(flaunay_relax(triangulator, places, 3, box, 4, 1, places));
+  OK(flaunay_relax(triangulator, places, 3, NULL, box, 4, 1, places));
   for (size_t c = 0; c < 6; ++c) CHECK(fabs(places[c] - expected[c]) < 1e-12);
-  WRONG_INPUT(flaunay_relax(triangulator, places, 3, box, 2, 1, places), "2 corners");
-  OK(flaunay_relax(triangulator, NULL, 0, box, 4, 1, NULL));
+  WRONG_INPUT(flaunay_relax(triangulator, places, 3, NULL, box, 2, 1, places), "2 corners");
+  OK(flaunay_relax(triangulator, NULL, 0, NULL, box, 4, 1, NULL));
+  // Three points on the equator move apart.
+  const flaunay_space sphere = {.kind = FLAUNAY_SPACE_SPHERE, .coordinates = FLAUNAY_SPHERE_DEGREES};
+  double degrees[] = {0, 0, 90, 0, 180, 0}, apart[] = {-22.5, 0, 90, 0, -157.5, 0};
+  OK(flaunay_relax(triangulator, degrees, 3, &sphere, NULL, 0, 1, degrees));
+  for (size_t c = 0; c < 6; ++c) CHECK(fabs(degrees[c] - apart[c]) < 1e-12);
+  REFUSED(flaunay_relax(triangulator, degrees, 3, &sphere, box, 4, 1, degrees), "not clipped");
 }
 
 static void test_raster(void) {

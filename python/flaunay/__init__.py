@@ -43,7 +43,7 @@ used it, calls run on the host, and calls that name or need a device raise ``Dev
 
 from flaunay import triangle
 from flaunay._alpha_shape import AlphaShape, alpha_shape
-from flaunay._cells import ClippedVoronoi, relax, voronoi_polygons
+from flaunay._cells import ClippedVoronoi, voronoi_polygons
 from flaunay._chunks import (
     ChunkedTriangulation,
     contour_chunks,
@@ -83,6 +83,7 @@ from flaunay._pieces import VoronoiPieces
 from flaunay._polygons import PolygonTriangulation, polygons
 from flaunay._raster import Contours
 from flaunay._refinement import RefinementReport
+from flaunay._relax import relax
 from flaunay._sphere import SphericalDelaunay, SphericalVoronoi, spherical
 from flaunay._terrain import Terrain, terrain
 from flaunay._triangulate import refine, triangulate

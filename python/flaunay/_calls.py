@@ -1308,11 +1308,16 @@ def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -
 
 
 def relax(
-    triangulator: Triangulator, points: _Doubles, corners: _Doubles, iterations: int
+    triangulator: Triangulator,
+    points: _Doubles,
+    space: _declarations.Space,
+    corners: Optional[_Doubles],
+    iterations: int,
 ) -> _Doubles:
     """Points after so many iterations of Lloyd's method."""
-    relaxed = np.empty((_count_points(points), 2))
-    given = (_as_doubles(points), len(points), _as_doubles(corners), len(corners), iterations)
+    relaxed = np.empty(points.shape)
+    polygon = (None, 0) if corners is None else (_as_doubles(corners), len(corners))
+    given = (_as_doubles(points), len(points), space, *polygon, iterations)
     triangulator.call(library.relax, triangulator, *given, relaxed)
     return relaxed
 

@@ -1,26 +1,21 @@
-"""Voronoi cells clipped to a box or a convex polygon, and relaxation by them."""
+"""Voronoi cells clipped to a box or a convex polygon."""
 
 from __future__ import annotations
 
 import operator
 import re
-import time
-from collections.abc import Iterator
 from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import Frozen, as_count, as_floats, as_points, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, as_floats, as_points, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
 
 _Doubles = npt.NDArray[np.float64]
-
-# The longest time of a call that relaxes points: Ctrl-C takes effect between such calls.
-_SECONDS = 0.1
 
 
 def corners_of(bounds: Any) -> _Doubles:
@@ -64,20 +59,6 @@ def _ring_of(bounds: Any) -> tuple[_Doubles, bool]:
         across = across / (np.max(np.abs(across), initial=0.0) or 1.0)
         area = np.sum(across[:-1, 0] * across[1:, 1] - across[:-1, 1] * across[1:, 0])
     return (corners[::-1], True) if area < 0 else (corners, False)
-
-
-def parts_of(given: Any) -> Iterator[int]:
-    """Iterations in numbers for calls that take about a tenth of a second each: Ctrl-C takes effect between calls."""
-    iterations = as_count(given, "iterations")
-    part = min(1, iterations)
-    while True:
-        begin = time.perf_counter()
-        yield part
-        iterations -= part
-        if iterations == 0:
-            return
-        is_quick = time.perf_counter() - begin < _SECONDS / 2
-        part = min(2 * part if is_quick else part, iterations)
 
 
 class ClippedVoronoi(Frozen):
@@ -214,39 +195,3 @@ def voronoi_polygons(
     """
     cells = clip(Delaunay(points, device=device), bounds)
     return cells.to_shapely() if as_shapely else cells.polygons()
-
-
-def relax(
-    points: npt.ArrayLike, bounds: Any, iterations: int = 1, device: Optional[str] = None
-) -> _Doubles:
-    """Points spread evenly by Lloyd's method: each moves to the centroid of its clipped Voronoi cell.
-
-    Parameters
-    ----------
-    points : array_like, shape (npoints, 2)
-        As of `Delaunay`; they are not changed.
-    bounds : array_like or shapely.Polygon
-        As of `Voronoi.clipped`.
-    iterations : int, default 1
-        How often the points move. On a device, they stay there in between.
-    device : str, optional
-        As of `triangulate`.
-
-    Returns
-    -------
-    ndarray of float64, shape (npoints, 2)
-        A point that has no cell stays where it is: one that equals an earlier point, or one outside of
-        the bounds whose cell does not meet them.
-
-    Examples
-    --------
-    >>> import flaunay
-    >>> flaunay.relax([[0, 0], [0.5, 0.5]], (0, 0, 4, 4), iterations=50).round(2)
-    array([[1.33, 1.33],
-           [2.67, 2.67]])
-    """
-    relaxed, corners = np.asarray(as_points(points), np.float64), corners_of(bounds)
-    triangulator = _triangulators.of_device(device)
-    for part in parts_of(iterations):
-        relaxed = _calls.relax(triangulator, relaxed, corners, part)
-    return relaxed

@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import summary
-from flaunay._cells import ClippedVoronoi, corners_of, parts_of
+from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._device_arrays import DeviceCall, queue_for
+from flaunay._relax import parts_of
 
 if TYPE_CHECKING:
     import pyopencl

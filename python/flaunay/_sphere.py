@@ -25,6 +25,14 @@ def _as_points(given: ArrayLike, name: str) -> Doubles:
     return points
 
 
+def as_rows(given: ArrayLike) -> Doubles:
+    """Points in rows."""
+    points = _as_points(given, "points")
+    if points.ndim != 2:
+        raise UsageError(f"points must have the shape (n, 2) or (n, 3), not {points.shape}")
+    return points
+
+
 class SphericalVoronoi:
     """The Voronoi cells of points on the unit sphere. `SphericalDelaunay.voronoi` has them.
 
@@ -289,8 +297,5 @@ def spherical(
            [0, 1, 3],
            [0, 2, 1]], dtype=int32)
     """
-    given = _as_points(points, "points")
-    if given.ndim != 2:
-        raise UsageError(f"points must have the shape (n, 2) or (n, 3), not {given.shape}")
-    given = frozen(given.copy())
+    given = frozen(as_rows(points).copy())
     return SphericalDelaunay(given, None if offsets is None else as_offsets(offsets), device)

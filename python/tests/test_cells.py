@@ -97,6 +97,43 @@ def test_relaxation_evens_out_areas(points):
     assert (once[has_cell] != points[has_cell]).any()
 
 
+def test_relaxation_in_all_spaces(points):
+    points, weights = points % 1, np.arange(len(points)) % 7 / 1e5
+    for given in {"bounds": BOX}, {"period": (1.5, 2)}, {"period": (1.5, 2, 0.25)}:
+
+        def spread(at):
+            if "bounds" in given:
+                return flaunay.weighted(at, weights).cells(BOX).areas.std()
+            return flaunay.periodic(at, **given, weights=weights).cells.areas.std()
+
+        relaxed = flaunay.relax(points, **given, weights=weights, iterations=20)
+        assert spread(relaxed) < 0.7 * spread(points)
+    degrees = np.random.default_rng(1).uniform([-180, -90], [180, 90], (200, 2))
+    xyz = flaunay.spherical(degrees).xyz
+    relaxed = flaunay.relax(xyz, sphere=True, iterations=3)
+    assert np.abs(np.linalg.norm(relaxed, axis=1) - 1).max() < 1e-15
+    other = flaunay.spherical(flaunay.relax(degrees, sphere=True, iterations=3)).xyz
+    assert np.abs(relaxed - other).max() < 1e-12
+    apart = flaunay.relax(xyz, sphere=True, iterations=30)
+    before, after = (flaunay.spherical(each).voronoi.areas.std() for each in (xyz, apart))
+    assert after < 0.5 * before
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, "one of bounds, period and sphere"),
+        ({"bounds": BOX, "period": (1, 1)}, "one of bounds, period and sphere"),
+        ({"period": (1, None)}, "no end"),
+        ({"sphere": True, "weights": np.ones(4)}, "no weights"),
+        ({"period": (1, 1), "weights": np.ones(3)}, "weights must have"),
+    ],
+)
+def test_spaces_without_relaxation(given, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.relax([[0, 0], [1, 0], [1, 1], [0, 1]], **given)
+
+
 def interrupted(call, seconds):
     """How long a call takes that Ctrl-C interrupts after so many seconds."""
     timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))

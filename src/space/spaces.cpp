@@ -96,10 +96,6 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
   return calls.find_problem(points, offsets, space, mesh);
 }
 
-ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {
-  return call::cells_on_torus(*implementation_, weights, mesh);
-}
-
 void call::SpaceLocator::set_coordinates(SphereCoordinates) {
   throw Error(ErrorKind::usage, "queries have coordinates of the sphere on the sphere alone");
 }

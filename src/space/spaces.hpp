@@ -39,8 +39,9 @@ struct SpaceCalls {
 };
 extern const SpaceCalls kOnTorus, kOnSphere, kWithWeights;  // the last one: in the plane
 
-/// See Triangulator::clipped_voronoi. Takes a turn.
-ClippedVoronoi cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh);
+/// Throws Error(usage) for arrays that are not those of a triangulation of these points with weights.
+void check_with_hidden(const double* points, const std::vector<std::size_t>& offsets,
+                       const Triangulation& mesh);
 
 /// Answers queries on one set of points in a space that is not the plane; see Locator. Each query is a turn
 /// of the triangulator.

@@ -486,6 +486,7 @@ TEST(SmallArguments, OfFunctionsOfCxx) {
          used.polygons({points(n), {0, counted(n)}, {0, 1}});
        }},
       {"points", [&](std::size_t n) { used.relax(points(n), counted(n), kPoints, 3); }},
+      {"points", [&](std::size_t n) { used.relax(points(n), counted(n), Space::sphere(degrees)); }},
       {"points", [&](std::size_t n) { used.voronoi(points(n), counted(n), mesh); }},
       {"points", [&](std::size_t n) { used.clipped_voronoi(points(n), counted(n), mesh, kPoints, 3); }},
       {"points", [&](std::size_t n) { Locator(used, points(n), counted(n), mesh); }},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -11,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "tests/spaces/lloyd.hpp"
 #include "tests/spaces/spaces.hpp"
+#include "tests/support/errors.hpp"
 #include "tests/support/shared_triangulator.hpp"
 
 namespace flaunay::testing::spaces {
@@ -58,7 +61,47 @@ class Laws : public ::testing::TestWithParam<TestSpace> {
     return triangulated(points, {0, points.size() / space_.width});
   }
 
+  Numbers relaxed(const Numbers& points, std::size_t steps) const {
+    return space_.relax(triangulator(), points, steps, box_);
+  }
+  Lloyd lloyd(const Numbers& points, const Triangulation& mesh) const {
+    return is_sphere() ? lloyd_on_sphere(mesh) : lloyd_of_polygons(space_, points, mesh, box_);
+  }
+  bool is_sphere() const { return space_.space.kind == SpaceKind::sphere; }
+  // How far points are from places or directions, as Lloyd has them; on a torus from the nearest images.
+  Numbers distances(const Numbers& points, const Numbers& places) const {
+    const std::size_t n = points.size() / space_.width;
+    const Period period = space_.space.kind == SpaceKind::torus ? space_.space.period : Period{0, 0};
+    const Numbers directions =
+        is_sphere() ? directions_of(places_on_sphere(points.data(), n, space_.space.coordinates)) : Numbers();
+    Numbers all(n, HUGE_VAL);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* const a = is_sphere() ? &directions[3 * i] : &points[space_.width * i];
+      const double* const b = &places[(is_sphere() ? 3 : 2) * i];
+      for (const int across : {-1, 0, 1}) {
+        for (const int up : {-1, 0, 1}) {
+          const double x = a[0] - b[0] + across * period.x + up * period.shear,
+                       y = a[1] - b[1] + up * period.y;
+          const double z = is_sphere() ? a[2] - b[2] : 0;
+          all[i] = std::min(all[i], std::sqrt(x * x + y * y + z * z));
+        }
+      }
+    }
+    return all;
+  }
+  // Rows of points in an order, on the sphere their places: of equal ones the first moves.
+  std::multiset<Numbers> rows_of(const Numbers& points) const {
+    const std::size_t n = points.size() / space_.width;
+    const Numbers all = is_sphere() ? places_on_sphere(points.data(), n, space_.space.coordinates) : points;
+    std::multiset<Numbers> rows;
+    const auto columns = static_cast<std::ptrdiff_t>(is_sphere() ? 2 : space_.width);
+    for (auto row = all.begin(); row != all.end(); row += columns) rows.emplace(row, row + columns);
+    return rows;
+  }
+
   const TestSpace space_ = GetParam();
+  // Of cells in the plane.
+  const Numbers box_ = {-0.75, -0.5, 1, -0.5, 1, 0.75, -0.75, 0.75};
   const std::vector<Case> cases_ = cases(space_);
 };
 INSTANTIATE_TEST_SUITE_P(Spaces, Laws, ::testing::ValuesIn(all_spaces()),
@@ -191,6 +234,91 @@ TEST_P(Laws, EveryWrongIndexIsFound) {
     expect_all(&Mesh::representatives, offsets[1]);
     EXPECT_FALSE(is_found(right));
   }
+}
+
+TEST_P(Laws, RelaxationIsAStepOfBruteForce) {
+  if (!space_.has_cells()) {
+    expect_error(ErrorKind::usage, "no end", [&] { relaxed(cases_[4].numbers, 1); });
+    return;
+  }
+  for (const Case& given : cases_) {
+    SCOPED_TRACE(given.name);
+    const Triangulation mesh = triangulated(given.numbers);
+    const Lloyd expected = lloyd(given.numbers, mesh);
+    const Numbers moved = relaxed(given.numbers, 1), stay = relaxed(given.numbers, 0);
+    ASSERT_EQ(given.numbers.size(), moved.size());
+    const Numbers away = distances(moved, expected.centroids);
+    for (std::size_t i = 0; i < away.size(); ++i) {
+      const auto self = static_cast<std::int32_t>(i);
+      if (expected.sizes[i] > 1e-6) ASSERT_GT(1e-9, away[i]) << i;
+      if (mesh.representatives[i] == self &&
+          !std::binary_search(mesh.hidden.begin(), mesh.hidden.end(), self))
+        continue;
+      for (std::size_t k = space_.width * i; k < space_.width * (i + 1); ++k)
+        ASSERT_EQ(stay[k], moved[k]) << i;
+    }
+  }
+}
+
+TEST_P(Laws, RelaxedPointsDependOnTheirSetAlone) {
+  if (!space_.has_cells()) return;
+  std::vector<Case> cases = cases_;
+  // In several blocks, whose borders depend on the order of points. In the plane, so do last bits.
+  if (!space_.is_plane() || space_.has_weights) cases.push_back(large_cases(space_)[0]);
+  for (const Case& given : cases) {
+    SCOPED_TRACE(given.name);
+    Numbers turned;
+    for (std::size_t i = given.numbers.size() / space_.width; i-- > 0;) {
+      const auto row = given.numbers.begin() + static_cast<std::ptrdiff_t>(space_.width * i);
+      turned.insert(turned.end(), row, row + static_cast<std::ptrdiff_t>(space_.width));
+    }
+    EXPECT_TRUE(rows_of(relaxed(given.numbers, 3)) == rows_of(relaxed(turned, 3)));
+  }
+}
+
+TEST_P(Laws, RelaxationNamesThePoint) {
+  if (!space_.has_cells()) return;
+  Numbers points = cases_[6].numbers;
+  points[13 * space_.width] = std::nan("");
+  expect_error(ErrorKind::input, "point 13 is not finite", [&] { relaxed(points, 1); });
+}
+
+TEST_P(Laws, RelaxationNeverAddsEnergy) {
+  if (!space_.has_cells()) return;
+  for (const Case& given : cases_) {
+    SCOPED_TRACE(given.name);
+    Numbers points = given.numbers;
+    double energy = lloyd(points, triangulated(points)).energy;
+    for (int step = 0; step < 3; ++step) {
+      points = relaxed(points, 1);
+      const double after = lloyd(points, triangulated(points)).energy;
+      EXPECT_LE(after, energy + 1e-9);
+      energy = after;
+    }
+  }
+}
+
+TEST_P(Laws, RelaxedLatticesStay) {
+  if (!space_.has_cells()) return;
+  const Period& period = space_.space.period;
+  const bool is_torus = space_.space.kind == SpaceKind::torus;
+  Numbers lattice;
+  for (int i = 0; i < 16; ++i) {
+    const double across = (i % 4 + 0.5) / 4, up = (i / 4 + 0.5) / 4;
+    if (is_torus) {
+      lattice.insert(lattice.end(), {across * period.x + up * period.shear, up * period.y});
+    } else {
+      lattice.insert(lattice.end(), {-0.75 + across * 1.75, -0.5 + up * 1.25});
+    }
+    if (space_.has_weights) lattice.push_back(0.25);
+  }
+  // The corners of an octahedron.
+  const Numbers degrees = {0, 0, 90, 0, 180, 0, -90, 0, 0, 90, 0, -90};
+  if (is_sphere()) lattice = space_.width == 2 ? degrees : cases_[9].numbers;
+  const Numbers at = is_sphere()
+                         ? directions_of(places_on_sphere(lattice.data(), 6, space_.space.coordinates))
+                         : space_.with_columns(lattice, [](const Numbers& xy, const Space&) { return xy; });
+  for (const double away : distances(relaxed(lattice, 5), at)) EXPECT_GT(1e-14, away);
 }
 
 }  // namespace

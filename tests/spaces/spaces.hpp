@@ -70,6 +70,23 @@ struct TestSpace {
             tree.nearest(queries.data(), m, options)};
   }
 
+  /// Whether cells have an end, in the plane in a box.
+  bool has_cells() const { return std::isfinite(space.period.x) && std::isfinite(space.period.y); }
+  /// Points after some steps of Lloyd's method, with their weights.
+  Numbers relax(Triangulator& triangulator, const Numbers& points, std::size_t steps,
+                const Numbers& box) const {
+    const Numbers moved = with_columns(points, [&](const Numbers& coordinates, const Space& given) {
+      const std::size_t n = points.size() / width;
+      return space.kind == SpaceKind::plane
+                 ? triangulator.relax(coordinates.data(), n, given, steps, box.data(), box.size() / 2)
+                 : triangulator.relax(coordinates.data(), n, given, steps);
+    });
+    if (!has_weights) return moved;
+    Numbers all = points;
+    for (std::size_t k = 0; k < moved.size(); ++k) all[k / 2 * width + k % 2] = moved[k];
+    return all;
+  }
+
   friend void PrintTo(const TestSpace& space, std::ostream* out) { *out << space.name; }
 };
 

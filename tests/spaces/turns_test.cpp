@@ -63,6 +63,7 @@ TEST_F(Turns, TriangulationsTakeOne) {
     made_.triangulate(at_, {0, 7, 60}, Space::sphere(SphereCoordinates::degrees));
   });
   expect_one("relax", [&] { made_.relax(at_, kCount, square.data(), 4, 3); });
+  expect_one("relax on a torus", [&] { made_.relax(at_, kCount, Space::torus({}), 3); });
   DynamicTriangulation changing(made_, at_, kCount);
   const std::int32_t last = kCount - 1;
   expect_one("insert", [&] { changing.insert(square.data(), 4); });

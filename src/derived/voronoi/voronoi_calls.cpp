@@ -1,9 +1,23 @@
-// The public calls for Voronoi diagrams, clipped cells, and Lloyd's relaxation.
+// The public calls for Voronoi diagrams, clipped cells, and Lloyd's relaxation, in all spaces.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
 #include "blocks/memory.hpp"
 #include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
 #include "derived/voronoi/clip.hpp"
 #include "derived/voronoi/voronoi.hpp"
+#include "mesh/rows.hpp"
+#include "space/periodic/cells.hpp"
+#include "space/periodic/torus.hpp"
+#include "space/periodic/triangulate_on_torus.hpp"
+#include "space/spaces.hpp"
+#include "space/sphere/dual.hpp"
+#include "space/sphere/places.hpp"
+#include "space/sphere/triangulate_on_sphere.hpp"
+#include "space/weighted/cells.hpp"
 
 namespace flaunay {
 namespace {
@@ -31,6 +45,13 @@ Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Tr
     call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
     compute(call, call::HostPoints{coordinates, nullptr, n}, triangulation, result);
     return result;
+  });
+}
+
+Voronoi Triangulator::voronoi(const Triangulation& mesh) {
+  return call::take_turn(*implementation_, [&] {
+    call::check_on_sphere(mesh);
+    return sphere::make_dual(implementation_->native().runtime, mesh);
   });
 }
 
@@ -73,6 +94,10 @@ void compute_clipped(call::Frame& call, const Points& points, const Mesh& triang
   set_count(count);
 }
 
+void check_has_end(const Period& period) {
+  call::expect(std::isfinite(period.x) && std::isfinite(period.y), "cells on a cylinder have no end");
+}
+
 }  // namespace
 
 ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::size_t n,
@@ -85,6 +110,27 @@ ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::siz
     compute_clipped(call, call::HostPoints{coordinates, nullptr, n}, triangulation, polygon, result,
                     [&result](std::size_t vertices) { result.vertices.resize(2 * vertices); });
     return result;
+  });
+}
+
+ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
+                                             const Triangulation& mesh, const double* corners,
+                                             std::size_t corner_count) {
+  return call::take_turn(*implementation_, [&] {
+    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
+    call::check_with_hidden(coordinates, {0, n}, mesh);
+    check_array(weights, n, "weights");
+    return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
+                                polygon.corners);
+  });
+}
+
+ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {
+  return call::take_turn(*implementation_, [&] {
+    call::check_with_places(mesh);
+    check_has_end(mesh.space.period);
+    call::expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
+    return periodic::make_cells(implementation_->native().runtime, mesh, weights);
   });
 }
 
@@ -156,6 +202,82 @@ std::vector<double> Triangulator::relax(const double* coordinates, std::size_t n
     call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
     relax_in(call, call::HostPoints{coordinates, nullptr, n}, polygon, iterations, relaxed);
     return relaxed;
+  });
+}
+
+namespace {
+
+// The numbers of points in an order that their places and weights alone decide; equal ones in their own.
+std::vector<std::int32_t> order_of(const std::vector<double>& places, const double* weights) {
+  std::vector<std::int32_t> order(places.size() / 2);
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](std::int32_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    // The bits, which are in an order even if a number is NaN. There is no -0.
+    const auto bits = [](double x) { return kernel::as_ulong(x + 0.0); };
+    return std::tuple{bits(places[2 * at]), bits(places[2 * at + 1]),
+                      weights == nullptr ? 0 : bits(weights[at])};
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+  return order;
+}
+
+}  // namespace
+
+std::vector<double> Triangulator::relax(const double* points, std::size_t n, const Space& space,
+                                        std::size_t iterations, const double* corners,
+                                        std::size_t corner_count) {
+  const bool is_plane = space.kind == SpaceKind::plane, is_torus = space.kind == SpaceKind::torus;
+  if (is_plane && space.weights == nullptr) return relax(points, n, corners, corner_count, iterations);
+  return call::take_turn(*implementation_, [&] {
+    const call::WithinTurn within(*implementation_);
+    check_points(points, n);
+    check_enumerator(space.kind);
+    check_enumerator(space.coordinates);
+    if (is_torus) {
+      call::check(space.period);
+      check_has_end(space.period);
+    }
+    call::expect(is_plane || (corners == nullptr && corner_count == 0),
+                 "cells of a torus or the sphere are not clipped to a polygon");
+    const std::size_t width = is_plane || is_torus ? 2 : sphere::width_of(space.coordinates);
+    host::Runtime& runtime = implementation_->native().runtime;
+    const periodic::Lattice lattice = periodic::lattice_of(space.period);
+    const std::vector<double> places =
+        is_plane   ? std::vector<double>(points, points + 2 * n)
+        : is_torus ? periodic::to_places(runtime, points, n, lattice, "point")
+                   : sphere::to_places(runtime, points, n, space.coordinates, "point");
+    // In another order, rows of triangles and sums along them would be in another one, too.
+    const std::vector<std::int32_t> order = order_of(places, space.weights);
+    std::vector<double> relaxed, weights;
+    for (const std::int32_t i : order) {
+      const double* const p = points + width * static_cast<std::size_t>(i);
+      relaxed.insert(relaxed.end(), p, p + width);
+      if (space.weights != nullptr) weights.push_back(space.weights[i]);
+    }
+    const Space sorted = space.with_weights(space.weights == nullptr ? nullptr : weights.data());
+    for (std::size_t i = 0; i < iterations; ++i) {
+      const Triangulation mesh = [&] {
+        try {
+          return triangulate(relaxed.data(), n, sorted);
+        } catch (const Error&) {
+          triangulate(points, n, space);  // whose error has the points' own numbers
+          throw;
+        }
+      }();
+      if (is_torus) relaxed = mesh.places;
+      const std::vector<double> centroids =
+          is_torus ? clipped_voronoi(mesh, sorted.weights).centroids
+          : is_plane
+              ? clipped_voronoi(relaxed.data(), sorted.weights, n, mesh, corners, corner_count).centroids
+              : sphere::centroids(runtime, mesh, space.coordinates);
+      // Those of points without a cell are NaN.
+      std::transform(centroids.begin(), centroids.end(), relaxed.begin(), relaxed.begin(),
+                     [](double moved, double before) { return std::isnan(moved) ? before : moved; });
+    }
+    mesh::permute(order, width, relaxed);
+    return is_torus ? periodic::to_places(runtime, relaxed.data(), n, lattice, "point") : relaxed;
   });
 }
 

@@ -1329,12 +1329,16 @@ FLAUNAY_API flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* tri
                                                        const flaunay_enqueue* enqueue,
                                                        flaunay_device_clipped_voronoi* result);
 
-/// Relaxes n points by Lloyd's method: each moves to the centroid of its Voronoi cell clipped to the polygon,
-/// `iterations` times. A point without a cell stays where it is in that iteration. relaxed: room for 2 n
-/// values, which may be coordinates itself. Errors are those of flaunay_triangulate and flaunay_voronoi_clip.
-FLAUNAY_API flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* coordinates,
-                                         size_t n, const double* corners, size_t corner_count,
-                                         size_t iterations, double* relaxed);
+/// Relaxes n points by Lloyd's method: each moves to the centroid of its Voronoi cell, `iterations` times. A
+/// point without a cell stays where it is in that iteration. space: NULL: the plane, where cells are clipped
+/// to the polygon, as in flaunay_voronoi_clip; with weights they are power cells. On a torus and the sphere
+/// corners is NULL, points move on these and are given back as in the space: places in the period, unit
+/// vectors, or degrees. On the sphere they move to the direction of the cell's centroid in space, the sum
+/// over its sides of their angles times the normals of their planes. relaxed: room for as many values as
+/// points, which may be points itself. Errors are those of flaunay_triangulate and flaunay_voronoi_clip.
+FLAUNAY_API flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* points, size_t n,
+                                         const flaunay_space* space, const double* corners,
+                                         size_t corner_count, size_t iterations, double* relaxed);
 /// Relaxes points in device memory. *relaxed: the caller's buffer, double2, 16 n bytes, another one than that
 /// of the points; if it is NULL, it receives a new one, as in flaunay_locator_locate_device. The work is
 /// enqueued like that of flaunay_triangulate_device, with the same errors; points stay on the device.

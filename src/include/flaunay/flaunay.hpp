@@ -542,6 +542,18 @@ class FLAUNAY_API Triangulator {
   /// the points stay there between iterations. Throws what triangulate and clipped_voronoi throw.
   std::vector<double> relax(const double* coordinates, std::size_t n, const double* corners,
                             std::size_t corner_count, std::size_t iterations = 1);
+  /// Relaxes one set of n points of a space, given and returned as triangulate takes them. On a torus they
+  /// move to the centroids of their cells there, and are returned as places, in the period. On the sphere
+  /// they move to where the sum of squared distances to the places of their cells is least on the sphere: the
+  /// direction of the centroid of the cell in space (Du, Gunzburger and Ju, 2003), which is that of the sum
+  /// over the sides of the cell of their angles times the normals of their planes. With weights, cells are
+  /// power cells; hidden points stay where they are, too. Except in the plane without weights, no bit
+  /// depends on the order of the points. corners: of the polygon, in the plane
+  /// alone. Throws what triangulate and clipped_voronoi throw; Error(usage) for a cylinder, where cells have
+  /// no end.
+  std::vector<double> relax(const double* points, std::size_t n, const Space& space,
+                            std::size_t iterations = 1, const double* corners = nullptr,
+                            std::size_t corner_count = 0);
   /// Relaxes one set of points in device memory; result: double2, 16 bytes per point, another buffer than
   /// that of the points. The host waits as often per iteration as triangulate does, and three times more; the
   /// points do not travel. Otherwise the work is enqueued like that of triangulate, with the same errors.

@@ -17,7 +17,6 @@
 #include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
-#include "space/periodic/cells.hpp"
 #include "space/periodic/fold.hpp"
 #include "space/spaces.hpp"
 #include "space/triangulate.hpp"
@@ -26,25 +25,25 @@ namespace flaunay {
 
 void call::check(const Period& period) {
   const auto is_length = [](double x) { return (x >= 0x1p-900 && x <= 0x1p900) || x == HUGE_VAL; };
-  expect(is_length(period.x) && is_length(period.y) && std::min(period.x, period.y) < HUGE_VAL,
-         fmt::format("the period {} x {} is not possible: both must be from 2^-900 to 2^900 (about 1.2e-271 "
-                     "to 8.4e270), or "
-                     "one of them infinite; scale points and period",
-                     period.x, period.y));
-  expect(std::isfinite(period.shear), fmt::format("the shear {} is not finite", period.shear));
+  const auto check_lengths = [&](bool are_possible, const char* why) {
+    expect(are_possible,
+           [&] { return fmt::format("the period {} x {} is not possible{}", period.x, period.y, why); });
+  };
+  check_lengths(is_length(period.x) && is_length(period.y) && std::min(period.x, period.y) < HUGE_VAL,
+                ": both must be from 2^-900 to 2^900 (about 1.2e-271 to 8.4e270), or one of them infinite; "
+                "scale points and period");
+  expect(std::isfinite(period.shear),
+         [&] { return fmt::format("the shear {} is not finite", period.shear); });
   const bool is_sheared = period.shear != 0 && std::remainder(period.shear, period.x) != 0;
   expect(period.shear == 0 || std::isfinite(period.x + period.y),
-         fmt::format("a cylinder has no shear, but {} is given", period.shear));
+         [&] { return fmt::format("a cylinder has no shear, but {} is given", period.shear); });
   constexpr double kMostSheared = 64;
-  expect(!is_sheared || period.x <= kMostSheared * period.y,
-         fmt::format("the period {} x {} is not possible with a shear: x is more than 64 times as long as y",
-                     period.x, period.y));
+  check_lengths(!is_sheared || period.x <= kMostSheared * period.y,
+                " with a shear: x is more than 64 times as long as y");
   constexpr double kMostUnequal = 1 << 30;
-  expect(
-      std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) || std::isinf(period.x) ||
-          std::isinf(period.y),
-      fmt::format("the period {} x {} is not possible: one is more than 2^30 times as long as the other one",
-                  period.x, period.y));
+  check_lengths(std::max(period.x, period.y) <= kMostUnequal * std::min(period.x, period.y) ||
+                    std::isinf(period.x) || std::isinf(period.y),
+                ": one is more than 2^30 times as long as the other one");
 }
 
 void call::check_on_torus(const Triangulation& mesh) {
@@ -368,15 +367,5 @@ std::string find_problem_on_torus(const double* points, const std::vector<std::s
 const SpaceCalls kOnTorus{nullptr, triangulate_on_torus, triangulate_on_torus, find_problem_on_torus};
 
 }  // namespace call
-
-ClippedVoronoi call::cells_on_torus(Implementation& self, const double* weights, const Triangulation& mesh) {
-  return take_turn(self, [&] {
-    check_with_places(mesh);
-    expect(std::isfinite(mesh.space.period.x) && std::isfinite(mesh.space.period.y),
-           "cells on a cylinder have no end");
-    expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
-    return periodic::make_cells(self.native().runtime, mesh, weights);
-  });
-}
 
 }  // namespace flaunay

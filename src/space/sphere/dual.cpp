@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <numbers>
 
-#include "operations/prefetch.h"
+#include "derived/voronoi/stars.hpp"
 #include "space/sphere/places.hpp"
 
 namespace flaunay::sphere {
 namespace {
 
-// How many triangles ahead what belongs to their corners is fetched, which can be anywhere in memory.
-constexpr std::size_t kAhead = 16;
+using voronoi::Stars;
 
 Direction normalized(const Direction& v) {
   const double length = std::sqrt(dot(v, v));
@@ -103,50 +102,99 @@ class AreaSum {
   double angle_ = 0, x_ = 1, y_ = 0;
 };
 
-// Fetches what the corners of a triangle that is soon needed have in an array: `width` elements each.
-template <typename T>
-FETCHING void fetch_corners(const Triangulation& mesh, std::size_t t, const T* array, std::size_t width = 1) {
-  const std::size_t first = std::min(3 * t, mesh.triangles.size() - 3);
-  for (std::size_t c = first; c < first + 3; ++c)
-    kernel::fetch(array + width * static_cast<std::size_t>(mesh.triangles[c]));
-}
+// A sum of the integrals of x over triangles of unit vectors with the corner p, which are half of those of
+// the arcs' angles times the normals of their planes. With f for an angle over its sine, these are the sums
+// of f (a x b). Seen from p, whose part is apart, nothing cancels, however small the triangles are.
+class MomentSum {
+ public:
+  void add(const Direction& p, const Direction& a, const Direction& b) {
+    const Direction u = a - p, v = b - p, arc = cross(a, b);
+    const double u_height = dot(u, u) / 2, v_height = dot(v, v) / 2, sine = std::sqrt(dot(arc, arc));
+    const double excess = excess_of(sine, dot(a, b));
+    along_ += (1 + excess) * dot(p, cross(u, v));
+    const double from_u = (1 + excess) * v_height - excess, from_v = excess - (1 + excess) * u_height;
+    across_ = {across_.x + from_u * u.x + from_v * v.x, across_.y + from_u * u.y + from_v * v.y,
+               across_.z + from_u * u.z + from_v * v.z};
+  }
+  // NaN if the triangles are so small that p and rounding are all there is of them.
+  Direction direction(const Direction& p) const {
+    constexpr double kLeast = 1e-28;
+    const Direction turned = cross(p, across_),
+                    all = {along_ * p.x + turned.x, along_ * p.y + turned.y, along_ * p.z + turned.z};
+    return dot(all, all) < kLeast * kLeast ? Direction{NAN, NAN, NAN} : normalized(all);
+  }
 
+ private:
+  // An angle over its sine, less 1.
+  static double excess_of(double sine, double cosine) {
+    const double square = sine * sine;
+    if (cosine > 0 && square < 1e-4) return square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112)));
+    return std::atan2(sine, cosine) / sine - 1;
+  }
+
+  double along_ = 0;
+  Direction across_{0, 0, 0};
+};
+
+// The centres of triangles, and the borders between cells, which are arcs from one to the next.
 class Dual {
  public:
-  Dual(const Triangulation& mesh, Voronoi& result) : mesh_(mesh), result_(result) {}
-
-  Direction centre(std::int32_t t) const {
-    const double* const c = &result_.circumcentres[3 * static_cast<std::size_t>(t)];
-    return {c[0], c[1], c[2]};
+  Dual(host::Runtime& runtime, const Triangulation& mesh)
+      : mesh_(mesh), stars_(mesh, mesh.places.size() / 2), centres_(mesh.triangles.size()) {
+    const auto fetch = [&](std::size_t v) { kernel::fetch(&mesh.places[2 * v]); };
+    voronoi::for_each_triangle(runtime, mesh, fetch, [&](std::size_t t) {
+      const Direction c = centre_of_triangle(mesh, t);
+      std::copy_n(std::begin({c.x, c.y, c.z}), 3, &centres_[3 * t]);
+    });
   }
+
+  const Stars& stars() const { return stars_; }
+  std::vector<double> take_centres() { return std::move(centres_); }
   Point place(std::int32_t v) const { return place_at(mesh_.places, static_cast<std::size_t>(v)); }
 
-  // Writes the triangles around a point, from its smallest, t, and the area of its cell.
-  void write_cell(std::int32_t v, std::int32_t t) {
-    const auto cell = static_cast<std::size_t>(v);
+  // Adds the triangles between a point and the arcs around it, and calls visit(t) for the triangles that have
+  // it, from its first corner on.
+  template <typename Sum, typename Visit>
+  void add_cell(std::int32_t v, std::int32_t first, Sum& sum, const Visit& visit) const {
     const Direction point = direction_of(place(v));
+    std::int32_t t = first / 3;
     Direction begin = centre(t);
-    AreaSum area;
-    for (std::int32_t i = result_.cell_offsets[cell]; i < result_.cell_offsets[cell + 1]; ++i) {
-      result_.cells[static_cast<std::size_t>(i)] = t;
+    for (std::int32_t count = stars_.size(v); count > 0; --count) {
+      visit(t);
       const std::int32_t* const corners = &mesh_.triangles[3 * static_cast<std::size_t>(t)];
       // The next triangle has the edge to the corner before this one, and is opposite to that after it.
       const std::size_t after = corners[0] == v ? 1 : corners[1] == v ? 2 : 0;
       t = mesh_.neighbors[3 * static_cast<std::size_t>(t) + after];
       const Direction end = centre(t);
       if (dot(begin, end) > kLong) {
-        area.add(point, begin, end);
+        sum.add(point, begin, end);
       } else {
         const Direction middle = middle_of(v, corners[(after + 1) % 3], begin, end);
-        area.add(point, begin, middle);
-        area.add(point, middle, end);
+        sum.add(point, begin, middle);
+        sum.add(point, middle, end);
       }
       begin = end;
     }
-    result_.areas[cell] = area.total();
+  }
+
+  // Calls work(i, different) for the points of sets without triangles, whose different points are these.
+  template <typename Work>
+  void for_each_alone(const Work& work) const {
+    for (std::size_t s = 0; s + 1 < mesh_.point_offsets.size(); ++s) {
+      if (mesh_.triangle_offsets[s] < mesh_.triangle_offsets[s + 1]) continue;
+      std::vector<std::size_t> different;
+      for (std::size_t i = mesh_.point_offsets[s]; i < mesh_.point_offsets[s + 1]; ++i) {
+        if (mesh_.representatives[i] == static_cast<std::int32_t>(i)) different.push_back(i);
+      }
+      for (const std::size_t i : different) work(i, different);
+    }
   }
 
  private:
+  Direction centre(std::int32_t t) const {
+    const double* const c = &centres_[3 * static_cast<std::size_t>(t)];
+    return {c[0], c[1], c[2]};
+  }
   // A quarter of a turn from one end of the border between two points. It is the same for both, so that areas
   // add up also where points are too near each other to tell where the border goes.
   Direction middle_of(std::int32_t v, std::int32_t other, const Direction& begin,
@@ -159,53 +207,56 @@ class Dual {
   static constexpr double kLong = -0.5;
 
   const Triangulation& mesh_;
-  Voronoi& result_;
+  const Stars stars_;
+  std::vector<double> centres_;
 };
 
 }  // namespace
 
 Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh) {
-  const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
+  Dual dual(runtime, mesh);
+  const std::vector<std::int32_t>& offsets = dual.stars().offsets();
   Voronoi result;
-  result.circumcentres.resize(3 * triangles);
-  for_each(runtime, triangles, [&](std::size_t t) {
-    fetch_corners(mesh, t + kAhead, mesh.places.data(), 2);
-    const Direction c = centre_of_triangle(mesh, t);
-    std::copy_n(std::begin({c.x, c.y, c.z}), 3, &result.circumcentres[3 * t]);
-  });
-  result.cell_offsets.assign(n + 1, 0);
-  std::vector<std::int32_t> smallest(n);
-  for (std::size_t c = mesh.triangles.size(); c-- > 0;) {
-    const auto v = static_cast<std::size_t>(mesh.triangles[c]);
-    ++result.cell_offsets[v + 1];
-    smallest[v] = static_cast<std::int32_t>(c / 3);
-  }
-  for (std::size_t i = 0; i < n; ++i) result.cell_offsets[i + 1] += result.cell_offsets[i];
   result.cells.resize(mesh.triangles.size());
-  result.areas.assign(n, 0);
-  Dual dual(mesh, result);
-  // In the order of triangles, those of a cell are near each other in memory.
-  for_each(runtime, triangles, [&](std::size_t t) {
-    fetch_corners(mesh, t + kAhead, smallest.data());
-    fetch_corners(mesh, t + kAhead, mesh.places.data(), 2);
-    fetch_corners(mesh, t + kAhead, result.cell_offsets.data());
-    fetch_corners(mesh, t + kAhead, result.areas.data());
-    for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
-      const std::int32_t v = mesh.triangles[c], first = smallest[static_cast<std::size_t>(v)];
-      if (static_cast<std::size_t>(first) == t) dual.write_cell(v, first);
-    }
+  result.areas.assign(mesh.places.size() / 2, 0);
+  const auto fetch = [&](std::size_t v) {
+    kernel::fetch(&mesh.places[2 * v]);
+    kernel::fetch(&offsets[v]);
+    kernel::fetch(&result.areas[v]);
+  };
+  dual.stars().for_each(runtime, fetch, [&](std::size_t, std::int32_t v, std::int32_t first) {
+    const auto cell = static_cast<std::size_t>(v);
+    auto to = static_cast<std::size_t>(offsets[cell]);
+    AreaSum area;
+    dual.add_cell(v, first, area, [&](std::int32_t t) { result.cells[to++] = t; });
+    result.areas[cell] = area.total();
   });
-  // Sets of one or two points have no triangles.
-  for (std::size_t s = 0; s + 1 < mesh.point_offsets.size(); ++s) {
-    if (mesh.triangle_offsets[s] < mesh.triangle_offsets[s + 1]) continue;
-    std::vector<std::size_t> different;
-    for (std::size_t i = mesh.point_offsets[s]; i < mesh.point_offsets[s + 1]; ++i) {
-      if (mesh.representatives[i] == static_cast<std::int32_t>(i)) different.push_back(i);
-    }
-    for (const std::size_t i : different) {
-      result.areas[i] = 4 * std::numbers::pi / static_cast<double>(different.size());
-    }
-  }
+  result.cell_offsets = offsets;
+  dual.for_each_alone([&](std::size_t i, const std::vector<std::size_t>& different) {
+    result.areas[i] = 4 * std::numbers::pi / static_cast<double>(different.size());
+  });
+  result.circumcentres = dual.take_centres();
+  return result;
+}
+
+std::vector<double> centroids(host::Runtime& runtime, const Triangulation& mesh,
+                              SphereCoordinates coordinates) {
+  const Dual dual(runtime, mesh);
+  const std::size_t width = width_of(coordinates);
+  std::vector<double> result(mesh.places.size() / 2 * width, NAN);
+  const auto fetch = [&](std::size_t v) { kernel::fetch(&mesh.places[2 * v]); };
+  dual.stars().for_each(runtime, fetch, [&](std::size_t, std::int32_t v, std::int32_t first) {
+    MomentSum sum;
+    dual.add_cell(v, first, sum, [](std::int32_t) {});
+    write_direction(sum.direction(direction_of(dual.place(v))), coordinates,
+                    &result[width * static_cast<std::size_t>(v)]);
+  });
+  dual.for_each_alone([&](std::size_t i, const std::vector<std::size_t>& different) {
+    if (different.size() != 2) return;
+    const std::size_t other = different[0] + different[1] - i;
+    write_direction(normalized(chord(place_at(mesh.places, other), place_at(mesh.places, i))), coordinates,
+                    &result[width * i]);
+  });
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "geometry/sort.hpp"
@@ -26,6 +27,16 @@ Direction direction_of(Point place) {
   if (is_pole(place)) return {0, 0, -1};
   const double square = place.x * place.x + place.y * place.y, factor = 2 / (1 + square);
   return {place.x * factor, place.y * factor, (1 - square) / (1 + square)};
+}
+
+void write_direction(const Direction& d, SphereCoordinates coordinates, double* to) {
+  if (coordinates == SphereCoordinates::directions) {
+    std::copy_n(std::begin({d.x, d.y, d.z}), 3, to);
+  } else {
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    to[0] = std::atan2(d.y, d.x) * kDegrees;
+    to[1] = std::clamp(std::atan2(d.z, std::hypot(d.x, d.y)) * kDegrees, -90.0, 90.0);
+  }
 }
 
 void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what) {

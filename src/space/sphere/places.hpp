@@ -46,6 +46,8 @@ inline double angle_between(const Direction& a, const Direction& b) {
 constexpr std::size_t width_of(SphereCoordinates coordinates) {
   return coordinates == SphereCoordinates::directions ? 3 : 2;
 }
+/// Writes a unit vector by its coordinates; degrees are rounded.
+void write_direction(const Direction& d, SphereCoordinates coordinates, double* to);
 
 /// Throws Error(input) for what is no point. what: its name.
 [[noreturn]] void refuse(const double* p, std::size_t i, SphereCoordinates coordinates, const char* what);

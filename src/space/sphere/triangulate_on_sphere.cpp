@@ -15,7 +15,6 @@
 #include "prove/sphere_proof.hpp"
 #include "space/spaces.hpp"
 #include "space/sphere/close.hpp"
-#include "space/sphere/dual.hpp"
 #include "space/sphere/places.hpp"
 #include "space/sphere/plane.hpp"
 #include "space/triangulate.hpp"
@@ -335,13 +334,6 @@ std::vector<double> directions_of(const std::vector<double>& places) {
     directions.insert(directions.end(), {d.x, d.y, d.z});
   }
   return directions;
-}
-
-Voronoi Triangulator::voronoi(const Triangulation& mesh) {
-  return call::take_turn(*implementation_, [&] {
-    call::check_on_sphere(mesh);
-    return sphere::make_dual(implementation_->native().runtime, mesh);
-  });
 }
 
 }  // namespace flaunay

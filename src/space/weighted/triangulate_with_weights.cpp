@@ -1,4 +1,4 @@
-// Triangulations of points with weights, and their power cells.
+// Triangulations of points with weights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include "arithmetic/coordinates.h"
 #include "blocks/weighted.hpp"
 #include "call/frame.hpp"
-#include "derived/voronoi/clip_polygon.hpp"
 #include "flaunay/weighted.hpp"
 #include "geometry/arguments.hpp"
 #include "geometry/magnitudes.hpp"
@@ -29,13 +28,14 @@ void check_hidden(const Ids& hidden, std::size_t n) {
                "the hidden points are not those of these points");
 }
 
-void check(const double* points, const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
+}  // namespace
+
+void call::check_with_hidden(const double* points, const std::vector<std::size_t>& offsets,
+                             const Triangulation& mesh) {
   prove::check_arrays(points, offsets, mesh);
   check_hidden(mesh.hidden, offsets.back());
-  call::expect(mesh.neighbors.size() == mesh.triangles.size(), "the triangulation must have its neighbours");
+  expect(mesh.neighbors.size() == mesh.triangles.size(), "the triangulation must have its neighbours");
 }
-
-}  // namespace
 
 namespace call {
 namespace {
@@ -60,7 +60,7 @@ void triangulate_with_weights(Implementation& self, const DevicePoints& points, 
 
 std::string find_problem_with_weights(const double* points, const std::vector<std::size_t>& offsets,
                                       const Space& space, const Triangulation& mesh) {
-  check(points, offsets, mesh);
+  check_with_hidden(points, offsets, mesh);
   check_array(space.weights, offsets.back(), "weights");
   return prove::find_problem({points, space.weights, offsets, mesh, mesh.neighbors, mesh.hidden});
 }
@@ -74,7 +74,7 @@ const SpaceCalls kWithWeights{nullptr, triangulate_with_weights, triangulate_wit
 
 Ids hiding_triangles(Triangulator& triangulator, const double* points,
                      const std::vector<std::size_t>& offsets, const Triangulation& mesh) {
-  check(points, offsets, mesh);
+  call::check_with_hidden(points, offsets, mesh);
   if (mesh.hidden.empty() || mesh.triangles.empty()) return Ids(mesh.hidden.size(), -1);
   const weighted::Visible visible = weighted::visible_points(points, offsets, mesh);
   Locator locator(triangulator, visible.coordinates.data(), visible.offsets, visible.mesh);
@@ -88,18 +88,6 @@ Ids hiding_triangles(Triangulator& triangulator, const double* points,
         mesh.hidden.begin()));
   }
   return locator.locate(queries.data(), of_sets);
-}
-
-ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
-                                             const Triangulation& mesh, const double* corners,
-                                             std::size_t corner_count) {
-  return call::take_turn(*implementation_, [&] {
-    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    check(coordinates, {0, n}, mesh);
-    check_array(weights, n, "weights");
-    return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
-                                polygon.corners);
-  });
 }
 
 }  // namespace flaunay
