@@ -1675,28 +1675,33 @@ class SpaceLocator(_Locator):
         self._on_sphere = mesh.on_sphere
         triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
 
-    def _ask(self, function: Any, queries: _Doubles, *after: Any, before: tuple[Any, ...] = ()) -> None:
+    def _ask(
+        self, function: Any, queries: _Doubles, offsets: Optional[_Offsets], *after: Any, before: tuple[Any, ...] = ()
+    ) -> None:
         """Calls a function of queries. before, after: what it takes before these, and behind their sets."""
         queries = _as_doubles(queries)
+        sets = _as_offsets(offsets, len(queries), what="queries")
         with self._triangulator.turn:
             if self._on_sphere:
                 self._expect(queries, library.locator_set_coordinates)
-            self._call(function, *before, queries, len(queries), None, 0, *after)
+            self._call(function, *before, queries, len(queries), *sets, *after)
 
-    def _find(self, function: Any, queries: _Doubles) -> _Indices:
+    def _find(self, function: Any, queries: _Doubles, offsets: Optional[_Offsets]) -> _Indices:
         found = np.empty(len(queries), np.int32)
-        self._ask(function, queries, found)
+        self._ask(function, queries, offsets, found)
         return found
 
-    def locate(self, queries: _Doubles) -> _Indices:
-        return self._find(library.locator_locate, queries)
+    def locate(self, queries: _Doubles, offsets: Optional[_Offsets]) -> _Indices:
+        return self._find(library.locator_locate, queries, offsets)
 
-    def nearest(self, queries: _Doubles) -> _Indices:
-        return self._find(library.locator_nearest, queries)
+    def nearest(self, queries: _Doubles, offsets: Optional[_Offsets]) -> _Indices:
+        return self._find(library.locator_nearest, queries, offsets)
 
-    def interpolate(self, values: _Doubles, queries: _Doubles, method: str = "linear") -> _Doubles:
+    def interpolate(
+        self, values: _Doubles, queries: _Doubles, offsets: Optional[_Offsets], method: str
+    ) -> _Doubles:
         """A row of values at each query. values: one for each point."""
         table = Interpolation(values, method, np.nan)
         results = np.empty((len(queries), table.columns))
-        self._ask(library.locator_interpolate, queries, table.options, results, before=(table.address,))
+        self._ask(library.locator_interpolate, queries, offsets, table.options, results, before=(table.address,))
         return results

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, Optional
 
 import numpy as np
@@ -135,13 +135,15 @@ class PeriodicDelaunay(WithLocator):
         vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
         return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
-    def find_simplex(self, xi: ArrayLike) -> Indices:
+    def find_simplex(self, xi: ArrayLike, offsets: Optional[npt.ArrayLike] = None) -> Indices:
         """Triangles that contain points, exactly.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2)
             Any places of the plane.
+        offsets : array_like of int, optional
+            Needed for several sets: set s has the queries ``offsets[s]`` to ``offsets[s + 1]``.
 
         Returns
         -------
@@ -151,7 +153,7 @@ class PeriodicDelaunay(WithLocator):
         Raises
         ------
         UsageError, InputError
-            As of `periodic`; UsageError for several sets, too.
+            As of `periodic`; UsageError for another number of sets, too.
 
         Examples
         --------
@@ -160,7 +162,7 @@ class PeriodicDelaunay(WithLocator):
         >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
         array([5, 5], dtype=int32)
         """
-        return self._find(_as_queries(xi), _calls.SpaceLocator.locate)
+        return self._find(_as_queries(xi), offsets, _calls.SpaceLocator.locate)
 
     _as_queries = staticmethod(_as_queries)
 
@@ -169,6 +171,8 @@ class PeriodicDelaunay(WithLocator):
         values: ArrayLike,
         xi: ArrayLike,
         method: Literal["linear", "nearest", "sibson", "laplace"] = "linear",
+        *,
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
         """Values between points.
 
@@ -181,6 +185,8 @@ class PeriodicDelaunay(WithLocator):
         method : {"linear", "nearest", "sibson", "laplace"}
             Linear in triangles, the value of the nearest point, or between natural neighbors, as
             `NaturalNeighborInterpolator`.
+        offsets
+            As of `find_simplex`.
 
         Returns
         -------
@@ -203,8 +209,7 @@ class PeriodicDelaunay(WithLocator):
         array([1. , 1.5])
         """
         number_of(INTERPOLATION, method, "method")
-        ask = partial(self._locator.interpolate, method=method)
-        return self._interpolate(values, _as_queries(xi), ask)
+        return self._interpolate(values, _as_queries(xi), offsets, method)
 
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, ...]:

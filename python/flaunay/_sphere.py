@@ -182,13 +182,15 @@ class SphericalDelaunay(WithLocator):
         arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
-    def find_simplex(self, xi: ArrayLike) -> Indices:
+    def find_simplex(self, xi: ArrayLike, offsets: Optional[npt.ArrayLike] = None) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
 
         Parameters
         ----------
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes in degrees, or x, y and z.
+        offsets : array_like of int, optional
+            Needed for several sets: set s has the queries ``offsets[s]`` to ``offsets[s + 1]``.
 
         Returns
         -------
@@ -198,7 +200,7 @@ class SphericalDelaunay(WithLocator):
         Raises
         ------
         UsageError, InputError
-            As of `spherical`; UsageError for several sets, too.
+            As of `spherical`; UsageError for another number of sets, too.
 
         Examples
         --------
@@ -207,7 +209,7 @@ class SphericalDelaunay(WithLocator):
         >>> tri.find_simplex([[10, 20], [190, -20]])
         array([ 0, -1], dtype=int32)
         """
-        return self._find(_as_points(xi, "xi"), _calls.SpaceLocator.locate)
+        return self._find(_as_points(xi, "xi"), offsets, _calls.SpaceLocator.locate)
 
     @staticmethod
     def _as_queries(given: ArrayLike) -> Doubles:
@@ -218,7 +220,9 @@ class SphericalDelaunay(WithLocator):
     ) -> tuple[Indices, Doubles]:
         return self._tree.nearest_on_sphere(queries, count, most)
 
-    def interpolate(self, values: ArrayLike, xi: ArrayLike) -> Doubles:
+    def interpolate(
+        self, values: ArrayLike, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None
+    ) -> Doubles:
         """Values between points, by linear interpolation in the triangles in space (Renka, 1984).
 
         Parameters
@@ -227,6 +231,8 @@ class SphericalDelaunay(WithLocator):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes in degrees, or x, y and z.
+        offsets
+            As of `find_simplex`.
 
         Returns
         -------
@@ -246,7 +252,7 @@ class SphericalDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
         array([1.5, 3. ])
         """
-        return self._interpolate(values, _as_points(xi, "xi"), self._locator.interpolate)
+        return self._interpolate(values, _as_points(xi, "xi"), offsets, "linear")
 
 
 def spherical(

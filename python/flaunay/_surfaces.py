@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, frozen, summary
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
 from flaunay._errors import UsageError
 from flaunay._queries import Kept, count_and_bound
 
@@ -112,10 +112,14 @@ class WithLocator(OfPoints):
         return self._kept_tree.get(lambda: _calls.PointTree.in_space(self._triangulator, self._handle))
 
     def _find(
-        self, queries: Doubles, search: Callable[[_calls.SpaceLocator, Doubles], Indices]
+        self,
+        queries: Doubles,
+        offsets: Optional[npt.ArrayLike],
+        search: Callable[[_calls.SpaceLocator, Doubles, Optional[npt.NDArray[np.int64]]], Indices],
     ) -> Indices:
         """What a method of the locator finds. Queries are checked before there is one."""
-        found = search(self._locator, queries.reshape(-1, queries.shape[-1]))
+        sets = None if offsets is None else as_offsets(offsets)
+        found = search(self._locator, queries.reshape(-1, queries.shape[-1]), sets)
         return found.reshape(queries.shape[:-1])
 
     @staticmethod
@@ -137,6 +141,7 @@ class WithLocator(OfPoints):
         k: Optional[int] = None,
         distance_upper_bound: Optional[float] = None,
         return_distances: Literal[False] = False,
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> Indices: ...
     @overload
     def nearest(
@@ -146,6 +151,7 @@ class WithLocator(OfPoints):
         k: Optional[int] = None,
         distance_upper_bound: Optional[float] = None,
         return_distances: Literal[True],
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> tuple[Doubles, Indices]: ...
     def nearest(
         self,
@@ -154,6 +160,7 @@ class WithLocator(OfPoints):
         k: Optional[int] = None,
         distance_upper_bound: Optional[float] = None,
         return_distances: bool = False,
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> Union[Indices, tuple[Doubles, Indices]]:
         """The points that are nearest to others, exactly.
 
@@ -164,6 +171,8 @@ class WithLocator(OfPoints):
         k, distance_upper_bound, return_distances
             As of `Delaunay.nearest`. On a torus each point counts once, as it lies nearest; on the sphere distances
             are angles in radians.
+        offsets
+            As of `find_simplex`. Several points and distances are found in one set alone.
 
         Returns
         -------
@@ -193,7 +202,7 @@ class WithLocator(OfPoints):
         queries = self._as_queries(xi)
         is_plain = k is None and distance_upper_bound is None and not return_distances
         if is_plain and self._has_locator:
-            return self._find(queries, _calls.SpaceLocator.nearest)
+            return self._find(queries, offsets, _calls.SpaceLocator.nearest)
         count, most = count_and_bound(k, distance_upper_bound)
         shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
         rows = queries.reshape(-1, queries.shape[-1])
@@ -202,13 +211,14 @@ class WithLocator(OfPoints):
         return (distances.reshape(shape), found) if return_distances else found
 
     def _interpolate(
-        self, values: ArrayLike, queries: Doubles, ask: Callable[[Doubles, Doubles], Doubles]
+        self, values: ArrayLike, queries: Doubles, offsets: Optional[npt.ArrayLike], method: str
     ) -> Doubles:
+        sets = None if offsets is None else as_offsets(offsets)
         numbers = np.asarray(as_floats(values, "values"), np.float64)
         if numbers.ndim == 0 or len(numbers) != self.npoints:
             raise UsageError(
                 f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
             )
         rows = numbers.reshape(self.npoints, math.prod(numbers.shape[1:]))
-        found = ask(rows, queries.reshape(-1, queries.shape[-1]))
+        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]), sets, method)
         return found.reshape(queries.shape[:-1] + numbers.shape[1:])

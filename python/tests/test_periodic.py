@@ -144,6 +144,14 @@ def test_sets(random):
     alone = flaunay.periodic(parts[1], (1, 1))
     np.testing.assert_array_equal(tri.simplices[tri.simplex_offsets[1] :] - 200, alone.simplices)
     np.testing.assert_array_equal(tri.cells.areas[200:], alone.cells.areas)
+    queries, values = random.uniform(-2, 2, (30, 2)), random.normal(size=350)
+    found = tri.find_simplex(queries, [0, 20, 30])
+    np.testing.assert_array_equal(found[20:] - tri.simplex_offsets[1], alone.find_simplex(queries[20:]))
+    np.testing.assert_array_equal(tri.nearest(queries, offsets=[0, 20, 30])[20:] - 200, alone.nearest(queries[20:]))
+    np.testing.assert_array_equal(
+        tri.interpolate(values, queries, "sibson", offsets=[0, 20, 30])[20:],
+        alone.interpolate(values[200:], queries[20:], "sibson"),
+    )
 
 
 @pytest.mark.parametrize(
@@ -152,7 +160,8 @@ def test_sets(random):
         (lambda tri: tri.nearest([1, 2, 3]), flaunay.UsageError, r"xi must have the shape \(\.\.\., 2\)"),
         (lambda tri: tri.interpolate([1, 2], [0, 0]), flaunay.UsageError, "one row per point, 1"),
         (lambda tri: tri.find_simplex([[0, 0], [0, np.nan]]), flaunay.InputError, "query 1 is not finite"),
-        (lambda tri: flaunay.periodic(ONE, (1, 1), [0, 0, 1]).nearest([0, 0]), flaunay.UsageError, "one set"),
+        (lambda tri: flaunay.periodic(ONE, (1, 1), [0, 0, 1]).nearest([0, 0]), flaunay.UsageError, "1 sets"),
+        (lambda tri: flaunay.periodic(ONE, (1, 1), [0, 0, 1]).nearest([0, 0], k=2), flaunay.UsageError, "one set"),
         (lambda tri: flaunay.periodic(ONE, (1, None)).cells, flaunay.UsageError, "cells on a cylinder"),
         (lambda tri: flaunay.periodic([[np.inf, 0.5]], (1, 1)), flaunay.InputError, "point 0 is not finite"),
         (lambda tri: flaunay.periodic(ONE, (0, 1)), flaunay.UsageError, "the period 0 x 1"),

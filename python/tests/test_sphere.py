@@ -87,8 +87,24 @@ def test_sets_are_each_as_alone(random):
         areas = tri.voronoi.areas[offsets[s] : offsets[s + 1]]
         np.testing.assert_array_equal(areas, alone.voronoi.areas)
     tri.verify()
-    with pytest.raises(flaunay.UsageError, match="one set"):
+    queries, of_sets = on_sphere(random, 60), [0, 10, 20, 30, 40, 50, 60]
+    values = random.normal(size=len(tri.points))
+    answers = [tri.find_simplex(queries, of_sets), tri.nearest(queries, offsets=of_sets)]
+    between = tri.interpolate(values, queries, offsets=of_sets)
+    for s, part in enumerate(parts):
+        alone, asked = flaunay.spherical(part.reshape(-1, 3)), slice(of_sets[s], of_sets[s + 1])
+        for answer, own, first in zip(
+            answers,
+            [alone.find_simplex(queries[asked]), alone.nearest(queries[asked])],
+            [tri.simplex_offsets[s], offsets[s]],
+        ):
+            np.testing.assert_array_equal(answer[asked], np.where(own < 0, -1, own + first))
+        own_values = values[offsets[s] : offsets[s + 1]]
+        np.testing.assert_array_equal(between[asked], alone.interpolate(own_values, queries[asked]))
+    with pytest.raises(flaunay.UsageError, match="1 sets"):
         tri.nearest([0, 0])
+    with pytest.raises(flaunay.UsageError, match="one set"):
+        tri.nearest([0, 0], k=2)
 
 
 def test_copies_and_every_device_agree(random):

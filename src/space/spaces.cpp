@@ -96,17 +96,4 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
   return calls.find_problem(points, offsets, space, mesh);
 }
 
-void call::SpaceLocator::set_coordinates(SphereCoordinates) {
-  throw Error(ErrorKind::usage, "queries have coordinates of the sphere on the sphere alone");
-}
-
-std::unique_ptr<call::SpaceLocator> call::make_locator_in_space(Triangulator& triangulator,
-                                                                const Triangulation& triangulation) {
-  expect(triangulation.space.kind != SpaceKind::plane,
-         "queries in the plane need the coordinates of the points, too");
-  expect(triangulation.hidden.empty(), "points with weights have no such queries on a torus or a cylinder");
-  return triangulation.space.kind == SpaceKind::torus ? make_locator_on_torus(triangulator, triangulation)
-                                                      : make_locator_on_sphere(triangulator, triangulation);
-}
-
 }  // namespace flaunay

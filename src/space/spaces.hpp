@@ -1,9 +1,8 @@
-// Triangulations, proofs and queries in other spaces than the plane, and of points with weights.
+// Triangulations and proofs in other spaces than the plane, and of points with weights.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,25 +41,5 @@ extern const SpaceCalls kOnTorus, kOnSphere, kWithWeights;  // the last one: in 
 /// Throws Error(usage) for arrays that are not those of a triangulation of these points with weights.
 void check_with_hidden(const double* points, const std::vector<std::size_t>& offsets,
                        const Triangulation& mesh);
-
-/// Answers queries on one set of points in a space that is not the plane; see Locator. Each query is a turn
-/// of the triangulator.
-class SpaceLocator {
- public:
-  virtual ~SpaceLocator() = default;
-  virtual void set_coordinates(SphereCoordinates coordinates);
-  virtual std::vector<std::int32_t> locate(const double* queries, std::size_t m) = 0;
-  virtual std::vector<std::int32_t> nearest(const double* queries, std::size_t m) = 0;
-  virtual std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
-                                          const InterpolationOptions& options) = 0;
-};
-
-/// Makes a locator in the space of a triangulation. Throws Error(usage) for the plane and for several sets.
-std::unique_ptr<SpaceLocator> make_locator_in_space(Triangulator& triangulator,
-                                                    const Triangulation& triangulation);
-std::unique_ptr<SpaceLocator> make_locator_on_torus(Triangulator& triangulator,
-                                                    const Triangulation& triangulation);
-std::unique_ptr<SpaceLocator> make_locator_on_sphere(Triangulator& triangulator,
-                                                     const Triangulation& triangulation);
 
 }  // namespace flaunay::call

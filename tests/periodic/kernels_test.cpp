@@ -166,7 +166,8 @@ TEST(SmallPeriodicKernels, BoxesOfSets) {
 
 // One set by plain loops: its points with their images, and triangles of these.
 struct Twin {
-  Twin(const Coordinates& places, const periodic::Box& box) : plane{box, places, {}} {
+  Twin(const Coordinates& places, const periodic::Box& box)
+      : plane{{box}, {}, places, places.size() / 2, {}} {
     for (std::size_t i = 0; i < places.size() / 2; ++i) {
       periodic::for_each_image(box, static_cast<std::int64_t>(i), {places[2 * i], places[2 * i + 1]},
                                [&](std::uint64_t image, Point p) {
@@ -186,7 +187,7 @@ struct Twin {
     for (std::size_t c = 0; c < planar.size(); c += 3)
       rows.push_back(kernel::is_kept(image(c), image(c + 1), image(c + 2)) != 0 ? kept++ : -1);
     std::vector<std::int32_t> linked = beyond;
-    periodic::Seams seams(plane.box);
+    periodic::Seams seams(plane.boxes[0]);
     for (std::size_t c = 0; c < planar.size(); ++c) {
       const auto other = static_cast<std::size_t>(std::max(beyond[c], 0));
       if (rows[c / 3] < 0 || (beyond[c] >= 0 && rows[other] >= 0)) continue;
@@ -277,7 +278,7 @@ void expect_sets_of_the_twin(Runtime& runtime, const Period& period, const Sets&
     expected.corners = part(planar.triangles, 3 * t, 3 * end, plane.offsets()[k]);
     expected.neighbors = part(planar.neighbors, 3 * t, 3 * end, t);
     const std::size_t at = plane.offsets()[k];
-    const auto same_of = part(planar.representatives, at, at + expected.plane.points(), at);
+    const auto same_of = part(planar.representatives, at, at + expected.plane.own, at);
     EXPECT_TRUE(same(part(same_points, sets.first[k], sets.last[k], sets.first[k]), same_of));
     const bool is_done = expected.fold(same_of);
     ASSERT_EQ(folded.is_done(k), is_done) << k << " " << margin;

@@ -817,8 +817,8 @@ TEST(Periodic, ErrorsSayWhatIsWrong) {
   const Numbers lost = {0, HUGE_VAL};
   testing::expect_error(ErrorKind::input, "query 0 is not finite", [&] { locator.nearest(lost.data(), 1); });
   testing::expect_error(ErrorKind::usage, "one set", [&] {
-    Locator(testing::triangulator(),
-            testing::triangulator().triangulate(few.data(), {0, 1, 2}, Space::torus({})));
+    PointTree(testing::triangulator(),
+              testing::triangulator().triangulate(few.data(), {0, 1, 2}, Space::torus({})));
   });
   std::swap(mesh.triangles[1], mesh.triangles[2]);
   testing::expect_error(ErrorKind::usage, "not those of a triangulation",

@@ -206,6 +206,51 @@ TEST_P(Laws, PointsAreNearestToThemselves) {
   }
 }
 
+TEST_P(Laws, QueriesOfSetsAreEachAsAlone) {
+  if (space_.has_weights) return;  // has no locator
+  Offsets offsets, of_queries = {0};
+  const Numbers points = joined(cases_, space_.width, offsets);
+  Numbers values, queries;
+  for (std::size_t i = 0; i < offsets.back(); ++i) values.push_back(static_cast<double>(i * 7 % 13));
+  // As many as points and one more, and none for every third set.
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(space_.width * offsets[s]),
+               last = points.begin() + static_cast<std::ptrdiff_t>(space_.width * offsets[s + 1]);
+    if (s % 3 != 2) {
+      queries.insert(queries.end(), first, last);
+      queries.insert(queries.end(), space_.width, 0.125);
+    }
+    of_queries.push_back(queries.size() / space_.width);
+  }
+  const Triangulation mesh = triangulated(points, offsets);
+  Locator locator = space_.locator(triangulator(), points, offsets, mesh);
+  const Ids triangles = locator.locate(queries.data(), of_queries),
+            nearest = locator.nearest(queries.data(), of_queries);
+  InterpolationOptions filled;
+  filled.fill = -1;
+  const Numbers between = locator.interpolate(values.data(), queries.data(), of_queries, filled);
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    SCOPED_TRACE(s);
+    const Numbers own(points.begin() + static_cast<std::ptrdiff_t>(space_.width * offsets[s]),
+                      points.begin() + static_cast<std::ptrdiff_t>(space_.width * offsets[s + 1]));
+    Locator alone = space_.locator(triangulator(), own, {0, offsets[s + 1] - offsets[s]}, triangulated(own));
+    const std::size_t first = of_queries[s], m = of_queries[s + 1] - first;
+    const double* const asked = queries.data() + space_.width * first;
+    const auto shifted = [](Ids ids, std::size_t by) {
+      for (std::int32_t& i : ids) i += i < 0 ? 0 : static_cast<std::int32_t>(by);
+      return ids;
+    };
+    const auto part = [&](const auto& all) {
+      return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
+                         all.begin() + static_cast<std::ptrdiff_t>(first + m));
+    };
+    EXPECT_EQ(shifted(alone.locate(asked, m), mesh.triangle_offsets[s]), part(triangles));
+    EXPECT_EQ(shifted(alone.nearest(asked, m), offsets[s]), part(nearest));
+    EXPECT_EQ(alone.interpolate(values.data() + offsets[s], asked, m, filled), part(between));
+  }
+  EXPECT_THROW(locator.locate(queries.data(), queries.size() / space_.width), Error);
+}
+
 TEST_P(Laws, EveryWrongIndexIsFound) {
   for (const Case& given : {cases_[6], cases_[8]}) {
     const Offsets offsets = {0, given.numbers.size() / space_.width};

@@ -60,11 +60,15 @@ struct TestSpace {
       return flaunay::verify(coordinates.data(), offsets, given, mesh);
     });
   }
+  Locator locator(Triangulator& triangulator, const Numbers& points, const Offsets& offsets,
+                  const Triangulation& mesh) const {
+    return is_plane() ? Locator(triangulator, points.data(), offsets, mesh)
+                                          : Locator(triangulator, mesh);
+  }
   Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
                   const Numbers& queries, const NeighborOptions& options) const {
     const std::size_t n = points.size() / width, m = queries.size() / width;
-    Locator locator =
-        is_plane() ? Locator(triangulator, points.data(), n, mesh) : Locator(triangulator, mesh);
+    Locator locator = this->locator(triangulator, points, {0, n}, mesh);
     PointTree tree = is_plane() ? PointTree(triangulator, points.data(), n) : PointTree(triangulator, mesh);
     return {locator.locate(queries.data(), m), locator.nearest(queries.data(), m),
             tree.nearest(queries.data(), m, options)};

@@ -385,9 +385,7 @@ TEST(Sphere, PlanarPartsAreTheTriangulationsOfThePlane) {
     EXPECT_EQ(planar.triangles, part.triangles);
     EXPECT_EQ(planar.neighbors, part.neighbors);
     EXPECT_EQ(planar.representatives, part.representatives);
-    if (!planar.triangles.empty()) {
-      EXPECT_EQ(planar.hull, part.hull);
-    }
+    EXPECT_EQ(planar.hull, part.hull);
   }
 }
 

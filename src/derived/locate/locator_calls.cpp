@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
 #include "constrained/stages.hpp"
+#include "space/periodic/torus_plane.hpp"
+#include "space/sphere/triangulate_on_sphere.hpp"
+#include "space/triangulate.hpp"
 #include "constrained/whole_mesh.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
@@ -34,6 +38,7 @@ struct Answerer {
     if (!made) return made.too_wide();
     locator = *std::move(made);
     if (constrained) locate::constrain(call.runtime, own, *constrained, locator);
+    if (on_torus != nullptr) on_torus->number_points(call.runtime, locator);
     call.end();
     return geometry::Done();
   }
@@ -49,6 +54,7 @@ struct Answerer {
   locate::Locator locator;
   /// WholeMesh::constrained of a mesh with constraints; null without these.
   std::shared_ptr<const std::vector<std::uint8_t>> constrained;
+  const TorusPlane* on_torus = nullptr;  ///< for the locator of that plane
 };
 
 }  // namespace call
@@ -72,9 +78,11 @@ struct Locator::Implementation {
       fixed.reset();
       doubles_ = std::make_unique<call::Answerer>(call::with_doubles(*owner, asked_));
       doubles_->constrained = constrained;
+      doubles_->on_torus = on_torus ? &*on_torus : nullptr;
       return make(*doubles_);
     };
-    if (asked_.has_doubles()) {
+    // On a torus triangles are made with doubles, too.
+    if (asked_.has_doubles() || on_torus) {
       *with_doubles("");
       return;
     }
@@ -148,6 +156,8 @@ struct Locator::Implementation {
     const std::size_t m = offsets.back();
     check_queries(queries, m);
     const std::size_t numbers = check_columns(columns, m);
+    std::vector<double> places;
+    if (on_torus) queries = (places = on_torus->places(owner->native().runtime, queries, m)).data();
     std::vector<Result> results;
     call::Frame call(by.place.engine);
     const auto output = call.out<Result>(results, numbers);
@@ -267,21 +277,24 @@ struct Locator::Implementation {
                                              output);
   }
 
+  /// Throws for methods that are not possible there.
+  void check_on_torus(const InterpolationOptions& options, const std::vector<std::size_t>& offsets) const {
+    call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr,
+                 "values on a torus or a cylinder are interpolated without gradients");
+    if (options.method == Interpolation::sibson || options.method == Interpolation::laplace)
+      on_torus->check_gaps(offsets);
+  }
+
   /// Throws Error(usage) for what there is in the plane alone.
   void expect_plane(const char* what) const {
-    call::expect(!in_space, [&] {
+    call::expect(!on_torus && !on_sphere, [&] {
       return fmt::format("{}: not for a triangulation on a torus, a cylinder or the sphere", what);
     });
   }
-  /// The number of queries in another space, whose locators are of one set.
-  static std::size_t count_in_space(const std::vector<std::size_t>& offsets) {
-    check_offsets(offsets);
-    call::expect(offsets.size() == 2, "queries on a torus, a cylinder or the sphere are of one set");
-    return offsets.back();
-  }
 
   std::shared_ptr<Triangulator::Implementation> owner;
-  std::unique_ptr<call::SpaceLocator> in_space;  ///< answers all queries in another space than the plane
+  std::optional<call::TorusPlane> on_torus;
+  std::unique_ptr<call::SphereLocator> on_sphere;  ///< answers all queries there
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
   // All points of a mesh with constraints, and WholeMesh::constrained; empty without constraints.
@@ -362,8 +375,22 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
 
 Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
-  implementation_->in_space =
-      with_errors([&] { return call::make_locator_in_space(triangulator, triangulation); });
+  Implementation& self = *implementation_;
+  self.take_turn([&] {
+    call::expect(triangulation.space.kind != SpaceKind::plane,
+                 "queries in the plane need the coordinates of the points, too");
+    if (triangulation.space.kind == SpaceKind::sphere) {
+      const call::WithinTurn within(*self.owner);
+      self.on_sphere = std::make_unique<call::SphereLocator>(triangulator, triangulation);
+      return;
+    }
+    call::expect(triangulation.hidden.empty(),
+                 "points with weights have no such queries on a torus or a cylinder");
+    call::TorusPlane& plane = self.on_torus.emplace(*self.owner, triangulation);
+    self.make_from(plane.coordinates().data(), plane.offsets(), plane.planar());
+    self.point_count = triangulation.representatives.size();
+    plane.release();
+  });
 }
 
 Locator::~Locator() = default;
@@ -372,8 +399,9 @@ Locator& Locator::operator=(Locator&&) noexcept = default;
 
 void Locator::set_coordinates(SphereCoordinates coordinates) {
   with_errors([&] {
-    call::expect(implementation_->in_space != nullptr, "queries in the plane have no such coordinates");
-    implementation_->in_space->set_coordinates(coordinates);
+    call::expect(implementation_->on_sphere != nullptr,
+                 "only queries on the sphere have coordinates of the sphere");
+    implementation_->on_sphere->set_coordinates(coordinates);
   });
 }
 
@@ -382,9 +410,13 @@ std::vector<std::int32_t> Locator::locate(const double* queries, std::size_t m) 
 }
 
 std::vector<std::int32_t> Locator::locate(const double* queries, const std::vector<std::size_t>& offsets) {
-  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
-    return in_space->locate(queries, Implementation::count_in_space(offsets));
-  return implementation_->take_turn([&] { return implementation_->answer_all(queries, offsets, kLocate); });
+  Implementation& self = *implementation_;
+  if (self.on_sphere) return self.on_sphere->locate(queries, offsets);
+  return self.take_turn([&] {
+    std::vector<std::int32_t> found = self.answer_all(queries, offsets, kLocate);
+    if (self.on_torus) self.on_torus->number_triangles(found);
+    return found;
+  });
 }
 
 void Locator::locate(const DevicePoints& queries, DeviceBuffer& triangles, const Enqueue& enqueue) {
@@ -399,10 +431,9 @@ std::vector<std::int32_t> Locator::nearest(const double* queries, std::size_t m)
 }
 
 std::vector<std::int32_t> Locator::nearest(const double* queries, const std::vector<std::size_t>& offsets) {
-  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
-    return in_space->nearest(queries, Implementation::count_in_space(offsets));
-  return implementation_->take_turn(
-      [&] { return implementation_->for_nearest().answer_all(queries, offsets, kNearest); });
+  Implementation& self = *implementation_;
+  if (self.on_sphere) return self.on_sphere->nearest(queries, offsets);
+  return self.take_turn([&] { return self.for_nearest().answer_all(queries, offsets, kNearest); });
 }
 
 void Locator::nearest(const DevicePoints& queries, DeviceBuffer& points, const Enqueue& enqueue) {
@@ -434,13 +465,14 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 std::vector<double> Locator::interpolate(const double* values, const double* queries,
                                          const std::vector<std::size_t>& offsets,
                                          const InterpolationOptions& options) {
-  if (call::SpaceLocator* const in_space = implementation_->in_space.get())
-    return in_space->interpolate(values, queries, Implementation::count_in_space(offsets), options);
-  check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   check_enumerator(options.method);
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
+  if (implementation_->on_sphere)
+    return implementation_->on_sphere->interpolate(values, queries, offsets, options);
+  check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   return implementation_->take_turn([&] {
     Implementation& self = implementation_->for_method(options.method);
+    if (self.on_torus) self.check_on_torus(options, offsets);
     return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
                                 self.interpolation(options, values, options.gradients));
   });

@@ -106,19 +106,21 @@ PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std:
 
 PointTree::PointTree(Triangulator& triangulator, const Triangulation& mesh)
     : implementation_(with_errors([&] {
-        if (mesh.space.kind == SpaceKind::sphere) return std::make_unique<Implementation>(triangulator, mesh);
-        call::check_with_places(mesh);
-        call::expect(mesh.point_offsets.size() == 2, "periodic queries need one set of points");
+        const bool is_on_sphere = mesh.space.kind == SpaceKind::sphere;
+        if (!is_on_sphere) call::check_with_places(mesh);
+        call::expect(mesh.point_offsets.size() == 2, "a tree is of one set of points: make one for each set");
+        if (is_on_sphere) return std::make_unique<Implementation>(triangulator, mesh);
         const periodic::Lattice lattice = periodic::lattice_of(mesh.space.period);
         periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, lattice);
         for (const double length : lattice.reach) {
           if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
         }
-        const periodic::Plane plane = periodic::plane_of(call::Engine::of_thread().runtime, mesh.places, box);
+        const periodic::Plane plane =
+            periodic::plane_of(call::Engine::of_thread().runtime, mesh.places, mesh.point_offsets, {box});
         auto self = std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
                                                      plane.coordinates.data(), plane.coordinates.size() / 2);
         self->lattice = lattice;
-        self->points = plane.points();
+        self->points = plane.own;
         std::size_t copies = 0;  // of one point, whose images follow each other
         for (const std::uint64_t image : plane.images) {
           const auto point = static_cast<std::int32_t>(kernel::point_of(image));

@@ -1428,9 +1428,8 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// flaunay_triangulate. The locator copies what it needs, about 80 bytes of device memory per point. It may
 /// outlive the triangulator. O(n log n) work.
 ///
-/// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read, and the
-/// triangulation must be of one set. Queries are any places of the plane, and on the sphere given as the
-/// points were; they are in host memory.
+/// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read. Queries are any
+/// places of the plane, and on the sphere given as the points were; they are in host memory.
 ///
 /// A triangulation with constraints must be of one set, too. coordinates: of its points and after them those
 /// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points

@@ -628,13 +628,12 @@ class FLAUNAY_API Locator {
   /// Makes a locator for a triangulation of several sets: set s has points [offsets[s], offsets[s + 1]).
   Locator(Triangulator& triangulator, const double* coordinates, const std::vector<std::size_t>& offsets,
           const Triangulation& triangulation);
-  /// Makes a locator for a triangulation of one set on a torus, a cylinder or the sphere; it copies what it
-  /// needs. On a torus or a cylinder, queries are any places of the plane, and are rounded to places as
-  /// points are. They are answered in the plane, with images of points around the box; on a cylinder with
-  /// three times as many points. On the sphere, queries are given as the points were, and are rounded to
-  /// places as these: of the points' places a locator in the plane finds one near the query's, from which an
-  /// exact walk goes on over the sphere. Throws Error(usage) for several sets, for the plane, and for arrays
-  /// that do not fit each other. O(n log n).
+  /// Makes a locator for a triangulation on a torus, a cylinder or the sphere; it copies what it needs. On a
+  /// torus or a cylinder, queries are any places of the plane, and are rounded to places as points are. They
+  /// are answered in the plane, with images of points around the box; on a cylinder with three times as many
+  /// points. On the sphere, queries are given as the points were, and are rounded to places as these: of the
+  /// points' places a locator in the plane finds one near the query's, from which an exact walk goes on over
+  /// the sphere. Throws Error(usage) for the plane, and for arrays that do not fit each other. O(n log n).
   Locator(Triangulator& triangulator, const Triangulation& triangulation);
   /// Makes a locator for a triangulation with constraints, which must have neighbours and be of one set, such
   /// as a map. coordinates: those of the n points that were triangulated; values and answers are of the

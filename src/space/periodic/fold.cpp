@@ -146,14 +146,17 @@ Buffer<cl_double> UnrolledSets::weights(host::Runtime& runtime, Arena& arena,
   return in_plane;
 }
 
-Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box) {
+Plane plane_of(host::Runtime& runtime, const std::vector<double>& places,
+               const std::vector<std::size_t>& offsets, std::vector<Box> boxes) {
+  if (boxes.empty()) return {{}, offsets, {}, 0, {}};
   Arena::Scope scope(runtime.arena());
   Arena arena(runtime.memory());
-  const std::size_t n = places.size() / 2;
-  const UnrolledSets set(runtime, arena, runtime.view(places.data(), 2 * n), {0}, {n}, {box});
-  Plane plane{box, std::vector<double>(2 * set.offsets().back()), {}};
-  runtime.read(set.coordinates(), 0, plane.coordinates.size(), plane.coordinates.data());
-  const std::vector<cl_ulong> images = points::download(runtime, set.at_, n, set.images(0));
+  const UnrolledSets sets(runtime, arena, runtime.view(places.data(), places.size()),
+                          {offsets.begin(), offsets.end() - 1}, {offsets.begin() + 1, offsets.end()}, boxes);
+  Plane plane{std::move(boxes), sets.offsets(), {}, sets.own(), {}};
+  plane.coordinates = points::download(runtime, sets.coordinates(), 0, 2 * plane.offsets.back());
+  const std::vector<cl_ulong> images =
+      points::download(runtime, sets.at_, plane.own, plane.offsets.back() - plane.own);
   plane.images.assign(images.begin(), images.end());
   return plane;
 }

@@ -30,9 +30,9 @@ class UnrolledSets {
   /// Makes room for this many points and images in the array of places, which has those of the set alone.
   using MakeRoom = std::function<Buffer<cl_double>(std::size_t)>;
 
-  /// first, last: per set its points, at least one; all boxes have one lattice. arena: where results come
-  /// from; that of the runtime must be another one. make_room: null, or natively for a set that is alone,
-  /// whose coordinates are then the places themselves. Waits once. O(n).
+  /// first, last: per set its points; there is a set, and all boxes have one lattice. arena: where results
+  /// come from; that of the runtime must be another one. make_room: null, or natively for a set that is
+  /// alone, whose coordinates are then the places themselves. Waits once. O(n).
   UnrolledSets(host::Runtime& runtime, Arena& arena, const Buffer<cl_double>& places,
                const std::vector<std::size_t>& first, const std::vector<std::size_t>& last,
                std::vector<Box> boxes, const MakeRoom& make_room = nullptr);
@@ -50,7 +50,8 @@ class UnrolledSets {
 
  private:
   friend class FoldedSets;
-  friend Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
+  friend Plane plane_of(host::Runtime&, const std::vector<double>&, const std::vector<std::size_t>&,
+                        std::vector<Box>);
   /// Points in the plane below this number are those of this number.
   std::size_t own() const { return sets() == 1 && first_[0] == 0 ? points_ : 0; }
 
@@ -64,8 +65,9 @@ class UnrolledSets {
   Buffer<cl_ulong> at_;  // per place in the plane what is there
 };
 
-/// One set of places in host memory, unrolled natively.
-Plane plane_of(host::Runtime& runtime, const std::vector<double>& places, const Box& box);
+/// Sets of places in host memory, unrolled natively.
+Plane plane_of(host::Runtime& runtime, const std::vector<double>& places,
+               const std::vector<std::size_t>& offsets, std::vector<Box> boxes);
 
 /// The hidden points, as they are known when planes are folded.
 struct HiddenPoints {

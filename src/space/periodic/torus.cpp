@@ -233,7 +233,24 @@ bool Seams::match(std::uint64_t triangles) {
   return true;
 }
 
-double widest_gap(host::Runtime& runtime, const Triangulation& mesh, const Box& box) {
+namespace {
+
+// Calls work(set, begin, end) for runs of the elements of sets, on the threads of a native runtime.
+template <typename Work>
+void for_each_run_of_sets(host::Runtime& runtime, const std::vector<std::size_t>& offsets, const Work& work) {
+  for_each_run(&runtime, offsets.back(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    auto next = std::upper_bound(offsets.begin(), offsets.end(), begin);
+    for (; begin < end; ++next) {
+      const std::size_t last = std::min(end, *next);
+      if (begin < last) work(static_cast<std::size_t>(next - offsets.begin()) - 1, begin, last);
+      begin = last;
+    }
+  });
+}
+
+// Writes the width of the circle around each triangle from `begin` to `end`, all of the box's set.
+void measure_circles(const Triangulation& mesh, const Box& box, std::size_t begin, std::size_t end,
+                     double* widths) {
   // Bounds of all roundings: images and differences of coordinates have one each.
   constexpr double kSpare = 1 + 0x1p-40, kError = 0x1p-50;
   const auto half = [&](std::size_t axis) { return box.high[axis] / 2 - box.low[axis] / 2; };
@@ -253,49 +270,63 @@ double widest_gap(host::Runtime& runtime, const Triangulation& mesh, const Box& 
     const double below = is_upright ? high + a.y : a.y - low, above = is_upright ? -a.y - low : high - a.y;
     return height + error < -below * area || height - error > above * area;
   };
-  const std::size_t count = mesh.triangles.size() / 3;
-  std::vector<double> parts(count / host::Runtime::kPart + 1, 0);
-  runtime.share_parts(count, [&](std::size_t begin, std::size_t end) {
-    double& widest = parts[begin / host::Runtime::kPart];
-    for (std::size_t t = begin; t < end; ++t) {
-      std::array<Point, 3> p;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
-        p[k] = kernel::moved({mesh.places[v], mesh.places[v + 1]}, mesh.corner_offsets[2 * c],
-                             mesh.corner_offsets[2 * c + 1], &box.lattice);
-        p[k] = {scale * p[k].x, scale * p[k].y};
-      }
-      if (has_ends && is_beyond(p[0], p[1], p[2])) continue;
-      std::array<double, 3> opposite;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double x = p[(k + 2) % 3].x - p[(k + 1) % 3].x, y = p[(k + 2) % 3].y - p[(k + 1) % 3].y;
-        opposite[k] = std::sqrt(x * x + y * y);
-      }
-      // The cross product of the two shorter sides has the smallest error.
-      const auto k =
-          static_cast<std::size_t>(std::max_element(opposite.begin(), opposite.end()) - opposite.begin());
-      const Point &a = p[k], &b = p[(k + 1) % 3], &c = p[(k + 2) % 3];
-      const double sides = opposite[(k + 1) % 3] * opposite[(k + 2) % 3],
-                   area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) - kError * sides;
-      widest = std::max(widest, area > 0 ? kSpare * opposite[k] * (sides / area) : HUGE_VAL);
+  for (std::size_t t = begin; t < end; ++t) {
+    std::array<Point, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t c = 3 * t + k, v = 2 * index(mesh.triangles[c]);
+      p[k] = kernel::moved({mesh.places[v], mesh.places[v + 1]}, mesh.corner_offsets[2 * c],
+                           mesh.corner_offsets[2 * c + 1], &box.lattice);
+      p[k] = {scale * p[k].x, scale * p[k].y};
     }
-  });
-  return *std::max_element(parts.begin(), parts.end()) / scale;
+    widths[t] = 0;
+    if (has_ends && is_beyond(p[0], p[1], p[2])) continue;
+    std::array<double, 3> opposite;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = p[(k + 2) % 3].x - p[(k + 1) % 3].x, y = p[(k + 2) % 3].y - p[(k + 1) % 3].y;
+      opposite[k] = std::sqrt(x * x + y * y);
+    }
+    // The cross product of the two shorter sides has the smallest error.
+    const auto k =
+        static_cast<std::size_t>(std::max_element(opposite.begin(), opposite.end()) - opposite.begin());
+    const Point &a = p[k], &b = p[(k + 1) % 3], &c = p[(k + 2) % 3];
+    const double sides = opposite[(k + 1) % 3] * opposite[(k + 2) % 3],
+                 area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) - kError * sides;
+    widths[t] = area > 0 ? kSpare * opposite[k] * (sides / area) / scale : HUGE_VAL;
+  }
 }
 
-bool is_box_inside(const Plane& plane, const Ids& hull) {
+// Whether all that lies in the box lies in the hull, by some distance.
+bool is_box_inside(const Plane& plane, const Box& box, const std::int32_t* hull, std::size_t size) {
   constexpr double kDistance = 0x1p-30;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = in_box(plane.box, plane.place(hull[i])),
-                b = in_box(plane.box, plane.place(hull[(i + 1) % hull.size()]));
+  for (std::size_t i = 0; i < size; ++i) {
+    const Point a = in_box(box, plane.place(hull[i])), b = in_box(box, plane.place(hull[(i + 1) % size]));
     for (const Point corner : {Point{0, 0}, Point{1, 0}, Point{1, 1}, Point{0, 1}}) {
       if (!((b.x - a.x) * (corner.y - a.y) - (b.y - a.y) * (corner.x - a.x) > kDistance)) return false;
     }
   }
-  return !hull.empty();
+  return size > 0;
 }
 
-Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners, const Triangulation& mesh) {
+}  // namespace
+
+std::vector<double> widest_gaps(host::Runtime& runtime, const Triangulation& mesh,
+                                const std::vector<Box>& boxes) {
+  std::vector<double> widths(mesh.triangles.size() / 3), gaps;
+  for_each_run_of_sets(runtime, mesh.triangle_offsets,
+                       [&](std::size_t s, std::size_t begin, std::size_t end) {
+                         measure_circles(mesh, boxes[s], begin, end, widths.data());
+                       });
+  for (std::size_t s = 0; s < boxes.size(); ++s) {
+    double widest = 0;
+    for (std::size_t t = mesh.triangle_offsets[s]; t < mesh.triangle_offsets[s + 1]; ++t)
+      widest = std::max(widest, widths[t]);
+    gaps.push_back(widest);
+  }
+  return gaps;
+}
+
+Ids originals(host::Runtime& runtime, const Plane& plane, const Triangulation& planar,
+              const Triangulation& mesh, std::vector<std::size_t>& narrow) {
   // Triangles by their first corner.
   std::vector<std::size_t> begins(mesh.representatives.size() + 1, 0);
   for (std::size_t c = 0; c < mesh.triangles.size(); c += 3) ++begins[index(mesh.triangles[c])];
@@ -321,41 +352,52 @@ Ids originals(host::Runtime& runtime, const Plane& plane, const Ids& corners, co
     const auto found = std::find_if(first, last, is_same);
     return found == last ? -1 : *found;
   };
-  const Box& box = plane.box;
-  const auto touches_box = [&](const std::array<Point, 3>& p) {
+  const auto touches = [&](const Box& box, const std::array<Point, 3>& p) {
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
     const auto [below, above] = std::minmax({p[0].y, p[1].y, p[2].y});
     return right >= box.low[0] && left <= box.high[0] && above >= box.low[1] && below <= box.high[1];
   };
-  const auto is_small = [&](const std::array<Point, 3>& p) {
+  const auto is_small = [&](const Box& box, const std::array<Point, 3>& p) {
     constexpr double kSpare = 1 + 0x1p-40;  // for all roundings
     const auto is_short = [&](Point a, Point b) {
-      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= plane.box.margin;
+      return kSpare * std::hypot(a.x - b.x, a.y - b.y) <= box.margin;
     };
     return is_short(p[0], p[1]) && is_short(p[1], p[2]) && is_short(p[2], p[0]);
   };
-  Ids result(corners.size() / 3, -1);
-  std::atomic<bool> is_right = true;
-  for_each(runtime, result.size(), [&](std::size_t t) {
-    std::array<Point, 3> places;
-    std::array<std::uint64_t, 3> images;
-    for (std::size_t k = 0; k < 3; ++k) {
-      places[k] = plane.place(corners[3 * t + k]);
-      images[k] = plane.image(corners[3 * t + k]);
-    }
-    if (!touches_box(places)) return;
-    std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
-    result[t] = find(images);
-    if (!is_whole(plane.box) && (result[t] < 0 || !is_small(places))) is_right = false;
-  });
-  if (is_whole(plane.box)) {
-    std::vector<bool> is_found(by_first.size(), false);
-    for (const std::int32_t t : result) {
-      if (t >= 0) is_found[index(t)] = true;
-    }
-    is_right = std::find(is_found.begin(), is_found.end(), false) == is_found.end();
+  const std::size_t sets = plane.boxes.size();
+  Ids result(planar.triangles.size() / 3, -1);
+  std::vector<std::atomic<bool>> is_narrow(sets);
+  for_each_run_of_sets(
+      runtime, planar.triangle_offsets, [&](std::size_t s, std::size_t begin, std::size_t end) {
+        const Box& box = plane.boxes[s];
+        const bool may_be_none = is_whole(box);
+        for (std::size_t t = begin; t < end; ++t) {
+          std::array<Point, 3> places;
+          std::array<std::uint64_t, 3> images;
+          for (std::size_t k = 0; k < 3; ++k) {
+            places[k] = plane.place(planar.triangles[3 * t + k]);
+            images[k] = plane.image(planar.triangles[3 * t + k]);
+          }
+          if (!touches(box, places)) continue;
+          std::rotate(images.begin(), std::min_element(images.begin(), images.end()), images.end());
+          result[t] = find(images);
+          if (!may_be_none && (result[t] < 0 || !is_small(box, places))) is_narrow[s] = true;
+        }
+      });
+  std::vector<bool> is_found(by_first.size(), false);
+  for (const std::int32_t t : result) {
+    if (t >= 0) is_found[index(t)] = true;
   }
-  return is_right ? result : Ids();
+  for (std::size_t s = 0; s < sets; ++s) {
+    const auto own = is_found.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s]),
+               end = is_found.begin() + static_cast<std::ptrdiff_t>(mesh.triangle_offsets[s + 1]);
+    const std::size_t first = planar.hull_offsets[s], size = planar.hull_offsets[s + 1] - first;
+    const bool is_right = is_whole(plane.boxes[s])
+                              ? std::find(own, end, false) == end
+                              : is_box_inside(plane, plane.boxes[s], planar.hull.data() + first, size);
+    if (plane.offsets[s] < plane.offsets[s + 1] && (is_narrow[s] || !is_right)) narrow.push_back(s);
+  }
+  return result;
 }
 
 }  // namespace flaunay::periodic

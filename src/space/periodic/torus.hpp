@@ -99,13 +99,15 @@ class Seams {
   double area_ = 0;  // in units of the box's
 };
 
-/// The points of a set as they are triangulated in the plane: first those in the box, then images.
+/// Sets of points as they are triangulated in the plane: of each first its points, then their images.
 struct Plane {
-  Box box{};
-  std::vector<double> coordinates{};  ///< x and y of all
-  std::vector<std::uint64_t> images{};
+  std::vector<Box> boxes{};
+  std::vector<std::size_t> offsets{};   ///< where sets begin
+  std::vector<double> coordinates{};    ///< x and y of all
+  std::size_t own = 0;                  ///< places below this number are those of points with these numbers
+  std::vector<std::uint64_t> images{};  ///< what is at the other places
 
-  std::size_t points() const { return coordinates.size() / 2 - images.size(); }
+  std::size_t places() const { return coordinates.size() / 2; }
   geometry::Point place(std::int32_t v) const {
     const std::size_t at = 2 * static_cast<std::size_t>(v);
     return {coordinates[at], coordinates[at + 1]};
@@ -113,21 +115,20 @@ struct Plane {
   /// The point or image at a place; points are numbered from 0.
   std::uint64_t image(std::int32_t v) const {
     const auto i = static_cast<std::size_t>(v);
-    return i < points() ? kernel::image_of(v, 0, 0) : images[i - points()];
+    return i < own ? kernel::image_of(v, 0, 0) : images[i - own];
   }
 };
 
-/// About the width of the widest circle without points, and on a cylinder of those with centres between its
-/// ends; not less. box: of all points. O(t).
-double widest_gap(host::Runtime& runtime, const Triangulation& mesh, const Box& box);
+/// Of each set about the width of the widest circle without points, and on a cylinder of those with centres
+/// between its ends; not less. boxes: of all points. O(t).
+std::vector<double> widest_gaps(host::Runtime& runtime, const Triangulation& mesh,
+                                const std::vector<Box>& boxes);
 
-/// Whether all that lies in the box lies in the hull, by some distance. O(h).
-bool is_box_inside(const Plane& plane, const std::vector<std::int32_t>& hull);
-
-/// For each triangle in the plane that touches the box, the one that it is an image of; -1 for others. Empty
-/// if one of them is the image of none, or longer than the margin. Of a whole plane it is -1 for those that
-/// are images of none, which lie outside, and the result is empty if some triangle has no image. O(t).
-std::vector<std::int32_t> originals(host::Runtime& runtime, const Plane& plane,
-                                    const std::vector<std::int32_t>& corners, const Triangulation& mesh);
+/// For each triangle in the plane that touches the box, the one that it is an image of; -1 for others. Of a
+/// whole plane it is also -1 for those that are images of none, which lie outside. narrow: the sets whose
+/// margin is too small: a part of the box is outside of the hull, or a triangle there is the image of none or
+/// longer than the margin; also those with a whole plane in which a triangle has no image. O(t).
+std::vector<std::int32_t> originals(host::Runtime& runtime, const Plane& plane, const Triangulation& planar,
+                                    const Triangulation& mesh, std::vector<std::size_t>& narrow);
 
 }  // namespace flaunay::periodic

@@ -90,7 +90,8 @@ std::vector<double> to_places(host::Runtime& runtime, const double* points, std:
   return places;
 }
 
-std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places) {
+std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places,
+                                            const std::vector<std::size_t>& offsets) {
   // The lower half of the octahedron is folded out over the corners of the upper one's square.
   std::vector<Point> unfolded(places.size() / 2);
   for_each(runtime, unfolded.size(), [&](std::size_t i) {
@@ -103,7 +104,14 @@ std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::v
   std::vector<std::int32_t> order(unfolded.size());
   std::iota(order.begin(), order.end(), 0);
   geometry::sort_by_place(order, [&](std::int32_t i) { return unfolded[static_cast<std::size_t>(i)]; });
-  return order;
+  if (offsets.size() == 2) return order;
+  std::vector<std::int32_t> by_set(order.size());
+  std::vector<std::size_t> ends = offsets;
+  for (const std::int32_t i : order) {
+    const auto next = std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(i));
+    by_set[ends[static_cast<std::size_t>(next - offsets.begin()) - 1]++] = i;
+  }
+  return by_set;
 }
 
 }  // namespace flaunay::sphere

@@ -62,8 +62,10 @@ bool find_places(host::Runtime& runtime, const host::Buffer<T>& points, std::siz
 std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
                               SphereCoordinates coordinates, const char* what);
 
-/// Returns the numbers of places in an order in which those of near points of the sphere are near each other:
-/// along a curve that fills the octahedron to which it is unfolded. O(n).
-std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places);
+/// Returns the numbers of places of sets in an order in which those of near points of the sphere are near
+/// each other: one set after the other, each along a curve that fills the octahedron to which the sphere is
+/// unfolded. O(n).
+std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places,
+                                            const std::vector<std::size_t>& offsets);
 
 }  // namespace flaunay::sphere

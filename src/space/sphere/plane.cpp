@@ -21,10 +21,10 @@ bool is_in_plane(const Triangulation& mesh, std::size_t t) {
   return kernel::orient_sign(corners[0], corners[1], corners[2], ORIENT_BOUND) > 0;
 }
 
-// The corners of the border of triangles, counter-clockwise, from its first point on.
-Ids border_of(const std::vector<double>& places, const Triangulation& planar) {
+// Appends the border of the triangles from a row on: its corners, counter-clockwise, from its first point on.
+void append_border(const std::vector<double>& places, std::size_t first_row, Triangulation& planar) {
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  for (std::size_t c = 0; c < planar.neighbors.size(); ++c) {
+  for (std::size_t c = 3 * first_row; c < planar.neighbors.size(); ++c) {
     if (planar.neighbors[c] >= 0) continue;
     edges.push_back(mesh::edge_opposite(planar.triangles, c));
   }
@@ -32,13 +32,25 @@ Ids border_of(const std::vector<double>& places, const Triangulation& planar) {
   const auto first = std::min_element(edges.begin(), edges.end(), [&](const auto& a, const auto& b) {
     return kernel::comes_before(place_at(places, index(a.first)), place_at(places, index(b.first))) != 0;
   });
-  Ids border;
-  for (auto edge = first; border.size() < edges.size();) {
-    border.push_back(edge->first);
+  const std::size_t end = planar.hull.size() + edges.size();
+  for (auto edge = first; planar.hull.size() < end;) {
+    planar.hull.push_back(edge->first);
     edge = std::lower_bound(edges.begin(), edges.end(), std::pair(edge->second, std::int32_t{0}));
     if (edge == edges.end()) break;  // of arrays that are no triangulation's
   }
-  return border;
+}
+
+// Appends the vertices of a set whose points are all on a line in the plane, in their order there.
+void append_line(const Triangulation& mesh, std::size_t s, Ids& hull) {
+  const std::size_t begin = hull.size();
+  for (std::size_t i = mesh.point_offsets[s]; i < mesh.point_offsets[s + 1]; ++i) {
+    if (index(mesh.representatives[i]) == i && !is_pole(place_at(mesh.places, i)))
+      hull.push_back(static_cast<std::int32_t>(i));
+  }
+  std::sort(
+      hull.begin() + static_cast<std::ptrdiff_t>(begin), hull.end(), [&](std::int32_t a, std::int32_t b) {
+        return kernel::comes_before(place_at(mesh.places, index(a)), place_at(mesh.places, index(b))) != 0;
+      });
 }
 
 }  // namespace
@@ -86,25 +98,38 @@ void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar) 
 }
 
 Triangulation planar_part(const Plane& plane, const Triangulation& mesh) {
-  // Rows are those of the plane, and then those around the pole.
-  std::size_t rows = 0, end = mesh.triangles.size() / 3;
-  while (rows < end) {
-    const std::size_t middle = rows + (end - rows) / 2;
-    if (is_in_plane(mesh, middle)) {
-      rows = middle + 1;
-    } else {
-      end = middle;
-    }
-  }
   Triangulation planar;
-  const auto corners = static_cast<std::ptrdiff_t>(3 * rows);
-  planar.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + corners);
-  planar.neighbors.assign(mesh.neighbors.begin(), mesh.neighbors.begin() + corners);
-  for (std::int32_t& t : planar.neighbors) {
-    if (index(t) >= rows) t = -1;
+  planar.triangle_offsets = planar.hull_offsets = {0};
+  planar.triangles.reserve(mesh.triangles.size());
+  planar.neighbors.reserve(mesh.triangles.size());
+  for (std::size_t s = 0; s + 1 < mesh.point_offsets.size(); ++s) {
+    // Rows are those of the plane, and then those around the pole.
+    const std::size_t first = mesh.triangle_offsets[s], to = planar.triangle_offsets.back();
+    std::size_t rows = first, end = mesh.triangle_offsets[s + 1];
+    while (rows < end) {
+      const std::size_t middle = rows + (end - rows) / 2;
+      if (is_in_plane(mesh, middle)) {
+        rows = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    const auto begin = static_cast<std::ptrdiff_t>(3 * first), last = static_cast<std::ptrdiff_t>(3 * rows);
+    planar.triangles.insert(planar.triangles.end(), mesh.triangles.begin() + begin,
+                            mesh.triangles.begin() + last);
+    planar.neighbors.resize(3 * (to + rows - first));
+    std::transform(
+        mesh.neighbors.begin() + begin, mesh.neighbors.begin() + last, &planar.neighbors[3 * to],
+        [&](std::int32_t t) { return index(t) >= rows ? -1 : t - static_cast<std::int32_t>(first - to); });
+    if (rows > first) {
+      append_border(mesh.places, to, planar);
+    } else {
+      append_line(mesh, s, planar.hull);
+    }
+    planar.triangle_offsets.push_back(to + rows - first);
+    planar.hull_offsets.push_back(planar.hull.size());
   }
   planar.representatives = mesh.representatives;
-  planar.hull = border_of(mesh.places, planar);
   if (plane.all == nullptr) {
     Ids numbers(mesh.representatives.size(), -1);
     for (std::size_t i = 0; i < plane.points.size(); ++i)
@@ -116,8 +141,6 @@ Triangulation planar_part(const Plane& plane, const Triangulation& mesh) {
       std::transform(ids->begin(), ids->end(), ids->begin(),
                      [&](std::int32_t i) { return numbers[index(i)]; });
   }
-  planar.triangle_offsets = {0, rows};
-  planar.hull_offsets = {0, planar.hull.size()};
   return planar;
 }
 

@@ -26,9 +26,8 @@ Plane make_plane(const std::vector<double>& places, const std::vector<std::size_
 /// Numbers the arrays of a triangulation of the plane by the n points of the sphere.
 void number_by_points(const Plane& plane, std::size_t n, Triangulation& planar);
 
-/// Takes the triangulation of the plane of one set out of that of the sphere, for its locator: triangles,
-/// neighbours, hull and representatives, numbered as the plane's points. No triangles, if the points are all
-/// on a line there. O(t).
+/// Takes the triangulation of the plane out of that of the sphere, for its locator: triangles, neighbours,
+/// hulls and representatives, numbered as the plane's points. O(t + h log h).
 Triangulation planar_part(const Plane& plane, const Triangulation& mesh);
 
 }  // namespace flaunay::sphere

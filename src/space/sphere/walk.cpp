@@ -27,6 +27,15 @@ Walker::Walker(const Triangulation& mesh)
   }
 }
 
+std::int32_t Walker::other_of(std::int32_t v) const {
+  const std::vector<std::size_t>& offsets = mesh_.point_offsets;
+  const auto end = std::upper_bound(offsets.begin(), offsets.end(), static_cast<std::size_t>(v));
+  for (std::size_t i = *(end - 1); i < *end; ++i) {
+    if (mesh_.representatives[i] != v) return mesh_.representatives[i];
+  }
+  return -1;
+}
+
 int Walker::corner_of(std::int32_t t, std::int32_t v) const {
   int k = 0;
   while (corner(t, k) != v) ++k;
@@ -34,8 +43,14 @@ int Walker::corner_of(std::int32_t t, std::int32_t v) const {
 }
 
 std::int32_t Walker::nearest(Point query, std::int32_t v) const {
-  const std::int32_t start = triangle_at_[static_cast<std::size_t>(v)];
-  if (start < 0) return v;
+  const auto is_better_than = [&](std::int32_t other, std::int32_t best) {
+    const int sign = nearer(query, place(other), place(best));
+    return sign > 0 || (sign == 0 && comes_first(place(other), place(best)));
+  };
+  if (triangle_at_[static_cast<std::size_t>(v)] < 0) {
+    const std::int32_t other = other_of(v);
+    return other >= 0 && is_better_than(other, v) ? other : v;
+  }
   std::int32_t best = v;
   for (bool is_better = true; is_better;) {
     is_better = false;
@@ -45,8 +60,7 @@ std::int32_t Walker::nearest(Point query, std::int32_t v) const {
     do {
       const int k = corner_of(t, v);
       const std::int32_t other = corner(t, k + 1);
-      const int sign = nearer(query, place(other), place(best));
-      if (sign > 0 || (sign == 0 && comes_first(place(other), place(best)))) {
+      if (is_better_than(other, best)) {
         best = other;
         is_better = true;
       }
@@ -69,9 +83,7 @@ std::vector<std::int32_t> Walker::nearest_points(Point query, std::int32_t v, st
     std::push_heap(waiting.begin(), waiting.end(), comes_later);
   };
   add(v);
-  // Sets without triangles have one or two points.
-  for (std::size_t i = 0; mesh_.triangles.empty() && i < mesh_.representatives.size(); ++i)
-    add(mesh_.representatives[i]);
+  if (triangle_at_[static_cast<std::size_t>(v)] < 0 && other_of(v) >= 0) add(other_of(v));
   while (!waiting.empty() && result.size() < count) {
     std::pop_heap(waiting.begin(), waiting.end(), comes_later);
     const std::int32_t best = waiting.back();
@@ -117,8 +129,8 @@ Found Walker::smallest(Found here, Point query) const {
   return least == t ? here : found(least, query);
 }
 
-Found Walker::locate(Point query, std::int32_t v) const {
-  std::int32_t t = triangle_at_[static_cast<std::size_t>(v)];
+Found Walker::find(Point query, std::int32_t v) const {
+  std::int32_t t = triangle_at_[static_cast<std::size_t>(nearest(query, v))];
   while (t >= 0 && is_seen_[static_cast<std::size_t>(t)] != 0) {
     const Found here = found(t, query);
     int k = 0;

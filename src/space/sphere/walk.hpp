@@ -15,7 +15,7 @@ struct Found {
   std::array<int, 3> sides{};
 };
 
-/// A triangulation of one set, on which any number of threads can walk at once. Refers to its arrays.
+/// A triangulation of sets of points, on which any number of threads can walk at once. Refers to its arrays.
 class Walker {
  public:
   /// O(t). The mesh is one on the sphere, as a call made it.
@@ -26,8 +26,8 @@ class Walker {
     return mesh_.triangles[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
   }
 
-  /// From vertex v to that which is nearest, and of several the first one: each step goes to a better
-  /// neighbour. The nearest points are the corners of one face of the hull in space, in which all are
+  /// From vertex v to that of its set which is nearest, and of several the first one: each step goes to a
+  /// better neighbour. The nearest points are the corners of one face of the hull in space, in which all are
   /// neighbours of the first, so that no step is missing.
   std::int32_t nearest(Point query, std::int32_t v) const;
   /// The nearest points in their order, equal ones by their indices; fewer than `count` only if there are no
@@ -35,9 +35,10 @@ class Walker {
   /// through it, within the circle of what is nearer, has no point inside but for some that are nearer than
   /// itself.
   std::vector<std::int32_t> nearest_points(Point query, std::int32_t v, std::size_t count) const;
-  /// From a triangle at vertex v across arcs that the query lies beyond. In space, its ray's distance to the
-  /// triangles' planes grows from step to step, and so the walk ends. No triangle, if none has the query.
-  Found locate(Point query, std::int32_t v) const;
+  /// From the vertex nearest to the query, where one near it is vertex v, across arcs that the query lies
+  /// beyond. In space, its ray's distance to the triangles' planes grows from step to step, and so the walk
+  /// ends. No triangle, if none has the query.
+  Found find(Point query, std::int32_t v) const;
   /// The weights of the triangle's corners where the query's direction meets it.
   std::array<double, 3> weights(const Found& found, Point query) const;
 
@@ -48,6 +49,9 @@ class Walker {
   int corner_of(std::int32_t t, std::int32_t v) const;
   Found found(std::int32_t t, Point query) const;
   Found smallest(Found here, Point query) const;
+
+  // The other vertex of a set of two points; -1 of one. A set without triangles has not more.
+  std::int32_t other_of(std::int32_t v) const;
 
   const Triangulation& mesh_;
   /// Whether each triangle turns left, as seen from the sphere's centre: all do unless the points lie
