@@ -18,11 +18,9 @@ from flaunay._arrays import (
     as_points,
     frozen,
     hint_for,
-    number_of,
     summary,
 )
 from flaunay._cells import ClippedVoronoi
-from flaunay._declarations import INTERPOLATION
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
 from flaunay._errors import UsageError
 from flaunay._surfaces import Doubles, Indices, WithLocator, as_weights
@@ -208,7 +206,6 @@ class PeriodicDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
         array([1. , 1.5])
         """
-        number_of(INTERPOLATION, method, "method")
         return self._interpolate(values, _as_queries(xi), offsets, method)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from functools import cached_property
-from typing import Any, Optional
+from typing import Any, Literal, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -221,9 +221,14 @@ class SphericalDelaunay(WithLocator):
         return self._tree.nearest_on_sphere(queries, count, most)
 
     def interpolate(
-        self, values: ArrayLike, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None
+        self,
+        values: ArrayLike,
+        xi: ArrayLike,
+        method: Literal["linear", "nearest", "sibson", "laplace"] = "linear",
+        *,
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
-        """Values between points, by linear interpolation in the triangles in space (Renka, 1984).
+        """Values between points.
 
         Parameters
         ----------
@@ -231,19 +236,23 @@ class SphericalDelaunay(WithLocator):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes in degrees, or x, y and z.
+        method : {"linear", "nearest", "sibson", "laplace"}
+            The value where the direction of a query meets its triangle in space (Renka, 1984), that of the nearest
+            point, or between natural neighbours (Brown, 1994): by the areas that a query's cell would take from
+            others, or by the lengths of its edges over distances.
         offsets
             As of `find_simplex`.
 
         Returns
         -------
         ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
-            The value where the direction of a query meets its triangle: continuous, and at a point that
-            point's value. NaN where `find_simplex` says -1.
+            Continuous, unless of the nearest points, and at a point that point's value. NaN where `find_simplex`
+            says -1, but of nearest points only in a set without points.
 
         Raises
         ------
         UsageError, InputError
-            As of `find_simplex`; UsageError for another number of values than of points, too.
+            As of `find_simplex`; UsageError for another number of values than of points, and an unknown method.
 
         Examples
         --------
@@ -251,8 +260,10 @@ class SphericalDelaunay(WithLocator):
         >>> tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
         >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
         array([1.5, 3. ])
+        >>> tri.interpolate([1, 2, 3], [45, 45], "laplace").round(3).item()
+        2.154
         """
-        return self._interpolate(values, _as_points(xi, "xi"), offsets, "linear")
+        return self._interpolate(values, _as_points(xi, "xi"), offsets, method)
 
 
 def spherical(

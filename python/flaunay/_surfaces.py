@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, summary
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, number_of, summary
+from flaunay._declarations import INTERPOLATION
 from flaunay._errors import UsageError
 from flaunay._queries import Kept, count_and_bound
 
@@ -213,6 +214,7 @@ class WithLocator(OfPoints):
     def _interpolate(
         self, values: ArrayLike, queries: Doubles, offsets: Optional[npt.ArrayLike], method: str
     ) -> Doubles:
+        number_of(INTERPOLATION, method, "method")
         sets = None if offsets is None else as_offsets(offsets)
         numbers = np.asarray(as_floats(values, "values"), np.float64)
         if numbers.ndim == 0 or len(numbers) != self.npoints:

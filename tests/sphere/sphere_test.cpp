@@ -407,6 +407,159 @@ TEST(Sphere, LinearFunctionsInSpaceAreInterpolated) {
   }
 }
 
+/// The weights of one query, by points.
+std::map<std::int32_t, double> weights_of(Locator& locator, const double* query, Interpolation method) {
+  const NaturalWeights found = locator.natural_weights(query, 1, method);
+  std::map<std::int32_t, double> weights;
+  for (std::size_t i = 0; i < found.points.size(); ++i) weights[found.points[i]] += found.weights[i];
+  EXPECT_EQ(found.points.size(), weights.size());
+  return weights;
+}
+
+TEST(Sphere, NaturalNeighborsAreWeighedByTheirCells) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const Triangulation mesh = triangulated(c.points, c.coordinates);
+    const Numbers own = directions_of(mesh.places);
+    const std::size_t n = own.size() / 3;
+    Locator locator(testing::triangulator(), mesh);
+    locator.set_coordinates(kDirections);
+    Numbers queries = random_directions(20, 8);
+    for (std::size_t i = 0; i + 5 < own.size() && i < 60; i += 3) {
+      for (const double share : {1.0, 1e-6}) {
+        // On arcs, if the points are neighbours.
+        const Direction at = {own[i] + share * own[i + 3], own[i + 1] + share * own[i + 4],
+                              own[i + 2] + share * own[i + 5]};
+        if (dot(at, at) > 0) queries.insert(queries.end(), {at.x, at.y, at.z});
+      }
+    }
+    const Voronoi before = testing::triangulator().voronoi(mesh);
+    for (std::size_t q = 0; q < queries.size() / 3; ++q) {
+      const double* const query = &queries[3 * q];
+      const auto sibson = weights_of(locator, query, Interpolation::sibson),
+                 laplace = weights_of(locator, query, Interpolation::laplace);
+      if (locator.locate(query, 1)[0] < 0) {
+        ASSERT_TRUE(sibson.empty() && laplace.empty());
+        continue;
+      }
+      Numbers with = own;
+      with.insert(with.end(), query, query + 3);
+      const Triangulation more = triangulated(with, kDirections);
+      if (more.representatives[n] != static_cast<std::int32_t>(n)) {
+        ASSERT_EQ((std::map<std::int32_t, double>{
+                      {mesh.representatives[static_cast<std::size_t>(more.representatives[n])], 1}}),
+                  sibson);
+        ASSERT_EQ(sibson, laplace);
+        continue;
+      }
+      // Directions are rounded once more, which may move points that are near each other.
+      if (more.places != [&] {
+            Numbers places = mesh.places;
+            places.insert(places.end(), more.places.end() - 2, more.places.end());
+            return places;
+          }())
+        continue;
+      const Voronoi after = testing::triangulator().voronoi(more);
+      // Neighbours with the lengths of edges between centres, around the new cell.
+      std::map<std::int32_t, double> lengths;
+      double whole = 0, sum = 0;
+      const auto centre = [&](std::int32_t t) {
+        const double* const p = &after.circumcentres[3 * static_cast<std::size_t>(t)];
+        return Direction{p[0], p[1], p[2]};
+      };
+      const Direction at = direction_of(place_at(more.places, n));
+      for (std::int32_t k = after.cell_offsets[n]; k < after.cell_offsets[n + 1]; ++k) {
+        const std::int32_t t = after.cells[static_cast<std::size_t>(k)];
+        const std::int32_t next = k + 1 < after.cell_offsets[n + 1]
+                                      ? after.cells[static_cast<std::size_t>(k) + 1]
+                                      : after.cells[static_cast<std::size_t>(after.cell_offsets[n])];
+        const std::int32_t* const v = &more.triangles[3 * static_cast<std::size_t>(t)];
+        const auto corner = static_cast<std::size_t>(std::find(v, v + 3, static_cast<std::int32_t>(n)) - v);
+        const std::int32_t other = v[(corner + 2) % 3];
+        const double length =
+            angle_between(centre(t), centre(next)) /
+            angle_between(at, direction_of(place_at(more.places, static_cast<std::size_t>(other))));
+        lengths[other] += length;
+        whole += length;
+      }
+      for (const auto& [v, weight] : laplace) {
+        EXPECT_GE(weight, 0);
+        EXPECT_NEAR(lengths[v] / whole, weight, 1e-7) << q << " " << v;
+        sum += weight;
+      }
+      EXPECT_NEAR(1, sum, 1e-14);
+      sum = 0;
+      const double area = after.areas[n];
+      for (const auto& [v, weight] : sibson) {
+        EXPECT_GE(weight, 0);
+        const auto i = static_cast<std::size_t>(v);
+        if (area > 1e-6) {
+          EXPECT_NEAR((before.areas[i] - after.areas[i]) / area, weight, 1e-13 / area + 1e-9)
+              << q << " " << v;
+        }
+        sum += weight;
+      }
+      EXPECT_NEAR(1, sum, 1e-14);
+    }
+    // At points, the values of these; of several ways to give the same points the same bytes.
+    Numbers values, turned, of_turned;
+    for (std::size_t i = 0; i < n; ++i)
+      values.push_back(std::sqrt(static_cast<double>(mesh.representatives[i]) + 2));
+    for (std::size_t i = n; i-- > 0;) {
+      turned.insert(turned.end(), own.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                    own.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+      of_turned.push_back(values[i]);
+    }
+    const Triangulation other_mesh = triangulated(turned, kDirections);
+    Locator other(testing::triangulator(), other_mesh);
+    bool are_the_same = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point a = place_at(other_mesh.places, n - 1 - i), b = place_at(mesh.places, i);
+      are_the_same &= a.x == b.x && a.y == b.y;
+    }
+    InterpolationOptions options;
+    options.fill = -1;
+    for (const Interpolation method :
+         {Interpolation::linear, Interpolation::nearest, Interpolation::sibson, Interpolation::laplace}) {
+      options.method = method;
+      const Numbers found = locator.interpolate(values.data(), queries.data(), queries.size() / 3, options);
+      if (are_the_same && method != Interpolation::linear) {
+        EXPECT_EQ(other.interpolate(of_turned.data(), queries.data(), queries.size() / 3, options), found);
+      }
+      if (!are_the_same) continue;
+      const Numbers at_points = locator.interpolate(values.data(), own.data(), n, options);
+      for (std::size_t i = 0; i < n; ++i) {
+        if (at_points[i] != -1) {
+          EXPECT_EQ(values[i], at_points[i]) << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sphere, NaturalNeighborsAreContinuous) {
+  const Numbers points = random_directions(60, 31);
+  const Triangulation mesh = triangulated(points, kDirections);
+  Locator locator(testing::triangulator(), mesh);
+  Numbers values, queries;
+  for (std::size_t i = 0; i < points.size(); i += 3)
+    values.push_back(points[i] + std::sin(3 * points[i + 1]));
+  // Along a circle that crosses arcs, circles of triangles, and a point.
+  constexpr std::size_t kSteps = 200000;
+  for (std::size_t i = 0; i <= kSteps; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kSteps;
+    for (std::size_t k = 0; k < 3; ++k)
+      queries.push_back(std::cos(angle) * points[k] + std::sin(angle) * (points[3 + k] + 0.25));
+  }
+  InterpolationOptions options;
+  for (const Interpolation method : {Interpolation::sibson, Interpolation::laplace}) {
+    options.method = method;
+    const Numbers found = locator.interpolate(values.data(), queries.data(), queries.size() / 3, options);
+    EXPECT_NEAR(values[0], found[0], 1e-12);
+    for (std::size_t i = 0; i < kSteps; ++i) ASSERT_NEAR(found[i], found[i + 1], 1e-2) << i;
+  }
+}
+
 TEST(Sphere, ErrorsSayWhatIsWrong) {
   testing::expect_error(ErrorKind::input, "point 1: the latitude 90.5", [] {
     triangulated({0, 0, 7, 90.5}, kDegrees);

@@ -146,6 +146,14 @@ struct Locator::Implementation {
                                    [&](const std::string&) { return answer(doubles()); });
   }
 
+  /// The places of queries on a torus, which replace these. Elsewhere nothing changes.
+  std::vector<double> placed(const double*& queries, std::size_t m) const {
+    if (!on_torus) return {};
+    std::vector<double> places = on_torus->places(owner->native().runtime, queries, m);
+    queries = places.data();
+    return places;
+  }
+
   /// Answers queries in host memory. columns: the length of each result. work(call, locator, queries, m,
   /// offsets, results) enqueues the kernels that write the results.
   template <typename Result, typename Work>
@@ -156,8 +164,7 @@ struct Locator::Implementation {
     const std::size_t m = offsets.back();
     check_queries(queries, m);
     const std::size_t numbers = check_columns(columns, m);
-    std::vector<double> places;
-    if (on_torus) queries = (places = on_torus->places(owner->native().runtime, queries, m)).data();
+    const std::vector<double> places = placed(queries, m);
     std::vector<Result> results;
     call::Frame call(by.place.engine);
     const auto output = call.out<Result>(results, numbers);
@@ -496,12 +503,14 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
 
 NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
   Implementation& self = *implementation_;
-  self.expect_plane("weights of natural neighbors");
+  check_enumerator(method);
+  const auto weighed = Implementation::natural_weights(method);
+  if (self.on_sphere) return self.on_sphere->natural_weights(queries, m, method);
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_queries(queries, m);
-    check_enumerator(method);
-    const auto weighed = Implementation::natural_weights(method);
+    const std::vector<double> places = self.placed(queries, m);
+    if (self.on_torus) self.on_torus->check_gaps({0, m});
     NaturalWeights result;
     call::Frame call(by.place.engine);
     const flaunay::interpolate::NaturalLists lists(

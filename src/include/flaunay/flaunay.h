@@ -1512,10 +1512,11 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
-/// a torus and a cylinder there is no Clough-Tocher, and on the sphere linear interpolation alone: the value
-/// where the direction of the query meets the triangle in space (Renka, 1984). Natural neighbours of so few
-/// points on a torus that a circle without points is wider than the shorter period, on a cylinder one with
-/// its centre between the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
+/// a torus and a cylinder there is no Clough-Tocher, nor on the sphere, where linear interpolation is the
+/// value where the direction of the query meets the triangle in space (Renka, 1984), and natural neighbours
+/// (Brown, 1994) have areas of cells on the sphere, and lengths of arcs. Natural neighbours of so few points
+/// on a torus that a circle without points is wider than the shorter period, on a cylinder one with its
+/// centre between the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
 /// flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
                                                        const double* queries, size_t m, const size_t* offsets,
@@ -1541,7 +1542,7 @@ FLAUNAY_API flaunay_status flaunay_natural_weights_compute(flaunay_locator* loca
 FLAUNAY_API void flaunay_natural_weights_destroy(flaunay_natural_weights* weights);
 /// m + 1 values: query i has the points and weights from the i-th to the (i + 1)-th.
 FLAUNAY_API const size_t* flaunay_natural_weights_offsets(const flaunay_natural_weights* weights);
-/// Points, without an order; of duplicates the representative.
+/// Points, without an order; of duplicates the representative. On a torus a point can be there several times.
 FLAUNAY_API const int32_t* flaunay_natural_weights_points(const flaunay_natural_weights* weights);
 /// The weight of each, 0 or more, with the sum 1 per query.
 FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_weights* weights);

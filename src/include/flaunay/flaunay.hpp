@@ -696,9 +696,10 @@ class FLAUNAY_API Locator {
                    const Enqueue& enqueue = own_queue());
 
   /// Interpolates by any method, several numbers per point at once. On a torus and a cylinder there is no
-  /// Clough-Tocher, and on the sphere linear interpolation alone: the value where the direction of the query
-  /// meets the triangle in space (Renka, 1984). Natural neighbors of so few points on a torus that a circle
-  /// without points is wider than the shorter period, on a cylinder one with its centre between the ends, are
+  /// Clough-Tocher, nor on the sphere, where linear interpolation is the value where the direction of the
+  /// query meets the triangle in space (Renka, 1984), and natural neighbors (Brown, 1994) have areas of cells
+  /// on the sphere, and lengths of arcs. Natural neighbors of so few points on a torus that a circle without
+  /// points is wider than the shorter period, on a cylinder one with its centre between the ends, are
   /// Error(input). values: one row of options.columns numbers per input point; the result has one row per
   /// query. At a point, every method gives exactly that point's values; for duplicates, those of their
   /// representative are used. Throws Error(usage) if options.columns is 0.
@@ -713,7 +714,8 @@ class FLAUNAY_API Locator {
                    const InterpolationOptions& options, const Enqueue& enqueue = own_queue());
 
   /// Returns the natural neighbours of m queries with the weights by which Interpolation::sibson or laplace
-  /// interpolates any values; none outside. Throws Error(usage) for another method and for several sets.
+  /// interpolates any values; none outside. On a torus a point can be there several times, for images of it.
+  /// Throws Error(usage) for another method and for several sets.
   NaturalWeights natural_weights(const double* queries, std::size_t m,
                                  Interpolation method = Interpolation::sibson);
 

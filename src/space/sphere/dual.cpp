@@ -4,19 +4,14 @@
 #include <numbers>
 
 #include "derived/voronoi/stars.hpp"
-#include "space/sphere/places.hpp"
+#include "operations/prefetch.h"
+#include "space/sphere/measures.hpp"
 
 namespace flaunay::sphere {
 namespace {
 
 using voronoi::Stars;
 
-Direction normalized(const Direction& v) {
-  const double length = std::sqrt(dot(v, v));
-  return {v.x / length, v.y / length, v.z / length};
-}
-
-double square_of(double x, double y) { return x * x + y * y; }
 Point nearest_to_origin(std::initializer_list<Point> points) {
   return std::min(points, [](Point u, Point v) { return square_of(u.x, u.y) < square_of(v.x, v.y); });
 }
@@ -57,50 +52,6 @@ Direction centre_of_triangle(const Triangulation& mesh, std::size_t t) {
   const auto a = static_cast<std::size_t>(std::max_element(sides, sides + 3) - sides);
   return centre_of(p[a], p[(a + 1) % 3], p[(a + 2) % 3]);
 }
-
-// From a to b in space, times a positive number: accurate also if they are near each other.
-Direction chord(Point a, Point b) {
-  // Starts from the one that is nearer to the origin, beside which nothing cancels.
-  if (square_of(a.x, a.y) > square_of(b.x, b.y)) return Direction{0, 0, 0} - chord(b, a);
-  if (is_pole(b)) return {-a.x, -a.y, -1};
-  const double x = b.x - a.x, y = b.y - a.y, scale = 1 + a.x * a.x + a.y * a.y;
-  const double square = x * (a.x + b.x) + y * (a.y + b.y);  // |b|^2 - |a|^2
-  return {x * scale - a.x * square, y * scale - a.y * square, -square};
-}
-
-// A sum of signed areas of triangles of unit vectors. Half of a triangle's area is the angle of a complex
-// number (Eriksson, 1990), and a sum of angles that of a product, so that most cells need one arctangent.
-class AreaSum {
- public:
-  void add(const Direction& a, const Direction& b, const Direction& c) {
-    // A quarter, so that no product is beyond 1.
-    const double y = dot(a, cross(b - a, c - a)) / 4, x = (1 + dot(a, b) + dot(b, c) + dot(c, a)) / 4;
-    if (x < kLeast) {
-      angle_ += std::atan2(y, x);
-      return;
-    }
-    const double before = x_;
-    x_ = x_ * x - y_ * y;
-    y_ = before * y + y_ * x;
-    // Both angles were less than a right one, so that their sum is less than half a turn.
-    if (x_ < kLeast) take_angle();
-  }
-  double total() {
-    take_angle();
-    return 2 * angle_;
-  }
-
- private:
-  static constexpr double kLeast = 1.0 / 16;
-
-  void take_angle() {
-    angle_ += std::atan2(y_, x_);
-    x_ = 1;
-    y_ = 0;
-  }
-
-  double angle_ = 0, x_ = 1, y_ = 0;
-};
 
 // A sum of the integrals of x over triangles of unit vectors with the corner p, which are half of those of
 // the arcs' angles times the normals of their planes. With f for an angle over its sine, these are the sums

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/arguments.hpp"
+#include "space/sphere/natural.hpp"
 #include "space/sphere/triangulate_on_sphere.hpp"
 #include "space/triangulate.hpp"
 
@@ -118,24 +119,50 @@ Neighbors SphereLocator::nearest(const double* queries, std::size_t m, const Nei
 std::vector<double> SphereLocator::interpolate(const double* values, const double* queries,
                                                const std::vector<std::size_t>& offsets,
                                                const InterpolationOptions& options) {
-  expect(options.method == Interpolation::linear && options.gradients == nullptr,
-         "values on the sphere are interpolated linearly");
+  const Interpolation method = options.method;
+  expect(method != Interpolation::clough_tocher && options.gradients == nullptr,
+         "values on the sphere are interpolated without gradients");
   const std::size_t columns = options.columns;
   check_array(values, check_columns(columns, mesh_.representatives.size()), "values", kMostCountable);
-  return answer(
-      queries, offsets, columns, options.fill, [&](Point query, std::int32_t start, double* numbers) {
-        const sphere::Found found = walker_->find(query, start);
-        if (found.triangle < 0) return;
-        const std::array<double, 3> weights = walker_->weights(found, query);
-        for (std::size_t c = 0; c < columns; ++c) {
-          double sum = 0;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const auto v = static_cast<std::size_t>(walker_->corner(found.triangle, static_cast<int>(k)));
-            if (weights[k] != 0) sum += weights[k] * values[columns * v + c];
-          }
-          numbers[c] = sum;
-        }
-      });
+  const auto row = [&](std::int32_t v) { return values + columns * static_cast<std::size_t>(v); };
+  return answer(queries, offsets, columns, options.fill,
+                [&](Point query, std::int32_t start, double* numbers) {
+                  if (method == Interpolation::nearest) {
+                    std::copy_n(row(walker_->nearest(query, start)), columns, numbers);
+                    return;
+                  }
+                  const sphere::Found found = walker_->find(query, start);
+                  if (found.triangle < 0) return;
+                  std::fill_n(numbers, columns, 0);
+                  const auto add = [&](std::int32_t v, double weight) {
+                    for (std::size_t c = 0; c < columns && weight != 0; ++c) numbers[c] += weight * row(v)[c];
+                  };
+                  if (method == Interpolation::linear) {
+                    const std::array<double, 3> weights = walker_->weights(found, query);
+                    for (int k = 0; k < 3; ++k)
+                      add(walker_->corner(found.triangle, k), weights[static_cast<std::size_t>(k)]);
+                  } else {
+                    for (const auto& [v, weight] : sphere::natural_neighbors(*walker_, found, query, method))
+                      add(v, weight);
+                  }
+                });
+}
+
+NaturalWeights SphereLocator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
+  NaturalWeights result;
+  result.offsets.push_back(0);
+  const auto list = [&](Point query, std::int32_t start, std::vector<sphere::Weighed>* row) {
+    const sphere::Found found = walker_->find(query, start);
+    if (found.triangle >= 0) *row = sphere::natural_neighbors(*walker_, found, query, method);
+  };
+  for (const auto& row : answer(queries, {0, m}, 1, std::vector<sphere::Weighed>(), list)) {
+    for (const auto& [v, weight] : row) {
+      result.points.push_back(v);
+      result.weights.push_back(weight);
+    }
+    result.offsets.push_back(result.points.size());
+  }
+  return result;
 }
 
 }  // namespace flaunay::call

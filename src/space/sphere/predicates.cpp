@@ -100,6 +100,16 @@ int turn(Point a, Point b, Point c) {
   return (exact > 0) - (exact < 0);
 }
 
+int in_cap(Point a, Point b, Point c, Point q) {
+  // Through the pole the circle is a line. Elsewhere the cap with the pole is the outside of the circle in
+  // the plane, where a, b and c turn right: the determinant has the sign for both.
+  if (is_pole(q)) return -kernel::orient_sign(a, b, c, ORIENT_BOUND);
+  if (is_pole(a)) return kernel::orient_sign(b, c, q, ORIENT_BOUND);
+  if (is_pole(b)) return kernel::orient_sign(c, a, q, ORIENT_BOUND);
+  if (is_pole(c)) return kernel::orient_sign(a, b, q, ORIENT_BOUND);
+  return kernel::circle_sign(a, b, c, q, CIRCLE_BOUND);
+}
+
 int nearer(Point q, Point a, Point b) {
   // Both products have at most nine roundings.
   constexpr double kBound = 0x1p-49;

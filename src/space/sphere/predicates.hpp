@@ -13,6 +13,10 @@ double determinant(Point a, Point b, Point c);
 /// turn right, 0 if the three lie on one great circle. The determinant's sign.
 int turn(Point a, Point b, Point c);
 
+/// 1 if q lies within the circle through a, b and c, which turn left as seen from within the cap that counts;
+/// -1 if it lies outside, 0 if it lies on the circle. None is q.
+int in_cap(Point a, Point b, Point c, Point q);
+
 /// 1 if a is nearer to q than b is, -1 if it is farther, 0 if both are equally far.
 int nearer(Point q, Point a, Point b);
 

@@ -31,6 +31,8 @@ class SphereLocator {
   std::vector<double> interpolate(const double* values, const double* queries,
                                   const std::vector<std::size_t>& offsets,
                                   const InterpolationOptions& options);
+  /// Of one set.
+  NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
   /// Of one set. The options have been checked.
   Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options);
 

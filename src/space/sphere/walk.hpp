@@ -13,6 +13,12 @@ namespace flaunay::sphere {
 struct Found {
   std::int32_t triangle = -1;
   std::array<int, 3> sides{};
+
+  /// The corner at which the query lies; -1 if it lies at none.
+  int corner() const {
+    const int on = (sides[0] == 0) + (sides[1] == 0) + (sides[2] == 0);
+    return on < 2 ? -1 : sides[0] != 0 ? 0 : sides[1] != 0 ? 1 : 2;
+  }
 };
 
 /// A triangulation of sets of points, on which any number of threads can walk at once. Refers to its arrays.
@@ -41,12 +47,12 @@ class Walker {
   Found find(Point query, std::int32_t v) const;
   /// The weights of the triangle's corners where the query's direction meets it.
   std::array<double, 3> weights(const Found& found, Point query) const;
-
- private:
   std::int32_t beyond(std::int32_t t, int k) const {
     return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
   }
   int corner_of(std::int32_t t, std::int32_t v) const;
+
+ private:
   Found found(std::int32_t t, Point query) const;
   Found smallest(Found here, Point query) const;
 
