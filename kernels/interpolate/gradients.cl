@@ -20,6 +20,7 @@
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
 #include "interpolate/arguments.h"
+#include "interpolate/blocks.h"
 #include "mesh/halfedges.h"
 #include "mesh/records.h"
 #include "mesh/stars.h"
@@ -74,21 +75,6 @@ kernel void count_edges(int n, int kept, global const int* restrict vertices, gl
   }
 }
 
-// inverse[3v]: xx, xy and yy of the inverse of the block. Where all edges are on one line but for rounding, it is the
-// inverse on that line, 0 across it: no value determines the slope across it.
-static inline void invert_block(double xx, double xy, double yy, global double* inverse) {
-  const double trace = xx + yy, determinant = xx * yy - xy * xy;
-  if (determinant > 0x1p-46 * (trace * trace)) {
-    inverse[0] = yy / determinant;
-    inverse[1] = -xy / determinant;
-    inverse[2] = xx / determinant;
-  } else {
-    inverse[0] = xx / (trace * trace);
-    inverse[1] = xy / (trace * trace);
-    inverse[2] = yy / (trace * trace);
-  }
-}
-
 // room: no edge is written there or behind; there are more edges only if the mesh is not valid. weights: 1 /
 // L^3, relative to 1 / L of the vertex' shortest edge, which keeps them in range.
 kernel void write_edges(int n, int kept, int room, global const int* restrict vertices,
@@ -121,10 +107,6 @@ kernel void write_edges(int n, int kept, int room, global const int* restrict ve
     }
     invert_block(xx, xy, yy, inverses + 3 * (size_t)v);
   }
-}
-
-static inline double2 solved(global const double* inverse, double x, double y) {
-  return VECTOR(double2, inverse[0] * x + inverse[1] * y, inverse[1] * x + inverse[2] * y);
 }
 
 // values: rows of `columns` numbers by point, as are all arrays of gradients by vertex.

@@ -224,7 +224,7 @@ class SphericalDelaunay(WithLocator):
         self,
         values: ArrayLike,
         xi: ArrayLike,
-        method: Literal["linear", "nearest", "sibson", "laplace"] = "linear",
+        method: Literal["linear", "nearest", "clough_tocher", "sibson", "laplace"] = "linear",
         *,
         offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
@@ -236,10 +236,11 @@ class SphericalDelaunay(WithLocator):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes in degrees, or x, y and z.
-        method : {"linear", "nearest", "sibson", "laplace"}
-            The value where the direction of a query meets its triangle in space (Renka, 1984), that of the nearest
-            point, or between natural neighbours (Brown, 1994): by the areas that a query's cell would take from
-            others, or by the lengths of its edges over distances.
+        method : {"linear", "nearest", "clough_tocher", "sibson", "laplace"}
+            The value where the direction of a query meets its triangle in space, that of the nearest point, by
+            cubics along great circles with a continuous gradient (Renka, 1984), or between natural neighbours
+            (Brown, 1994): by the areas that a query's cell would take from others, or by the lengths of its edges
+            over distances.
         offsets
             As of `find_simplex`.
 

@@ -71,7 +71,7 @@ def test_queries(random):
     expected = (values[tri.simplices[found]] * (weights / weights.sum(axis=1)[:, None])).sum(axis=1)
     np.testing.assert_allclose(tri.interpolate(values, queries), expected, atol=1e-12)
     np.testing.assert_array_equal(tri.interpolate(values, queries, "nearest"), values[tri.nearest(queries)])
-    for method in ("sibson", "laplace"):
+    for method in ("clough_tocher", "sibson", "laplace"):
         np.testing.assert_array_equal(tri.interpolate(values, points, method), values)
         np.testing.assert_allclose(tri.interpolate(np.ones(300), queries, method), 1, rtol=1e-14)
         assert abs(tri.interpolate(points, queries, method) - queries).max() < 0.1

@@ -606,9 +606,14 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
         wanted.method = method;
         const Numbers found = locator.interpolate(values.data(), elsewhere.data(), 100, wanted);
         const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 100, wanted);
+        const NaturalWeights weights = locator.natural_weights(elsewhere.data(), 100, method);
         for (std::size_t i = 0; i < expected.size(); ++i) {
+          double sum = 0;
+          for (std::size_t k = weights.offsets[i / 2]; k < weights.offsets[i / 2 + 1]; ++k)
+            sum += weights.weights[k] * values[2 * static_cast<std::size_t>(weights.points[k]) + i % 2];
           if (!std::isnan(expected[i])) {
             ASSERT_NEAR(expected[i], found[i], 1e-9 * static_cast<double>(n)) << i;
+            ASSERT_NEAR(expected[i], sum, 1e-9 * static_cast<double>(n)) << i;
           }
           ASSERT_EQ(std::isnan(expected[i]), std::isnan(found[i])) << i;
         }

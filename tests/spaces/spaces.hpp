@@ -62,8 +62,7 @@ struct TestSpace {
   }
   Locator locator(Triangulator& triangulator, const Numbers& points, const Offsets& offsets,
                   const Triangulation& mesh) const {
-    return is_plane() ? Locator(triangulator, points.data(), offsets, mesh)
-                                          : Locator(triangulator, mesh);
+    return is_plane() ? Locator(triangulator, points.data(), offsets, mesh) : Locator(triangulator, mesh);
   }
   Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
                   const Numbers& queries, const NeighborOptions& options) const {

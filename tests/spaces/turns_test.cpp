@@ -107,10 +107,15 @@ TEST_F(Turns, QueriesTakeOne) {
   expect_one("locate on a torus", [&] { on_torus.locate(at_, kCount); });
   expect_one("nearest on a torus", [&] { on_torus.nearest(at_, kCount); });
   expect_one("interpolate on a torus", [&] { on_torus.interpolate(values.data(), at_, kCount, smooth); });
+  expect_one("weights on a torus", [&] { on_torus.natural_weights(at_, kCount); });
   Locator on_sphere(made_, sphere);
   expect_one("locate on a sphere", [&] { on_sphere.locate(at_, kCount); });
   expect_one("nearest on a sphere", [&] { on_sphere.nearest(at_, kCount); });
   expect_one("interpolate on a sphere", [&] { on_sphere.interpolate(values.data(), at_, kCount); });
+  expect_one("weights on a sphere", [&] { on_sphere.natural_weights(at_, kCount); });
+  expect_one("gradients on a sphere", [&] { on_sphere.gradients(values.data()); });
+  smooth.method = Interpolation::clough_tocher;
+  expect_one("smooth on a sphere", [&] { on_sphere.interpolate(values.data(), at_, kCount, smooth); });
   PointTree tree_on_sphere(made_, sphere);
   expect_one("several nearest on a sphere", [&] { tree_on_sphere.nearest(at_, kCount, three); });
   PointTree tree(made_, torus);

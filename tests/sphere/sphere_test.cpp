@@ -560,6 +560,132 @@ TEST(Sphere, NaturalNeighborsAreContinuous) {
   }
 }
 
+/// The gradients with the least curvature along arcs, by elimination in the whole system: of two unknowns per
+/// point, along vectors across it.
+Numbers least_curved(const Triangulation& mesh, const Numbers& values) {
+  const std::size_t n = values.size();
+  std::vector<std::array<Direction, 2>> across(n);
+  const auto at = [&](std::size_t i) { return direction_of(place_at(mesh.places, i)); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Direction axis = std::fabs(at(i).x) < 0.5 ? Direction{1, 0, 0} : Direction{0, 1, 0};
+    const Direction x = cross(axis, at(i));
+    const double length = std::sqrt(dot(x, x));
+    across[i][0] = {x.x / length, x.y / length, x.z / length};
+    across[i][1] = cross(at(i), across[i][0]);
+  }
+  std::vector<Numbers> rows(2 * n, Numbers(2 * n + 1, 0));
+  for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
+    const auto u = static_cast<std::size_t>(mesh.triangles[c / 3 * 3 + (c + 1) % 3]),
+               v = static_cast<std::size_t>(mesh.triangles[c / 3 * 3 + (c + 2) % 3]);
+    const double cosine = dot(at(u), at(v)), length = std::acos(cosine);
+    const auto tangent = [&](const Direction& from, const Direction& to) {
+      const double scale = length / std::sin(length);
+      return Direction{scale * (to.x - cosine * from.x), scale * (to.y - cosine * from.y),
+                       scale * (to.z - cosine * from.z)};
+    };
+    // Each arc is there in both directions.
+    const Direction e = tangent(at(u), at(v)), back = tangent(at(v), at(u)), on = {-back.x, -back.y, -back.z};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double slope = dot(e, across[u][i]) / std::pow(length, 3);
+      for (std::size_t j = 0; j < 2; ++j) {
+        rows[2 * u + i][2 * u + j] += 4 * slope * dot(e, across[u][j]);
+        rows[2 * u + i][2 * v + j] += 2 * slope * dot(on, across[v][j]);
+      }
+      rows[2 * u + i][2 * n] += 6 * slope * (values[v] - values[u]);
+    }
+  }
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    for (std::size_t j = 0; j < 2 * n; ++j) {
+      if (i == j) continue;
+      const double factor = rows[j][i] / rows[i][i];
+      for (std::size_t k = i; k <= 2 * n; ++k) rows[j][k] -= factor * rows[i][k];
+    }
+  }
+  Numbers gradients;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = rows[2 * i][2 * n] / rows[2 * i][2 * i],
+                 y = rows[2 * i + 1][2 * n] / rows[2 * i + 1][2 * i + 1];
+    const auto& [a, b] = across[i];
+    gradients.insert(gradients.end(), {x * a.x + y * b.x, x * a.y + y * b.y, x * a.z + y * b.z});
+  }
+  return gradients;
+}
+
+TEST(Sphere, GradientsBendLeast) {
+  const Triangulation mesh = triangulated(random_directions(40, 5), kDirections);
+  Locator locator(testing::triangulator(), mesh);
+  Numbers values;
+  for (std::size_t i = 0; i < 40; ++i) values.push_back(static_cast<double>(i * 7 % 11));
+  const Numbers expected = least_curved(mesh, values);
+  GradientOptions exact;
+  exact.tolerance = 0;
+  const Numbers found = locator.gradients(values.data(), 1, exact);
+  ASSERT_EQ(expected.size(), found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(expected[i], found[i], 1e-9);
+}
+
+TEST(Sphere, SmoothInterpolationHasAContinuousGradient) {
+  const Numbers points = random_directions(80, 17);
+  const Triangulation mesh = triangulated(points, kDirections);
+  const Numbers own = directions_of(mesh.places);
+  Locator locator(testing::triangulator(), mesh);
+  Numbers values, gradients;
+  const auto height = [](const double* p) { return 2 * p[0] - p[1] + p[0] * p[2]; };
+  for (std::size_t i = 0; i < own.size(); i += 3) {
+    const double* const p = &own[i];
+    values.push_back(height(p));
+    const Direction slope = {2 + p[2], -1, p[0]};
+    const double radial = slope.x * p[0] + slope.y * p[1] + slope.z * p[2];
+    gradients.insert(gradients.end(),
+                     {slope.x - radial * p[0], slope.y - radial * p[1], slope.z - radial * p[2]});
+  }
+  InterpolationOptions options;
+  options.method = Interpolation::clough_tocher;
+  EXPECT_EQ(values, locator.interpolate(values.data(), points.data(), values.size(), options));
+  // With the right gradients nearer to the function, but never linear as that in triangles.
+  const Numbers elsewhere = random_directions(500, 2);
+  const auto error_of = [&](const InterpolationOptions& by) {
+    const Numbers found = locator.interpolate(values.data(), elsewhere.data(), 500, by);
+    double most = 0;
+    for (std::size_t q = 0; q < 500; ++q) {
+      double p[3], length = 0;
+      for (std::size_t k = 0; k < 3; ++k) length += elsewhere[3 * q + k] * elsewhere[3 * q + k];
+      for (std::size_t k = 0; k < 3; ++k) p[k] = elsewhere[3 * q + k] / std::sqrt(length);
+      most = std::max(most, std::fabs(found[q] - height(p)));
+    }
+    return most;
+  };
+  const double linear = error_of({}), estimated = error_of(options);
+  options.gradients = gradients.data();
+  const double given = error_of(options);
+  EXPECT_LT(4 * estimated, linear);
+  EXPECT_LT(8 * given, linear);
+  options.gradients = nullptr;
+  // Slopes before and behind each arc and corner that a circle crosses.
+  constexpr std::size_t kSteps = 200000;
+  Numbers queries;
+  for (std::size_t i = 0; i <= kSteps; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kSteps;
+    for (std::size_t k = 0; k < 3; ++k)
+      queries.push_back(std::cos(angle) * own[k] + std::sin(angle) * (k == 1));
+  }
+  const Numbers found = locator.interpolate(values.data(), queries.data(), kSteps + 1, options);
+  const double step = 2 * std::numbers::pi / kSteps;
+  for (std::size_t i = 1; i < kSteps; ++i)
+    ASSERT_NEAR(found[i] - found[i - 1], found[i + 1] - found[i], 1e-2 * step) << i;
+  // Of a hemisphere alone.
+  Numbers north;
+  for (std::size_t i = 0; i < own.size(); i += 3) {
+    if (own[i + 2] > 0.1)
+      north.insert(north.end(), own.begin() + static_cast<std::ptrdiff_t>(i),
+                   own.begin() + static_cast<std::ptrdiff_t>(i + 3));
+  }
+  const Numbers ones(north.size() / 3, 1);
+  Locator half(testing::triangulator(), triangulated(north, kDirections));
+  const double pole[] = {0, 0, 1};
+  EXPECT_NEAR(1, half.interpolate(ones.data(), pole, 1, options)[0], 1e-14);
+}
+
 TEST(Sphere, ErrorsSayWhatIsWrong) {
   testing::expect_error(ErrorKind::input, "point 1: the latitude 90.5", [] {
     triangulated({0, 0, 7, 90.5}, kDegrees);

@@ -11,9 +11,6 @@
 namespace flaunay::interpolate {
 namespace {
 
-// The eigenvalues lie in [1 - kRadius, 1 + kRadius].
-constexpr double kRadius = 0.5;
-
 // The error is at most 2 kRate^k of the gradients after k iterations, in the norm that is weighted by the
 // vertices' blocks. kSafety: for single gradients, that are smaller than others.
 const double kRate = 2 - std::sqrt(3.0);
@@ -113,19 +110,17 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
                                           .values = table.values,
                                           .start = start,
                                           .gradients = now});
-  double factor = 1;
-  for (std::size_t i = 1; i < iterations; ++i) {
-    factor = i == 1 ? 1 / (1 - kRadius * kRadius / 2) : 1 / (1 - factor * kRadius * kRadius / 4);
+  improve(iterations, [&](bool is_first, double factor) {
     runtime.map(n, kernels::improve_gradients{.columns = table.columns,
                                               .edges = edges,
-                                              .is_second = i == 1,
+                                              .is_second = is_first,
                                               .factor = factor,
                                               .points = locator.points,
                                               .start = start,
                                               .gradients = now,
                                               .before = before});
     std::swap(now, before);
-  }
+  });
   return result;
 }
 

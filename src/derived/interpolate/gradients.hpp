@@ -18,4 +18,18 @@ Buffer<kernel::scaling> slope_scales(host::Runtime& runtime, const Locator& loca
 /// The number of iterations that reach a tolerance.
 std::size_t iterations_for(double tolerance);
 
+/// The eigenvalues of the system for gradients lie in [1 - kRadius, 1 + kRadius].
+constexpr double kRadius = 0.5;
+
+/// Calls step(is_first, factor) for all iterations but the one that starts: the next approximation is nearer
+/// by this factor to what is locally best than the one before the last, which at the first step is 0.
+template <typename Step>
+void improve(std::size_t iterations, const Step& step) {
+  double factor = 1 / (1 - kRadius * kRadius / 2);
+  for (std::size_t i = 1; i < iterations; ++i) {
+    step(i == 1, factor);
+    factor = 1 / (1 - factor * kRadius * kRadius / 4);
+  }
+}
+
 }  // namespace flaunay::interpolate

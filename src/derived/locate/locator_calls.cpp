@@ -10,15 +10,14 @@
 #include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
 #include "constrained/stages.hpp"
-#include "space/periodic/torus_plane.hpp"
-#include "space/sphere/triangulate_on_sphere.hpp"
-#include "space/triangulate.hpp"
 #include "constrained/whole_mesh.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/locator.hpp"
 #include "derived/locate/read_back.hpp"
+#include "space/periodic/torus_plane.hpp"
 #include "space/spaces.hpp"
+#include "space/sphere/triangulate_on_sphere.hpp"
 #include "space/triangulate.hpp"
 
 namespace flaunay {
@@ -526,6 +525,7 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
 std::vector<double> Locator::gradients(const double* values, std::size_t columns,
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;
+  if (self.on_sphere) return self.on_sphere->gradients(values, columns, options);
   self.expect_plane("gradients");
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();

@@ -350,8 +350,8 @@ typedef struct flaunay_interpolation_options {
   size_t columns;  ///< numbers per point: values are rows of so many, and so are results; 0: one
   int has_fill;    ///< other than 0: the result outside of the hull is `fill`; 0: it is NaN
   double fill;     ///< the nearest point has none, except in a set without points
-  /// For FLAUNAY_INTERPOLATION_CLOUGH_TOCHER: x and y per number of the values, such as those of
-  /// flaunay_locator_gradients. NULL: they are estimated in each call.
+  /// For FLAUNAY_INTERPOLATION_CLOUGH_TOCHER: x and y per number of the values, on the sphere x, y and z,
+  /// such as those of flaunay_locator_gradients. NULL: they are estimated in each call.
   const double* gradients;
   cl_mem device_gradients;  ///< the gradients for values in device memory
   /// The error of estimated gradients, relative to all gradients together; 0: 1e-6.
@@ -1512,9 +1512,10 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
-/// a torus and a cylinder there is no Clough-Tocher, nor on the sphere, where linear interpolation is the
-/// value where the direction of the query meets the triangle in space (Renka, 1984), and natural neighbours
-/// (Brown, 1994) have areas of cells on the sphere, and lengths of arcs. Natural neighbours of so few points
+/// a torus and a cylinder there is no Clough-Tocher. On the sphere, linear interpolation is the value where
+/// the direction of the query meets the triangle in space; in its place Renka's interpolant (1984) has cubics
+/// along great circles and a continuous gradient; and natural neighbours (Brown, 1994) have areas of cells on
+/// the sphere, and lengths of arcs. Natural neighbours of so few points
 /// on a torus that a circle without points is wider than the shorter period, on a cylinder one with its
 /// centre between the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
 /// flaunay_locator_locate.
@@ -1548,7 +1549,8 @@ FLAUNAY_API const int32_t* flaunay_natural_weights_points(const flaunay_natural_
 FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_weights* weights);
 /// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
 /// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
-/// and y per number, the caller's array. They are NaN at points that another one represents, and at those of
+/// and y per number, on the sphere x, y and z of a vector that is tangent there, the caller's array; not on a
+/// torus or a cylinder. They are NaN at points that another one represents, and at those of
 /// a set on one line. Of the options, columns and those of gradients count. NULL: the defaults.
 FLAUNAY_API flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
                                                      const flaunay_interpolation_options* options,

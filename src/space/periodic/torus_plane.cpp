@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "points/download.hpp"
+#include "space/periodic/fold.hpp"
 #include "space/periodic/triangulate_on_torus.hpp"
 #include "space/triangulate.hpp"
-#include "space/periodic/fold.hpp"
-#include "points/download.hpp"
 
 namespace flaunay::call {
 

@@ -1,11 +1,14 @@
 // Queries on a sphere.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "derived/interpolate/gradients.hpp"
 #include "geometry/arguments.hpp"
 #include "space/sphere/natural.hpp"
+#include "space/sphere/smooth.hpp"
 #include "space/sphere/triangulate_on_sphere.hpp"
 #include "space/triangulate.hpp"
 
@@ -120,32 +123,61 @@ std::vector<double> SphereLocator::interpolate(const double* values, const doubl
                                                const std::vector<std::size_t>& offsets,
                                                const InterpolationOptions& options) {
   const Interpolation method = options.method;
-  expect(method != Interpolation::clough_tocher && options.gradients == nullptr,
-         "values on the sphere are interpolated without gradients");
   const std::size_t columns = options.columns;
   check_array(values, check_columns(columns, mesh_.representatives.size()), "values", kMostCountable);
   const auto row = [&](std::int32_t v) { return values + columns * static_cast<std::size_t>(v); };
-  return answer(queries, offsets, columns, options.fill,
-                [&](Point query, std::int32_t start, double* numbers) {
-                  if (method == Interpolation::nearest) {
-                    std::copy_n(row(walker_->nearest(query, start)), columns, numbers);
-                    return;
-                  }
-                  const sphere::Found found = walker_->find(query, start);
-                  if (found.triangle < 0) return;
-                  std::fill_n(numbers, columns, 0);
-                  const auto add = [&](std::int32_t v, double weight) {
-                    for (std::size_t c = 0; c < columns && weight != 0; ++c) numbers[c] += weight * row(v)[c];
-                  };
-                  if (method == Interpolation::linear) {
-                    const std::array<double, 3> weights = walker_->weights(found, query);
-                    for (int k = 0; k < 3; ++k)
-                      add(walker_->corner(found.triangle, k), weights[static_cast<std::size_t>(k)]);
-                  } else {
-                    for (const auto& [v, weight] : sphere::natural_neighbors(*walker_, found, query, method))
-                      add(v, weight);
-                  }
-                });
+  const double* slopes = options.gradients;
+  const auto interpolate_at = [&](Point query, std::int32_t start, double* numbers) {
+    if (method == Interpolation::nearest) {
+      std::copy_n(row(walker_->nearest(query, start)), columns, numbers);
+      return;
+    }
+    const sphere::Found found = walker_->find(query, start);
+    if (found.triangle < 0) return;
+    std::fill_n(numbers, columns, 0);
+    const auto add = [&](std::int32_t v, double weight) {
+      for (std::size_t c = 0; c < columns && weight != 0; ++c) numbers[c] += weight * row(v)[c];
+    };
+    if (method == Interpolation::linear) {
+      const std::array<double, 3> weights = walker_->weights(found, query);
+      for (int k = 0; k < 3; ++k)
+        add(walker_->corner(found.triangle, k), weights[static_cast<std::size_t>(k)]);
+    } else if (method != Interpolation::clough_tocher) {
+      for (const auto& [v, weight] : sphere::natural_neighbors(*walker_, found, query, method))
+        add(v, weight);
+    } else {
+      const sphere::SmoothPlace place(*walker_, found, query);
+      for (std::size_t c = 0; c < columns; ++c) {
+        std::array<double, 3> heights{};
+        std::array<sphere::Direction, 3> gradients{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::int32_t v = walker_->corner(found.triangle, static_cast<int>(k));
+          const double* const slope = slopes + 3 * (columns * static_cast<std::size_t>(v) + c);
+          heights[k] = row(v)[c];
+          gradients[k] = {slope[0], slope[1], slope[2]};
+        }
+        numbers[c] = place.value(heights, gradients);
+      }
+    }
+  };
+  return take_turn(*owner_, [&] {
+    const WithinTurn within(*owner_);
+    std::vector<double> estimated;
+    if (method == Interpolation::clough_tocher && slopes == nullptr)
+      slopes = (estimated = gradients(values, columns, options.estimation)).data();
+    return answer(queries, offsets, columns, options.fill, interpolate_at);
+  });
+}
+
+std::vector<double> SphereLocator::gradients(const double* values, std::size_t columns,
+                                             const GradientOptions& options) {
+  check_array(values, check_columns(columns, mesh_.representatives.size()), "values", kMostCountable);
+  expect(!std::isnan(options.tolerance), "the tolerance of gradients is not a number");
+  return take_turn(*owner_, [&] {
+    return sphere::estimate_gradients(
+        owner_->native().runtime, *walker_, mesh_, values, columns,
+        std::min(options.iterations, flaunay::interpolate::iterations_for(options.tolerance)));
+  });
 }
 
 NaturalWeights SphereLocator::natural_weights(const double* queries, std::size_t m, Interpolation method) {

@@ -33,6 +33,24 @@ inline Direction whole_chord(Point a, Point b) {
   return 2 / (stretched(a) * stretched(b)) * chord(a, b);
 }
 
+inline double angle_of_chord(const Direction& chord) {
+  const double square = dot(chord, chord);
+  return 2 * std::atan2(std::sqrt(square), std::sqrt(std::fmax(4 - square, 0)));
+}
+
+/// Vectors of unit length, across a unit vector and across each other.
+struct Frame {
+  explicit Frame(const Direction& up) {
+    const Direction axis = std::fabs(up.z) < 0.5 ? Direction{0, 0, 1} : Direction{1, 0, 0};
+    across = normalized(cross(axis, up));
+    along = cross(up, across);
+  }
+  /// A vector whose share of the third axis is known.
+  Direction seen(const Direction& v, double up) const { return {dot(v, across), dot(v, along), up}; }
+
+  Direction across, along;
+};
+
 /// A sum of signed areas of triangles of unit vectors. Half of a triangle's area is the angle of a complex
 /// number (Eriksson, 1990), and a sum of angles that of a product, so that most cells need one arctangent.
 class AreaSum {

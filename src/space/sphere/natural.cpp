@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/arguments.hpp"
 #include "space/sphere/measures.hpp"
 
 // The triangles whose caps contain the query form a region around it, whose border has the neighbours
@@ -36,8 +37,9 @@ class Region {
     const std::int32_t begin = side.triangle;
     for (;;) {
       const std::int32_t other = walker_.beyond(side.triangle, side.k);
-      // A walk does not come back to where it began, but in arrays that are no triangulation's.
-      if (other == begin || (other != first_ && !has(other))) return side;
+      if (other != first_ && !has(other)) return side;
+      // Else the query would hide a point.
+      expect(other != begin, "the arrays are not those of a triangulation on the sphere");
       side = {other, (walker_.corner_of(other, walker_.corner(side.triangle, side.k + 1)) + 2) % 3};
       visit(other);
     }
@@ -50,19 +52,6 @@ class Region {
   const Walker& walker_;
   Point query_;
   std::int32_t first_;
-};
-
-// Vectors of unit length, across the query's and across each other.
-struct Frame {
-  explicit Frame(const Direction& up) {
-    const Direction axis = std::fabs(up.z) < 0.5 ? Direction{0, 0, 1} : Direction{1, 0, 0};
-    across = normalized(cross(axis, up));
-    along = cross(up, across);
-  }
-  // A vector whose share of the third axis is known.
-  Direction seen(const Direction& v, double up) const { return {dot(v, across), dot(v, along), up}; }
-
-  Direction across, along;
 };
 
 // A convex polygon, counter-clockwise.
@@ -83,11 +72,6 @@ class Polygon {
  private:
   std::vector<Direction> corners_;
 };
-
-double angle_of_chord(const Direction& chord) {
-  const double square = dot(chord, chord);
-  return 2 * std::atan2(std::sqrt(square), std::sqrt(std::fmax(4 - square, 0)));
-}
 
 // All points are on the circle of an arc with the query, and their cells from pole to pole of it, so that
 // areas and edges over distances agree.

@@ -31,6 +31,7 @@ class SphereLocator {
   std::vector<double> interpolate(const double* values, const double* queries,
                                   const std::vector<std::size_t>& offsets,
                                   const InterpolationOptions& options);
+  std::vector<double> gradients(const double* values, std::size_t columns, const GradientOptions& options);
   /// Of one set.
   NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
   /// Of one set. The options have been checked.

@@ -51,6 +51,10 @@ class Walker {
     return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
   }
   int corner_of(std::int32_t t, std::int32_t v) const;
+  /// Whether a triangle turns left, as seen from the sphere's centre.
+  bool is_seen(std::int32_t t) const { return is_seen_[static_cast<std::size_t>(t)] != 0; }
+  /// A triangle of a vertex, one that is seen if there is one; -1 if it has none.
+  std::int32_t triangle_at(std::int32_t v) const { return triangle_at_[static_cast<std::size_t>(v)]; }
 
  private:
   Found found(std::int32_t t, Point query) const;
