@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "derived/voronoi/stars.hpp"
-#include "operations/prefetch.h"
 #include "space/sphere/measures.hpp"
 
 namespace flaunay::sphere {
