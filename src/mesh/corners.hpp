@@ -15,12 +15,6 @@ constexpr Corner next_corner(Corner c) {
   return c % 3 == 2 ? c - 2 : c + 1;
 }
 
-/// The corner before c in its triangle.
-template <typename Corner>
-constexpr Corner corner_before(Corner c) {
-  return c % 3 == 0 ? c + 2 : c - 1;
-}
-
 /// Where the edge opposite to corner c begins and ends.
 template <typename Corner>
 std::pair<std::int32_t, std::int32_t> edge_opposite(const std::vector<std::int32_t>& triangles, Corner c) {

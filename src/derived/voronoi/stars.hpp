@@ -1,4 +1,4 @@
-// The triangles around points, of which cells in host memory are made, in all spaces.
+// The triangles around points, of which cells on a torus and on the sphere are made.
 #pragma once
 
 #include <algorithm>
@@ -29,16 +29,15 @@ void for_each_triangle(host::Runtime& runtime, const Triangulation& mesh, const 
   });
 }
 
-/// The stars of n points: their corners, 3 t + k, counter-clockwise. The mesh must outlive them. The first
-/// one is the smallest, or on the hull that at the edge which leaves the point. In a set without triangles,
-/// corners are places in the hull, which has the points in their order on a line.
+/// The stars of n points of a surface without border: their corners, 3 t + k, counter-clockwise from the
+/// smallest. The mesh must outlive them.
 class Stars {
  public:
   Stars(const Triangulation& mesh, std::size_t n)
-      : count_(mesh.triangles.empty() ? mesh.hull.size() : mesh.triangles.size()),
-        corners_(mesh.triangles.empty() ? mesh.hull.data() : mesh.triangles.data()),
+      : count_(mesh.triangles.size()),
+        corners_(mesh.triangles.data()),
         neighbors_(mesh.neighbors.data()),
-        steps_(mesh.corner_offsets.empty() ? nullptr : mesh.corner_offsets.data()),
+        steps_(mesh.corner_offsets.data()),
         firsts_(n, -1),
         offsets_(n + 1) {
     for (std::size_t c = count_; c-- > 0;) {
@@ -47,10 +46,6 @@ class Stars {
       firsts_[v] = static_cast<std::int32_t>(c);
     }
     std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    for (std::size_t c = 0; !mesh.hull.empty() && c < mesh.triangles.size(); ++c) {
-      if (neighbors_[mesh::corner_before(c)] < 0)
-        firsts_[static_cast<std::size_t>(corners_[c])] = static_cast<std::int32_t>(c);
-    }
   }
 
   /// n + 1 values: point i has corners offsets[i] up to offsets[i + 1], if those of all points are in a row.
@@ -60,15 +55,12 @@ class Stars {
     return offsets_[static_cast<std::size_t>(v) + 1] - offsets_[static_cast<std::size_t>(v)];
   }
   std::int32_t point(std::int32_t c) const { return corners_[c]; }
-  /// The same point's corner in the next triangle, counter-clockwise; -1 beyond the hull. On a torus a point
-  /// can have several corners of a triangle, but an edge has other offsets than any other; -1 if it has not.
+  /// On a torus, the same point's corner in the next triangle, counter-clockwise; -1 if there is none. A
+  /// point can have several corners of a triangle, but an edge has other offsets than any other.
   std::int32_t next(std::int32_t c) const {
-    const std::int32_t t = neighbors_[mesh::next_corner(c)], p = point(c);
-    if (t < 0) return -1;
-    const std::int32_t* const corners = corners_ + 3 * static_cast<std::ptrdiff_t>(t);
-    if (steps_ == nullptr) return 3 * t + (corners[0] == p ? 0 : corners[1] == p ? 1 : 2);
-    const std::int32_t before = mesh::corner_before(c), q = point(before);
-    for (std::int32_t at = 3 * t; at < 3 * t + 3; ++at) {
+    const std::int32_t before = mesh::next_corner(mesh::next_corner(c)), p = point(c), q = point(before);
+    const std::int32_t t = neighbors_[mesh::next_corner(c)];
+    for (std::int32_t at = 3 * t; t >= 0 && at < 3 * t + 3; ++at) {
       const std::int32_t to = mesh::next_corner(at);
       if (point(at) == p && point(to) == q && step(at, to, 0) == step(c, before, 0) &&
           step(at, to, 1) == step(c, before, 1))
@@ -82,20 +74,16 @@ class Stars {
            steps_[2 * static_cast<std::size_t>(from) + axis];
   }
 
-  /// The number of runs in which for_each takes points.
-  std::size_t runs() const { return geometry::runs_of(count_); }
-  /// Calls work(run, v, c) for each point with corners, of which c is the first one, and fetch(v) some time
+  /// Calls work(v, c) for each point with corners, of which c is the first one, and fetch(v) some time
   /// before. In the order of corners, those of a star are near each other in memory.
   template <typename Fetch, typename Work>
   void for_each(host::Runtime& runtime, const Fetch& fetch, const Work& work) const {
-    geometry::for_each_run(&runtime, count_, [&](std::size_t run, std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c) {
-        const auto soon = static_cast<std::size_t>(corners_[std::min(c + 3 * kTrianglesAhead, count_ - 1)]);
-        kernel::fetch(&firsts_[soon]);
-        fetch(soon);
-        const std::int32_t v = corners_[c], first = firsts_[static_cast<std::size_t>(v)];
-        if (static_cast<std::size_t>(first) == c) work(run, v, first);
-      }
+    geometry::for_each(runtime, count_, [&](std::size_t c) {
+      const auto soon = static_cast<std::size_t>(corners_[std::min(c + 3 * kTrianglesAhead, count_ - 1)]);
+      kernel::fetch(&firsts_[soon]);
+      fetch(soon);
+      const std::int32_t v = corners_[c], first = firsts_[static_cast<std::size_t>(v)];
+      if (static_cast<std::size_t>(first) == c) work(v, first);
     });
   }
 

@@ -90,7 +90,7 @@ ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh, con
   cells.areas.assign(n, 0);
   cells.centroids.assign(2 * n, NAN);
   voronoi::Cells rounded{stars.offsets(), std::vector<double>(2 * mesh.triangles.size())};
-  stars.for_each(runtime, fetch, [&](std::size_t, std::int32_t v, std::int32_t first) {
+  stars.for_each(runtime, fetch, [&](std::int32_t v, std::int32_t first) {
     const Point p = views.place(first);
     std::vector<Point> polygon;
     std::int32_t c = first;

@@ -174,7 +174,7 @@ Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh) {
     kernel::fetch(&offsets[v]);
     kernel::fetch(&result.areas[v]);
   };
-  dual.stars().for_each(runtime, fetch, [&](std::size_t, std::int32_t v, std::int32_t first) {
+  dual.stars().for_each(runtime, fetch, [&](std::int32_t v, std::int32_t first) {
     const auto cell = static_cast<std::size_t>(v);
     auto to = static_cast<std::size_t>(offsets[cell]);
     AreaSum area;
@@ -195,7 +195,7 @@ std::vector<double> centroids(host::Runtime& runtime, const Triangulation& mesh,
   const std::size_t width = width_of(coordinates);
   std::vector<double> result(mesh.places.size() / 2 * width, NAN);
   const auto fetch = [&](std::size_t v) { kernel::fetch(&mesh.places[2 * v]); };
-  dual.stars().for_each(runtime, fetch, [&](std::size_t, std::int32_t v, std::int32_t first) {
+  dual.stars().for_each(runtime, fetch, [&](std::int32_t v, std::int32_t first) {
     MomentSum sum;
     dual.add_cell(v, first, sum, [](std::int32_t) {});
     write_direction(sum.direction(direction_of(dual.place(v))), coordinates,

@@ -10,8 +10,9 @@
 #include "arithmetic/exact_arithmetic.h"
 #include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/moments.hpp"
-#include "derived/voronoi/stars.hpp"
+#include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
+#include "operations/prefetch.h"
 #include "predicates/nearness.h"
 #include "space/weighted/centre.hpp"
 
@@ -19,33 +20,78 @@ namespace flaunay::weighted {
 namespace {
 
 using geometry::Point;
-using mesh::corner_before;
-using mesh::next_corner;
-using voronoi::Stars;
+using voronoi::Moments;
+using voronoi::moments_of;
 using Ids = std::vector<std::int32_t>;
 
-// A neighbour, and the triangle between it and the next neighbour, counter-clockwise; -1 on the border.
-struct Spoke {
-  std::int32_t neighbor, triangle;
-};
-
-// The neighbours of the point with this first corner, counter-clockwise.
-void collect(const Stars& stars, const Triangulation& mesh, std::int32_t first, std::vector<Spoke>& ring) {
-  ring.clear();
-  if (mesh.triangles.empty()) {
-    if (first > 0) ring.push_back({stars.point(first - 1), -1});
-    if (first + 1 < static_cast<std::int32_t>(mesh.hull.size())) ring.push_back({stars.point(first + 1), -1});
-    return;
+// Visits the neighbours of vertices.
+class Stars {
+ public:
+  Stars(std::size_t n, const Triangulation& mesh) : mesh_(mesh), triangle_at_(n, -1) {
+    for (std::size_t c = 0; c < mesh.triangles.size(); ++c) add(mesh.triangles[c], c / 3);
+    // In a set without triangles, `hull` has the vertices in their order on a line.
+    for (std::size_t k = 0; mesh.triangles.empty() && k < mesh.hull.size(); ++k) add(mesh.hull[k], k);
   }
-  // The limit is for arrays that are no triangulation's.
-  std::int32_t c = first;
-  do {
-    ring.push_back({stars.point(next_corner(c)), c / 3});
-    const std::int32_t next = stars.next(c);
-    if (next < 0) ring.push_back({stars.point(corner_before(c)), -1});
-    c = next;
-  } while (c >= 0 && c != first && ring.size() < mesh.triangles.size());
-}
+
+  /// The vertices, near ones one after the other.
+  const Ids& vertices() const { return vertices_; }
+
+  /// A neighbour, and the triangle between it and the next neighbour, counter-clockwise; -1 on the border.
+  struct Spoke {
+    std::int32_t neighbor, triangle;
+  };
+  /// The neighbours of a vertex, counter-clockwise.
+  void collect(std::int32_t v, std::vector<Spoke>& ring) const {
+    ring.clear();
+    const std::int32_t first = triangle_at_[static_cast<std::size_t>(v)];
+    if (mesh_.triangles.empty()) {
+      const auto k = static_cast<std::size_t>(first);
+      if (k > 0) ring.push_back({mesh_.hull[k - 1], -1});
+      if (k + 1 < mesh_.hull.size()) ring.push_back({mesh_.hull[k + 1], -1});
+      return;
+    }
+    // Counter-clockwise, and on the border from there on clockwise to the other end. The limit is for arrays
+    // that are no triangulation's.
+    std::int32_t t = first;
+    for (std::size_t count = 0; t >= 0 && count < mesh_.triangles.size(); ++count) {
+      const int k = corner_of(t, v);
+      ring.push_back({corner(t, k + 1), t});
+      const std::int32_t next = neighbor(t, k + 1);
+      if (next == first) return;
+      if (next < 0) ring.push_back({corner(t, k + 2), -1});
+      t = next;
+    }
+    const auto ahead = static_cast<std::ptrdiff_t>(ring.size());
+    t = neighbor(first, corner_of(first, v) + 2);
+    for (std::size_t count = 0; t >= 0 && count < mesh_.triangles.size(); ++count) {
+      const int k = corner_of(t, v);
+      ring.push_back({corner(t, k + 1), t});
+      t = neighbor(t, k + 2);
+    }
+    std::reverse(ring.begin() + ahead, ring.end());
+    std::rotate(ring.begin(), ring.begin() + ahead, ring.end());
+  }
+
+ private:
+  void add(std::int32_t v, std::size_t at) {
+    std::int32_t& first = triangle_at_[static_cast<std::size_t>(v)];
+    if (first >= 0) return;
+    first = static_cast<std::int32_t>(at);
+    vertices_.push_back(v);
+  }
+  std::int32_t corner(std::int32_t t, int k) const {
+    return mesh_.triangles[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
+  }
+  std::int32_t neighbor(std::int32_t t, int k) const {
+    return mesh_.neighbors[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k % 3)];
+  }
+  int corner_of(std::int32_t t, std::int32_t v) const {
+    return corner(t, 0) == v ? 0 : corner(t, 1) == v ? 1 : 2;
+  }
+
+  const Triangulation& mesh_;
+  Ids triangle_at_, vertices_;
+};
 
 // A convex polygon, seen from a cell's point. sides: per side, from a corner to the next one, the object
 // beyond it: the place of a neighbour in the ring, or ~k for edge k of the clipping polygon.
@@ -83,6 +129,9 @@ void clip(Polygon& polygon, Point d, double constant, int side, Polygon& spare) 
   std::swap(polygon, spare);
 }
 
+// How many triangles ahead their points are fetched.
+constexpr std::size_t kTrianglesAhead = 32;
+
 // Where rounded corners are, the same for all cells that have them.
 class Places {
  public:
@@ -93,11 +142,12 @@ class Places {
         clip_(clip),
         centres_(mesh.triangles.size() / 3),
         beyond_(centres_.size()) {
-    const auto fetch = [&](std::size_t v) {
-      kernel::fetch(&points[2 * v]);
-      kernel::fetch(&weights[v]);
-    };
-    voronoi::for_each_triangle(runtime, mesh, fetch, [&](std::size_t t) {
+    geometry::for_each(runtime, centres_.size(), [&](std::size_t t) {
+      for (std::size_t c = 3 * std::min(t + kTrianglesAhead, centres_.size() - 1), k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(mesh.triangles[c + k]);
+        kernel::fetch(&points[2 * v]);
+        kernel::fetch(&weights[v]);
+      }
       centres_[t] = centre(&mesh.triangles[3 * t]);
       beyond_[t] = find_edge_before(centres_[t]);
     });
@@ -169,7 +219,7 @@ class Places {
 };
 
 // The places of a cell's corners, as x and y.
-void append_places(const Places& places, std::int32_t vertex, const std::vector<Spoke>& ring,
+void append_places(const Places& places, std::int32_t vertex, const std::vector<Stars::Spoke>& ring,
                    std::vector<int>& sides, std::vector<double>& to) {
   const auto add = [&](Point p) { to.insert(to.end(), {p.x, p.y}); };
   const auto spoke = [&](int side) { return ring[static_cast<std::size_t>(side)]; };
@@ -244,58 +294,57 @@ Visible visible_points(const double* points, const std::vector<std::size_t>& off
 
 ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
                           const Triangulation& mesh, const std::vector<double>& corners) {
-  const Stars stars(mesh, n);
+  const Stars stars(n, mesh);
   const Places places(runtime, points, weights, mesh, corners);
+  const Ids& vertices = stars.vertices();
   ClippedVoronoi cells;
   cells.areas.resize(n);
   cells.centroids.assign(2 * n, NAN);
-  voronoi::Cells rounded{Ids(n + 1), {}};
-  // What a run makes, and what it works with.
-  struct Run {
-    std::vector<double> vertices;
+  voronoi::Cells rounded{std::vector<std::int32_t>(n + 1, 0), {}};
+  std::vector<std::vector<double>> corners_of_runs(geometry::runs_of(vertices.size()));
+  geometry::for_each_run(&runtime, vertices.size(), [&](std::size_t r, std::size_t begin, std::size_t end) {
     Polygon polygon, spare;
-    std::vector<Spoke> ring;
-  };
-  std::vector<Run> runs(stars.runs());
-  const auto fetch = [&](std::size_t v) { kernel::fetch(&points[2 * v]); };
-  stars.for_each(runtime, fetch, [&](std::size_t r, std::int32_t v, std::int32_t first) {
-    auto& [vertices, polygon, spare, ring] = runs[r];
-    const auto i = static_cast<std::size_t>(v);
-    const Point p = {points[2 * i], points[2 * i + 1]};
-    // Relative to the point, so that cells far away from the origin have as many digits.
-    polygon.corners.clear();
-    polygon.sides.clear();
-    for (std::size_t k = 0; k < corners.size(); k += 2) {
-      polygon.corners.push_back({corners[k] - p.x, corners[k + 1] - p.y});
-      polygon.sides.push_back(~static_cast<int>(k / 2));
+    std::vector<Stars::Spoke> ring;
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto i = static_cast<std::size_t>(vertices[v]);
+      const Point p = {points[2 * i], points[2 * i + 1]};
+      // Relative to the point, so that cells far away from the origin have as many digits.
+      polygon.corners.clear();
+      polygon.sides.clear();
+      for (std::size_t k = 0; k < corners.size(); k += 2) {
+        polygon.corners.push_back({corners[k] - p.x, corners[k + 1] - p.y});
+        polygon.sides.push_back(~static_cast<int>(k / 2));
+      }
+      stars.collect(vertices[v], ring);
+      for (const Stars::Spoke& spoke : ring) {
+        kernel::fetch(&points[2 * static_cast<std::size_t>(spoke.neighbor)]);
+        kernel::fetch(&weights[spoke.neighbor]);
+      }
+      for (std::size_t k = 0; k < ring.size() && !polygon.sides.empty(); ++k) {
+        const auto j = static_cast<std::size_t>(ring[k].neighbor);
+        const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
+        clip(polygon, d, d.x * d.x + d.y * d.y - (weights[j] - weights[i]), static_cast<int>(k), spare);
+      }
+      const Moments moments = moments_of(polygon.corners);
+      if (moments.area == 0) continue;
+      cells.areas[i] = moments.area;
+      cells.centroids[2 * i] = p.x + moments.centroid.x;
+      cells.centroids[2 * i + 1] = p.y + moments.centroid.y;
+      const std::size_t size = corners_of_runs[r].size();
+      append_places(places, vertices[v], ring, polygon.sides, corners_of_runs[r]);
+      rounded.offsets[i + 1] = static_cast<std::int32_t>((corners_of_runs[r].size() - size) / 2);
     }
-    collect(stars, mesh, first, ring);
-    for (const Spoke& spoke : ring) {
-      kernel::fetch(&points[2 * static_cast<std::size_t>(spoke.neighbor)]);
-      kernel::fetch(&weights[spoke.neighbor]);
-    }
-    for (std::size_t k = 0; k < ring.size() && !polygon.sides.empty(); ++k) {
-      const auto j = static_cast<std::size_t>(ring[k].neighbor);
-      const Point d = {points[2 * j] - p.x, points[2 * j + 1] - p.y};
-      clip(polygon, d, d.x * d.x + d.y * d.y - (weights[j] - weights[i]), static_cast<int>(k), spare);
-    }
-    const voronoi::Moments moments = voronoi::moments_of(polygon.corners);
-    if (moments.area == 0) return;
-    cells.areas[i] = moments.area;
-    cells.centroids[2 * i] = p.x + moments.centroid.x;
-    cells.centroids[2 * i + 1] = p.y + moments.centroid.y;
-    const std::size_t size = vertices.size();
-    append_places(places, v, ring, polygon.sides, vertices);
-    rounded.offsets[i + 1] = static_cast<std::int32_t>((vertices.size() - size) / 2);
   });
   std::partial_sum(rounded.offsets.begin(), rounded.offsets.end(), rounded.offsets.begin());
   rounded.vertices.resize(2 * static_cast<std::size_t>(rounded.offsets.back()));
-  std::vector<std::size_t> taken(runs.size());
-  stars.for_each(runtime, fetch, [&](std::size_t r, std::int32_t v, std::int32_t) {
-    const auto i = static_cast<std::size_t>(v);
-    const std::ptrdiff_t to = 2 * rounded.offsets[i], count = 2 * rounded.offsets[i + 1] - to;
-    std::copy_n(runs[r].vertices.data() + taken[r], count, rounded.vertices.begin() + to);
-    taken[r] += static_cast<std::size_t>(count);
+  geometry::for_each_run(&runtime, vertices.size(), [&](std::size_t r, std::size_t begin, std::size_t end) {
+    auto from = corners_of_runs[r].cbegin();
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto i = static_cast<std::size_t>(vertices[v]);
+      const std::ptrdiff_t first = 2 * rounded.offsets[i], count = 2 * rounded.offsets[i + 1] - first;
+      std::copy_n(from, count, rounded.vertices.begin() + first);
+      from += count;
+    }
   });
   voronoi::mend(runtime, {0, n}, points, corners, voronoi::kNoPeriod, rounded);
   cells.offsets = std::move(rounded.offsets);
