@@ -47,7 +47,7 @@ declare abstract class Mesh {
   free(): void;
 }
 
-/** Neighbours are always computed, and halfedges unless they are refused. */
+/** Neighbours are always computed, halfedges unless they are refused, and areas if they are asked for. */
 export interface MeshOptions extends Omit<TriangulationOptions, 'neighbors'> {}
 
 export interface SetOptions extends MeshOptions {
@@ -118,6 +118,7 @@ export interface ClippedVoronoi {
 /** By default only what is inside by the even-odd rule is kept. */
 export interface PolygonOptions extends MeshOptions, PolygonsOptions {}
 
+/** By default crossings are errors, and all triangles are kept. */
 export interface ConstraintOptions extends MeshOptions, ConstraintsOptions {
   /** 2 points per segment. */
   segments?: ArrayLike<number>;

@@ -33,7 +33,7 @@ def faults(source):
                 of = included.split("/")
                 if LAYER.get(of[0], 0) > LAYER[room]:
                     yield f"{path.relative_to(source)} includes {included}: {of[0]} is above {room}"
-                if of[0] == "modes" == room and len(mode) == 2 and len(of) == 3 and mode[1] != of[1]:
+                if of[0] == "modes" == room and len(mode) >= 2 and len(of) >= 3 and mode[1] != of[1]:
                     yield f"{path.relative_to(source)} includes {included}: modes do not know each other"
 
 

@@ -55,8 +55,8 @@ typedef struct {
   double sine, cosine;
 } turn_ratios;
 
-// Of an angle of at most 45 degrees, with errors of about an ulp: Taylor's series of the rounded number of radians, and
-// what was rounded away.
+// Sine and cosine of at most 45 degrees, with errors of about an ulp: Taylor's series of the rounded number of radians,
+// and what was rounded away.
 #define TAYLOR_TERMS 9
 #define RADIANS_HIGH 0x1.1df46a2529d39p-6  // pi / 180
 #define RADIANS_LOW 0x1.5c1d8becdd291p-62

@@ -42,7 +42,7 @@ class DeviceTriangulation(DeviceTriangulationArrays):
     points : pyopencl.array.Array
         The points that were given.
     triangles, neighbors and so on : pyopencl.array.Array or None
-        The arrays of `Triangulation`, with its shapes and types; None if not asked for.
+        The arrays of `Triangulation`, with its shapes and types; None if not asked for, but triangles.
     triangle_offsets, hull_offsets : ndarray of int64, shape (sets + 1,)
         As those of `Triangulation`, in host memory. Without `hull`, the latter are known all the same.
     statistics : dict
@@ -283,7 +283,7 @@ def triangulate_device(
     cl.Array([ 4.,  7., -1.])
     """
     for name in parts:
-        if name not in _calls.TRIANGULATION:
+        if name not in _calls.TRIANGULATION or name == "triangles":
             raise TypeError(f"unexpected keyword argument {name!r}")
     wanted = {"triangles", *(name for name, is_wanted in parts.items() if is_wanted)}
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)

@@ -133,7 +133,7 @@ class PeriodicDelaunay(WithLocator):
         vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
         return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
-    def find_simplex(self, xi: ArrayLike, offsets: Optional[npt.ArrayLike] = None) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None) -> Indices:
         """Triangles that contain points, exactly.
 
         Parameters

@@ -20,7 +20,7 @@ Doubles = npt.NDArray[np.float64]
 _Answers = TypeVar("_Answers", Indices, Doubles)
 _Made = TypeVar("_Made")
 
-# The most bytes of values, and of results, in a call that interpolates.
+# The most values, and results, in a call that interpolates: 512 MiB of each.
 _MOST_NUMBERS = 1 << 26
 
 

@@ -17,7 +17,7 @@ from flaunay._periodic import as_lengths
 from flaunay._sphere import as_rows
 from flaunay._surfaces import Doubles, as_weights
 
-# Of a call that relaxes points: Ctrl-C takes effect between such calls.
+# The longest time of a call that relaxes points: Ctrl-C takes effect between such calls.
 _SECONDS = 0.1
 
 
@@ -54,7 +54,7 @@ def relax(
     bounds : array_like or shapely.Polygon, optional
         As of `Voronoi.clipped`: the points lie in the plane, and cells are clipped.
     iterations : int, default 1
-        How often the points move. On a device, they stay there in between.
+        How often the points move. In the plane without weights, they stay on a device in between.
     device : str, optional
         As of `triangulate`.
     period : sequence of float or None, optional
@@ -68,7 +68,7 @@ def relax(
     Returns
     -------
     ndarray of float64, of the points' shape
-        On a torus in the period; on the sphere degrees, or unit vectors. A point that has no cell stays where
+        On a torus in the period; on the sphere degrees, or unit vectors, but as given where it stays. A point that has no cell stays where
         it is: one that equals an earlier point, one without a power cell, or one outside of the bounds whose
         cell does not meet them.
 

@@ -182,7 +182,7 @@ class SphericalDelaunay(WithLocator):
         arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
-    def find_simplex(self, xi: ArrayLike, offsets: Optional[npt.ArrayLike] = None) -> Indices:
+    def find_simplex(self, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None) -> Indices:
         """The triangles between whose sides, arcs of great circles, points lie, exactly.
 
         Parameters
@@ -224,7 +224,7 @@ class SphericalDelaunay(WithLocator):
         self,
         values: ArrayLike,
         xi: ArrayLike,
-        method: Literal["linear", "nearest", "clough_tocher", "sibson", "laplace"] = "linear",
+        method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
         *,
         offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
@@ -236,7 +236,7 @@ class SphericalDelaunay(WithLocator):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2) or (..., 3)
             Longitudes and latitudes in degrees, or x, y and z.
-        method : {"linear", "nearest", "clough_tocher", "sibson", "laplace"}
+        method : {"linear", "nearest", "clough-tocher", "sibson", "laplace"}
             The value where the direction of a query meets its triangle in space, that of the nearest point, by
             cubics along great circles with a continuous gradient (Renka, 1984), or between natural neighbours
             (Brown, 1994): by the areas that a query's cell would take from others, or by the lengths of its edges

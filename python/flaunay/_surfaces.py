@@ -204,6 +204,8 @@ class WithLocator(OfPoints):
         is_plain = k is None and distance_upper_bound is None and not return_distances
         if is_plain and self._has_locator:
             return self._find(queries, offsets, _calls.SpaceLocator.nearest)
+        if offsets is not None and not is_plain:
+            raise UsageError("offsets: several points and distances are found in one set alone")
         count, most = count_and_bound(k, distance_upper_bound)
         shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
         rows = queries.reshape(-1, queries.shape[-1])
@@ -214,7 +216,7 @@ class WithLocator(OfPoints):
     def _interpolate(
         self, values: ArrayLike, queries: Doubles, offsets: Optional[npt.ArrayLike], method: str
     ) -> Doubles:
-        number_of(INTERPOLATION, method, "method")
+        number_of({name.replace("_", "-"): k for name, k in INTERPOLATION.items()}, method, "method")
         sets = None if offsets is None else as_offsets(offsets)
         numbers = np.asarray(as_floats(values, "values"), np.float64)
         if numbers.ndim == 0 or len(numbers) != self.npoints:
@@ -222,5 +224,5 @@ class WithLocator(OfPoints):
                 f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
             )
         rows = numbers.reshape(self.npoints, math.prod(numbers.shape[1:]))
-        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]), sets, method)
+        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]), sets, method.replace("-", "_"))
         return found.reshape(queries.shape[:-1] + numbers.shape[1:])

@@ -145,13 +145,17 @@ def test_sets(random):
     np.testing.assert_array_equal(tri.simplices[tri.simplex_offsets[1] :] - 200, alone.simplices)
     np.testing.assert_array_equal(tri.cells.areas[200:], alone.cells.areas)
     queries, values = random.uniform(-2, 2, (30, 2)), random.normal(size=350)
-    found = tri.find_simplex(queries, [0, 20, 30])
-    np.testing.assert_array_equal(found[20:] - tri.simplex_offsets[1], alone.find_simplex(queries[20:]))
-    np.testing.assert_array_equal(tri.nearest(queries, offsets=[0, 20, 30])[20:] - 200, alone.nearest(queries[20:]))
-    np.testing.assert_array_equal(
-        tri.interpolate(values, queries, "sibson", offsets=[0, 20, 30])[20:],
-        alone.interpolate(values[200:], queries[20:], "sibson"),
-    )
+    of_sets = [0, 20, 30]
+    found, near = tri.find_simplex(queries, offsets=of_sets), tri.nearest(queries, offsets=of_sets)
+    between = tri.interpolate(values, queries, "sibson", offsets=of_sets)
+    for s, first in enumerate((0, 200)):
+        alone, asked = flaunay.periodic(parts[s], (1, 1)), slice(of_sets[s], of_sets[s + 1])
+        np.testing.assert_array_equal(found[asked] - tri.simplex_offsets[s], alone.find_simplex(queries[asked]))
+        np.testing.assert_array_equal(near[asked] - first, alone.nearest(queries[asked]))
+        own = values[first : first + len(parts[s])]
+        np.testing.assert_array_equal(between[asked], alone.interpolate(own, queries[asked], "sibson"))
+    with pytest.raises(flaunay.UsageError, match="one set alone"):
+        alone.nearest(queries, k=2, offsets=[0, 30])
 
 
 @pytest.mark.parametrize(
@@ -227,6 +231,6 @@ def test_natural_neighbors(random):
     np.testing.assert_array_equal(cylinder.interpolate(values, points, "sibson"), values)
     with pytest.raises(flaunay.InputError, match="wider than the shorter period"):
         flaunay.periodic(ONE, PERIOD).interpolate([1], queries, "laplace")
-    for method in "clough_tocher", "cubic", 1:
+    for method in "clough-tocher", "cubic", 1:
         with pytest.raises(flaunay.UsageError, match="method|gradients"):
             tri.interpolate(values, queries, method)

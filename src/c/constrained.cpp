@@ -14,7 +14,6 @@
 
 using namespace flaunay;
 
-using c::elements;
 using c::required;
 
 namespace {
@@ -50,7 +49,7 @@ Refinement to_refinement(const flaunay_refinement* wanted) {
   return result;
 }
 
-// What polygons ask for.
+// Polygons with their options.
 struct AskedPolygons : Polygons, PolygonOptions {};
 
 // Takes over what is the same for segments and for polygons.

@@ -74,7 +74,7 @@ std::vector<std::size_t> copied_offsets(const std::size_t* offsets, std::size_t 
 /// for a space, which calls that have spaces read by to_space.
 research::Options to_options(const flaunay_options* options, bool has_space = false);
 
-/// What flaunay_constraints asks for.
+/// The constraints of flaunay_constraints with their options.
 struct AskedConstraints : Constraints, ConstrainedOptions {};
 /// Throws Error(usage) for unknown enumerators, and for another mode than blocks.
 AskedConstraints to_constraints(const flaunay_constraints& given, std::size_t sets,

@@ -20,7 +20,7 @@ inline double to_longest(double max_edge) {
   return max_edge == 0 ? std::numeric_limits<double>::infinity() : max_edge;
 }
 
-/// What flaunay_raster asks for.
+/// The grid of flaunay_raster with its options.
 struct AskedRaster : RasterGrid, RasterOptions {};
 inline AskedRaster to_raster(const flaunay_raster& raster) {
   AskedRaster result;

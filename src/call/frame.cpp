@@ -92,9 +92,11 @@ void Frame::begin() {
   scope_.emplace(runtime.arena());
 }
 
-void Frame::check(const DevicePoints& points, const char* what, SpaceKind kind) {
+void Frame::check(const DevicePoints& points, const char* what, SpaceKind kind, bool can_have_weights) {
   expect(points.space.kind == kind && points.space.weights == nullptr,
          [&] { return fmt::format("the {} are given for another space", what); });
+  expect(points.weights == nullptr || can_have_weights,
+         [&] { return fmt::format("the {} have weights, which this call does not know", what); });
   check_device_points(place_.device->runtime, points, what);
   memories_.push_back(points.memory);
 }

@@ -121,8 +121,10 @@ class Frame {
     }
     return buffer;
   }
-  /// Throws Error(usage) if the buffer of points is missing or too small, or the points lie in another space.
-  void check(const DevicePoints& points, const char* what, SpaceKind kind = SpaceKind::plane);
+  /// Throws Error(usage) if the buffer of points is missing or too small, or if the points lie in another
+  /// space or have weights that the call does not know.
+  void check(const DevicePoints& points, const char* what, SpaceKind kind = SpaceKind::plane,
+             bool can_have_weights = false);
   /// The coordinates in double precision. Those in device memory must have been checked.
   Buffer<cl_double> points(const HostPoints& points);
   Buffer<cl_double> points(const DevicePoints& points);

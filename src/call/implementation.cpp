@@ -112,8 +112,8 @@ void Triangulator::Implementation::note_held_bytes() {
   }
 }
 
-call::WithinTurn::WithinTurn(const Implementation& self) { within_turn_of = &self; }
-call::WithinTurn::~WithinTurn() { within_turn_of = nullptr; }
+call::WithinTurn::WithinTurn(const Implementation& self) : before_(within_turn_of) { within_turn_of = &self; }
+call::WithinTurn::~WithinTurn() { within_turn_of = before_; }
 
 call::Turn::Turn(Implementation& self) : self_(self), is_part_(within_turn_of == &self) {
   if (is_part_) return;

@@ -90,6 +90,9 @@ class WithinTurn {
   ~WithinTurn();
   WithinTurn(const WithinTurn&) = delete;
   WithinTurn& operator=(const WithinTurn&) = delete;
+
+ private:
+  const Implementation* before_;  // that of the turn around this one, or null
 };
 
 /// Marks a triangulator as busy for the length of a call. Throws Error(usage) if it is busy already, since

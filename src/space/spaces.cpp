@@ -82,8 +82,7 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
   call::take_turn(self, enqueue, [&] {
     const call::SpaceCalls& calls = calls_in(points.space.kind, points.weights != nullptr);
     call::expect(points.space.weights == nullptr, "points in device memory have weights there");
-    result.space = points.space;
-    result.hidden_count = 0;
+    call::reset(points.space, result);
     calls.triangulate_on_device(self, points, result, parts, enqueue);
   });
 }

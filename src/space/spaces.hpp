@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,8 @@ void write_counts(std::size_t duplicates, Result& result) {
   statistics.hull_vertices = 0;
 }
 
-/// What the public calls do in a kind of space. It is the triangulator's turn; offsets have been checked.
+/// The functions of public calls in a kind of space. It is the triangulator's turn; offsets have been
+/// checked.
 struct SpaceCalls {
   const char* refusal_of_weights;  ///< what a call with weights says; null: points can have weights
   Triangulation (*triangulate)(Implementation& self, const HostPoints& points,

@@ -163,7 +163,7 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   if ((parts.neighbors || parts.halfedges || parts.areas) && !parts.triangles) {
     throw Error(ErrorKind::usage, "neighbours, halfedges and areas are computed with triangles only");
   }
-  call.check(points, "points");
+  call.check(points, "points", SpaceKind::plane, weights != nullptr);
   device.check_size(points.count);
   call.begin();
   const double begin = device.runtime.working_clock();
@@ -176,7 +176,6 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   result.statistics.device = call.runtime.name();
   result.statistics.points = n;
   result.parts = parts;
-  result.is_constrained = false;
   result.points = n;
   result.point_offsets = offsets;
   result.triangle_offsets.assign(sets + 1, 0);

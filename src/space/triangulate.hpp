@@ -16,6 +16,13 @@ namespace flaunay::call {
 /// coordinates in double precision.
 HostPoints checked_points(const double* wide, const float* narrow, const std::vector<std::size_t>& offsets);
 
+/// Removes from a result what an earlier call of another kind has left.
+inline void reset(const Space& space, DeviceTriangulation& result) {
+  result.space = space;
+  result.is_constrained = false;
+  result.constraint_count = result.hidden_count = result.images = 0;
+}
+
 /// Converts the points to double precision. Returns an empty vector if they already are in it.
 std::vector<double> widened(const HostPoints& points);
 

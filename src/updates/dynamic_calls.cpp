@@ -156,9 +156,7 @@ void DynamicTriangulation::rows(DeviceTriangulation& result, const Enqueue& enqu
     frame.check_distinct();
     frame.begin();
     result.parts = {true, true, false, false, false, false};
-    result.space = Space::plane();
-    result.is_constrained = false;
-    result.constraint_count = result.hidden_count = result.images = 0;
+    call::reset(Space::plane(), result);
     result.points = places.size() / 2;
     result.point_offsets = {0, result.points};
     result.triangle_offsets = {0, all.triangles.size() / 3};

@@ -131,6 +131,16 @@ TEST_P(LargeDeviceLaws, ResultsAreThoseOfTheHost) {
   Offsets offsets;
   const Numbers sets = joined(large, space_.width, offsets);
   expect_same(sets, offsets);
+  if (space_.is_plane() && space_.has_weights) {
+    // Of magnitudes for which each set has its own scale, and weights that all of these take.
+    Numbers scaled = sets;
+    for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+      const int shift = static_cast<int>(s % 3) * 300 - 400;
+      for (std::size_t k = 3 * offsets[s]; k < 3 * offsets[s + 1]; ++k)
+        scaled[k] = std::ldexp(k % 3 < 2 ? sets[k] : std::floor(8 * sets[k]), k % 3 < 2 ? shift : 2 * shift);
+    }
+    expect_same(scaled, offsets);
+  }
   // With the sizes of GPUs.
   expect_same_arrays(space_.triangulate(triangulator_with("gpu:32"), sets, offsets),
                      space_.triangulate(on_host(), sets, offsets));
@@ -193,6 +203,10 @@ TEST_P(DeviceLaws, ResultsGoToTheCallersBuffers) {
   }
   found.neighbors = found.triangles;
   expect_error(ErrorKind::usage, "two things", run);
+  if (!space_.has_weights) return;
+  found.neighbors = {};
+  found.hidden = DeviceBuffer(weights.get());
+  expect_error(ErrorKind::usage, "two things", run);
 }
 
 TEST_P(DeviceLaws, ErrorsNameThePoint) {
@@ -212,11 +226,30 @@ TEST_P(DeviceLaws, ErrorsNameThePoint) {
                [&] { embedded().triangulate(points_in(memory, weights, n + 1), found, wanted(), on_own()); });
   if (!space_.has_weights) return;
   const Memory finite = embedder().upload(without_weights(cases_[6].numbers)),
-               few = embedder().upload(Numbers(n - 1)), wrong = embedder().upload(Numbers(n, HUGE_VAL));
+               few = embedder().upload(Numbers(n - 1));
+  Numbers values(n, 0.0);
+  values[5] = std::nan("");
+  values[17] = 1e300;
+  const Memory wrong = embedder().upload(values);
   expect_error(ErrorKind::usage, {"weights", "too small"},
                [&] { embedded().triangulate(points_in(finite, few, n), found, wanted(), on_own()); });
-  expect_error(ErrorKind::input, "point 0 has a weight that is not finite: inf",
+  expect_error(ErrorKind::input, "point 5 has a weight that is not finite: nan",
                [&] { embedded().triangulate(points_in(finite, wrong, n), found, wanted(), on_own()); });
+}
+
+TEST(SmallSpacesOnDevice, SpacesThatAreNoneAreRefused) {
+  const Memory memory = embedder().upload(Numbers(60, 0.5));
+  const auto expect = [&](const char* problem, const Space& space) {
+    DevicePoints points;
+    points.memory = memory.get();
+    points.count = 20;
+    points.space = space;
+    DeviceTriangulation found;
+    expect_error(ErrorKind::usage, problem, [&] { embedded().triangulate(points, found); });
+  };
+  for (const Period& period : {Period{0, 1}, {1, -1}, {std::nan(""), 1}, {HUGE_VAL, HUGE_VAL}, {1, 1e30}})
+    expect("period", Space::torus(period));
+  expect("7 is no SphereCoordinates", Space::sphere(static_cast<SphereCoordinates>(7)));
 }
 
 TEST(SmallSpacesOnDevice, PointsThatAreNotOnTheSphereAreNamed) {
@@ -234,6 +267,42 @@ TEST(SmallSpacesOnDevice, PointsThatAreNotOnTheSphereAreNamed) {
   expect("point 1 is the vector 0", SphereCoordinates::directions, 0, 2);
   expect("point 3: the latitude 91", SphereCoordinates::degrees, 0, 4);
   expect("point 0: the latitude 91", SphereCoordinates::degrees, 3, 1);
+}
+
+TEST(SmallSpacesOnDevice, AResultForgetsWhatEarlierCallsHaveLeft) {
+  const Numbers square = {0.1, 0.1, 0.9, 0.1, 0.9, 0.9, 0.1, 0.9, 0.5, 0.4};
+  const std::vector<std::int32_t> diagonal = {0, 2};
+  const Memory memory = embedder().upload(square), ends = embedder().upload(diagonal),
+               weights = embedder().upload(Numbers{0, 0, 0, 0, -9});
+  DevicePoints points;
+  points.memory = memory.get();
+  points.count = 5;
+  DevicePoints heavy = points, on_torus = points;
+  heavy.weights = weights.get();
+  on_torus.space = Space::torus({1, 1});
+  DeviceTriangulation result;
+  const auto expect_left = [&](SpaceKind kind, bool is_constrained, bool has_hidden) {
+    EXPECT_EQ(result.space.kind, kind);
+    EXPECT_EQ(result.is_constrained, is_constrained);
+    EXPECT_EQ(result.constraint_count > 0, is_constrained);
+    EXPECT_EQ(result.hidden_count > 0, has_hidden);
+    EXPECT_EQ(result.images > 0, kind == SpaceKind::torus);
+  };
+  embedded().triangulate(on_torus, result);
+  expect_left(SpaceKind::torus, false, false);
+  embedded().constrained(points, {ends.get(), 1}, result);
+  expect_left(SpaceKind::plane, true, false);
+  embedded().triangulate(heavy, result);
+  expect_left(SpaceKind::plane, false, true);
+  embedded().constrained(points, {ends.get(), 1}, result);
+  embedded().triangulate(on_torus, result);
+  expect_left(SpaceKind::torus, false, false);
+  embedded().triangulate(points, result);
+  expect_left(SpaceKind::plane, false, false);
+  // Calls that know no weights refuse them.
+  expect_error(ErrorKind::usage, "have weights", [&] {
+    embedded().constrained(heavy, {ends.get(), 1}, result);
+  });
 }
 
 TEST(SmallSpacesOnDevice, ANoteSaysWhatTheDeviceLeavesToTheHost) {

@@ -211,6 +211,11 @@ inline std::vector<Case> large_cases(const TestSpace& space) {
   }
   if (space.has_weights) {
     for (Case& weighted : with_other_weights(uniform)) all.push_back(std::move(weighted));
+  } else if (std::isfinite(space.space.period.x + space.space.period.y) &&
+             space.space.kind == SpaceKind::torus) {
+    all.push_back({"far", uniform});
+    for (std::size_t i = 0; i < uniform.size(); ++i)
+      all.back().numbers[i] = std::ldexp(uniform[i], static_cast<int>(i * 37 % 1000));
   }
   return all;
 }

@@ -32,8 +32,7 @@ struct ConstraintRequest {
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request);
 /// The options among them that say what the segments are and what they bound: --constraints, --outside,
-/// --fill,
-/// --hole.
+/// --fill, --hole.
 void add_domain_options(CLI::App* command, ConstraintRequest& request);
 /// Checks the options of add_domain_options for an input with segments. Throws Error(usage).
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request);

@@ -27,20 +27,6 @@ const std::vector<std::string> kChunks = {"--memory", "--chunk-points", "--scrat
 const std::vector<std::string> kWeighted = {"--weighted", "--hidden"};
 const std::vector<std::string> kPlanar = {"--halfedges", "--hull", "--areas"};
 
-// The result of a call in another space, with statistics of the space.
-research::Triangulation completed(Triangulation mesh, std::size_t n) {
-  research::Triangulation result;
-  static_cast<Triangulation&>(result) = std::move(mesh);
-  if (result.space.kind == SpaceKind::plane) return result;
-  result.statistics.points = n;
-  result.statistics.duplicates = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    result.statistics.duplicates += static_cast<std::size_t>(result.representatives[i]) != i;
-  result.statistics.triangles = result.triangles.size() / 3;
-  result.statistics.hull_vertices = 0;
-  return result;
-}
-
 /// The triangles in the plane, each once: corners in another period are points behind the others. Mesh files
 /// have no neighbours.
 void unfold(const Period& period, const std::vector<std::int8_t>& offsets, io::Points& points,
@@ -197,10 +183,9 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
   if (request.is_weighted) space = space.with_weights(read.weights.data());
   Options options;
   ask_for(task.results, options);
-  research::Triangulation mesh =
-      completed(naming_files({{"point ", task.input}},
-                             [&] { return triangulator.triangulate(coordinates, n, space, options); }),
-                n);
+  research::Triangulation mesh;
+  static_cast<Triangulation&>(mesh) = naming_files(
+      {{"point ", task.input}}, [&] { return triangulator.triangulate(coordinates, n, space, options); });
   if (mesh.space.kind == SpaceKind::torus) points.coordinates = mesh.places;
 
   const auto write = [&] {

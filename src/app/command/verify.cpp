@@ -202,7 +202,7 @@ std::vector<std::int32_t> hidden_points(const Triangulation& mesh) {
   return hidden;
 }
 
-/// Of points with weights in the plane. The hull is where triangles have no neighbours.
+/// Checks points with weights in the plane. The hull is where triangles have no neighbours.
 std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const auto [points, weights] = read_points(request.points, request.columns, true);
   n = points.size();
@@ -233,8 +233,8 @@ std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Pr
   return flaunay::verify(at.data(), {0, n}, Space::plane().with_weights(weights.data()), mesh);
 }
 
-/// Of weighted points on a torus or a cylinder that are said to have no triangles: they must be on one circle
-/// of a cylinder. Which of them are hidden, triangles do not say.
+/// Checks weighted points on a torus or a cylinder that are said to have no triangles: they must be on one
+/// circle of a cylinder. Which of them are hidden, triangles do not say.
 std::string problem_without_triangles(const Triangulation& mesh) {
   const bool is_upright = !std::isfinite(mesh.space.period.x);
   const bool is_cylinder = is_upright || !std::isfinite(mesh.space.period.y);
@@ -329,8 +329,7 @@ int verify(const VerifyRequest& request) {
   return report.ok ? kSuccess : kFailure;
 }
 
-/// Whether the points lie in another space than the plane. Throws Error(usage) for options that do not go
-/// together.
+/// Throws Error(usage) for options that do not go together.
 void check_space(const CLI::App& command, const VerifyRequest& request) {
   const bool is_periodic = request.is_periodic();
   if (!is_periodic) refuse(command, "--offsets", "needs --period");

@@ -111,6 +111,7 @@ void Triangulator::constrained(const DevicePoints& points, const DeviceSegments&
     check_count(segments.count, "segments", kMostIndexed / 2);
     call::check_buffer(engine.runtime, segments.memory, 2 * segments.count * sizeof(cl_int),
                        call::Access::read, "segments");
+    call::reset(Space::plane(), mesh);
     call::triangulate(self, points, mesh, parts, first);
 
     Enqueue rest = enqueue;

@@ -16,7 +16,6 @@
 #include "derived/locate/locator.hpp"
 #include "derived/locate/read_back.hpp"
 #include "space/periodic/torus_plane.hpp"
-#include "space/spaces.hpp"
 #include "space/sphere/triangulate_on_sphere.hpp"
 #include "space/triangulate.hpp"
 
@@ -293,9 +292,8 @@ struct Locator::Implementation {
 
   /// Throws Error(usage) for what there is in the plane alone.
   void expect_plane(const char* what) const {
-    call::expect(!on_torus && !on_sphere, [&] {
-      return fmt::format("{}: not for a triangulation on a torus, a cylinder or the sphere", what);
-    });
+    call::expect(!on_torus && !on_sphere,
+                 [&] { return fmt::format("{}: for triangulations in the plane alone", what); });
   }
 
   std::shared_ptr<Triangulator::Implementation> owner;
@@ -471,11 +469,12 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
 std::vector<double> Locator::interpolate(const double* values, const double* queries,
                                          const std::vector<std::size_t>& offsets,
                                          const InterpolationOptions& options) {
+  if (!implementation_->on_sphere)
+    check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   check_enumerator(options.method);
   call::expect(options.device_gradients == nullptr, "gradients in device memory of values in host memory");
   if (implementation_->on_sphere)
     return implementation_->on_sphere->interpolate(values, queries, offsets, options);
-  check_array(values, implementation_->numbers(options.columns), "values", kMostCountable);
   return implementation_->take_turn([&] {
     Implementation& self = implementation_->for_method(options.method);
     if (self.on_torus) self.check_on_torus(options, offsets);
@@ -502,12 +501,12 @@ void Locator::interpolate(cl_mem values, const DevicePoints& queries, DeviceBuff
 
 NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, Interpolation method) {
   Implementation& self = *implementation_;
+  check_queries(queries, m);
   check_enumerator(method);
   const auto weighed = Implementation::natural_weights(method);
   if (self.on_sphere) return self.on_sphere->natural_weights(queries, m, method);
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
-    check_queries(queries, m);
     const std::vector<double> places = self.placed(queries, m);
     if (self.on_torus) self.on_torus->check_gaps({0, m});
     NaturalWeights result;
@@ -526,7 +525,7 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;
   if (self.on_sphere) return self.on_sphere->gradients(values, columns, options);
-  self.expect_plane("gradients");
+  self.expect_plane("gradients at points of a torus or a cylinder");
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_array(values, self.numbers(columns), "values", kMostCountable);
@@ -541,7 +540,7 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
 void Locator::gradients(cl_mem values, DeviceBuffer& gradients, std::size_t columns,
                         const GradientOptions& options, const Enqueue& enqueue) {
   Implementation& self = *implementation_;
-  self.expect_plane("gradients");
+  self.expect_plane("gradients in device memory");
   self.take_turn(enqueue, [&] {
     call::Answerer& by = self.doubles();
     self.on_device(by, enqueue, [&](call::Frame& call) {

@@ -137,7 +137,8 @@ PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 void PointTree::set_coordinates(SphereCoordinates coordinates) {
   with_errors([&] {
-    call::expect(implementation_->on_sphere.has_value(), "queries in the plane have no such coordinates");
+    call::expect(implementation_->on_sphere.has_value(),
+                 "only queries on the sphere have coordinates of the sphere");
     implementation_->on_sphere->set_coordinates(coordinates);
   });
 }

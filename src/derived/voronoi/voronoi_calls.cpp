@@ -9,7 +9,6 @@
 #include "call/mesh_of.hpp"
 #include "derived/voronoi/clip.hpp"
 #include "derived/voronoi/voronoi.hpp"
-#include "mesh/rows.hpp"
 #include "space/periodic/cells.hpp"
 #include "space/periodic/torus.hpp"
 #include "space/periodic/triangulate_on_torus.hpp"
@@ -241,43 +240,46 @@ std::vector<double> Triangulator::relax(const double* points, std::size_t n, con
     }
     call::expect(is_plane || (corners == nullptr && corner_count == 0),
                  "cells of a torus or the sphere are not clipped to a polygon");
+    if (is_plane) voronoi::checked_polygon(corners, corner_count);
+    call::expect(is_plane || is_torus || space.weights == nullptr, call::kOnSphere.refusal_of_weights);
     const std::size_t width = is_plane || is_torus ? 2 : sphere::width_of(space.coordinates);
     host::Runtime& runtime = implementation_->native().runtime;
-    const periodic::Lattice lattice = periodic::lattice_of(space.period);
-    const std::vector<double> places =
-        is_plane   ? std::vector<double>(points, points + 2 * n)
-        : is_torus ? periodic::to_places(runtime, points, n, lattice, "point")
-                   : sphere::to_places(runtime, points, n, space.coordinates, "point");
-    // In another order, rows of triangles and sums along them would be in another one, too.
-    const std::vector<std::int32_t> order = order_of(places, space.weights);
-    std::vector<double> relaxed, weights;
-    for (const std::int32_t i : order) {
-      const double* const p = points + width * static_cast<std::size_t>(i);
-      relaxed.insert(relaxed.end(), p, p + width);
-      if (space.weights != nullptr) weights.push_back(space.weights[i]);
-    }
-    const Space sorted = space.with_weights(space.weights == nullptr ? nullptr : weights.data());
-    for (std::size_t i = 0; i < iterations; ++i) {
+    const periodic::Lattice lattice = is_torus ? periodic::lattice_of(space.period) : periodic::Lattice{};
+    std::vector<double> relaxed(points, points + width * n), sorted(width * n),
+        weights(space.weights == nullptr ? 0 : n);
+    for (std::size_t k = 0;; ++k) {
+      std::vector<double> places =
+          is_plane   ? relaxed
+          : is_torus ? periodic::to_places(runtime, relaxed.data(), n, lattice, "point")
+                     : sphere::to_places(runtime, relaxed.data(), n, space.coordinates, "point");
+      if (k == iterations) return is_torus ? std::move(places) : std::move(relaxed);
+      // In another order, rows of triangles and sums along them would be in another one, too.
+      const std::vector<std::int32_t> order = order_of(places, space.weights);
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto from = static_cast<std::size_t>(order[i]);
+        std::copy_n(&(is_torus ? places : relaxed)[width * from], width, &sorted[width * i]);
+        if (space.weights != nullptr) weights[i] = space.weights[from];
+      }
+      const Space in_order = space.with_weights(space.weights == nullptr ? nullptr : weights.data());
       const Triangulation mesh = [&] {
         try {
-          return triangulate(relaxed.data(), n, sorted);
+          return triangulate(sorted.data(), n, in_order);
         } catch (const Error&) {
-          triangulate(points, n, space);  // whose error has the points' own numbers
+          triangulate(relaxed.data(), n, space);  // whose error has the points' own numbers
           throw;
         }
       }();
-      if (is_torus) relaxed = mesh.places;
       const std::vector<double> centroids =
-          is_torus ? clipped_voronoi(mesh, sorted.weights).centroids
+          is_torus ? clipped_voronoi(mesh, in_order.weights).centroids
           : is_plane
-              ? clipped_voronoi(relaxed.data(), sorted.weights, n, mesh, corners, corner_count).centroids
+              ? clipped_voronoi(sorted.data(), in_order.weights, n, mesh, corners, corner_count).centroids
               : sphere::centroids(runtime, mesh, space.coordinates);
-      // Those of points without a cell are NaN.
-      std::transform(centroids.begin(), centroids.end(), relaxed.begin(), relaxed.begin(),
+      // The centroids of points without a cell are NaN.
+      std::transform(centroids.begin(), centroids.end(), sorted.begin(), sorted.begin(),
                      [](double moved, double before) { return std::isnan(moved) ? before : moved; });
+      for (std::size_t i = 0; i < n; ++i)
+        std::copy_n(&sorted[width * i], width, &relaxed[width * static_cast<std::size_t>(order[i])]);
     }
-    mesh::permute(order, width, relaxed);
-    return is_torus ? periodic::to_places(runtime, relaxed.data(), n, lattice, "point") : relaxed;
   });
 }
 

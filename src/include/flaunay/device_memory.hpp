@@ -107,8 +107,8 @@ struct DeviceTriangulation {
   /// as there are points on segments.
   DeviceBuffer constraint_edges;
   DeviceBuffer coordinates;  ///< of a DynamicTriangulation, its coordinates, double2, 16 n bytes
-  /// The arrays that the last call computed. On a torus, a cylinder and the sphere these are triangles,
-  /// neighbors, representatives, places and corner offsets, whatever was asked for.
+  /// The arrays up to areas that the last call computed: on a torus, a cylinder and the sphere triangles,
+  /// neighbors and representatives, whatever was asked for. The others are there where a call has them.
   Parts parts{false, false, false, false, false, false};
   Space space = Space::plane();  ///< Triangulation::space
   std::size_t images = 0;        ///< Triangulation::images

@@ -102,8 +102,10 @@ class FLAUNAY_API DynamicTriangulation {
   std::vector<double> coordinates() const;
   /// All rows. O(rows).
   TriangleRows rows();
-  /// Writes all rows and coordinates, also of numbers without a point, to device memory. The work is enqueued
-  /// like that of Triangulator::triangulate, with the same errors. O(rows).
+  /// Writes all rows and coordinates, also of numbers without a point, to device memory: result.points is
+  /// numbers(), and result.triangle_offsets ends with row_count(), r, for which the caller's buffers of
+  /// triangles and neighbors need 12 r bytes each. The work is enqueued like that of
+  /// Triangulator::triangulate, with the same errors. O(rows).
   void rows(DeviceTriangulation& result, const Enqueue& enqueue = {});
   /// The result of a call on all points, with these numbers: triangles in the order of their rows, which have
   /// the smallest number first. Representatives of points that were removed are -1. O(rows).

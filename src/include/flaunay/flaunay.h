@@ -124,9 +124,8 @@ typedef enum flaunay_part {
   /// Of points with weights those without a power cell, in ascending order, but those that another point
   /// represents. Always computed with weights.
   FLAUNAY_PART_HIDDEN = 256,
-  /// As flaunay_constrained_arrays has them, and the following two, which
-  /// flaunay_triangulate_constrained_device
-  /// computes always: uchar, 3 per triangle.
+  /// As in flaunay_constrained_arrays, and so are the following two; flaunay_triangulate_constrained_device
+  /// always computes them: uchar, 3 per triangle.
   FLAUNAY_PART_CONSTRAINED = 512,
   FLAUNAY_PART_PIECE_EDGES = 1024,       ///< 2 per segment
   FLAUNAY_PART_CONSTRAINT_EDGES = 2048,  ///< 2 per constraint edge
@@ -221,7 +220,7 @@ typedef enum flaunay_interpolation {
   FLAUNAY_INTERPOLATION_LINEAR = 0,   ///< linearly in each triangle; continuous
   FLAUNAY_INTERPOLATION_NEAREST = 1,  ///< the values of the nearest point
   /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
-  /// CloughTocher2DInterpolator.
+  /// CloughTocher2DInterpolator; on the sphere Renka's interpolant.
   FLAUNAY_INTERPOLATION_CLOUGH_TOCHER = 2,
   /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
   /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
@@ -489,7 +488,7 @@ typedef struct flaunay_kernel {
   double seconds;    ///< time on the device, sum over all launches
 } flaunay_kernel;
 
-/// What a call did and how long it took.
+/// The work of a call and its time.
 typedef struct flaunay_statistics {
   const char* device;         ///< name of the device; "host" in the modes that run on the host
   size_t points;              ///< input points
@@ -1120,8 +1119,9 @@ FLAUNAY_API flaunay_status flaunay_device_triangulation_set_buffer(
 /// call clRetainMemObject.
 FLAUNAY_API cl_mem flaunay_device_triangulation_buffer(const flaunay_device_triangulation* triangulation,
                                                        unsigned part);
-/// The arrays that the last call computed, as bits of flaunay_part; 0 before the first call. This and the
-/// following values are known when the call returns.
+/// Which of the arrays up to the areas the last call computed, as bits of flaunay_part; 0 before the first
+/// call. Arrays of spaces, weights, constraints and coordinates are always there where a call has them. This
+/// and the following values are known when the call returns.
 FLAUNAY_API unsigned flaunay_device_triangulation_parts(const flaunay_device_triangulation* triangulation);
 /// Its sizes, offsets, space and statistics, which are in host memory; the pointers to other arrays are NULL.
 FLAUNAY_API const flaunay_mesh* flaunay_device_triangulation_mesh(
@@ -1153,9 +1153,9 @@ FLAUNAY_API flaunay_status flaunay_triangulate_device(flaunay_triangulator* tria
 
 /// flaunay_triangulate_constrained for points and segments in device memory, into device memory. segments: 2
 /// int32 per segment. FLAUNAY_ERROR_INPUT if segments cross where no point is; no triangles are left out. The
-/// mesh has all parts but halfedges and areas, and those of constraints; Voronoi diagrams and locators refuse
-/// it. The work is enqueued like that of flaunay_triangulate_device, with the same errors; the host waits
-/// once more per round of segments.
+/// mesh has the parts of constraints, and of the others all but halfedges and areas; Voronoi diagrams and
+/// locators refuse it. The work is enqueued like that of flaunay_triangulate_device, with the same errors;
+/// the host waits once more per round of segments.
 FLAUNAY_API flaunay_status flaunay_triangulate_constrained_device(flaunay_triangulator* triangulator,
                                                                   const flaunay_device_points* points,
                                                                   cl_mem segments, size_t segment_count,
@@ -1207,7 +1207,7 @@ FLAUNAY_API flaunay_status flaunay_triangulate_chunks_to_files(const flaunay_str
 FLAUNAY_API flaunay_status flaunay_take_to_places(double* period, double* points, size_t n);
 /// Frees the report.
 FLAUNAY_API void flaunay_chunk_report_destroy(flaunay_chunk_report* report);
-/// What the call did and how long it took.
+/// The work of the call and its time.
 FLAUNAY_API const flaunay_chunk_statistics* flaunay_chunk_report_statistics(
     const flaunay_chunk_report* report);
 
@@ -1334,14 +1334,17 @@ FLAUNAY_API flaunay_status flaunay_voronoi_clip_device(flaunay_triangulator* tri
 /// to the polygon, as in flaunay_voronoi_clip; with weights they are power cells. On a torus and the sphere
 /// corners is NULL, points move on these and are given back as in the space: places in the period, unit
 /// vectors, or degrees. On the sphere they move to the direction of the cell's centroid in space, the sum
-/// over its sides of their angles times the normals of their planes. relaxed: room for as many values as
-/// points, which may be points itself. Errors are those of flaunay_triangulate and flaunay_voronoi_clip.
+/// over its sides of their angles times the normals of their planes; those that stay are given back as they
+/// were given. relaxed: room for as many values as points, which may be points itself. Errors are those of
+/// flaunay_triangulate and flaunay_voronoi_clip, and FLAUNAY_ERROR_USAGE for a cylinder, where cells have no
+/// end.
 FLAUNAY_API flaunay_status flaunay_relax(flaunay_triangulator* triangulator, const double* points, size_t n,
                                          const flaunay_space* space, const double* corners,
                                          size_t corner_count, size_t iterations, double* relaxed);
-/// Relaxes points in device memory. *relaxed: the caller's buffer, double2, 16 n bytes, another one than that
-/// of the points; if it is NULL, it receives a new one, as in flaunay_locator_locate_device. The work is
-/// enqueued like that of flaunay_triangulate_device, with the same errors; points stay on the device.
+/// Relaxes points of the plane in device memory. *relaxed: the caller's buffer, double2, 16 n bytes, another
+/// one than that of the points; if it is NULL, it receives a new one, as in flaunay_locator_locate_device.
+/// The work is enqueued like that of flaunay_triangulate_device, with the same errors; points stay on the
+/// device.
 FLAUNAY_API flaunay_status flaunay_relax_device(flaunay_triangulator* triangulator,
                                                 const flaunay_device_points* points, const double* corners,
                                                 size_t corner_count, size_t iterations,
@@ -1431,7 +1434,7 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read. Queries are any
 /// places of the plane, and on the sphere given as the points were; they are in host memory.
 ///
-/// A triangulation with constraints must be of one set, too. coordinates: of its points and after them those
+/// A triangulation with constraints must be of one set. coordinates: of its points and after them those
 /// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points
 /// are those of all points. Natural neighbours are those that can be seen without crossing a constraint
 /// (docs/constrained.md).
@@ -1513,12 +1516,11 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
 /// a torus and a cylinder there is no Clough-Tocher. On the sphere, linear interpolation is the value where
-/// the direction of the query meets the triangle in space; in its place Renka's interpolant (1984) has cubics
-/// along great circles and a continuous gradient; and natural neighbours (Brown, 1994) have areas of cells on
-/// the sphere, and lengths of arcs. Natural neighbours of so few points
-/// on a torus that a circle without points is wider than the shorter period, on a cylinder one with its
-/// centre between the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of
-/// flaunay_locator_locate.
+/// the direction of the query meets the triangle in space; Clough-Tocher stands for Renka's interpolant
+/// (1984), of cubics along great circles with a continuous gradient; and natural neighbours (Brown, 1994)
+/// have areas of cells on the sphere, and lengths of arcs. Natural neighbours of so few points on a torus
+/// that a circle without points is wider than the shorter period, on a cylinder one with its centre between
+/// the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
                                                        const double* queries, size_t m, const size_t* offsets,
                                                        size_t sets,
@@ -1543,15 +1545,16 @@ FLAUNAY_API flaunay_status flaunay_natural_weights_compute(flaunay_locator* loca
 FLAUNAY_API void flaunay_natural_weights_destroy(flaunay_natural_weights* weights);
 /// m + 1 values: query i has the points and weights from the i-th to the (i + 1)-th.
 FLAUNAY_API const size_t* flaunay_natural_weights_offsets(const flaunay_natural_weights* weights);
-/// Points, without an order; of duplicates the representative. On a torus a point can be there several times.
+/// Points, without an order; of duplicates the representative. On a torus or a cylinder a point can be there
+/// several times.
 FLAUNAY_API const int32_t* flaunay_natural_weights_points(const flaunay_natural_weights* weights);
 /// The weight of each, 0 or more, with the sum 1 per query.
 FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_weights* weights);
 /// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
 /// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
 /// and y per number, on the sphere x, y and z of a vector that is tangent there, the caller's array; not on a
-/// torus or a cylinder. They are NaN at points that another one represents, and at those of
-/// a set on one line. Of the options, columns and those of gradients count. NULL: the defaults.
+/// torus or a cylinder. They are NaN at points that another one represents, and at those of a set on one
+/// line. Of the options, columns and those of gradients count. NULL: the defaults.
 FLAUNAY_API flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
                                                      const flaunay_interpolation_options* options,
                                                      double* gradients);

@@ -82,7 +82,7 @@ struct PhaseStatistics {
   double seconds = 0;  ///< wall time on the host, including the time that it waits for the device
 };
 
-/// What a call did and how long it took.
+/// The work of a call and its time.
 struct Statistics {
   std::string device;             ///< name of the device; "host" if none was used
   std::size_t points = 0;         ///< input points
@@ -468,10 +468,10 @@ class FLAUNAY_API Triangulator {
                    const Parts& parts = triangles_alone(), const Enqueue& enqueue = own_queue());
 
   /// Triangulates points in device memory with segments as edges, into device memory. Segments that cross
-  /// where no point is are Error(input); no triangles are left out. The mesh has all parts but halfedges and
-  /// areas, and the arrays of constraints; Voronoi diagrams and locators refuse it. The host waits once per
-  /// round of segments, about 8 times more than for triangulate. Otherwise the work is enqueued like that of
-  /// triangulate for device memory, with the same errors and those of constrained for host memory.
+  /// where no point is are Error(input); no triangles are left out. The mesh has the arrays of constraints,
+  /// and of the others all but halfedges and areas; Voronoi diagrams and locators refuse it. The host waits
+  /// once per round of segments, about 8 times more than for triangulate. Otherwise the work is enqueued like
+  /// that of triangulate for device memory, with the same errors and those of constrained for host memory.
   void constrained(const DevicePoints& points, const DeviceSegments& segments, DeviceTriangulation& mesh,
                    const Enqueue& enqueue = own_queue());
 
@@ -547,10 +547,10 @@ class FLAUNAY_API Triangulator {
   /// they move to where the sum of squared distances to the places of their cells is least on the sphere: the
   /// direction of the centroid of the cell in space (Du, Gunzburger and Ju, 2003), which is that of the sum
   /// over the sides of the cell of their angles times the normals of their planes. With weights, cells are
-  /// power cells; hidden points stay where they are, too. Except in the plane without weights, no bit
-  /// depends on the order of the points. corners: of the polygon, in the plane
-  /// alone. Throws what triangulate and clipped_voronoi throw; Error(usage) for a cylinder, where cells have
-  /// no end.
+  /// power cells; hidden points stay where they are, too; on the sphere, points that stay are returned as
+  /// they were given. Except in the plane without weights, no bit depends on the order of the points.
+  /// corners: of the polygon, in the plane alone. Throws what triangulate and clipped_voronoi throw;
+  /// Error(usage) for a cylinder, where cells have no end.
   std::vector<double> relax(const double* points, std::size_t n, const Space& space,
                             std::size_t iterations = 1, const double* corners = nullptr,
                             std::size_t corner_count = 0);
@@ -573,7 +573,7 @@ enum class Interpolation {
   linear,   ///< linearly in each triangle; continuous
   nearest,  ///< the values of the nearest point
   /// By cubics, with a continuous gradient: the reduced element of Hsieh, Clough and Tocher, as SciPy's
-  /// CloughTocher2DInterpolator.
+  /// CloughTocher2DInterpolator; on the sphere Renka's interpolant.
   clough_tocher,
   /// By Sibson's natural-neighbour weights: the areas that a query's Voronoi cell would take from the cells
   /// of the points around it. Smooth except at the points. Exact for linear functions, up to rounding.
@@ -597,8 +597,7 @@ struct InterpolationOptions {
   /// The result outside of the hull. The nearest point has none, except in a set without points.
   double fill = std::numeric_limits<double>::quiet_NaN();
   /// For Interpolation::clough_tocher: x and y per number of the values, on the sphere x, y and z, such as
-  /// Locator::gradients returns.
-  /// Null: they are estimated in each call.
+  /// Locator::gradients returns. Null: they are estimated in each call.
   const double* gradients = nullptr;
   cl_mem device_gradients = nullptr;  ///< InterpolationOptions::gradients for values in device memory
   GradientOptions estimation;         ///< how gradients are estimated if none are given
@@ -698,13 +697,13 @@ class FLAUNAY_API Locator {
 
   /// Interpolates by any method, several numbers per point at once. On a torus and a cylinder there is no
   /// Clough-Tocher. On the sphere, linear interpolation is the value where the direction of the query meets
-  /// the triangle in space; in its place Renka's interpolant (1984) has cubics along great circles and a
-  /// continuous gradient; and natural neighbors (Brown, 1994) have areas of cells on the sphere, and lengths
-  /// of arcs. Natural neighbors of so few points on a torus that a circle without points is wider than the
-  /// shorter period, on a cylinder one with its centre between the ends, are Error(input). values: one row of
-  /// options.columns numbers per input point; the result has one row per query. At a point, every method
-  /// gives exactly that point's values; for duplicates, those of their representative are used. Throws
-  /// Error(usage) if options.columns is 0.
+  /// the triangle in space; Clough-Tocher stands for Renka's interpolant (1984), of cubics along great
+  /// circles with a continuous gradient; and natural neighbors (Brown, 1994) have areas of cells on the
+  /// sphere, and lengths of arcs. Natural neighbors of so few points on a torus that a circle without points
+  /// is wider than the shorter period, on a cylinder one with its centre between the ends, are Error(input).
+  /// values: one row of options.columns numbers per input point; the result has one row per query. At a
+  /// point, every method gives exactly that point's values; for duplicates, those of their representative are
+  /// used. Throws Error(usage) if options.columns is 0.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
                                   const InterpolationOptions& options);
   /// Answers several sets of queries; see locate. values: one row per input point, over all sets.
@@ -716,7 +715,8 @@ class FLAUNAY_API Locator {
                    const InterpolationOptions& options, const Enqueue& enqueue = own_queue());
 
   /// Returns the natural neighbours of m queries with the weights by which Interpolation::sibson or laplace
-  /// interpolates any values; none outside. On a torus a point can be there several times, for images of it.
+  /// interpolates any values; none outside. On a torus or a cylinder a point can be there
+  /// several times, for images of it.
   /// Throws Error(usage) for another method and for several sets.
   NaturalWeights natural_weights(const double* queries, std::size_t m,
                                  Interpolation method = Interpolation::sibson);

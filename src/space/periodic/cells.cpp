@@ -28,7 +28,7 @@ double determinant(double a, double b, double a2, double b2) {
   return (first.x - second.x) + (first.y - second.y);
 }
 
-// What is seen from corners of triangles.
+// The centres of triangles, as seen from their corners.
 class Views {
  public:
   Views(const Triangulation& mesh, const Stars& stars, const Lattice& lattice, const double* weights)

@@ -119,8 +119,8 @@ struct Plane {
   }
 };
 
-/// Of each set about the width of the widest circle without points, and on a cylinder of those with centres
-/// between its ends; not less. boxes: of all points. O(t).
+/// About the width, for each set, of the widest circle without points, and on a cylinder of those with
+/// centres between its ends; not less. boxes: of all points. O(t).
 std::vector<double> widest_gaps(host::Runtime& runtime, const Triangulation& mesh,
                                 const std::vector<Box>& boxes);
 

@@ -324,7 +324,7 @@ void triangulate_on_torus(Implementation& self, const DevicePoints& points, Devi
   check(points.space.period);
   const Place place = with_doubles(self, self.on_device());
   Frame call(self, place, enqueue);
-  call.check(points, "points", SpaceKind::torus);
+  call.check(points, "points", SpaceKind::torus, true);
   place.device->check_size(points.count);
   call.check_size(points.count);
   call.begin();

@@ -131,7 +131,7 @@ std::vector<Weighed> natural_neighbors(const Walker& walker, const Found& found,
     const Direction next = from_query(next_point),
                     next_corner = normalized(cross(point, between(v, next_point)));
     if (method == Interpolation::sibson) {
-      // What the query takes of the neighbour's cell: between both corners, and corners of that.
+      // The part that the query takes of the neighbour's cell: between both corners, and corners of that.
       Polygon taken(corner);
       taken.go_to(next_corner, Direction{0, 0, 0} - point);
       Direction other = next;

@@ -64,7 +64,7 @@ std::vector<double> to_places(host::Runtime& runtime, const double* points, std:
 
 /// Returns the numbers of places of sets in an order in which those of near points of the sphere are near
 /// each other: one set after the other, each along a curve that fills the octahedron to which the sphere is
-/// unfolded. O(n).
+/// unfolded. O(n log s) for s sets.
 std::vector<std::int32_t> order_along_curve(host::Runtime& runtime, const std::vector<double>& places,
                                             const std::vector<std::size_t>& offsets);
 

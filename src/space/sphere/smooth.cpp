@@ -157,6 +157,11 @@ SmoothPlace::SmoothPlace(const Walker& walker, const Found& found, Point query) 
     tangent_[i] = cross(normal_[i], met);
     opposite_[i] = arc(corners[a], corners[b], chord, met);
     along_[i] = arc(corners[i], met, met - corners[i], at);
+    // Rounded, both ends may be one, with the place between them.
+    if (!(along_[i].length > 0)) {
+      corner_ = static_cast<std::ptrdiff_t>(i);
+      return;
+    }
   }
   for (double& weight : weights_) weight /= whole;
   // Rounded, it may be at a corner.

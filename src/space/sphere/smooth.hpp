@@ -33,7 +33,7 @@ class SmoothPlace {
   };
   static Arc arc(const Direction& from, const Direction& to, const Direction& chord, const Direction& place);
 
-  // By the corner. `opposite` is the arc opposite to it, across which `normal` leads, and where it is met
+  // One per corner. `opposite` is the arc opposite to it, across which `normal` leads, and where it is met
   // `tangent` along it.
   std::array<double, 3> weights_{};
   std::array<Arc, 3> opposite_{}, along_{};

@@ -312,10 +312,13 @@ void call::check_on_sphere(const Triangulation& mesh) {
   }
   // Each edge has the same ends in the triangle beyond it, so that walks around a point come back.
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    const std::int32_t* const other = &mesh.triangles[3 * static_cast<std::size_t>(mesh.neighbors[c])];
+    const std::size_t first = 3 * static_cast<std::size_t>(mesh.neighbors[c]);
     const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
     bool has_edge = false;
-    for (int k = 0; k < 3; ++k) has_edge |= other[k] == to && other[(k + 1) % 3] == from;
+    for (std::size_t k = 0; k < 3; ++k) {
+      has_edge |= mesh.triangles[first + k] == to && mesh.triangles[first + (k + 1) % 3] == from &&
+                  mesh.neighbors[first + (k + 2) % 3] == static_cast<std::int32_t>(c / 3);
+    }
     call::expect(has_edge, "the arrays are not those of a triangulation on the sphere");
   }
 }

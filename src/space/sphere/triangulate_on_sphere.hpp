@@ -25,6 +25,9 @@ void check_on_sphere(const Triangulation& mesh);
 class SphereLocator {
  public:
   SphereLocator(Triangulator& used, const Triangulation& triangulation);
+  // Members refer to others.
+  SphereLocator(const SphereLocator&) = delete;
+  SphereLocator& operator=(const SphereLocator&) = delete;
   void set_coordinates(SphereCoordinates coordinates);
   std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
   std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
@@ -32,9 +35,9 @@ class SphereLocator {
                                   const std::vector<std::size_t>& offsets,
                                   const InterpolationOptions& options);
   std::vector<double> gradients(const double* values, std::size_t columns, const GradientOptions& options);
-  /// Of one set.
+  /// For one set.
   NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
-  /// Of one set. The options have been checked.
+  /// For one set. The options have been checked.
   Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options);
 
  private:

@@ -117,10 +117,11 @@ Found Walker::smallest(Found here, Point query) const {
     if (is_seen_[static_cast<std::size_t>(other)] != 0 && other < least) least = other;
   };
   const auto& sides = here.sides;
-  const int on = (sides[0] == 0) + (sides[1] == 0) + (sides[2] == 0);
-  if (on == 1) take(beyond(t, sides[0] == 0 ? 0 : sides[1] == 0 ? 1 : 2));
-  if (on == 2) {
-    const std::int32_t v = corner(t, sides[0] != 0 ? 0 : sides[1] != 0 ? 1 : 2);
+  if (const int k = here.corner(); k < 0) {
+    const auto side = std::find(sides.begin(), sides.end(), 0);
+    if (side != sides.end()) take(beyond(t, static_cast<int>(side - sides.begin())));
+  } else {
+    const std::int32_t v = corner(t, k);
     for (std::int32_t other = beyond(t, corner_of(t, v) + 1); other != t;
          other = beyond(other, corner_of(other, v) + 1)) {
       take(other);
