@@ -72,7 +72,7 @@ async function reported(path, headers = {}) {
     });
     server.close();
     server.closeAllConnections();
-    rmSync(profile, {recursive: true, force: true, maxRetries: 5});
+    rmSync(profile, {recursive: true, force: true, maxRetries: 20});
   }
 }
 
