@@ -709,6 +709,14 @@ TEST(Sphere, ErrorsSayWhatIsWrong) {
     locator.set_coordinates(kDegrees);
     locator.nearest(query, 1);
   });
+  // A second copy of a triangle, to which no other one leads: walks around its corners would not come back.
+  Triangulation twice = mesh;
+  twice.triangles.insert(twice.triangles.begin(), mesh.triangles.begin(), mesh.triangles.begin() + 3);
+  twice.neighbors.insert(twice.neighbors.begin(), mesh.neighbors.begin(), mesh.neighbors.begin() + 3);
+  for (std::int32_t& t : twice.neighbors) ++t;
+  ++twice.triangle_offsets.back();
+  testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
+                        [&] { Locator(testing::triangulator(), twice); });
   mesh.neighbors[4] = (mesh.neighbors[4] + 1) % 14;
   testing::expect_error(ErrorKind::usage, "triangulation on the sphere",
                         [&] { testing::triangulator().voronoi(mesh); });
