@@ -68,9 +68,9 @@ def relax(
     Returns
     -------
     ndarray of float64, of the points' shape
-        On a torus in the period; on the sphere degrees, or unit vectors, but as given where it stays. A point that has no cell stays where
-        it is: one that equals an earlier point, one without a power cell, or one outside of the bounds whose
-        cell does not meet them.
+        On a torus in the period; on the sphere degrees, or unit vectors. A point that has no cell stays where it is,
+        on the sphere as it was given: one that equals an earlier point, one without a power cell, or one outside
+        of the bounds whose cell does not meet them.
 
     Raises
     ------

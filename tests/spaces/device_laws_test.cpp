@@ -237,15 +237,21 @@ TEST_P(DeviceLaws, ErrorsNameThePoint) {
                [&] { embedded().triangulate(points_in(finite, wrong, n), found, wanted(), on_own()); });
 }
 
+void expect_refused(ErrorKind kind, const char* problem, const Memory& memory, const Space& space,
+                    std::size_t first, std::size_t count) {
+  DevicePoints points;
+  points.memory = memory.get();
+  points.first = first;
+  points.count = count;
+  points.space = space;
+  DeviceTriangulation found;
+  expect_error(kind, problem, [&] { embedded().triangulate(points, found); });
+}
+
 TEST(SmallSpacesOnDevice, SpacesThatAreNoneAreRefused) {
   const Memory memory = embedder().upload(Numbers(60, 0.5));
   const auto expect = [&](const char* problem, const Space& space) {
-    DevicePoints points;
-    points.memory = memory.get();
-    points.count = 20;
-    points.space = space;
-    DeviceTriangulation found;
-    expect_error(ErrorKind::usage, problem, [&] { embedded().triangulate(points, found); });
+    expect_refused(ErrorKind::usage, problem, memory, space, 0, 20);
   };
   for (const Period& period : {Period{0, 1}, {1, -1}, {std::nan(""), 1}, {HUGE_VAL, HUGE_VAL}, {1, 1e30}})
     expect("period", Space::torus(period));
@@ -256,13 +262,7 @@ TEST(SmallSpacesOnDevice, PointsThatAreNotOnTheSphereAreNamed) {
   const Memory memory = embedder().upload(Numbers{1, 0, 0, 0, 0, 0, 3, 91});
   const auto expect = [&](const char* problem, SphereCoordinates coordinates, std::size_t first,
                           std::size_t count) {
-    DevicePoints points;
-    points.memory = memory.get();
-    points.first = first;
-    points.count = count;
-    points.space = Space::sphere(coordinates);
-    DeviceTriangulation found;
-    expect_error(ErrorKind::input, problem, [&] { embedded().triangulate(points, found); });
+    expect_refused(ErrorKind::input, problem, memory, Space::sphere(coordinates), first, count);
   };
   expect("point 1 is the vector 0", SphereCoordinates::directions, 0, 2);
   expect("point 3: the latitude 91", SphereCoordinates::degrees, 0, 4);

@@ -1,7 +1,10 @@
 // Gradients at the points.
 #pragma once
 
+#include <cmath>
+
 #include "derived/interpolate/interpolate.hpp"
+#include "geometry/arguments.hpp"
 
 namespace flaunay::interpolate {
 
@@ -14,6 +17,11 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
 /// Powers of two, per set, between the caller's units and the units of the locator's points. sign: 1 for
 /// slopes in the caller's units, -1 for the other way, 0 for ones.
 Buffer<kernel::scaling> slope_scales(host::Runtime& runtime, const Locator& locator, int sign);
+
+/// Throws Error(usage) for a tolerance that is not a number.
+inline void check(const GradientOptions& options) {
+  expect(!std::isnan(options.tolerance), "the tolerance of gradients is not a number");
+}
 
 /// The number of iterations that reach a tolerance.
 std::size_t iterations_for(double tolerance);

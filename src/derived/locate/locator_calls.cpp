@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "call/mesh_of.hpp"
 #include "constrained/stages.hpp"
 #include "constrained/whole_mesh.hpp"
+#include "derived/interpolate/gradients.hpp"
 #include "derived/interpolate/interpolate.hpp"
 #include "derived/interpolate/natural.hpp"
 #include "derived/locate/locator.hpp"
@@ -232,7 +232,7 @@ struct Locator::Implementation {
   /// Estimated, unless there are some. given: the caller's, in host or device memory.
   static flaunay::interpolate::Gradients gradients_by(const GradientOptions& options, bool are_given,
                                                       Buffer<cl_double> given) {
-    call::expect(!std::isnan(options.tolerance), "the tolerance of gradients is not a number");
+    flaunay::interpolate::check(options);
     return {are_given, std::move(given), options.tolerance, options.iterations};
   }
 

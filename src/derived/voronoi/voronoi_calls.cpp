@@ -3,12 +3,14 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "blocks/memory.hpp"
 #include "blocks/run.hpp"
 #include "call/mesh_of.hpp"
 #include "derived/voronoi/clip.hpp"
 #include "derived/voronoi/voronoi.hpp"
+#include "mesh/rows.hpp"
 #include "space/periodic/cells.hpp"
 #include "space/periodic/torus.hpp"
 #include "space/periodic/triangulate_on_torus.hpp"
@@ -277,8 +279,8 @@ std::vector<double> Triangulator::relax(const double* points, std::size_t n, con
       // The centroids of points without a cell are NaN.
       std::transform(centroids.begin(), centroids.end(), sorted.begin(), sorted.begin(),
                      [](double moved, double before) { return std::isnan(moved) ? before : moved; });
-      for (std::size_t i = 0; i < n; ++i)
-        std::copy_n(&sorted[width * i], width, &relaxed[width * static_cast<std::size_t>(order[i])]);
+      mesh::permute(order, width, sorted);
+      std::swap(relaxed, sorted);
     }
   });
 }

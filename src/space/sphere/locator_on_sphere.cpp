@@ -1,7 +1,6 @@
 // Queries on a sphere.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -172,7 +171,7 @@ std::vector<double> SphereLocator::interpolate(const double* values, const doubl
 std::vector<double> SphereLocator::gradients(const double* values, std::size_t columns,
                                              const GradientOptions& options) {
   check_array(values, check_columns(columns, mesh_.representatives.size()), "values", kMostCountable);
-  expect(!std::isnan(options.tolerance), "the tolerance of gradients is not a number");
+  flaunay::interpolate::check(options);
   return take_turn(*owner_, [&] {
     return sphere::estimate_gradients(
         owner_->native().runtime, *walker_, mesh_, values, columns,
