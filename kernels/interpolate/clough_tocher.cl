@@ -15,6 +15,7 @@
 #include "locate/arguments.h"
 #include "mesh/barycentric.h"
 #include "mesh/records.h"
+#include "mesh/stars.h"
 #include "operations/search.h"
 #include "points/records.h"
 
@@ -30,6 +31,20 @@ static inline double across_edge(const double2* p, int k, double2 apex) {
     to_b = area_exact(p[k], a, apex);
   }
   return -(2.0 * to_b + to_a) / (3.0 * (to_a + to_b));
+}
+
+// The triangle beyond the edge of a triangle from vertex a to b, as it lies beyond the image of that edge from vertex
+// `home`; -1 if there is none.
+static inline int beyond_image(int a, int b, int home, global const int* first_triangle, global const double2* points,
+                               global const face* faces) {
+  const double2 along = points[b] - points[a];
+  star_walk walk = star_begin(home, first_triangle[home]);
+  for (;;) {
+    const int from = walk.triangle, was_back = walk.is_back;
+    if (!star_next(&walk, faces)) return -1;
+    const double2 edge = points[walk.neighbor] - points[home];
+    if (edge.x == along.x && edge.y == along.y) return was_back ? walk.triangle : from;
+  }
 }
 
 // The slope along an edge from `from` to `to`.
@@ -67,11 +82,15 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 }
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
-// outside, too. gradients: rows by vertex, or else by point; scales: factors by set, to the units of `points`.
-kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, double outside,
-                                      filter_bound bound, int kept, FACES(), global const int* restrict found,
-                                      global const double* restrict values, global const double* restrict gradients,
-                                      global const scaling* restrict scales, global double* restrict results) {
+// outside, too. in_place: on a torus, where points have images, by vertex the one of the same point in its place. All
+// triangles around that are there; around an image at the rim some are not. gradients: rows by vertex, or else by
+// point; scales: factors by set, to the units of `points`.
+kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, int has_images,
+                                      double outside, filter_bound bound, int kept, FACES(),
+                                      global const int* restrict first_triangle, global const int* restrict in_place,
+                                      global const int* restrict found, global const double* restrict values,
+                                      global const double* restrict gradients, global const scaling* restrict scales,
+                                      global double* restrict results) {
   const int i = get_global_id(0);
   if (i < n) {
     global double* result = results + (size_t)order[i] * columns;
@@ -85,12 +104,15 @@ kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int 
       for (int k = 0; k < 3; ++k) p[k] = unit * points[f.corner[k]];
       barycentric(p, placed[i], bound, weight);
       for (int k = 0; k < 3; ++k) {
+        const int a = f.corner[next_corner(k)], home = has_images ? in_place[a] : a;
+        const int t = home == a ? f.neighbor[k]
+                                : beyond_image(a, f.corner[corner_before(k)], home, first_triangle, points, faces);
         across[k] = -0.5;
-        if (f.neighbor[k] >= 0 && f.neighbor[k] < kept) {
-          const face beyond = faces[f.neighbor[k]];
-          int apex = 0;
-          while (apex < 2 && beyond.neighbor[apex] != found[i]) ++apex;
-          across[k] = across_edge(p, k, unit * points[beyond.corner[apex]]);
+        if (t >= 0 && t < kept) {
+          const face beyond = faces[t];
+          double2 apex = points[beyond.corner[next_corner(corner_of(beyond, home))]];
+          if (home != a) apex = apex + (points[a] - points[home]);
+          across[k] = across_edge(p, k, unit * apex);
         }
       }
       for (int k = 0; k < 3; ++k) p[k] = points[f.corner[k]];

@@ -14,6 +14,8 @@
 // 2. write_edges writes each vertex' neighbours, the weights of the edges, and the inverse of its block.
 // 3. start_gradients computes the first approximation from the values, improve_gradients the next one, as often as the
 //    host says. Columns share all but the approximations.
+//    On a torus share_gradients follows each of these: images of points at the rim lack neighbours, and have the
+//    gradients of the points in their places.
 // 4. take_gradients brings them to the points, in the caller's units.
 // Passes have one work-item per vertex, which walks through its edges.
 
@@ -171,13 +173,23 @@ kernel void improve_gradients(int n, int columns, EDGES(), int is_second, double
   }
 }
 
-// scales: by set, the factors that bring slopes in the units of `points` to the caller's units. results: n rows
-// of `columns` gradients by point, NaN throughout.
-kernel void take_gradients(int n, int columns, int sets, global const int* restrict first_vertices,
-                           global const scaling* restrict scales, global const int* restrict source,
-                           global const double2* restrict gradients, global double* restrict results) {
+// in_place: by vertex, the one of the same point in its place.
+kernel void share_gradients(int n, int columns, global const int* restrict in_place,
+                            global double2* restrict gradients) {
   const int v = get_global_id(0);
-  if (v < n && v < first_vertices[sets]) {
+  if (v < n && in_place[v] != v) {
+    for (int c = 0; c < columns; ++c) gradients[(size_t)v * columns + c] = gradients[(size_t)in_place[v] * columns + c];
+  }
+}
+
+// scales: by set, the factors that bring slopes in the units of `points` to the caller's units. results: n rows
+// of `columns` gradients by point, NaN throughout. in_place: as above, if there are images.
+kernel void take_gradients(int n, int columns, int sets, int has_images, global const int* restrict first_vertices,
+                           global const scaling* restrict scales, global const int* restrict source,
+                           global const int* restrict in_place, global const double2* restrict gradients,
+                           global double* restrict results) {
+  const int v = get_global_id(0);
+  if (v < n && v < first_vertices[sets] && (!has_images || in_place[v] == v)) {
     const scaling scale = scales[segment_of(v, sets, first_vertices)];
     for (int c = 0; c < columns; ++c) {
       const double2 gradient = gradients[(size_t)v * columns + c];

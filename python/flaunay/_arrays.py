@@ -417,6 +417,13 @@ def as_int32(given: npt.NDArray[Any], name: str) -> npt.NDArray[np.int32]:
     return kept
 
 
+def as_iterations(maxiter: Any, tol: float) -> int:
+    """How many there may be to estimate gradients by a tolerance, checked."""
+    if not tol > 0:
+        raise UsageError(f"tol must be greater than 0, not {tol}")
+    return as_count(maxiter, "maxiter", 1)
+
+
 def as_count(given: Any, name: str, least: int = 0) -> int:
     """A number of things that a size_t can be; UsageError for anything else."""
     try:

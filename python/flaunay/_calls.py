@@ -1373,19 +1373,20 @@ def contours(
 class Interpolation:
     """What is interpolated and how, for any number of calls.
 
-    values: a row of some for each point. gradients: x and y for each of them, where the method needs some.
+    values: a row of some for each point. gradients: x and y for each of them, where the method needs some; on the
+    sphere, which has 3 axes, z too.
     """
 
     def __init__(
-        self, values: _Doubles, method: str, fill: float, gradients: Optional[_Doubles] = None
+        self, values: _Doubles, method: str, fill: float, gradients: Optional[_Doubles] = None, axes: int = 2
     ) -> None:
         self._made_of = values, method, fill, gradients
         self.values = _as_doubles(values)
         self.address, self.columns = _address_of(self.values), values.shape[1]
         if gradients is not None:
-            if gradients.shape != (*values.shape, 2):
+            if gradients.shape != (*values.shape, axes):
                 raise UsageError(
-                    f"gradients must have the shape {(*values.shape, 2)}, not {gradients.shape}"
+                    f"gradients must have the shape {(*values.shape, axes)}, not {gradients.shape}"
                 )
             gradients = _as_doubles(gradients)
         self.gradients = gradients
@@ -1412,6 +1413,17 @@ class Interpolation:
 
 class _Locator(_InTurns):
     _destroy = library.locator_destroy
+    axes = 2  # of gradients
+
+    def _estimated(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:
+        """The estimated gradients, x and y for each of the values: a row of some for each point."""
+        values = _as_doubles(values)
+        options = _declarations.InterpolationOptions(
+            columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
+        )
+        results = np.empty((*values.shape, self.axes))
+        self._call(library.locator_gradients, values, options, results)
+        return results
 
 
 class Locator(_Locator):
@@ -1482,13 +1494,7 @@ class Locator(_Locator):
     def gradients(self, values: _Doubles, tolerance: float, iterations: int) -> _Doubles:
         """The estimated gradients, x and y for each of the values: a row of some for each point."""
         self._check_rows(values)
-        values = _as_doubles(values)
-        options = _declarations.InterpolationOptions(
-            columns=values.shape[1], gradient_tolerance=tolerance, gradient_iterations=iterations
-        )
-        results = np.empty((*values.shape, 2))
-        self._call(library.locator_gradients, values, options, results)
-        return results
+        return self._estimated(values, tolerance, iterations)
 
 
 class PointTree(_InTurns):
@@ -1673,7 +1679,11 @@ class SpaceLocator(_Locator):
     def __init__(self, triangulator: Triangulator, mesh: InSpace) -> None:
         super().__init__(triangulator)
         self._on_sphere = mesh.on_sphere
+        if mesh.on_sphere:
+            self.axes = 3
         triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
+
+    gradients = _Locator._estimated
 
     def _ask(
         self, function: Any, queries: _Doubles, offsets: Optional[_Offsets], *after: Any, before: tuple[Any, ...] = ()
@@ -1698,10 +1708,15 @@ class SpaceLocator(_Locator):
         return self._find(library.locator_nearest, queries, offsets)
 
     def interpolate(
-        self, values: _Doubles, queries: _Doubles, offsets: Optional[_Offsets], method: str
+        self,
+        values: _Doubles,
+        queries: _Doubles,
+        offsets: Optional[_Offsets],
+        method: str,
+        gradients: Optional[_Doubles],
     ) -> _Doubles:
-        """A row of values at each query. values: one for each point."""
-        table = Interpolation(values, method, np.nan)
+        """A row of values at each query. values, gradients: one for each point."""
+        table = Interpolation(values, method, np.nan, gradients, self.axes)
         results = np.empty((len(queries), table.columns))
         self._ask(library.locator_interpolate, queries, offsets, table.options, results, before=(table.address,))
         return results

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import as_count, summary
+from flaunay._arrays import as_iterations, summary
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for
 from flaunay._errors import UsageError
 
@@ -186,9 +186,7 @@ class DeviceLocator:
             NaN at points that another one represents, and at those of a set on one line.
         """
         handle = self._opened()
-        if not tol > 0:
-            raise UsageError(f"tol must be greater than 0, not {tol}")
-        maxiter = as_count(maxiter, "maxiter", 1)
+        maxiter = as_iterations(maxiter, tol)
         call = DeviceCall(queue_for(values, queue, "values"), wait_for)
         memory, columns = self._values(call, values)
         shape = (*values.shape, 2)

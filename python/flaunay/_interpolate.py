@@ -17,8 +17,8 @@ from flaunay._arrays import (
     FloatArray,
     are_rows,
     as_any,
-    as_count,
     as_floats,
+    as_iterations,
     check_memory,
     check_points_shape,
     frozen,
@@ -660,9 +660,7 @@ class CloughTocherInterpolator(_Columns):
         max_edge: Optional[float] = None,
         max_distance: Optional[float] = None,
     ) -> None:
-        if not tol > 0:
-            raise UsageError(f"tol must be greater than 0, not {tol}")
-        maxiter = as_count(maxiter, "maxiter", 1)
+        maxiter = as_iterations(maxiter, tol)
         if gradients is None:
             if 2 * _RATE**maxiter > tol:
                 warnings.warn(

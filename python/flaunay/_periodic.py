@@ -168,8 +168,9 @@ class PeriodicDelaunay(WithLocator):
         self,
         values: ArrayLike,
         xi: ArrayLike,
-        method: Literal["linear", "nearest", "sibson", "laplace"] = "linear",
+        method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
         *,
+        gradients: Optional[ArrayLike] = None,
         offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
         """Values between points.
@@ -180,9 +181,11 @@ class PeriodicDelaunay(WithLocator):
             Real numbers. Of equal points, those of the representative count.
         xi : array_like, shape (..., 2)
             Any places of the plane.
-        method : {"linear", "nearest", "sibson", "laplace"}
-            Linear in triangles, the value of the nearest point, or between natural neighbors, as
-            `NaturalNeighborInterpolator`.
+        method : {"linear", "nearest", "clough-tocher", "sibson", "laplace"}
+            Linear in triangles, the value of the nearest point, by cubics with a continuous gradient, as
+            `CloughTocherInterpolator`, or between natural neighbors, as `NaturalNeighborInterpolator`.
+        gradients : array_like, shape (npoints, ..., 2), optional
+            Those of the values, for "clough-tocher"; None: as `gradients` estimates them.
         offsets
             As of `find_simplex`.
 
@@ -206,7 +209,7 @@ class PeriodicDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
         array([1. , 1.5])
         """
-        return self._interpolate(values, _as_queries(xi), offsets, method)
+        return self._interpolate(values, _as_queries(xi), offsets, method, gradients)
 
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, ...]:

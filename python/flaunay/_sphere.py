@@ -226,6 +226,7 @@ class SphericalDelaunay(WithLocator):
         xi: ArrayLike,
         method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
         *,
+        gradients: Optional[ArrayLike] = None,
         offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
         """Values between points.
@@ -241,6 +242,8 @@ class SphericalDelaunay(WithLocator):
             cubics along great circles with a continuous gradient (Renka, 1984), or between natural neighbours
             (Brown, 1994): by the areas that a query's cell would take from others, or by the lengths of its edges
             over distances.
+        gradients : array_like, shape (npoints, ..., 3), optional
+            Those of the values, tangent to the sphere, for "clough-tocher"; None: as `gradients` estimates them.
         offsets
             As of `find_simplex`.
 
@@ -264,7 +267,7 @@ class SphericalDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [45, 45], "laplace").round(3).item()
         2.154
         """
-        return self._interpolate(values, _as_points(xi, "xi"), offsets, method)
+        return self._interpolate(values, _as_points(xi, "xi"), offsets, method, gradients)
 
 
 def spherical(

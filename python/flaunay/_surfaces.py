@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, number_of, summary
+from flaunay._arrays import ArrayLike, as_floats, as_iterations, as_offsets, frozen, number_of, summary
 from flaunay._declarations import INTERPOLATION
 from flaunay._errors import UsageError
 from flaunay._queries import Kept, count_and_bound
@@ -213,16 +213,68 @@ class WithLocator(OfPoints):
         found = found.reshape(shape)
         return (distances.reshape(shape), found) if return_distances else found
 
-    def _interpolate(
-        self, values: ArrayLike, queries: Doubles, offsets: Optional[npt.ArrayLike], method: str
-    ) -> Doubles:
-        number_of({name.replace("_", "-"): k for name, k in INTERPOLATION.items()}, method, "method")
-        sets = None if offsets is None else as_offsets(offsets)
+    def _rows(self, values: ArrayLike) -> tuple[Doubles, tuple[int, ...]]:
+        """Values as a row for each point, and their shape."""
         numbers = np.asarray(as_floats(values, "values"), np.float64)
         if numbers.ndim == 0 or len(numbers) != self.npoints:
             raise UsageError(
                 f"values must have one row per point, {self.npoints}, not the shape {numbers.shape}"
             )
-        rows = numbers.reshape(self.npoints, math.prod(numbers.shape[1:]))
-        found = self._locator.interpolate(rows, queries.reshape(-1, queries.shape[-1]), sets, method.replace("-", "_"))
-        return found.reshape(queries.shape[:-1] + numbers.shape[1:])
+        return numbers.reshape(self.npoints, math.prod(numbers.shape[1:])), numbers.shape
+
+    def _interpolate(
+        self,
+        values: ArrayLike,
+        queries: Doubles,
+        offsets: Optional[npt.ArrayLike],
+        method: str,
+        gradients: Optional[ArrayLike],
+    ) -> Doubles:
+        number_of({name.replace("_", "-"): k for name, k in INTERPOLATION.items()}, method, "method")
+        sets = None if offsets is None else as_offsets(offsets)
+        rows, shape = self._rows(values)
+        slopes = None
+        if gradients is not None:
+            if method != "clough-tocher":
+                raise UsageError(f"gradients are for the method 'clough-tocher', not {method!r}")
+            slopes = np.asarray(as_floats(gradients, "gradients"), np.float64)
+            if slopes.shape[:-1] != shape:
+                raise UsageError(f"gradients must have one vector per value, not the shape {slopes.shape}")
+            slopes = slopes.reshape(*rows.shape, slopes.shape[-1])
+        asked = queries.reshape(-1, queries.shape[-1])
+        found = self._locator.interpolate(rows, asked, sets, method.replace("-", "_"), slopes)
+        return found.reshape(queries.shape[:-1] + shape[1:])
+
+    def gradients(self, values: ArrayLike, tol: float = 1e-6, maxiter: int = 400) -> Doubles:
+        """The gradients of values at the points that "clough-tocher" has if none are given.
+
+        Parameters
+        ----------
+        values : array_like, shape (npoints, ...)
+            As of `interpolate`.
+        tol, maxiter
+            As of `CloughTocherInterpolator`.
+
+        Returns
+        -------
+        ndarray of float64, shape (npoints, ..., 2), or on the sphere (npoints, ..., 3)
+            x and y, or a vector that is tangent to the sphere. NaN at points that another one represents, and in sets
+            without triangles.
+
+        Raises
+        ------
+        UsageError
+            For another number of values than of points, and a tolerance of 0 or less.
+
+        Examples
+        --------
+        >>> import flaunay, numpy as np
+        >>> points = np.random.default_rng(1).random((1000, 2))
+        >>> tri = flaunay.periodic(points, (1, 1))
+        >>> slopes = tri.gradients(np.sin(2 * np.pi * points[:, 0]))
+        >>> bool(np.allclose(slopes[:, 0], 2 * np.pi * np.cos(2 * np.pi * points[:, 0]), atol=0.5))
+        True
+        """
+        iterations = as_iterations(maxiter, tol)
+        rows, shape = self._rows(values)
+        return self._locator.gradients(rows, tol, iterations).reshape(*shape, self._locator.axes)

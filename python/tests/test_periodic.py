@@ -231,6 +231,33 @@ def test_natural_neighbors(random):
     np.testing.assert_array_equal(cylinder.interpolate(values, points, "sibson"), values)
     with pytest.raises(flaunay.InputError, match="wider than the shorter period"):
         flaunay.periodic(ONE, PERIOD).interpolate([1], queries, "laplace")
-    for method in "clough-tocher", "cubic", 1:
-        with pytest.raises(flaunay.UsageError, match="method|gradients"):
+    for method in "cubic", 1:
+        with pytest.raises(flaunay.UsageError, match="method"):
             tri.interpolate(values, queries, method)
+
+
+@pytest.mark.parametrize("period", [PERIOD, (*PERIOD, 0.75)])
+def test_clough_tocher(random, period):
+    points, queries = random.uniform(0, PERIOD, (200, 2)), random.uniform(-9, 9, (50, 2))
+    tri = flaunay.periodic(points, period)
+    vectors = np.array([[2, 0], [(*period, 0)[2], 3]])
+    steps = sorted((np.indices((7, 7)).reshape(2, 49).T - 3).tolist(), key=np.linalg.norm)
+    copies = (tri.places + (steps @ vectors)[:, None]).reshape(-1, 2)
+    values = random.uniform(size=(200, 3))
+    plane = flaunay.CloughTocherInterpolator(copies, np.tile(values, (49, 1)))
+    np.testing.assert_allclose(tri.gradients(values), plane.grad[:200], atol=1e-4)
+    gradients = tri.gradients(values, tol=1e-12)
+    expected = flaunay.CloughTocherInterpolator(copies, np.tile(values, (49, 1)), gradients=np.tile(gradients, (49, 1, 1)))
+    found = tri.interpolate(values, queries, "clough-tocher", gradients=gradients)
+    np.testing.assert_allclose(found, expected(flaunay.to_places(queries, period)), atol=1e-9)
+    np.testing.assert_allclose(tri.interpolate(values, queries, "clough-tocher"), found, atol=1e-4)
+    np.testing.assert_array_equal(tri.interpolate(values, points, "clough-tocher"), values)
+    for slopes, method, message in [
+        (gradients, "linear", "for the method"),
+        (gradients[0], "clough-tocher", "one vector per value"),
+        (np.ones((200, 3, 3)), "clough-tocher", "the shape"),
+    ]:
+        with pytest.raises(flaunay.UsageError, match=message):
+            tri.interpolate(values, queries, method, gradients=slopes)
+    with pytest.raises(flaunay.UsageError, match="tol"):
+        tri.gradients(values, tol=0)

@@ -75,6 +75,15 @@ def test_queries(random):
         np.testing.assert_array_equal(tri.interpolate(values, points, method), values)
         np.testing.assert_allclose(tri.interpolate(np.ones(300), queries, method), 1, rtol=1e-14)
         assert abs(tri.interpolate(points, queries, method) - queries).max() < 0.1
+    # Of linear functions of space, whose gradients are known.
+    tangents = np.eye(3) - tri.xyz[:, :, None] * tri.xyz[:, None]
+    given = tri.interpolate(tri.xyz, queries, "clough-tocher", gradients=tangents)
+    assert abs(given - tri.interpolate(tri.xyz, queries)).max() > 0.01 > 10 * abs(given - queries).max()
+    assert abs(tri.gradients(tri.xyz) - tangents).max() < 0.5
+    np.testing.assert_array_equal(
+        tri.interpolate(tri.xyz, queries, "clough-tocher", gradients=tri.gradients(tri.xyz)),
+        tri.interpolate(tri.xyz, queries, "clough-tocher"),
+    )
     # Half of the sphere: beyond it is no triangle.
     north = flaunay.spherical(points[points[:, 2] > 0.1])
     assert (north.find_simplex(queries[queries[:, 2] < 0]) == -1).all()

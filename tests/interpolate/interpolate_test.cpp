@@ -10,10 +10,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "blocks/run.hpp"
@@ -584,6 +586,12 @@ TEST(InterpolationKernels, AllAreLaunched) {
   located.values_by(interpolate::nearest, values, 1);
   const std::vector<double> gradients = gradients_of("own", input, values, 1);
   clough_tocher(located, values, 1, &gradients);
+  // Vertices that are all in their places, as if there were images of others.
+  const std::vector<double> expected = clough_tocher(located, values, 1);
+  std::vector<cl_int> in_place(located.locator.points.size());
+  std::iota(in_place.begin(), in_place.end(), 0);
+  located.locator.in_place = located.runtime.upload(located.own, std::move(in_place));
+  EXPECT_EQ(bytes_of(expected), bytes_of(clough_tocher(located, values, 1)));
   for (const auto& [name, time] : located.runtime.kernel_times()) launched.insert(name);
   located.runtime.set_profiling(false);
   std::size_t kernels = 0;
@@ -596,7 +604,7 @@ TEST(InterpolationKernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, 8u);
+  EXPECT_EQ(kernels, 9u);
 }
 
 }  // namespace

@@ -472,6 +472,11 @@ void expect_answers(const Triangulation& mesh, const Numbers& queries) {
   const Numbers found = locator.interpolate(values.data(), queries.data(), m);
   EXPECT_EQ(triangles, locator.locate(elsewhere.data(), m));
   EXPECT_EQ(points, locator.nearest(elsewhere.data(), m));
+  InterpolationOptions smooth;
+  smooth.method = Interpolation::clough_tocher;
+  smooth.fill = -1;
+  EXPECT_EQ(locator.interpolate(values.data(), queries.data(), m, smooth),
+            locator.interpolate(values.data(), elsewhere.data(), m, smooth));
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < n; ++i) {
     const double at = mesh.places[2 * i + (std::isfinite(mesh.space.period.y) ? 0 : 1)];
@@ -495,6 +500,7 @@ void expect_answers(const Triangulation& mesh, const Numbers& queries) {
   // At points.
   if (!mesh.triangles.empty()) {
     EXPECT_EQ(values, locator.interpolate(values.data(), mesh.places.data(), n));
+    EXPECT_EQ(values, locator.interpolate(values.data(), mesh.places.data(), n, smooth));
   }
   EXPECT_EQ(mesh.representatives, locator.nearest(mesh.places.data(), n));
 }
@@ -556,6 +562,84 @@ TEST(Periodic, QueriesOfManyPoints) {
   }
 }
 
+/// Points in the plane with rows of values: first in their places, then moved by all vectors of the lattice
+/// up to some.
+struct Copies {
+  Copies(const Triangulation& mesh, const Numbers& of_points, int most)
+      : places(mesh.places), values(of_points) {
+    const Period& period = mesh.space.period;
+    const int most_across = std::isfinite(period.x) ? most : 0, most_up = std::isfinite(period.y) ? most : 0;
+    for (int across = -most_across; across <= most_across; ++across) {
+      for (int up = -most_up; up <= most_up; ++up) {
+        if (across == 0 && up == 0) continue;
+        for (std::size_t i = 0; i < mesh.places.size(); i += 2) {
+          places.push_back(mesh.places[i] + (across == 0 ? 0 : across * period.x) + up * period.shear);
+          places.push_back(mesh.places[i + 1] + (up == 0 ? 0 : up * period.y));
+        }
+        values.insert(values.end(), of_points.begin(), of_points.end());
+      }
+    }
+  }
+  Locator locator() const {
+    Options options;
+    options.neighbors = true;
+    const std::size_t n = places.size() / 2;
+    return {testing::triangulator(), places.data(), n,
+            testing::triangulator().triangulate(places.data(), n, options)};
+  }
+
+  Numbers places, values;
+};
+
+TEST(Periodic, CloughTocherIsThatOfManyCopies) {
+  for (const Period& period :
+       {Period{1, 1}, {0.75, 3}, {1, 1, 0.5}, {2, 0.75, 0.6875}, {2, HUGE_VAL}, {HUGE_VAL, 0.5}}) {
+    for (const std::size_t n : {1, 2, 3, 7, 40, 400}) {
+      SCOPED_TRACE(::testing::Message() << n << " points, " << period.x << " x " << period.y);
+      const Period box{std::isfinite(period.x) ? period.x : 1, std::isfinite(period.y) ? period.y : 1};
+      // With places that copies have exactly, points given twice, and a gap over which triangles are large.
+      Numbers points = uniform(n, box, n + 7), values;
+      for (double& x : points) x = std::ldexp(std::nearbyint(std::ldexp(x, n == 7 ? 20 : 19)), -20);
+      points.insert(points.end(), points.begin(), points.begin() + 2);
+      const Triangulation mesh = triangulated(points, period);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        values.push_back(static_cast<double>(mesh.representatives[i / 2] * (i % 2 == 0 ? 7 : 5) % 13));
+      // Enough for the other gradients near the rim of the copies not to reach the middle. At the ends of a
+      // cylinder edges are long.
+      const bool is_torus = std::isfinite(period.x + period.y);
+      const int most = n < 10 || !is_torus ? 24 : n < 100 ? 10 : 4;
+      const Copies copies(mesh, values, most);
+      Locator locator(testing::triangulator(), mesh), plane = copies.locator();
+      InterpolationOptions wanted;
+      wanted.method = Interpolation::clough_tocher;
+      wanted.columns = 2;
+      wanted.estimation.tolerance = 0;
+      const auto expect_near = [](const Numbers& expected, const Numbers& found) {
+        double largest = 1;
+        for (const double x : found) largest = std::max(largest, std::isnan(x) ? 0 : std::fabs(x));
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          ASSERT_EQ(std::isnan(expected[i]), std::isnan(found[i])) << i;
+          if (!std::isnan(found[i])) {
+            ASSERT_NEAR(expected[i], found[i], 1e-10 * largest) << i;
+          }
+        }
+      };
+      const Numbers queries = uniform(200, box, 3),
+                    found = locator.interpolate(values.data(), queries.data(), 200, wanted);
+      expect_near(plane.interpolate(copies.values.data(), queries.data(), 200, wanted), found);
+      const Numbers gradients = locator.gradients(values.data(), 2, wanted.estimation);
+      ASSERT_EQ(2 * values.size(), gradients.size());
+      expect_near(plane.gradients(copies.values.data(), 2, wanted.estimation), gradients);
+      // The same if they are given.
+      wanted.gradients = gradients.data();
+      wanted.fill = -1;
+      const Numbers given = locator.interpolate(values.data(), queries.data(), 200, wanted);
+      for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_EQ(std::isnan(found[i]) ? -1 : found[i], given[i]) << i;
+    }
+  }
+}
+
 TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
   for (const Period& given : {Period{1, 1},
                               {0.3, 0.7},
@@ -576,26 +660,13 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       points.insert(points.end(), points.begin(), points.begin() + 20);
       const Triangulation mesh = triangulated(points, given);
       Locator locator(testing::triangulator(), mesh);
-      Numbers copies, values, of_copies, queries = uniform(100, period, 3);
+      Numbers values, elsewhere, queries = uniform(100, period, 3);
       for (std::size_t i = 0; i < points.size() / 2; ++i) {
         values.push_back(static_cast<double>(mesh.representatives[i] * 7 % 13));
         values.push_back(static_cast<double>(mesh.representatives[i]));
       }
-      for (int across = is_across ? -2 : 0; across <= (is_across ? 2 : 0); ++across) {
-        for (int up = is_up ? -2 : 0; up <= (is_up ? 2 : 0); ++up) {
-          for (std::size_t i = 0; i < mesh.places.size(); i += 2) {
-            copies.insert(copies.end(), {mesh.places[i] + across * period.x + up * period.shear,
-                                         mesh.places[i + 1] + up * period.y});
-            of_copies.insert(of_copies.end(), {values[i], values[i + 1]});
-          }
-        }
-      }
-      const std::size_t count = copies.size() / 2;
-      Options options;
-      options.neighbors = true;
-      Locator plane(testing::triangulator(), copies.data(), count,
-                    testing::triangulator().triangulate(copies.data(), count, options));
-      Numbers elsewhere;
+      const Copies copies(mesh, values, 2);
+      Locator plane = copies.locator();
       for (std::size_t q = 0; q < queries.size(); q += 2)
         elsewhere.insert(elsewhere.end(),
                          {queries[q] - (is_across ? 3 : 0) * period.x + (is_up ? 2 : 0) * period.shear,
@@ -605,7 +676,7 @@ TEST(Periodic, NaturalNeighborsAreThoseOfManyCopies) {
       for (const Interpolation method : {Interpolation::sibson, Interpolation::laplace}) {
         wanted.method = method;
         const Numbers found = locator.interpolate(values.data(), elsewhere.data(), 100, wanted);
-        const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 100, wanted);
+        const Numbers expected = plane.interpolate(copies.values.data(), queries.data(), 100, wanted);
         const NaturalWeights weights = locator.natural_weights(elsewhere.data(), 100, method);
         for (std::size_t i = 0; i < expected.size(); ++i) {
           double sum = 0;
@@ -635,7 +706,7 @@ TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
   for (int k = 0; k < 200; ++k) {
     const auto n = static_cast<std::size_t>(random.integer(2, 9));
     const double height = std::ldexp(1, static_cast<int>(random.integer(-6, 1)));
-    Numbers points, copies, values, of_copies, queries;
+    Numbers points, values, queries;
     for (std::size_t i = 0; i < n; ++i) {
       const double x = random.unit(), y = random.unit() * height;
       points.insert(points.end(), {k % 2 == 0 ? x : y, k % 2 == 0 ? y : x});
@@ -646,18 +717,8 @@ TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
       queries.insert(queries.end(), {k % 2 == 0 ? x : y, k % 2 == 0 ? y : x});
     }
     const Triangulation mesh = triangulated(points, k % 2 == 0 ? Period{1, HUGE_VAL} : Period{HUGE_VAL, 1});
-    for (int step = -9; step <= 9; ++step) {
-      for (std::size_t i = 0; i < n; ++i) {
-        copies.insert(copies.end(), {mesh.places[2 * i] + (k % 2 == 0 ? step : 0),
-                                     mesh.places[2 * i + 1] + (k % 2 == 0 ? 0 : step)});
-        of_copies.push_back(values[i]);
-      }
-    }
-    Options options;
-    options.neighbors = true;
-    const std::size_t count = of_copies.size();
-    Locator plane(testing::triangulator(), copies.data(), count,
-                  testing::triangulator().triangulate(copies.data(), count, options));
+    const Copies copies(mesh, values, 9);
+    Locator plane = copies.locator();
     InterpolationOptions wanted;
     wanted.method = k % 3 == 0 ? Interpolation::laplace : Interpolation::sibson;
     Locator locator(testing::triangulator(), mesh);
@@ -670,7 +731,7 @@ TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
       continue;
     }
     ++answered;
-    const Numbers expected = plane.interpolate(of_copies.data(), queries.data(), 40, wanted);
+    const Numbers expected = plane.interpolate(copies.values.data(), queries.data(), 40, wanted);
     for (std::size_t i = 0; i < 40; ++i) {
       ASSERT_EQ(std::isnan(expected[i]), std::isnan(found[i])) << k << " " << i;
       if (!std::isnan(expected[i])) {
@@ -682,6 +743,68 @@ TEST(Periodic, NaturalNeighborsOfFewPointsOnCylinders) {
   EXPECT_GT(refused, 20u);
 }
 
+// Smooth functions are approximated in a higher order if gradients are given, and estimates converge. There
+// is no kink at the border.
+TEST(Periodic, CloughTocherConverges) {
+  constexpr double kTurn = 6.283185307179586;
+  const auto height = [&](double u, double v) {
+    return std::sin(kTurn * u) * std::cos(kTurn * v) + std::sin(kTurn * (u + 2 * v)) / 2;
+  };
+  for (const Period& period : {Period{1, 1}, Period{2, 0.75, 0.6875}}) {
+    double given_before = HUGE_VAL, before = HUGE_VAL;
+    for (const std::size_t rows : {24, 48, 96}) {
+      testing::FixtureRandom random(rows);
+      Numbers points, values, slopes;
+      const auto add = [&](Numbers& to, double u, double v) {
+        to.insert(to.end(), {u * period.x + v * period.shear, v * period.y});
+        return height(u, v);
+      };
+      for (std::size_t i = 0; i < rows * rows; ++i) {
+        const double u = (static_cast<double>(i % rows) + random.unit()) / static_cast<double>(rows),
+                     v = (static_cast<double>(i / rows) + random.unit()) / static_cast<double>(rows);
+        values.push_back(add(points, u, v));
+        const double du = kTurn *
+                          (std::cos(kTurn * u) * std::cos(kTurn * v) + std::cos(kTurn * (u + 2 * v)) / 2),
+                     dv = kTurn * (std::cos(kTurn * (u + 2 * v)) - std::sin(kTurn * u) * std::sin(kTurn * v));
+        slopes.insert(slopes.end(), {du / period.x, (dv - du * period.shear / period.x) / period.y});
+      }
+      Locator locator(testing::triangulator(), triangulated(points, period));
+      InterpolationOptions options;
+      options.method = Interpolation::clough_tocher;
+      Numbers queries, expected;
+      for (int i = 0; i < 4000; ++i)
+        expected.push_back(add(queries, random.unit() * 4 - 2, random.unit() * 4 - 2));
+      const auto error = [&] {
+        const Numbers found = locator.interpolate(values.data(), queries.data(), expected.size(), options);
+        double most = 0;
+        for (std::size_t i = 0; i < found.size(); ++i)
+          most = std::max(most, std::fabs(found[i] - expected[i]));
+        return most;
+      };
+      const double estimated = error();
+      // Three places each at the border: before it, on it, and behind it.
+      Numbers near;
+      constexpr double kStep = 0x1p-20;
+      for (int i = 0; i < 300; ++i) {
+        const double along = random.unit();
+        for (const int side : {-1, 0, 1})
+          add(near, i % 2 == 0 ? side * kStep : along, i % 2 == 0 ? along : side * kStep);
+      }
+      const Numbers across = locator.interpolate(values.data(), near.data(), near.size() / 2, options);
+      for (std::size_t i = 0; i < across.size(); i += 3)
+        EXPECT_LT(std::fabs(across[i] - 2 * across[i + 1] + across[i + 2]), 1e-2 * kStep) << i;
+      options.gradients = slopes.data();
+      const double given = error();
+      EXPECT_LT(estimated, before / 2);
+      EXPECT_LT(given, given_before / 6);
+      before = estimated;
+      given_before = given;
+    }
+    EXPECT_LT(before, 0.01);
+    EXPECT_LT(given_before, 1e-4);
+  }
+}
+
 TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
   const Numbers query = {0.5, 0.5}, values(30, 1.0);
   const auto interpolate = [&](const Numbers& points, const Period& period, Interpolation method) {
@@ -691,8 +814,6 @@ TEST(Periodic, WhatCannotBeInterpolatedIsNamed) {
         .interpolate(values.data(), query.data(), 1, options);
   };
   const Numbers some = uniform(30, {}, 3), line = {0.1, 0.5, 0.6, 0.5, 0.3, 0.52};
-  testing::expect_error(ErrorKind::usage, "gradients",
-                        [&] { interpolate(some, {}, Interpolation::clough_tocher); });
   testing::expect_error(ErrorKind::input, "wider than", [&] {
     interpolate({0.1, 0, 0.2, 9}, {1, HUGE_VAL}, Interpolation::sibson);
   });

@@ -437,6 +437,13 @@ void torus(Triangulator& triangulator, std::size_t n, Arrays& results) {
     Locator locator(triangulator, mesh);
     results.add(input + " located", locator.locate(places.data(), places.size() / 2));
     results.add(input + " nearest", locator.nearest(places.data(), places.size() / 2));
+    const std::vector<double> values = values_of(points);
+    InterpolationOptions options;
+    options.columns = 2;
+    options.method = Interpolation::clough_tocher;
+    results.add(input + " Clough-Tocher",
+                locator.interpolate(values.data(), places.data(), places.size() / 2, options));
+    results.add(input + " gradients", locator.gradients(values.data(), 2));
   }
 }
 

@@ -103,6 +103,12 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
   // Two approximations take turns, so that the last one is the result.
   Buffer<cl_double2> now = result, before = arena.allocate<cl_double2>(numbers);
   if (iterations % 2 == 0) std::swap(now, before);
+  const auto share = [&] {
+    if (!locator.has_images()) return;
+    runtime.map(
+        locator.in_place.size(),
+        kernels::share_gradients{.columns = table.columns, .in_place = locator.in_place, .gradients = now});
+  };
   runtime.map(n, kernels::start_gradients{.columns = table.columns,
                                           .edges = edges,
                                           .points = locator.points,
@@ -110,6 +116,7 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
                                           .values = table.values,
                                           .start = start,
                                           .gradients = now});
+  share();
   improve(iterations, [&](bool is_first, double factor) {
     runtime.map(n, kernels::improve_gradients{.columns = table.columns,
                                               .edges = edges,
@@ -120,6 +127,7 @@ Buffer<cl_double2> estimate(host::Runtime& runtime, const Locator& locator, cons
                                               .gradients = now,
                                               .before = before});
     std::swap(now, before);
+    share();
   });
   return result;
 }
@@ -128,13 +136,15 @@ void estimate_gradients(host::Runtime& runtime, const Locator& locator, const Ta
                         const Gradients& wanted, const Buffer<cl_double>& results) {
   host::Arena::Scope scope(runtime.arena());
   const std::size_t n = vertices_at_most(locator);
-  runtime.fill(results, 2 * n * table.columns, table.outside);
+  runtime.fill(results, 2 * locator.point_offsets.back() * table.columns, table.outside);
   const auto at_vertices = estimate(runtime, locator, table, wanted);
   runtime.map(n, kernels::take_gradients{.columns = table.columns,
                                          .sets = locator.sets,
+                                         .has_images = locator.has_images(),
                                          .first_vertices = locator.first_vertices,
                                          .scales = slope_scales(runtime, locator, 1),
                                          .source = locator.source,
+                                         .in_place = locator.in_place,
                                          .gradients = at_vertices,
                                          .results = results});
 }

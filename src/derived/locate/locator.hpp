@@ -25,6 +25,9 @@ struct Locator {
   /// fixed point a float).
   host::Buffer<cl_double2> points{};
   host::Buffer<cl_int> source{}, first_triangle{}, clearances{};
+  /// On a torus or a cylinder, by vertex the one of the same point in its place: itself, or a vertex of which
+  /// it is an image. Empty in the plane.
+  host::Buffer<cl_int> in_place{};
   host::Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
   host::Buffer<cl_double2> hull_points{};
   host::Buffer<cl_int> hull{};
@@ -45,6 +48,7 @@ struct Locator {
   Triangulate triangulate = nullptr;         ///< makes the levels of samples
   std::shared_ptr<const Locator> samples{};  ///< the locator of the levels' samples, each of them a set
 
+  bool has_images() const { return in_place.size() > 0; }
   operator kernels::walked_mesh() const {
     return {.points = points, .faces = faces, .first_triangle = first_triangle};
   }

@@ -36,7 +36,7 @@ struct Answerer {
     if (!made) return made.too_wide();
     locator = *std::move(made);
     if (constrained) locate::constrain(call.runtime, own, *constrained, locator);
-    if (on_torus != nullptr) on_torus->number_points(call.runtime, locator);
+    if (on_torus != nullptr) on_torus->number_points(call.runtime, own, locator);
     call.end();
     return geometry::Done();
   }
@@ -282,14 +282,6 @@ struct Locator::Implementation {
                                              output);
   }
 
-  /// Throws for methods that are not possible there.
-  void check_on_torus(const InterpolationOptions& options, const std::vector<std::size_t>& offsets) const {
-    call::expect(options.method != Interpolation::clough_tocher && options.gradients == nullptr,
-                 "values on a torus or a cylinder are interpolated without gradients");
-    if (options.method == Interpolation::sibson || options.method == Interpolation::laplace)
-      on_torus->check_gaps(offsets);
-  }
-
   /// Throws Error(usage) for what there is in the plane alone.
   void expect_plane(const char* what) const {
     call::expect(!on_torus && !on_sphere,
@@ -477,7 +469,9 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
     return implementation_->on_sphere->interpolate(values, queries, offsets, options);
   return implementation_->take_turn([&] {
     Implementation& self = implementation_->for_method(options.method);
-    if (self.on_torus) self.check_on_torus(options, offsets);
+    const bool is_natural =
+        options.method == Interpolation::sibson || options.method == Interpolation::laplace;
+    if (self.on_torus && is_natural) self.on_torus->check_gaps(offsets);
     return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
                                 self.interpolation(options, values, options.gradients));
   });
@@ -525,7 +519,6 @@ std::vector<double> Locator::gradients(const double* values, std::size_t columns
                                        const GradientOptions& options) {
   Implementation& self = *implementation_;
   if (self.on_sphere) return self.on_sphere->gradients(values, columns, options);
-  self.expect_plane("gradients at points of a torus or a cylinder");
   return self.take_turn([&] {
     call::Answerer& by = self.doubles();
     check_array(values, self.numbers(columns), "values", kMostCountable);

@@ -1515,7 +1515,7 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
-/// a torus and a cylinder there is no Clough-Tocher. On the sphere, linear interpolation is the value where
+/// the sphere, linear interpolation is the value where
 /// the direction of the query meets the triangle in space; Clough-Tocher stands for Renka's interpolant
 /// (1984), of cubics along great circles with a continuous gradient; and natural neighbours (Brown, 1994)
 /// have areas of cells on the sphere, and lengths of arcs. Natural neighbours of so few points on a torus
@@ -1552,9 +1552,9 @@ FLAUNAY_API const int32_t* flaunay_natural_weights_points(const flaunay_natural_
 FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_weights* weights);
 /// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
 /// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
-/// and y per number, on the sphere x, y and z of a vector that is tangent there, the caller's array; not on a
-/// torus or a cylinder. They are NaN at points that another one represents, and at those of a set on one
-/// line. Of the options, columns and those of gradients count. NULL: the defaults.
+/// and y per number, on the sphere x, y and z of a vector that is tangent there, the caller's array. They are
+/// NaN at points that another one represents, and at those of a set on one line. Of the options, columns and
+/// those of gradients count. NULL: the defaults.
 FLAUNAY_API flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
                                                      const flaunay_interpolation_options* options,
                                                      double* gradients);

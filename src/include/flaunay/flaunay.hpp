@@ -695,15 +695,14 @@ class FLAUNAY_API Locator {
   void interpolate(cl_mem values, const DevicePoints& queries, DeviceBuffer& results,
                    const Enqueue& enqueue = own_queue());
 
-  /// Interpolates by any method, several numbers per point at once. On a torus and a cylinder there is no
-  /// Clough-Tocher. On the sphere, linear interpolation is the value where the direction of the query meets
-  /// the triangle in space; Clough-Tocher stands for Renka's interpolant (1984), of cubics along great
-  /// circles with a continuous gradient; and natural neighbors (Brown, 1994) have areas of cells on the
-  /// sphere, and lengths of arcs. Natural neighbors of so few points on a torus that a circle without points
-  /// is wider than the shorter period, on a cylinder one with its centre between the ends, are Error(input).
-  /// values: one row of options.columns numbers per input point; the result has one row per query. At a
-  /// point, every method gives exactly that point's values; for duplicates, those of their representative are
-  /// used. Throws Error(usage) if options.columns is 0.
+  /// Interpolates by any method, several numbers per point at once. On the sphere, linear interpolation is
+  /// the value where the direction of the query meets the triangle in space; Clough-Tocher stands for Renka's
+  /// interpolant (1984), of cubics along great circles with a continuous gradient; and natural neighbors
+  /// (Brown, 1994) have areas of cells on the sphere, and lengths of arcs. Natural neighbors of so few points
+  /// on a torus that a circle without points is wider than the shorter period, on a cylinder one with its
+  /// centre between the ends, are Error(input). values: one row of options.columns numbers per input point;
+  /// the result has one row per query. At a point, every method gives exactly that point's values; for
+  /// duplicates, those of their representative are used. Throws Error(usage) if options.columns is 0.
   std::vector<double> interpolate(const double* values, const double* queries, std::size_t m,
                                   const InterpolationOptions& options);
   /// Answers several sets of queries; see locate. values: one row per input point, over all sets.
@@ -723,7 +722,7 @@ class FLAUNAY_API Locator {
 
   /// Estimates the gradients of values at the points, for Interpolation::clough_tocher. values: rows of
   /// `columns` numbers, one row per input point. Returns x and y per number, on the sphere x, y and z of a
-  /// vector that is tangent there; not on a torus or a cylinder. It is NaN at points that another one
+  /// vector that is tangent there. It is NaN at points that another one
   /// represents, and at those of a set on one line. O(n) per column and iteration; one work-item takes as
   /// many steps as a point has neighbours.
   std::vector<double> gradients(const double* values, std::size_t columns = 1,

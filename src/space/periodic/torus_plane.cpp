@@ -15,7 +15,7 @@ TorusPlane::TorusPlane(Implementation& self, const Triangulation& mesh) {
   check_with_places(mesh);
   lattice_ = periodic::lattice_of(mesh.space.period);
   host::Runtime& runtime = self.native().runtime;
-  const std::vector<std::size_t>& offsets = mesh.point_offsets;
+  const std::vector<std::size_t>& offsets = point_offsets_ = mesh.point_offsets;
   // Wherever a query is on a cylinder or beyond, its nearest point is at most half a period away in the
   // direction that has one.
   const bool is_torus = periodic::repeats(lattice_, 0) && periodic::repeats(lattice_, 1);
@@ -52,15 +52,22 @@ std::vector<double> TorusPlane::places(host::Runtime& runtime, const double* que
   return periodic::to_places(runtime, queries, m, lattice_, "query");
 }
 
-void TorusPlane::number_points(host::Runtime& runtime, locate::Locator& locator) const {
+void TorusPlane::number_points(host::Runtime& runtime, host::Arena& own, locate::Locator& locator) const {
   const auto vertices = static_cast<std::size_t>(runtime.read_one(locator.first_vertices, locator.sets));
-  const auto number = [&](const host::Buffer<cl_int>& all, std::size_t count) {
-    std::vector<cl_int> ids = points::download(runtime, all, count);
-    for (cl_int& v : ids) v = static_cast<cl_int>(kernel::point_of(plane_.image(v)));
-    runtime.write(all, 0, count, ids.data());
-  };
-  number(locator.source, vertices);
-  number(locator.hull, locator.hull.size());
+  std::vector<cl_int> ids = points::download(runtime, locator.source, vertices),
+                      in_place(point_offsets_.back());
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const std::uint64_t image = plane_.image(ids[v]);
+    ids[v] = static_cast<cl_int>(kernel::point_of(image));
+    if (kernel::is_in_place(image)) in_place[static_cast<std::size_t>(ids[v])] = static_cast<cl_int>(v);
+  }
+  runtime.write(locator.source, 0, vertices, ids.data());
+  for (cl_int& v : ids) v = in_place[static_cast<std::size_t>(v)];
+  locator.in_place = runtime.upload(own, std::move(ids));
+  std::vector<cl_int> hull = points::download(runtime, locator.hull, locator.hull.size());
+  for (cl_int& v : hull) v = static_cast<cl_int>(kernel::point_of(plane_.image(v)));
+  runtime.write(locator.hull, 0, hull.size(), hull.data());
+  locator.point_offsets = point_offsets_;
 }
 
 void TorusPlane::number_triangles(std::vector<std::int32_t>& found) const {

@@ -29,8 +29,8 @@ class TorusPlane {
   /// Returns the places of queries. Throws Error(input) for one that is not finite.
   std::vector<double> places(host::Runtime& runtime, const double* queries, std::size_t m) const;
   /// Makes points of the points and images that a locator in the plane has, so that it answers with these,
-  /// and takes their values. Before the release. Waits.
-  void number_points(host::Runtime& runtime, locate::Locator& locator) const;
+  /// and takes their values. own: where the locator's buffers come from. Before the release. Waits.
+  void number_points(host::Runtime& runtime, host::Arena& own, locate::Locator& locator) const;
   /// Makes triangles of triangles in the plane.
   void number_triangles(std::vector<std::int32_t>& found) const;
   /// Throws Error(input) for a set with queries for natural neighbors in which a circle without points is
@@ -44,7 +44,8 @@ class TorusPlane {
 
  private:
   periodic::Lattice lattice_;
-  std::vector<double> gaps_;  // by set, the width of the widest circle without points, or more
+  std::vector<std::size_t> point_offsets_;  // of the mesh
+  std::vector<double> gaps_;                // by set, the width of the widest circle without points, or more
   periodic::Plane plane_;
   Triangulation planar_;
   std::vector<std::int32_t> triangles_;  // per triangle in the plane, that of the mesh
