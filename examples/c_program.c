@@ -32,7 +32,7 @@ int main(void) {
   const double queries[2 * QUERIES] = {0.25, 0.125, 7, 7, -1, 3};
   int32_t triangles[QUERIES], nearest[QUERIES];
   flaunay_locator* locator = NULL;
-  check(flaunay_locator_create(triangulator, xy, SIDE * SIDE, NULL, 1, mesh, &locator));
+  check(flaunay_locator_create(triangulator, xy, NULL, SIDE * SIDE, NULL, 1, mesh, &locator));
   check(flaunay_locator_locate(locator, queries, QUERIES, NULL, 1, triangles));
   check(flaunay_locator_nearest(locator, queries, QUERIES, NULL, 1, nearest));
   for (int q = 0; q < QUERIES; ++q) {

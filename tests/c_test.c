@@ -337,7 +337,7 @@ static void test_kept_triangulations(void) {
 
   // It serves as the original does.
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create(triangulator, points, kPoints, NULL, 0, result, &locator));
+  OK(flaunay_locator_create(triangulator, points, NULL, kPoints, NULL, 0, result, &locator));
   int32_t* found = allocate(kPoints * sizeof *found);
   OK(flaunay_locator_nearest(locator, points, kPoints, NULL, 0, found));
   CHECK(same(found, kept.representatives, kPoints));
@@ -1362,7 +1362,7 @@ static void test_sphere(void) {
   OK(flaunay_triangulation_create(mesh, NULL, &copy));
   flaunay_triangulation_destroy(sphere);
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create(triangulator, NULL, 0, NULL, 0, copy, &locator));
+  OK(flaunay_locator_create(triangulator, NULL, NULL, 0, NULL, 0, copy, &locator));
   int32_t found[2] = {0}, nearest[2] = {0};
   double between[2] = {0};
   OK(flaunay_locator_locate(locator, queries, 2, NULL, 0, found));
@@ -1426,6 +1426,14 @@ static void test_weighted(void) {
   CHECK(on_torus_mesh->hidden_count == 1 && on_torus_mesh->triangle_count == 10);
   OK(flaunay_mesh_verify(on_torus_mesh, places, NULL, &torus));
   REFUSED(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, with_period, NULL, 0, &cells), "weights");
+  flaunay_locator* locator = NULL;
+  REFUSED(flaunay_locator_create(triangulator, NULL, NULL, 0, NULL, 0, with_period, &locator), "weights");
+  OK(flaunay_locator_create(triangulator, NULL, weights, 0, NULL, 0, with_period, &locator));
+  int32_t found = -1;
+  OK(flaunay_locator_locate(locator, places, 1, NULL, 0, &found));
+  CHECK(found >= 0);
+  REFUSED(flaunay_locator_nearest(locator, places, 1, NULL, 0, &found), "PointTree");
+  flaunay_locator_destroy(locator);
   OK(flaunay_voronoi_clip(triangulator, NULL, weights, 0, with_period, NULL, 0, &cells));
   CHECK(fabs(total(flaunay_clipped_voronoi_areas(cells), 6) - 64) < 1e-12);
   flaunay_clipped_voronoi_destroy(cells);
@@ -1477,7 +1485,7 @@ static void test_periodic(void) {
   const double* const areas = flaunay_clipped_voronoi_areas(cells);
   CHECK(flaunay_clipped_voronoi_vertex_count(cells) == 4 * COUNT && fabs(areas[7] - 2) < 1e-12);
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create(triangulator, NULL, 0, NULL, 0, torus, &locator));
+  OK(flaunay_locator_create(triangulator, NULL, NULL, 0, NULL, 0, torus, &locator));
   const double query[] = {SIDE - 0.25, -0.5};
   int32_t found[] = {-2, -2};
   double value = 0;
@@ -1549,7 +1557,7 @@ static void test_point_tree(void) {
 static void test_locator(void) {
   flaunay_locator* locator = NULL;
   flaunay_triangulation* mesh = on_host(kSquare, 4, NULL, 0, 0);
-  OK(flaunay_locator_create(triangulator, kSquare, 4, NULL, 1, mesh, &locator));
+  OK(flaunay_locator_create(triangulator, kSquare, NULL, 4, NULL, 1, mesh, &locator));
   int32_t triangles[kQueryCount], nearest[kQueryCount];
   double values[kQueryCount];
   OK(flaunay_locator_locate(locator, kQueries, kQueryCount, NULL, 1, triangles));
@@ -1601,7 +1609,7 @@ static void test_locator(void) {
           "Sibson");
   REFUSED(flaunay_natural_weights_compute(locator, kQueries, 1, 17, &weights), "flaunay_interpolation");
   flaunay_locator_destroy(locator);
-  REFUSED(flaunay_locator_create(triangulator, kSquare, 3, NULL, 1, mesh, &locator), "points");
+  REFUSED(flaunay_locator_create(triangulator, kSquare, NULL, 3, NULL, 1, mesh, &locator), "points");
   CHECK(locator == NULL);
 }
 
@@ -1621,9 +1629,9 @@ static void test_queries_with_constraints(void) {
                                                flaunay_triangulation_constraints(result)->constrained};
   OK(flaunay_triangulation_create(mesh, &kept, &copy));
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create(triangulator, corners, 8, NULL, 0, result, &locator));
+  OK(flaunay_locator_create(triangulator, corners, NULL, 8, NULL, 0, result, &locator));
   flaunay_locator_destroy(locator);
-  OK(flaunay_locator_create(triangulator, corners, 8, NULL, 0, copy, &locator));
+  OK(flaunay_locator_create(triangulator, corners, NULL, 8, NULL, 0, copy, &locator));
   flaunay_voronoi* dual = NULL;
   REFUSED(flaunay_voronoi_compute(triangulator, corners, 8, copy, &dual), "dual");
   const double queries[] = {4.5, 4.5, 1, 1, 6, 4, 12, 1};
@@ -1639,7 +1647,7 @@ static void test_queries_with_constraints(void) {
   CHECK(isnan(heights[0]) && fabs(heights[1] - 3) < 1e-9 && fabs(heights[2] - 16) < 1e-9 &&
         isnan(heights[3]));
   flaunay_locator_destroy(locator);
-  REFUSED(flaunay_locator_create(triangulator, corners, 7, NULL, 0, copy, &locator), "points");
+  REFUSED(flaunay_locator_create(triangulator, corners, NULL, 7, NULL, 0, copy, &locator), "points");
   flaunay_triangulation_destroy(copy);
   flaunay_triangulation_destroy(result);
 }
@@ -2711,7 +2719,7 @@ static void test_small_buffers(void) {
 
   // Queries at the points, and many more queries than points.
   flaunay_locator* locator = NULL;
-  OK(flaunay_locator_create(small, input, n, NULL, 0, mesh, &locator));
+  OK(flaunay_locator_create(small, input, NULL, n, NULL, 0, mesh, &locator));
   int32_t* const found = allocate(n * sizeof *found);
   double* const values = allocate(n * sizeof *values);
   OK(flaunay_locator_nearest(locator, input, n, NULL, 0, found));

@@ -1438,7 +1438,7 @@ class Locator(_Locator):
         """constrained: of a mesh with constraints, for each corner whether the edge opposite to it is one."""
         super().__init__(triangulator)
         points, self._point_count, primal = _triangulation_of(mesh, constrained)
-        triangulator.make(self, library.locator_create, points, self._point_count, None, 0, primal)
+        triangulator.make(self, library.locator_create, points, None, self._point_count, None, 0, primal)
 
     def _find(self, function: Any, queries: _Doubles) -> _Indices:
         """What a function answers to each query."""
@@ -1676,12 +1676,12 @@ def directions_of(places: _Doubles) -> _Doubles:
 class SpaceLocator(_Locator):
     """Answers queries on a sphere, a torus or a cylinder."""
 
-    def __init__(self, triangulator: Triangulator, mesh: InSpace) -> None:
+    def __init__(self, triangulator: Triangulator, mesh: InSpace, weights: Optional[_Doubles] = None) -> None:
         super().__init__(triangulator)
         self._on_sphere = mesh.on_sphere
         if mesh.on_sphere:
             self.axes = 3
-        triangulator.make(self, library.locator_create, None, 0, None, 0, mesh)
+        triangulator.make(self, library.locator_create, None, weights, 0, None, 0, mesh)
 
     gradients = _Locator._estimated
 

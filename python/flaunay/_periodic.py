@@ -46,7 +46,8 @@ class PeriodicDelaunay(WithLocator):
     points : ndarray of float64, shape (npoints, 2)
         The points as they were given.
     weights : ndarray of float64, shape (npoints,), or None
-        Their weights, as of `WeightedDelaunay`. Then `cells` are power cells, and only `nearest` has queries.
+        Their weights, as of `WeightedDelaunay`. Then `cells` are power cells, and `interpolate` is linear or "clough-tocher" among points
+        that are not hidden.
     hidden : ndarray of int32, shape (nhidden,)
         As of `WeightedDelaunay`. Without weights there are none.
     period : tuple of float
@@ -86,7 +87,6 @@ class PeriodicDelaunay(WithLocator):
         super().__init__((points, period, offsets, weights, device), space, offsets)
         self.period: tuple[float, ...] = as_period(self._handle.period())
         self.weights = weights
-        self._has_locator = weights is None
 
     @cached_property
     def corner_offsets(self) -> npt.NDArray[np.int8]:

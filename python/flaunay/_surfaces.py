@@ -97,7 +97,7 @@ class WithLocator(OfPoints):
 
     places: Doubles
     _names = OfPoints._names | {"places": "places"}
-    _has_locator = True
+    weights: Optional[Doubles] = None
 
     def __init__(self, given: tuple[Any, ...], space: Any, offsets: Optional[npt.NDArray[np.int64]]) -> None:
         super().__init__(given, space, offsets)
@@ -106,7 +106,7 @@ class WithLocator(OfPoints):
 
     @property
     def _locator(self) -> _calls.SpaceLocator:
-        return self._kept_locator.get(lambda: _calls.SpaceLocator(self._triangulator, self._handle))
+        return self._kept_locator.get(lambda: _calls.SpaceLocator(self._triangulator, self._handle, self.weights))
 
     @property
     def _tree(self) -> _calls.PointTree:
@@ -202,7 +202,7 @@ class WithLocator(OfPoints):
         """
         queries = self._as_queries(xi)
         is_plain = k is None and distance_upper_bound is None and not return_distances
-        if is_plain and self._has_locator:
+        if is_plain and self.weights is None:
             return self._find(queries, offsets, _calls.SpaceLocator.nearest)
         if offsets is not None and not is_plain:
             raise UsageError("offsets: several points and distances are found in one set alone")

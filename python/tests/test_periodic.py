@@ -71,8 +71,16 @@ def test_weights(random, period):
     np.testing.assert_array_equal(tri.nearest(points), np.arange(300))
     again = pickle.loads(pickle.dumps(tri))
     np.testing.assert_array_equal(again.simplices, tri.simplices)
-    with pytest.raises(flaunay.UsageError, match="weights"):
-        tri.find_simplex(points)
+    middles = tri.corners.mean(axis=1)
+    np.testing.assert_array_equal(tri.find_simplex(middles), np.arange(tri.nsimplex))
+    values, visible = random.uniform(size=300), np.setdiff1d(np.arange(300), tri.hidden)
+    np.testing.assert_allclose(tri.interpolate(values, middles), values[tri.simplices].mean(axis=1))
+    assert np.isnan(tri.gradients(values)[tri.hidden]).all()
+    for method in "linear", "clough-tocher":
+        np.testing.assert_array_equal(tri.interpolate(values, points[visible], method), values[visible])
+    for method in "nearest", "sibson":
+        with pytest.raises(flaunay.UsageError, match="weights"):
+            tri.interpolate(values, points, method)
     if period[1] is None:
         assert tri.nsimplex == 2 * (300 - len(tri.hidden)) - 2
         return

@@ -57,8 +57,8 @@ flaunay_status answer_on_device(flaunay_locator* locator, const flaunay_device_p
 
 }  // namespace
 
-flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const double* coordinates, size_t n,
-                                      const size_t* offsets, size_t sets,
+flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const double* coordinates,
+                                      const double* weights, size_t n, const size_t* offsets, size_t sets,
                                       const flaunay_triangulation* triangulation, flaunay_locator** locator) {
   return c::make(triangulator, locator, [&](Triangulator& cpp) {
     const flaunay_triangulation& searched = required(triangulation, "the triangulation");
@@ -66,7 +66,7 @@ flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator, const 
       expect(offsets == nullptr || sets == 1, "a triangulation with constraints must be of one set");
       return Locator(cpp, coordinates, n, *searched.constrained());
     }
-    if (searched.plain().space.kind != SpaceKind::plane) return Locator(cpp, searched.plain());
+    if (searched.plain().space.kind != SpaceKind::plane) return Locator(cpp, searched.plain(), weights);
     return Locator(cpp, coordinates, c::to_offsets(offsets, sets, n), searched.plain());
   });
 }

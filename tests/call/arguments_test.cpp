@@ -64,7 +64,7 @@ void make(flaunay_dynamic** made) {
 void make(flaunay_locator** made) {
   flaunay_triangulation* mesh = nullptr;
   make(&mesh);
-  flaunay_locator_create(triangulator(), kPoints, kCount, nullptr, 0, mesh, made);
+  flaunay_locator_create(triangulator(), kPoints, nullptr, kCount, nullptr, 0, mesh, made);
   flaunay_triangulation_destroy(mesh);
 }
 void make(flaunay_point_tree** made) { flaunay_point_tree_create(triangulator(), kPoints, kCount, made); }

@@ -231,7 +231,7 @@ static void print_derived(const Sets* sets) {
   flaunay_voronoi_destroy(dual);
   const size_t m = make_queries(sets, offsets);
   flaunay_locator* locator = NULL;
-  if (succeeded(key, flaunay_locator_create(triangulator, sets->points, sets->count, sets->offsets,
+  if (succeeded(key, flaunay_locator_create(triangulator, sets->points, NULL, sets->count, sets->offsets,
                                             sets->sets, mesh, &locator))) {
     if (succeeded(key, flaunay_locator_locate(locator, queries, m, offsets, sets->sets, indices))) {
       print_hash(key, "locate", indices, m * sizeof *indices);

@@ -62,7 +62,10 @@ struct TestSpace {
   }
   Locator locator(Triangulator& triangulator, const Numbers& points, const Offsets& offsets,
                   const Triangulation& mesh) const {
-    return is_plane() ? Locator(triangulator, points.data(), offsets, mesh) : Locator(triangulator, mesh);
+    return with_columns(points, [&](const Numbers& coordinates, const Space& given) {
+      return is_plane() ? Locator(triangulator, coordinates.data(), offsets, mesh)
+                        : Locator(triangulator, mesh, given.weights);
+    });
   }
   Answers answers(Triangulator& triangulator, const Numbers& points, const Triangulation& mesh,
                   const Numbers& queries, const NeighborOptions& options) const {

@@ -53,62 +53,81 @@ Triangle from_smallest(const Triangle& corners) {
   return least;
 }
 
+Triangle triangle_of(const Triangulation& mesh, std::size_t t) {
+  Triangle corners{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t c = 3 * t + k;
+    corners[k] = {mesh.triangles[c], mesh.corner_offsets[2 * c], mesh.corner_offsets[2 * c + 1]};
+  }
+  return from_smallest(corners);
+}
+
 std::multiset<Triangle> triangles_of(const Triangulation& mesh) {
   std::multiset<Triangle> all;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    Triangle corners{};
-    for (std::size_t k = 0; k < 3; ++k)
-      corners[k] = {mesh.triangles[t + k], mesh.corner_offsets[2 * (t + k)],
-                    mesh.corner_offsets[2 * (t + k) + 1]};
-    all.insert(from_smallest(corners));
-  }
+  for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) all.insert(triangle_of(mesh, t));
   return all;
 }
 
-/// What copies of all points say, so many on each side along the axes that have a period: the triangles with
-/// a corner in the middle, and the points that are hidden there.
+/// Copies of all points in the plane, so many on each side along the axes that have a period; first those in
+/// the middle.
 struct Copies {
-  std::multiset<Triangle> triangles;
-  Ids hidden;
-};
+  Copies(const WeightedPoints& points, const Numbers& in_middle, const Period& period, int sides)
+      : n(points.size()) {
+    const int across = std::isfinite(period.x) ? sides : 0, up = std::isfinite(period.y) ? sides : 0;
+    for (int x = -across; x <= across; ++x) {
+      for (int y = -up; y <= up; ++y) {
+        if (x != 0 || y != 0) copies.push_back({x, y});
+      }
+    }
+    Numbers weights;
+    for (const auto& [x, y] : copies) {
+      for (std::size_t i = 0; i < n; ++i) {
+        places.push_back(x == 0 ? in_middle[2 * i] : in_middle[2 * i] + x * period.x);
+        places.push_back(y == 0 ? in_middle[2 * i + 1] : in_middle[2 * i + 1] + y * period.y);
+        weights.push_back(points.weights[i]);
+      }
+    }
+    mesh = triangulator().triangulate(places.data(), weights.size(),
+                                      Space::plane().with_weights(weights.data()));
+  }
 
-Copies copies_of(const WeightedPoints& points, const Numbers& places, const Period& period, int sides) {
-  const int across = std::isfinite(period.x) ? sides : 0, up = std::isfinite(period.y) ? sides : 0;
-  const auto n = static_cast<std::int32_t>(points.size());
-  Numbers all, weights;
-  std::vector<std::array<int, 2>> copies = {{0, 0}};
-  for (int x = -across; x <= across; ++x) {
-    for (int y = -up; y <= up; ++y) {
-      if (x != 0 || y != 0) copies.push_back({x, y});
-    }
-  }
-  for (const auto& [x, y] : copies) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      all.push_back(x == 0 ? places[2 * i] : places[2 * i] + x * period.x);
-      all.push_back(y == 0 ? places[2 * i + 1] : places[2 * i + 1] + y * period.y);
-      weights.push_back(points.weights[i]);
-    }
-  }
-  const Triangulation mesh =
-      triangulator().triangulate(all.data(), weights.size(), Space::plane().with_weights(weights.data()));
-  Copies result;
-  std::set<Triangle> different;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+  Triangle triangle(std::size_t t) const {
     Triangle corners{};
-    bool is_inside = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t v = mesh.triangles[t + k];
-      const auto& [x, y] = copies[static_cast<std::size_t>(v / n)];
-      corners[k] = {v % n, x, y};
-      is_inside |= v < n;
+      const auto v = static_cast<std::size_t>(mesh.triangles[3 * t + k]);
+      corners[k] = {static_cast<int>(v % n), copies[v / n][0], copies[v / n][1]};
     }
-    if (is_inside) different.insert(from_smallest(corners));
+    return from_smallest(corners);
   }
-  result.triangles.insert(different.begin(), different.end());
-  std::copy_if(mesh.hidden.begin(), mesh.hidden.end(), std::back_inserter(result.hidden),
-               [&](std::int32_t v) { return v < n; });
-  return result;
-}
+  bool is_in_middle(std::int32_t v) const { return static_cast<std::size_t>(v) < n; }
+  /// Those with a corner in the middle.
+  std::multiset<Triangle> triangles() const {
+    std::set<Triangle> different;
+    for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) {
+      const std::int32_t* const corners = &mesh.triangles[3 * t];
+      if (std::any_of(corners, corners + 3, [&](std::int32_t v) { return is_in_middle(v); }))
+        different.insert(triangle(t));
+    }
+    return {different.begin(), different.end()};
+  }
+  Ids hidden() const {
+    Ids there;
+    std::copy_if(mesh.hidden.begin(), mesh.hidden.end(), std::back_inserter(there),
+                 [&](std::int32_t v) { return is_in_middle(v); });
+    return there;
+  }
+  /// What the points have, by copy.
+  Numbers repeated(const Numbers& values) const {
+    Numbers all;
+    for (std::size_t k = 0; k < copies.size(); ++k) all.insert(all.end(), values.begin(), values.end());
+    return all;
+  }
+
+  std::size_t n;
+  std::vector<std::array<int, 2>> copies = {{0, 0}};
+  Numbers places;
+  Triangulation mesh;
+};
 
 Triangulation triangulated(const WeightedPoints& points, const Period& period) {
   return triangulator().triangulate(points.coordinates.data(), points.size(),
@@ -148,15 +167,72 @@ TEST(WeightedPeriodic, IsThatOfCopiesInThePlane) {
     ASSERT_EQ("", verify(mesh.places.data(), mesh.point_offsets,
                          mesh.space.with_weights(points.weights.data()), mesh));
     for (const int sides : {1, 2}) {
-      const Copies copies = copies_of(points, mesh.places, period, sides);
-      ASSERT_EQ(copies.hidden, mesh.hidden);
-      ASSERT_TRUE(copies.triangles == triangles_of(mesh));
+      const Copies copies(points, mesh.places, period, sides);
+      ASSERT_EQ(copies.hidden(), mesh.hidden);
+      ASSERT_TRUE(copies.triangles() == triangles_of(mesh));
     }
     hidden += mesh.hidden.size();
     triangles += mesh.triangles.size() / 3;
   }
   EXPECT_GT(hidden, 2000u);
   EXPECT_GT(triangles, 4000u);
+}
+
+TEST(WeightedPeriodic, QueriesAreThoseOfCopiesInThePlane) {
+  FixtureRandom random(5);
+  std::size_t inside = 0, outside = 0;
+  for (int round = 0; round < 200; ++round) {
+    const auto n = static_cast<std::size_t>(random.integer(1, round % 10 == 0 ? 400 : 14));
+    const WeightedPoints points = any_points(random, n, round % 3 == 0 ? 5 : 30, round % 5);
+    const Period period = kPeriods[static_cast<std::size_t>(round / 5) % kPeriods.size()];
+    SCOPED_TRACE(points.name + ", " + std::to_string(period.x) + " " + std::to_string(period.y));
+    const Triangulation mesh = triangulated(points, period);
+    Locator locator(triangulator(), mesh, points.weights.data());
+    const Copies copies(points, mesh.places, period, 3);
+    Locator plane(triangulator(), copies.places.data(), copies.places.size() / 2, copies.mesh);
+    Numbers queries, values, slopes;
+    constexpr std::size_t kQueries = 30;
+    for (std::size_t i = 0; i < kQueries; ++i)
+      queries.insert(queries.end(),
+                     {random.unit() * std::min(period.x, 1.0), random.unit() * std::min(period.y, 1.0)});
+    for (std::size_t i = 0; i < n; ++i) {
+      values.push_back(random.unit());
+      slopes.insert(slopes.end(), {random.unit(), random.unit()});
+    }
+    const Ids found = locator.locate(queries.data(), kQueries),
+              expected = plane.locate(queries.data(), kQueries);
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      ASSERT_EQ(expected[i] < 0, found[i] < 0);
+      ++(found[i] < 0 ? outside : inside);
+      if (found[i] < 0) continue;
+      ASSERT_EQ(copies.triangle(static_cast<std::size_t>(expected[i])),
+                triangle_of(mesh, static_cast<std::size_t>(found[i])));
+    }
+    const Numbers all_values = copies.repeated(values), all_slopes = copies.repeated(slopes);
+    InterpolationOptions options;
+    options.fill = -1;
+    for (const Interpolation method : {Interpolation::linear, Interpolation::clough_tocher}) {
+      options.method = method;
+      options.gradients = all_slopes.data();
+      const Numbers in_plane = plane.interpolate(all_values.data(), queries.data(), kQueries, options);
+      options.gradients = slopes.data();
+      const Numbers on_torus = locator.interpolate(values.data(), queries.data(), kQueries, options);
+      for (std::size_t i = 0; i < kQueries; ++i) ASSERT_NEAR(in_plane[i], on_torus[i], 1e-9) << i;
+    }
+    // Hidden points have no gradients, and have no part in others.
+    const Numbers gradients = locator.gradients(values.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto v = static_cast<std::int32_t>(i);
+      ASSERT_EQ(std::count(mesh.triangles.begin(), mesh.triangles.end(), v) == 0,
+                std::isnan(gradients[2 * i]));
+    }
+    options.gradients = gradients.data();
+    const Numbers given = locator.interpolate(values.data(), queries.data(), kQueries, options);
+    options.gradients = nullptr;
+    EXPECT_EQ(given, locator.interpolate(values.data(), queries.data(), kQueries, options));
+  }
+  EXPECT_GT(inside, 2000u);
+  EXPECT_GT(outside, 200u);
 }
 
 TEST(WeightedPeriodic, EqualWeightsGiveTheBytesOfTheDelaunayTriangulation) {
@@ -220,9 +296,9 @@ TEST(WeightedPeriodic, ManyPointsAndSetsThatNeedWiderMargins) {
       if (s == 3) {
         EXPECT_GT(alone.images, 4 * even_images);
       }
-      const Copies copies = copies_of(own, alone.places, period, 1);
-      ASSERT_EQ(copies.hidden, alone.hidden);
-      ASSERT_TRUE(copies.triangles == triangles_of(alone));
+      const Copies copies(own, alone.places, period, 1);
+      ASSERT_EQ(copies.hidden(), alone.hidden);
+      ASSERT_TRUE(copies.triangles() == triangles_of(alone));
     }
     EXPECT_EQ(hidden, mesh.hidden.size());
     EXPECT_GT(hidden, 3000u);
@@ -392,6 +468,41 @@ TEST(WeightedPeriodic, ErrorsSayWhatIsWrong) {
   expect_error(ErrorKind::usage, "the period", [&] { run({0, 1}); });
   Triangulation mesh =
       triangulator().triangulate(points.data(), 4, Space::torus({1, 1}).with_weights(weights.data()));
+  // Queries that a locator among points with weights has not.
+  weights[3] = 0.5;
+  const auto expect_no_more = [](Locator locator) {
+    const Numbers query = {0.5, 0.5}, values(4, 1.0);
+    InterpolationOptions options;
+    EXPECT_EQ(Numbers{1}, locator.interpolate(values.data(), query.data(), 1, options));
+    expect_error(ErrorKind::usage, "PointTree", [&] { locator.nearest(query.data(), 1); });
+    expect_error(ErrorKind::usage, "PointTree", [&] { locator.natural_weights(query.data(), 1); });
+    for (const Interpolation method :
+         {Interpolation::nearest, Interpolation::sibson, Interpolation::laplace}) {
+      options.method = method;
+      expect_error(ErrorKind::usage, "natural neighbours",
+                   [&] { locator.interpolate(values.data(), query.data(), 1, options); });
+    }
+  };
+  const Triangulation heavy =
+      triangulator().triangulate(points.data(), 4, Space::torus({1, 1}).with_weights(weights.data()));
+  ASSERT_EQ(3u, heavy.hidden.size());
+  expect_no_more(Locator(triangulator(), heavy, weights.data()));
+  expect_error(ErrorKind::usage, "need these", [&] { Locator(triangulator(), heavy); });
+  expect_error(ErrorKind::usage, "with these weights",
+               [&] { Locator(triangulator(), mesh, weights.data()); });
+  Triangulation wrong = mesh;
+  wrong.hidden = {0};
+  expect_error(ErrorKind::usage, "with these weights",
+               [&] { Locator(triangulator(), wrong, weights.data()); });
+  weights[3] = NAN;
+  expect_error(ErrorKind::input, "point 3 has a weight that is not finite",
+               [&] { Locator(triangulator(), mesh, weights.data()); });
+  weights[3] = 0;
+  const Coordinates triangle = {0, 0, 2, 0, 0, 2, 0.5, 0.5};
+  const Numbers light = {0, 0, 0, -9};
+  expect_no_more(
+      Locator(triangulator(), triangle.data(), 4,
+              triangulator().triangulate(triangle.data(), 4, Space::plane().with_weights(light.data()))));
   mesh.hidden = {2, 1};
   expect_error(ErrorKind::usage, "not those of a triangulation on a torus", [&] {
     verify(mesh.places.data(), mesh.point_offsets, mesh.space.with_weights(weights.data()), mesh);

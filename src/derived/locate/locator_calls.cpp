@@ -104,6 +104,7 @@ struct Locator::Implementation {
   /// The locator for nearest points. Constraints do not change which point is nearest, so for a mesh with
   /// constraints it is the locator of a triangulation without them, made when it is first needed.
   Implementation& for_nearest() {
+    expect_no_weights();
     if (all_points.empty()) return *this;
     if (!without_constraints_) {
       const std::vector<std::size_t> offsets = {0, all_points.size() / 2};
@@ -119,7 +120,12 @@ struct Locator::Implementation {
   }
 
   Implementation& for_method(Interpolation method) {
+    if (is_natural(method)) expect_no_weights();
     return method == Interpolation::nearest ? for_nearest() : *this;
+  }
+
+  static bool is_natural(Interpolation method) {
+    return method == Interpolation::sibson || method == Interpolation::laplace;
   }
 
   /// The locator with doubles; made of the other one when it is first needed.
@@ -223,8 +229,7 @@ struct Locator::Implementation {
   std::size_t numbers(std::size_t columns) const { return check_columns(columns, point_count); }
 
   static flaunay::interpolate::NaturalWeights natural_weights(Interpolation method) {
-    call::expect(method == Interpolation::sibson || method == Interpolation::laplace,
-                 "natural neighbours have the weights of Sibson or of Laplace");
+    call::expect(is_natural(method), "natural neighbours have the weights of Sibson or of Laplace");
     return method == Interpolation::sibson ? flaunay::interpolate::NaturalWeights::sibson
                                            : flaunay::interpolate::NaturalWeights::laplace;
   }
@@ -282,6 +287,13 @@ struct Locator::Implementation {
                                              output);
   }
 
+  /// Throws Error(usage) for what a regular triangulation does not tell.
+  void expect_no_weights() const {
+    call::expect(!has_weights,
+                 "among points with weights a locator finds no nearest points, which PointTree does, and no "
+                 "natural neighbours");
+  }
+
   /// Throws Error(usage) for what there is in the plane alone.
   void expect_plane(const char* what) const {
     call::expect(!on_torus && !on_sphere,
@@ -293,6 +305,7 @@ struct Locator::Implementation {
   std::unique_ptr<call::SphereLocator> on_sphere;  ///< answers all queries there
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
+  bool has_weights = false;  ///< in the plane if points are hidden
   // All points of a mesh with constraints, and WholeMesh::constrained; empty without constraints.
   std::vector<double> all_points{};
   std::shared_ptr<const std::vector<std::uint8_t>> constrained{};
@@ -330,6 +343,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
+  self.has_weights = !triangulation.hidden.empty();
   call::take_turn(*self.owner, [&] { self.make_from(coordinates, offsets, triangulation); });
 }
 
@@ -367,9 +381,10 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     });
   });
   self.point_count = points.count;
+  self.has_weights = triangulation.hidden_count > 0;
 }
 
-Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation)
+Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation, const double* weights)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
   self.take_turn([&] {
@@ -380,9 +395,8 @@ Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation)
       self.on_sphere = std::make_unique<call::SphereLocator>(triangulator, triangulation);
       return;
     }
-    call::expect(triangulation.hidden.empty(),
-                 "points with weights have no such queries on a torus or a cylinder");
-    call::TorusPlane& plane = self.on_torus.emplace(*self.owner, triangulation);
+    call::TorusPlane& plane = self.on_torus.emplace(*self.owner, triangulation, weights);
+    self.has_weights = weights != nullptr;
     self.make_from(plane.coordinates().data(), plane.offsets(), plane.planar());
     self.point_count = triangulation.representatives.size();
     plane.release();
@@ -469,9 +483,7 @@ std::vector<double> Locator::interpolate(const double* values, const double* que
     return implementation_->on_sphere->interpolate(values, queries, offsets, options);
   return implementation_->take_turn([&] {
     Implementation& self = implementation_->for_method(options.method);
-    const bool is_natural =
-        options.method == Interpolation::sibson || options.method == Interpolation::laplace;
-    if (self.on_torus && is_natural) self.on_torus->check_gaps(offsets);
+    if (self.on_torus && Implementation::is_natural(options.method)) self.on_torus->check_gaps(offsets);
     return *self.answer<double>(self.doubles(), queries, offsets, options.columns,
                                 self.interpolation(options, values, options.gradients));
   });
@@ -500,6 +512,7 @@ NaturalWeights Locator::natural_weights(const double* queries, std::size_t m, In
   const auto weighed = Implementation::natural_weights(method);
   if (self.on_sphere) return self.on_sphere->natural_weights(queries, m, method);
   return self.take_turn([&] {
+    self.expect_no_weights();
     call::Answerer& by = self.doubles();
     const std::vector<double> places = self.placed(queries, m);
     if (self.on_torus) self.on_torus->check_gaps({0, m});

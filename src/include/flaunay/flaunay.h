@@ -1431,16 +1431,21 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// flaunay_triangulate. The locator copies what it needs, about 80 bytes of device memory per point. It may
 /// outlive the triangulator. O(n log n) work.
 ///
-/// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read. Queries are any
-/// places of the plane, and on the sphere given as the points were; they are in host memory.
+/// On a torus, a cylinder and the sphere, coordinates, n, offsets and sets are not read. weights: of points
+/// with weights on a torus or a cylinder, elsewhere not read. Queries are any places of the plane, and on the
+/// sphere given as the points were; they are in host memory.
+///
+/// Among points with weights it locates, and interpolates within triangles; nearest points (see
+/// flaunay_point_tree) and natural neighbours are FLAUNAY_ERROR_USAGE.
 ///
 /// A triangulation with constraints must be of one set. coordinates: of its points and after them those
 /// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points
 /// are those of all points. Natural neighbours are those that can be seen without crossing a constraint
 /// (docs/constrained.md).
 FLAUNAY_API flaunay_status flaunay_locator_create(flaunay_triangulator* triangulator,
-                                                  const double* coordinates, size_t n, const size_t* offsets,
-                                                  size_t sets, const flaunay_triangulation* triangulation,
+                                                  const double* coordinates, const double* weights, size_t n,
+                                                  const size_t* offsets, size_t sets,
+                                                  const flaunay_triangulation* triangulation,
                                                   flaunay_locator** locator);
 /// Makes a locator for points and a triangulation in device memory, which must have the parts triangles,
 /// neighbors, hull and representatives. The work is enqueued like that of flaunay_triangulate_device, with

@@ -617,7 +617,8 @@ struct NaturalWeights {
 /// not finite, or whose coordinates are too fine for exact arithmetic in doubles, is an Error(input) that
 /// names it. The locator shares device and memory with its triangulator, so a call during another one of
 /// either throws Error(usage); it may outlive the triangulator. A locator that was made from host memory
-/// without OpenCL answers queries in host memory only.
+/// without OpenCL answers queries in host memory only. Among points with weights it locates, and interpolates
+/// within triangles; nearest points (see PointTree) and natural neighbours are Error(usage).
 class FLAUNAY_API Locator {
  public:
   /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies
@@ -633,8 +634,9 @@ class FLAUNAY_API Locator {
   /// are answered in the plane, with images of points around the box; on a cylinder with three times as many
   /// points. On the sphere, queries are given as the points were, and are rounded to places as these: of the
   /// points' places a locator in the plane finds one near the query's, from which an exact walk goes on over
-  /// the sphere. Throws Error(usage) for the plane, and for arrays that do not fit each other. O(n log n).
-  Locator(Triangulator& triangulator, const Triangulation& triangulation);
+  /// the sphere. weights: of points with weights on a torus or a cylinder. Throws Error(usage) for the plane,
+  /// and for arrays that do not fit each other. O(n log n).
+  Locator(Triangulator& triangulator, const Triangulation& triangulation, const double* weights = nullptr);
   /// Makes a locator for a triangulation with constraints, which must have neighbours and be of one set, such
   /// as a map. coordinates: those of the n points that were triangulated; values and answers are of the
   /// points that were added, too. Queries in no triangle, such as those in holes, are outside. Nearest points

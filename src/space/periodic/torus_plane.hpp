@@ -15,9 +15,10 @@ namespace flaunay::call {
 /// plane. There queries are answered at their places, and answers are numbers of the plane.
 class TorusPlane {
  public:
-  /// Triangulates points and images in the plane; see coordinates() and planar(). It is the triangulator's
-  /// turn. Throws Error(usage) for arrays that are not those of a triangulation on a torus or a cylinder.
-  TorusPlane(Implementation& self, const Triangulation& mesh);
+  /// Triangulates points and images in the plane; see coordinates() and planar(). weights: null, or of the
+  /// points; those that are hidden are left out. It is the triangulator's turn. Throws Error(usage) for
+  /// arrays that are not those of a triangulation on a torus or a cylinder with these weights.
+  TorusPlane(Implementation& self, const Triangulation& given, const double* weights);
 
   /// The points and images of the sets, and their triangulation, until the release.
   const std::vector<double>& coordinates() const { return plane_.coordinates; }
@@ -43,8 +44,12 @@ class TorusPlane {
   void check_gaps(const std::vector<std::size_t>& offsets) const;
 
  private:
+  /// The number of the point at a place of the plane, or of which an image is there.
+  std::int32_t number(std::int32_t v) const;
+
   periodic::Lattice lattice_;
   std::vector<std::size_t> point_offsets_;  // of the mesh
+  std::vector<std::int32_t> visible_;       // with weights, the mesh's numbers of the plane's points
   std::vector<double> gaps_;                // by set, the width of the widest circle without points, or more
   periodic::Plane plane_;
   Triangulation planar_;

@@ -280,6 +280,7 @@ Visible visible_points(const double* points, const std::vector<std::size_t>& off
       if (is_hidden[i] != 0 || mesh.representatives[i] != static_cast<std::int32_t>(i)) continue;
       numbers[i] = static_cast<std::int32_t>(visible.coordinates.size() / 2);
       visible.coordinates.insert(visible.coordinates.end(), {points[2 * i], points[2 * i + 1]});
+      visible.numbers.push_back(static_cast<std::int32_t>(i));
     }
   }
   visible.offsets.push_back(visible.coordinates.size() / 2);

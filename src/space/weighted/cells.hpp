@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "flaunay/flaunay.hpp"
@@ -12,7 +13,8 @@ namespace flaunay::weighted {
 /// The points that are not hidden, and the triangulation of these.
 struct Visible {
   std::vector<double> coordinates;
-  std::vector<std::size_t> offsets;  ///< sets + 1 values
+  std::vector<std::size_t> offsets;   ///< sets + 1 values
+  std::vector<std::int32_t> numbers;  ///< by visible point, that among all
   Triangulation mesh;
 };
 
