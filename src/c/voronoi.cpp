@@ -18,7 +18,7 @@ flaunay_status flaunay_voronoi_compute(flaunay_triangulator* triangulator, const
                                        flaunay_voronoi** voronoi) {
   return c::make(triangulator, voronoi, [&](Triangulator& cpp) {
     const Triangulation& primal = required(triangulation, "the triangulation").plain();
-    return primal.space.kind == SpaceKind::sphere ? cpp.voronoi(primal) : cpp.voronoi(coordinates, n, primal);
+    return cpp.voronoi(coordinates, n, primal);
   });
 }
 
@@ -53,10 +53,7 @@ flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const do
                                     size_t corner_count, flaunay_clipped_voronoi** cells) {
   return c::make(triangulator, cells, [&](Triangulator& cpp) {
     const Triangulation& primal = required(triangulation, "the triangulation").plain();
-    if (primal.space.kind != SpaceKind::plane) return cpp.clipped_voronoi(primal, weights);
-    if (weights != nullptr)
-      return cpp.clipped_voronoi(coordinates, weights, n, primal, corners, corner_count);
-    return cpp.clipped_voronoi(coordinates, n, primal, corners, corner_count);
+    return cpp.clipped_voronoi(coordinates, weights, n, primal, corners, corner_count);
   });
 }
 

@@ -11,25 +11,17 @@ namespace flaunay {
 namespace {
 
 const call::SpaceCalls kInPlane{
-    nullptr,
-    [](call::Implementation& self, const call::HostPoints& points, const std::vector<std::size_t>& offsets,
-       const Space&, const Options& options) {
-      return call::triangulate(self, call::checked_points(points.wide, nullptr, offsets), offsets, options);
-    },
-    call::triangulate,
-    [](const double* points, const std::vector<std::size_t>& offsets, const Space&,
-       const Triangulation& mesh) { return verify(points, offsets, mesh); }};
-
-// The calls of a kind of space, for points with weights or without.
-const call::SpaceCalls& calls_in(SpaceKind kind, bool has_weights) {
-  static constexpr const call::SpaceCalls* kByKind[] = {&kInPlane, &call::kOnTorus, &call::kOnSphere};
-  static_assert(std::size(kByKind) == names_of_enumerators<SpaceKind>().size());
-  check_enumerator(kind);
-  if (kind == SpaceKind::plane && has_weights) return call::kWithWeights;
-  const call::SpaceCalls& calls = *kByKind[static_cast<std::size_t>(kind)];
-  call::expect(!has_weights || calls.refusal_of_weights == nullptr, calls.refusal_of_weights);
-  return calls;
-}
+    .triangulate =
+        [](call::Implementation& self, const call::HostPoints& points,
+           const std::vector<std::size_t>& offsets, const Space&, const Options& options) {
+          return call::triangulate(self, call::checked_points(points.wide, nullptr, offsets), offsets,
+                                   options);
+        },
+    .triangulate_on_device = call::triangulate,
+    .find_problem = [](const double* points, const std::vector<std::size_t>& offsets, const Space&,
+                       const Triangulation& mesh) { return verify(points, offsets, mesh); },
+    .cells = call::cells_in_plane,
+    .dual = call::dual_in_plane};
 
 // One of wide and narrow is null.
 Triangulation checked_call(call::Implementation& self, const double* wide, const float* narrow,
@@ -40,6 +32,16 @@ Triangulation checked_call(call::Implementation& self, const double* wide, const
 }
 
 }  // namespace
+
+const call::SpaceCalls& call::calls_in(SpaceKind kind, bool has_weights) {
+  static constexpr const SpaceCalls* kByKind[] = {&kInPlane, &kOnTorus, &kOnSphere};
+  static_assert(std::size(kByKind) == names_of_enumerators<SpaceKind>().size());
+  check_enumerator(kind);
+  if (kind == SpaceKind::plane && has_weights) return kWithWeights;
+  const SpaceCalls& calls = *kByKind[static_cast<std::size_t>(kind)];
+  expect(!has_weights || calls.refusal_of_weights == nullptr, calls.refusal_of_weights);
+  return calls;
+}
 
 Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
   return triangulate(coordinates, std::vector<std::size_t>{0, n}, options);
@@ -69,7 +71,7 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
   call::Implementation& self = *implementation_;
   return call::take_turn(self, [&] {
     check_offsets(offsets);
-    const call::SpaceCalls& calls = calls_in(space.kind, space.weights != nullptr);
+    const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
     call::expect(space.kind == SpaceKind::plane || (!options.halfedges && !options.areas),
                  "triangulations in other spaces than the plane have neither half-edges nor areas");
     return calls.triangulate(self, {points, nullptr, offsets.back()}, offsets, space, options);
@@ -80,7 +82,7 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
                                const Enqueue& enqueue) {
   call::Implementation& self = *implementation_;
   call::take_turn(self, enqueue, [&] {
-    const call::SpaceCalls& calls = calls_in(points.space.kind, points.weights != nullptr);
+    const call::SpaceCalls& calls = call::calls_in(points.space.kind, points.weights != nullptr);
     call::expect(points.space.weights == nullptr, "points in device memory have weights there");
     call::reset(points.space, result);
     calls.triangulate_on_device(self, points, result, parts, enqueue);
@@ -90,7 +92,7 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
 std::string verify(const double* points, const std::vector<std::size_t>& offsets, const Space& space,
                    const Triangulation& mesh) {
   check_offsets(offsets);
-  const call::SpaceCalls& calls = calls_in(space.kind, space.weights != nullptr);
+  const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
   return calls.find_problem(points, offsets, space, mesh);
 }

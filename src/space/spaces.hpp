@@ -1,11 +1,14 @@
-// Triangulations and proofs in other spaces than the plane, and of points with weights.
+// What public calls ask a kind of space, for points with weights or without.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "call/frame.hpp"
+#include "derived/nearest/point_tree.hpp"
+#include "derived/voronoi/clip_polygon.hpp"
 #include "flaunay/flaunay.hpp"
 
 namespace flaunay::call {
@@ -23,10 +26,19 @@ void write_counts(std::size_t duplicates, Result& result) {
   statistics.hull_vertices = 0;
 }
 
+/// A mesh whose cells are computed, and in the plane its points and the polygon to which cells are clipped.
+struct CellInput {
+  HostPoints points;
+  Space space;
+  const Triangulation& mesh;
+  voronoi::ClipPolygon polygon;
+};
+
 /// The functions of public calls in a kind of space. It is the triangulator's turn; offsets have been
-/// checked.
+/// checked. What a space does not have is null.
 struct SpaceCalls {
-  const char* refusal_of_weights;  ///< what a call with weights says; null: points can have weights
+  const char* refusal_of_weights = nullptr;   ///< what a call with weights says, if points have none
+  const char* refusal_of_polygons = nullptr;  ///< what a call with a polygon says, if it clips no cells
   Triangulation (*triangulate)(Implementation& self, const HostPoints& points,
                                const std::vector<std::size_t>& offsets, const Space& space,
                                const Options& options);
@@ -35,8 +47,25 @@ struct SpaceCalls {
   /// See verify.
   std::string (*find_problem)(const double* points, const std::vector<std::size_t>& offsets,
                               const Space& space, const Triangulation& mesh);
+  /// How many numbers a point has.
+  std::size_t (*width)(const Space& space) = [](const Space&) -> std::size_t { return 2; };
+  /// x and y per point; see Triangulation::places. what: the name of a point. Null: points are places.
+  std::vector<double> (*places)(host::Runtime& runtime, const double* points, std::size_t n,
+                                const Space& space, const char* what) = nullptr;
+  bool returns_places = false;  ///< relaxed points are returned as places
+  ClippedVoronoi (*cells)(Implementation& self, const CellInput& input) = nullptr;
+  Voronoi (*dual)(Implementation& self, const CellInput& input) = nullptr;
+  /// Per point the centroid of its cell, as points are given; NaN if it has none. Null: as `cells` says.
+  std::vector<double> (*centroids)(Implementation& self, const CellInput& input) = nullptr;
+  std::unique_ptr<nearest::Tree> (*tree)(Triangulator& triangulator, const Triangulation& mesh) = nullptr;
 };
 extern const SpaceCalls kOnTorus, kOnSphere, kWithWeights;  // the last one: in the plane
+/// The cells of points without weights in the plane, and their dual.
+ClippedVoronoi cells_in_plane(Implementation& self, const CellInput& input);
+Voronoi dual_in_plane(Implementation& self, const CellInput& input);
+
+/// Throws Error(usage) for a number that is no kind, and for weights in a space without.
+const SpaceCalls& calls_in(SpaceKind kind, bool has_weights);
 
 /// Throws Error(usage) for arrays that are not those of a triangulation of these points with weights.
 void check_with_hidden(const double* points, const std::vector<std::size_t>& offsets,

@@ -1,10 +1,11 @@
 // A k-d tree for exact nearest neighbours (Bentley, "Multidimensional binary search trees used for
 // associative searching", 1975; Friedman, Bentley and Finkel, "An algorithm for finding best matches in
-// logarithmic expected time", 1977).
+// logarithmic expected time", 1977), and the trees of all spaces.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "flaunay/neighbors.hpp"
@@ -43,5 +44,20 @@ class PointTree {
   std::vector<Entry> entries_;
   std::vector<Node> nodes_;
 };
+
+/// What answers the queries of a flaunay::PointTree in a space.
+class Tree {
+ public:
+  virtual ~Tree() = default;
+  /// Throws Error(usage) but on the sphere.
+  virtual void set_coordinates(SphereCoordinates coordinates);
+  virtual Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options) = 0;
+};
+
+/// For a space in which two points are as far from each other as the place of one is from the nearest of the
+/// other's place and its images in the plane. coordinates: of points, and behind them of images, those of a
+/// point in a row; originals: per image, its point.
+std::unique_ptr<Tree> tree_of_images(Triangulator& triangulator, const std::vector<double>& coordinates,
+                                     std::vector<std::int32_t> originals, const Space& space);
 
 }  // namespace flaunay::nearest

@@ -1,60 +1,70 @@
 // The public class PointTree.
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "call/frame.hpp"
 #include "derived/nearest/point_tree.hpp"
 #include "geometry/arguments.hpp"
-#include "space/periodic/fold.hpp"
-#include "space/periodic/triangulate_on_torus.hpp"
-#include "space/sphere/triangulate_on_sphere.hpp"
+#include "space/spaces.hpp"
 
 namespace flaunay {
-
+namespace nearest {
 namespace {
 
 // A thread answers this number of queries at a time.
 constexpr std::size_t kRun = 512;
 
-}  // namespace
-
-struct PointTree::Implementation {
-  Implementation(std::shared_ptr<call::Implementation> of, const double* coordinates, std::size_t n)
-      : owner(std::move(of)), tree(coordinates, n) {}
-
-  Implementation(Triangulator& triangulator, const Triangulation& mesh)
-      : Implementation(TriangulatorAccess::shared(triangulator), nullptr, 0) {
-    on_sphere.emplace(triangulator, mesh);
+class ImageTree : public Tree {
+ public:
+  ImageTree(Triangulator& triangulator, const double* coordinates, std::size_t n,
+            std::vector<std::int32_t> originals, const Space& space)
+      : owner_(TriangulatorAccess::shared(triangulator)),
+        tree_(coordinates, n),
+        space_(space),
+        calls_(call::calls_in(space.kind, false)),
+        points_(n - originals.size()),
+        originals_(std::move(originals)) {
+    std::size_t copies = 0;  // of one point
+    for (std::size_t i = 0; i < originals_.size(); ++i) {
+      copies = i == 0 || originals_[i - 1] != originals_[i] ? 2 : copies + 1;
+      most_copies_ = std::max(most_copies_, copies);
+    }
   }
 
-  // queries: in the period, if there is one.
+  Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options) override {
+    return call::take_turn(*owner_, [&] {
+      check_queries(queries, m);
+      if (calls_.places == nullptr) return find(queries, m, options);
+      return find_points(calls_.places(owner_->native().runtime, queries, m, space_, "query").data(), m,
+                         options);
+    });
+  }
+
+ private:
+  // Points and images, each as one of its own.
   Neighbors find(const double* queries, std::size_t m, const NeighborOptions& options) const {
     check_neighbors(options, m);
     Neighbors result;
     result.points.resize(m * options.count, -1);
     result.distances.resize(m * options.count, std::numeric_limits<double>::infinity());
-    call::Frame call(owner->native());
+    call::Frame call(owner_->native());
     const points::QueryScaling scaling =
-        *points::query_scaling(call.runtime, tree.range(), call.in(queries, 2 * m), {0, m});
+        *points::query_scaling(call.runtime, tree_.range(), call.in(queries, 2 * m), {0, m});
     call.runtime.share((m + kRun - 1) / kRun, [&](std::size_t run) {
-      tree.find(queries, run * kRun, std::min(m, (run + 1) * kRun), scaling, options, result);
+      tree_.find(queries, run * kRun, std::min(m, (run + 1) * kRun), scaling, options, result);
     });
     call.end();
     return result;
   }
 
   // Each point once. Several images of one are in the tree, but mostly only one of them is near.
-  Neighbors find_on_torus(const double* queries, std::size_t m, const NeighborOptions& options) const {
-    const std::vector<double> places =
-        periodic::to_places(owner->native().runtime, queries, m, *lattice, "query");
-    Neighbors result = find(places.data(), m, options);
+  Neighbors find_points(const double* places, std::size_t m, const NeighborOptions& options) const {
+    Neighbors result = find(places, m, options);
     if (has_repeated(result, options.count)) {
       NeighborOptions of_images = options;
-      of_images.count = most_copies * options.count;
-      Neighbors images = find(places.data(), m, of_images);
+      of_images.count = most_copies_ * options.count;
+      Neighbors images = find(places, m, of_images);
       result.points.assign(m * options.count, -1);
       result.distances.assign(m * options.count, std::numeric_limits<double>::infinity());
       for (std::size_t i = 0; i < m; ++i) {
@@ -74,8 +84,8 @@ struct PointTree::Implementation {
     return result;
   }
   std::int32_t original(std::int32_t image) const {
-    const bool is_point = image < static_cast<std::int32_t>(points);
-    return is_point ? image : originals[static_cast<std::size_t>(image) - points];
+    const bool is_point = image < static_cast<std::int32_t>(points_);
+    return is_point ? image : originals_[static_cast<std::size_t>(image) - points_];
   }
   bool has_repeated(const Neighbors& found, std::size_t count) const {
     std::vector<std::int32_t> row;
@@ -89,46 +99,46 @@ struct PointTree::Implementation {
     return false;
   }
 
-  std::shared_ptr<call::Implementation> owner;
-  nearest::PointTree tree;
-  std::optional<call::SphereLocator> on_sphere;  // answers all queries there
-  std::optional<periodic::Lattice> lattice;      // none in the plane
-  std::size_t points = 0;                        // with a period: in front of their images
-  std::vector<std::int32_t> originals;           // of these
-  std::size_t most_copies = 1;                   // of one point: itself and its images
+  std::shared_ptr<call::Implementation> owner_;
+  PointTree tree_;
+  Space space_;
+  const call::SpaceCalls& calls_;
+  std::size_t points_;  // in front of their images
+  std::vector<std::int32_t> originals_;
+  std::size_t most_copies_ = 1;  // of one point: itself and its images
+};
+
+}  // namespace
+
+void Tree::set_coordinates(SphereCoordinates /*coordinates*/) {
+  throw Error(ErrorKind::usage, "only queries on the sphere have coordinates of the sphere");
+}
+
+std::unique_ptr<Tree> tree_of_images(Triangulator& triangulator, const std::vector<double>& coordinates,
+                                     std::vector<std::int32_t> originals, const Space& space) {
+  return std::make_unique<ImageTree>(triangulator, coordinates.data(), coordinates.size() / 2,
+                                     std::move(originals), space);
+}
+
+}  // namespace nearest
+
+struct PointTree::Implementation {
+  std::unique_ptr<nearest::Tree> tree;
 };
 
 PointTree::PointTree(Triangulator& triangulator, const double* coordinates, std::size_t n)
     : implementation_(with_errors([&] {
         check_points(coordinates, n);
-        return std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator), coordinates, n);
+        return std::make_unique<Implementation>(Implementation{std::make_unique<nearest::ImageTree>(
+            triangulator, coordinates, n, std::vector<std::int32_t>(), Space::plane())});
       })) {}
 
 PointTree::PointTree(Triangulator& triangulator, const Triangulation& mesh)
     : implementation_(with_errors([&] {
-        const bool is_on_sphere = mesh.space.kind == SpaceKind::sphere;
-        if (!is_on_sphere) call::check_with_places(mesh);
+        const call::SpaceCalls& calls = call::calls_in(mesh.space.kind, false);
+        call::expect(calls.tree != nullptr, "a tree of points in the plane needs their coordinates");
         call::expect(mesh.point_offsets.size() == 2, "a tree is of one set of points: make one for each set");
-        if (is_on_sphere) return std::make_unique<Implementation>(triangulator, mesh);
-        const periodic::Lattice lattice = periodic::lattice_of(mesh.space.period);
-        periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, lattice);
-        for (const double length : lattice.reach) {
-          if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
-        }
-        const periodic::Plane plane =
-            periodic::plane_of(call::Engine::of_thread().runtime, mesh.places, mesh.point_offsets, {box});
-        auto self = std::make_unique<Implementation>(TriangulatorAccess::shared(triangulator),
-                                                     plane.coordinates.data(), plane.coordinates.size() / 2);
-        self->lattice = lattice;
-        self->points = plane.own;
-        std::size_t copies = 0;  // of one point, whose images follow each other
-        for (const std::uint64_t image : plane.images) {
-          const auto point = static_cast<std::int32_t>(kernel::point_of(image));
-          copies = self->originals.empty() || self->originals.back() != point ? 2 : copies + 1;
-          self->most_copies = std::max(self->most_copies, copies);
-          self->originals.push_back(point);
-        }
-        return self;
+        return std::make_unique<Implementation>(Implementation{calls.tree(triangulator, mesh)});
       })) {}
 
 PointTree::~PointTree() = default;
@@ -136,23 +146,11 @@ PointTree::PointTree(PointTree&&) noexcept = default;
 PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 void PointTree::set_coordinates(SphereCoordinates coordinates) {
-  with_errors([&] {
-    call::expect(implementation_->on_sphere.has_value(),
-                 "only queries on the sphere have coordinates of the sphere");
-    implementation_->on_sphere->set_coordinates(coordinates);
-  });
+  with_errors([&] { implementation_->tree->set_coordinates(coordinates); });
 }
 
 Neighbors PointTree::nearest(const double* queries, std::size_t m, const NeighborOptions& options) {
-  Implementation& self = *implementation_;
-  if (self.on_sphere) {
-    with_errors([&] { check_neighbors(options, m); });
-    return self.on_sphere->nearest(queries, m, options);
-  }
-  return call::take_turn(*self.owner, [&] {
-    check_queries(queries, m);
-    return self.lattice ? self.find_on_torus(queries, m, options) : self.find(queries, m, options);
-  });
+  return implementation_->tree->nearest(queries, m, options);
 }
 
 }  // namespace flaunay

@@ -11,14 +11,7 @@
 #include "derived/voronoi/clip.hpp"
 #include "derived/voronoi/voronoi.hpp"
 #include "mesh/rows.hpp"
-#include "space/periodic/cells.hpp"
-#include "space/periodic/torus.hpp"
-#include "space/periodic/triangulate_on_torus.hpp"
 #include "space/spaces.hpp"
-#include "space/sphere/dual.hpp"
-#include "space/sphere/places.hpp"
-#include "space/sphere/triangulate_on_sphere.hpp"
-#include "space/weighted/cells.hpp"
 
 namespace flaunay {
 namespace {
@@ -40,21 +33,22 @@ void compute(call::Frame& call, const Points& points, const Mesh& triangulation,
 
 }  // namespace
 
-Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation) {
+Voronoi call::dual_in_plane(Implementation& self, const CellInput& input) {
+  Voronoi result;
+  Frame call(self.with_doubles(self.for_host_memory()));
+  compute(call, input.points, input.mesh, result);
+  return result;
+}
+
+Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Triangulation& mesh) {
   return call::take_turn(*implementation_, [&] {
-    Voronoi result;
-    call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
-    compute(call, call::HostPoints{coordinates, nullptr, n}, triangulation, result);
-    return result;
+    const call::SpaceCalls& calls = call::calls_in(mesh.space.kind, false);
+    call::expect(calls.dual != nullptr, "the Voronoi cells of this space come from clipped_voronoi");
+    return calls.dual(*implementation_, {{coordinates, nullptr, n}, mesh.space, mesh, {}});
   });
 }
 
-Voronoi Triangulator::voronoi(const Triangulation& mesh) {
-  return call::take_turn(*implementation_, [&] {
-    call::check_on_sphere(mesh);
-    return sphere::make_dual(implementation_->native().runtime, mesh);
-  });
-}
+Voronoi Triangulator::voronoi(const Triangulation& mesh) { return voronoi(nullptr, 0, mesh); }
 
 void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                            DeviceVoronoi& result, const Enqueue& enqueue) {
@@ -95,44 +89,45 @@ void compute_clipped(call::Frame& call, const Points& points, const Mesh& triang
   set_count(count);
 }
 
-void check_has_end(const Period& period) {
-  call::expect(std::isfinite(period.x) && std::isfinite(period.y), "cells on a cylinder have no end");
+// The polygon to which cells are clipped; empty in spaces that have none.
+voronoi::ClipPolygon polygon_in(const call::SpaceCalls& calls, const double* corners,
+                                std::size_t corner_count) {
+  if (calls.refusal_of_polygons == nullptr) return voronoi::checked_polygon(corners, corner_count);
+  call::expect(corners == nullptr && corner_count == 0, calls.refusal_of_polygons);
+  return {};
 }
 
 }  // namespace
 
+ClippedVoronoi call::cells_in_plane(Implementation& self, const CellInput& input) {
+  ClippedVoronoi result;
+  Frame call(self.with_doubles(self.for_host_memory()));
+  compute_clipped(call, input.points, input.mesh, input.polygon, result,
+                  [&result](std::size_t vertices) { result.vertices.resize(2 * vertices); });
+  return result;
+}
+
 ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, std::size_t n,
-                                             const Triangulation& triangulation, const double* corners,
+                                             const Triangulation& mesh, const double* corners,
                                              std::size_t corner_count) {
-  return call::take_turn(*implementation_, [&] {
-    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    ClippedVoronoi result;
-    call::Frame call(implementation_->with_doubles(implementation_->for_host_memory()));
-    compute_clipped(call, call::HostPoints{coordinates, nullptr, n}, triangulation, polygon, result,
-                    [&result](std::size_t vertices) { result.vertices.resize(2 * vertices); });
-    return result;
-  });
+  return clipped_voronoi(coordinates, nullptr, n, mesh, corners, corner_count);
 }
 
 ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
                                              const Triangulation& mesh, const double* corners,
                                              std::size_t corner_count) {
   return call::take_turn(*implementation_, [&] {
-    const voronoi::ClipPolygon polygon = voronoi::checked_polygon(corners, corner_count);
-    call::check_with_hidden(coordinates, {0, n}, mesh);
-    check_array(weights, n, "weights");
-    return weighted::make_cells(implementation_->native().runtime, coordinates, weights, n, mesh,
-                                polygon.corners);
+    const call::SpaceCalls& calls = call::calls_in(mesh.space.kind, weights != nullptr);
+    call::expect(calls.cells != nullptr, "the Voronoi cells of this space come from voronoi");
+    return calls.cells(*implementation_, {{coordinates, nullptr, n},
+                                          mesh.space.with_weights(weights),
+                                          mesh,
+                                          polygon_in(calls, corners, corner_count)});
   });
 }
 
 ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {
-  return call::take_turn(*implementation_, [&] {
-    call::check_with_places(mesh);
-    check_has_end(mesh.space.period);
-    call::expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
-    return periodic::make_cells(implementation_->native().runtime, mesh, weights);
-  });
+  return clipped_voronoi(nullptr, weights, 0, mesh, nullptr, 0);
 }
 
 void Triangulator::clipped_voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
@@ -229,53 +224,43 @@ std::vector<std::int32_t> order_of(const std::vector<double>& places, const doub
 std::vector<double> Triangulator::relax(const double* points, std::size_t n, const Space& space,
                                         std::size_t iterations, const double* corners,
                                         std::size_t corner_count) {
-  const bool is_plane = space.kind == SpaceKind::plane, is_torus = space.kind == SpaceKind::torus;
-  if (is_plane && space.weights == nullptr) return relax(points, n, corners, corner_count, iterations);
+  if (space.kind == SpaceKind::plane && space.weights == nullptr)
+    return relax(points, n, corners, corner_count, iterations);
   return call::take_turn(*implementation_, [&] {
-    const call::WithinTurn within(*implementation_);
+    call::Implementation& self = *implementation_;
+    const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
     check_points(points, n);
-    check_enumerator(space.kind);
-    check_enumerator(space.coordinates);
-    if (is_torus) {
-      call::check(space.period);
-      check_has_end(space.period);
-    }
-    call::expect(is_plane || (corners == nullptr && corner_count == 0),
-                 "cells of a torus or the sphere are not clipped to a polygon");
-    if (is_plane) voronoi::checked_polygon(corners, corner_count);
-    call::expect(is_plane || is_torus || space.weights == nullptr, call::kOnSphere.refusal_of_weights);
-    const std::size_t width = is_plane || is_torus ? 2 : sphere::width_of(space.coordinates);
-    host::Runtime& runtime = implementation_->native().runtime;
-    const periodic::Lattice lattice = is_torus ? periodic::lattice_of(space.period) : periodic::Lattice{};
+    const voronoi::ClipPolygon polygon = polygon_in(calls, corners, corner_count);
+    const std::size_t width = calls.width(space);
     std::vector<double> relaxed(points, points + width * n), sorted(width * n),
         weights(space.weights == nullptr ? 0 : n);
+    const Space in_order = space.with_weights(space.weights == nullptr ? nullptr : weights.data());
+    const auto triangulated = [&](const std::vector<double>& coordinates, const Space& given) {
+      return calls.triangulate(self, {coordinates.data(), nullptr, n}, {0, n}, given, {});
+    };
     for (std::size_t k = 0;; ++k) {
       std::vector<double> places =
-          is_plane   ? relaxed
-          : is_torus ? periodic::to_places(runtime, relaxed.data(), n, lattice, "point")
-                     : sphere::to_places(runtime, relaxed.data(), n, space.coordinates, "point");
-      if (k == iterations) return is_torus ? std::move(places) : std::move(relaxed);
+          calls.places == nullptr ? relaxed
+                                  : calls.places(self.native().runtime, relaxed.data(), n, space, "point");
+      if (k == iterations) return calls.returns_places ? std::move(places) : std::move(relaxed);
       // In another order, rows of triangles and sums along them would be in another one, too.
       const std::vector<std::int32_t> order = order_of(places, space.weights);
       for (std::size_t i = 0; i < n; ++i) {
         const auto from = static_cast<std::size_t>(order[i]);
-        std::copy_n(&(is_torus ? places : relaxed)[width * from], width, &sorted[width * i]);
+        std::copy_n(&relaxed[width * from], width, &sorted[width * i]);
         if (space.weights != nullptr) weights[i] = space.weights[from];
       }
-      const Space in_order = space.with_weights(space.weights == nullptr ? nullptr : weights.data());
       const Triangulation mesh = [&] {
         try {
-          return triangulate(sorted.data(), n, in_order);
+          return triangulated(sorted, in_order);
         } catch (const Error&) {
-          triangulate(relaxed.data(), n, space);  // whose error has the points' own numbers
+          triangulated(relaxed, space);  // whose error has the points' own numbers
           throw;
         }
       }();
+      const call::CellInput input{{sorted.data(), nullptr, n}, in_order, mesh, polygon};
       const std::vector<double> centroids =
-          is_torus ? clipped_voronoi(mesh, in_order.weights).centroids
-          : is_plane
-              ? clipped_voronoi(sorted.data(), in_order.weights, n, mesh, corners, corner_count).centroids
-              : sphere::centroids(runtime, mesh, space.coordinates);
+          calls.centroids != nullptr ? calls.centroids(self, input) : calls.cells(self, input).centroids;
       // The centroids of points without a cell are NaN.
       std::transform(centroids.begin(), centroids.end(), sorted.begin(), sorted.begin(),
                      [](double moved, double before) { return std::isnan(moved) ? before : moved; });

@@ -1279,9 +1279,9 @@ FLAUNAY_API flaunay_status flaunay_voronoi_compute_device(flaunay_triangulator* 
 ///
 /// weights: NULL, or of points with weights: the cells are power cells, of each point the places whose
 /// squared distance less the weight is least for it; in the plane the triangulation is of one set then. On a
-/// torus, coordinates, n and corners are not read: cells are around their points' places, so that some reach
-/// beyond the period, and the areas of a set's cells sum to that of the period. A cylinder, where cells have
-/// no end, and the sphere are FLAUNAY_ERROR_USAGE.
+/// torus, coordinates and n are not read, and corners are NULL: cells are around their points' places, so
+/// that some reach beyond the period, and the areas of a set's cells sum to that of the period. A cylinder,
+/// where cells have no end, and the sphere are FLAUNAY_ERROR_USAGE.
 FLAUNAY_API flaunay_status flaunay_voronoi_clip(flaunay_triangulator* triangulator, const double* coordinates,
                                                 const double* weights, size_t n,
                                                 const flaunay_triangulation* triangulation,

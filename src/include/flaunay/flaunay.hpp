@@ -513,7 +513,8 @@ class FLAUNAY_API Triangulator {
   /// the places whose power, the squared distance less the weight, is least for it. Vertices, areas and
   /// centroids are rounded; polygons are simple, and tile. Points without a cell in the polygon, such as
   /// hidden ones, have no vertices. Errors are those above; Error(usage) for several sets, too. O(n k) for k
-  /// corners, but for points with very many neighbours.
+  /// corners, but for points with very many neighbours. Without weights and in other spaces, as the other
+  /// functions do.
   ClippedVoronoi clipped_voronoi(const double* coordinates, const double* weights, std::size_t n,
                                  const Triangulation& triangulation, const double* corners,
                                  std::size_t corner_count);

@@ -1,13 +1,11 @@
 // Voronoi cells on a torus.
 #pragma once
 
-#include "flaunay/flaunay.hpp"
-#include "host/runtime.hpp"
+#include "space/spaces.hpp"
 
 namespace flaunay::periodic {
 
-/// See Triangulator::clipped_voronoi. The arrays have been checked, but for what is next to what. weights:
-/// null if points have none. O(t).
-ClippedVoronoi make_cells(host::Runtime& runtime, const Triangulation& mesh, const double* weights);
+/// See Triangulator::clipped_voronoi.
+ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input);
 
 }  // namespace flaunay::periodic

@@ -17,6 +17,7 @@
 #include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
+#include "space/periodic/cells.hpp"
 #include "space/periodic/fold.hpp"
 #include "space/spaces.hpp"
 #include "space/triangulate.hpp"
@@ -362,9 +363,37 @@ std::string find_problem_on_torus(const double* points, const std::vector<std::s
   return problem;
 }
 
+std::unique_ptr<nearest::Tree> tree_on_torus(Triangulator& triangulator, const Triangulation& mesh) {
+  check_with_places(mesh);
+  const periodic::Lattice lattice = periodic::lattice_of(mesh.space.period);
+  periodic::Box box = periodic::box_of(mesh.places.data(), 0, mesh.places.size() / 2, lattice);
+  for (const double length : lattice.reach) {
+    if (std::isfinite(length)) box.margin = std::max(box.margin, length / 2);
+  }
+  const periodic::Plane plane =
+      periodic::plane_of(Engine::of_thread().runtime, mesh.places, mesh.point_offsets, {box});
+  std::vector<std::int32_t> originals;
+  for (const std::uint64_t image : plane.images)
+    originals.push_back(static_cast<std::int32_t>(kernel::point_of(image)));
+  return nearest::tree_of_images(triangulator, plane.coordinates, std::move(originals), mesh.space);
+}
+
 }  // namespace
 
-const SpaceCalls kOnTorus{nullptr, triangulate_on_torus, triangulate_on_torus, find_problem_on_torus};
+const SpaceCalls kOnTorus{.refusal_of_polygons = "cells on a torus are not clipped to a polygon",
+                          .triangulate = triangulate_on_torus,
+                          .triangulate_on_device = triangulate_on_torus,
+                          .find_problem = find_problem_on_torus,
+                          .places =
+                              [](host::Runtime& runtime, const double* points, std::size_t n,
+                                 const Space& space, const char* what) {
+                                check(space.period);
+                                return periodic::to_places(runtime, points, n,
+                                                           periodic::lattice_of(space.period), what);
+                              },
+                          .returns_places = true,
+                          .cells = periodic::make_cells,
+                          .tree = tree_on_torus};
 
 }  // namespace call
 

@@ -5,6 +5,7 @@
 
 #include "derived/voronoi/stars.hpp"
 #include "space/sphere/measures.hpp"
+#include "space/sphere/triangulate_on_sphere.hpp"
 
 namespace flaunay::sphere {
 namespace {
@@ -163,7 +164,10 @@ class Dual {
 
 }  // namespace
 
-Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh) {
+Voronoi make_dual(call::Implementation& self, const call::CellInput& input) {
+  const Triangulation& mesh = input.mesh;
+  call::check_on_sphere(mesh);
+  host::Runtime& runtime = self.native().runtime;
   Dual dual(runtime, mesh);
   const std::vector<std::int32_t>& offsets = dual.stars().offsets();
   Voronoi result;
@@ -189,8 +193,10 @@ Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh) {
   return result;
 }
 
-std::vector<double> centroids(host::Runtime& runtime, const Triangulation& mesh,
-                              SphereCoordinates coordinates) {
+std::vector<double> centroids(call::Implementation& self, const call::CellInput& input) {
+  const Triangulation& mesh = input.mesh;
+  const SphereCoordinates coordinates = input.space.coordinates;
+  host::Runtime& runtime = self.native().runtime;
   const Dual dual(runtime, mesh);
   const std::size_t width = width_of(coordinates);
   std::vector<double> result(mesh.places.size() / 2 * width, NAN);

@@ -1,18 +1,16 @@
 // Voronoi cells of points on the sphere.
 #pragma once
 
-#include "flaunay/flaunay.hpp"
-#include "host/runtime.hpp"
+#include "space/spaces.hpp"
 
 namespace flaunay::sphere {
 
-/// See Triangulator::voronoi. The mesh is one on the sphere, as a call made it.
-Voronoi make_dual(host::Runtime& runtime, const Triangulation& mesh);
+/// See Triangulator::voronoi.
+Voronoi make_dual(call::Implementation& self, const call::CellInput& input);
 
 /// Per point the direction of the centroid of its cell, by these coordinates: see Triangulator::relax. NaN
 /// for points that another one represents, for a point alone, and for cells that are too small to have one.
-/// O(t).
-std::vector<double> centroids(host::Runtime& runtime, const Triangulation& mesh,
-                              SphereCoordinates coordinates);
+/// The mesh is one that a call made. O(t).
+std::vector<double> centroids(call::Implementation& self, const call::CellInput& input);
 
 }  // namespace flaunay::sphere

@@ -61,7 +61,8 @@ std::vector<T> SphereLocator::answer(const double* queries, const std::vector<st
     check_queries(queries, m);
     std::vector<T> result(check_columns(columns, m), none);
     host::Runtime& runtime = owner_->native().runtime;
-    const std::vector<double> places = sphere::to_places(runtime, queries, m, coordinates_, "query");
+    const std::vector<double> places =
+        sphere::to_places(runtime, queries, m, Space::sphere(coordinates_), "query");
     const Ids order = sphere::order_along_curve(runtime, places, offsets),
               start = starts(places, order, offsets);
     sphere::for_each(runtime, m, [&](std::size_t k) {
@@ -110,6 +111,7 @@ Neighbors SphereLocator::nearest(const double* queries, std::size_t m, const Nei
       if (angle <= options.max_distance) *row++ = {v, angle};
     }
   };
+  with_errors([&] { check_neighbors(options, m); });
   Neighbors result;
   for (const Near& near : answer(queries, {0, m}, options.count, Near(), find_row)) {
     result.points.push_back(near.point);

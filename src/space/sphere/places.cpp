@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "geometry/arguments.hpp"
 #include "geometry/sort.hpp"
 #include "launchers/sphere/places.cl.hpp"
 
@@ -79,8 +80,10 @@ template bool find_places(host::Runtime&, const host::Buffer<cl_double>&, std::s
 template bool find_places(host::Runtime&, const host::Buffer<cl_float>&, std::size_t, std::size_t,
                           SphereCoordinates, const host::Buffer<cl_double>&, const char*);
 
-std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
-                              SphereCoordinates coordinates, const char* what) {
+std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n, const Space& space,
+                              const char* what) {
+  check_enumerator(space.coordinates);
+  const SphereCoordinates coordinates = space.coordinates;
   host::Arena::Scope scope(runtime.arena());
   std::vector<double> places;
   runtime.resize(places, 2 * n);

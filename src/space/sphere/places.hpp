@@ -59,8 +59,8 @@ template <typename T>
 bool find_places(host::Runtime& runtime, const host::Buffer<T>& points, std::size_t first, std::size_t n,
                  SphereCoordinates coordinates, const host::Buffer<cl_double>& places, const char* what);
 /// Computes places of points in host memory, natively.
-std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n,
-                              SphereCoordinates coordinates, const char* what);
+std::vector<double> to_places(host::Runtime& runtime, const double* points, std::size_t n, const Space& space,
+                              const char* what);
 
 /// Returns the numbers of places of sets in an order in which those of near points of the sphere are near
 /// each other: one set after the other, each along a curve that fills the octahedron to which the sphere is

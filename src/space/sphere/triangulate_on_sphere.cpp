@@ -296,8 +296,19 @@ std::string find_problem_on_sphere(const double* points, const Offsets& offsets,
 
 }  // namespace
 
-const SpaceCalls kOnSphere{"points on the sphere have no weights", triangulate_on_sphere,
-                           triangulate_on_sphere, find_problem_on_sphere};
+const SpaceCalls kOnSphere{
+    .refusal_of_weights = "points on the sphere have no weights",
+    .refusal_of_polygons = "cells on the sphere are not clipped to a polygon",
+    .triangulate = triangulate_on_sphere,
+    .triangulate_on_device = triangulate_on_sphere,
+    .find_problem = find_problem_on_sphere,
+    .width = [](const Space& space) { return sphere::width_of(space.coordinates); },
+    .places = sphere::to_places,
+    .dual = sphere::make_dual,
+    .centroids = sphere::centroids,
+    .tree = [](Triangulator& triangulator, const Triangulation& mesh) -> std::unique_ptr<nearest::Tree> {
+      return std::make_unique<SphereLocator>(triangulator, mesh);
+    }};
 
 }  // namespace call
 
@@ -326,7 +337,7 @@ void call::check_on_sphere(const Triangulation& mesh) {
 std::vector<double> places_on_sphere(const double* points, std::size_t n, SphereCoordinates coordinates) {
   check_points(points, n);
   check_enumerator(coordinates);
-  return sphere::to_places(call::Engine::of_thread().runtime, points, n, coordinates, "point");
+  return sphere::to_places(call::Engine::of_thread().runtime, points, n, Space::sphere(coordinates), "point");
 }
 
 std::vector<double> directions_of(const std::vector<double>& places) {

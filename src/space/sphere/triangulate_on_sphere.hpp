@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "call/implementation.hpp"
+#include "derived/nearest/point_tree.hpp"
 #include "flaunay/neighbors.hpp"
 #include "space/sphere/places.hpp"
 #include "space/sphere/plane.hpp"
@@ -22,13 +23,13 @@ void check_on_sphere(const Triangulation& mesh);
 
 /// Answers queries on the sphere, each in a turn. Set s of the triangulation has queries [offsets[s],
 /// offsets[s + 1]).
-class SphereLocator {
+class SphereLocator : public nearest::Tree {
  public:
   SphereLocator(Triangulator& used, const Triangulation& triangulation);
   // Members refer to others.
   SphereLocator(const SphereLocator&) = delete;
   SphereLocator& operator=(const SphereLocator&) = delete;
-  void set_coordinates(SphereCoordinates coordinates);
+  void set_coordinates(SphereCoordinates coordinates) override;
   std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
   std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
   std::vector<double> interpolate(const double* values, const double* queries,
@@ -37,8 +38,8 @@ class SphereLocator {
   std::vector<double> gradients(const double* values, std::size_t columns, const GradientOptions& options);
   /// For one set.
   NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
-  /// For one set. The options have been checked.
-  Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options);
+  /// For one set.
+  Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options) override;
 
  private:
   using Ids = std::vector<std::int32_t>;

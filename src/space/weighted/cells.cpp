@@ -10,6 +10,7 @@
 #include "arithmetic/exact_arithmetic.h"
 #include "derived/voronoi/mend.hpp"
 #include "derived/voronoi/moments.hpp"
+#include "geometry/arguments.hpp"
 #include "geometry/for_each.hpp"
 #include "geometry/predicates.hpp"
 #include "operations/prefetch.h"
@@ -293,8 +294,14 @@ Visible visible_points(const double* points, const std::vector<std::size_t>& off
   return visible;
 }
 
-ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
-                          const Triangulation& mesh, const std::vector<double>& corners) {
+ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input) {
+  const Triangulation& mesh = input.mesh;
+  const std::size_t n = input.points.count;
+  const double *const points = input.points.wide, *const weights = input.space.weights;
+  const std::vector<double>& corners = input.polygon.corners;
+  call::check_with_hidden(points, {0, n}, mesh);
+  check_array(weights, n, "weights");
+  host::Runtime& runtime = self.native().runtime;
   const Stars stars(n, mesh);
   const Places places(runtime, points, weights, mesh, corners);
   const Ids& vertices = stars.vertices();

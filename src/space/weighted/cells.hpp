@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "flaunay/flaunay.hpp"
-#include "host/runtime.hpp"
+#include "space/spaces.hpp"
 
 namespace flaunay::weighted {
 
@@ -22,8 +21,7 @@ struct Visible {
 Visible visible_points(const double* points, const std::vector<std::size_t>& offsets,
                        const Triangulation& mesh);
 
-/// See Triangulator::clipped_voronoi; the arrays fit each other.
-ClippedVoronoi make_cells(host::Runtime& runtime, const double* points, const double* weights, std::size_t n,
-                          const Triangulation& mesh, const std::vector<double>& corners);
+/// See Triangulator::clipped_voronoi.
+ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input);
 
 }  // namespace flaunay::weighted

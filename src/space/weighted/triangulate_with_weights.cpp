@@ -67,8 +67,10 @@ std::string find_problem_with_weights(const double* points, const std::vector<st
 
 }  // namespace
 
-const SpaceCalls kWithWeights{nullptr, triangulate_with_weights, triangulate_with_weights,
-                              find_problem_with_weights};
+const SpaceCalls kWithWeights{.triangulate = triangulate_with_weights,
+                              .triangulate_on_device = triangulate_with_weights,
+                              .find_problem = find_problem_with_weights,
+                              .cells = weighted::make_cells};
 
 }  // namespace call
 
