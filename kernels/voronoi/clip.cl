@@ -581,9 +581,31 @@ kernel void write_corners(int n, CLIPPED_DIAGRAM(), filter_bound nearness_bound,
 // ---------------------------------------------------------------------------------------------------------------------
 // Measures
 
+static inline int next_around(int i, int first, int end) { return i + 1 == end ? first : i + 1; }
+
+// The lexicographically first corner of a cell. Only the rare case is a branch, which can be predicted.
+static inline int lowest_corner(int first, int end, global const double* vertices) {
+  int lowest = first;
+  double least = vertices[2 * first];
+  for (int i = first + 1; i < end; ++i) {
+    const double x = vertices[2 * i];
+    int is_lower = x < least;
+    if (x == least) is_lower = vertices[2 * i + 1] < vertices[2 * lowest + 1];
+    lowest = is_lower ? i : lowest;
+    least = min(least, x);
+  }
+  return lowest;
+}
+
+// Mostly there is nothing to scale.
+static inline double2 scaled_corner(int i, global const double* vertices, scaling scale) {
+  const double2 at = vload2(i, vertices);
+  return scale.s2 == 1.0 ? at : unscaled(at, scale);
+}
+
 // n points. Areas and centroids, relative to a corner of the cell: since cells are convex, all terms are positive but
-// for their rounding. Without a cell, the area is 0 and the centroid NaN. scale: the factor with which squares
-// neither overflow nor underflow.
+// for their rounding. Sums begin with the lowest corner, so they do not depend on the order of points. Without a cell,
+// the area is 0 and the centroid NaN. scale: the factor with which squares neither overflow nor underflow.
 kernel void measure_clipped(int n, scaling scale, scaling unscale, global const int* restrict cells,
                             global const double* restrict vertices, global double* restrict areas,
                             global double* restrict centroids) {
@@ -594,14 +616,15 @@ kernel void measure_clipped(int n, scaling scale, scaling unscale, global const 
     double2 centroid = VECTOR(double2, none, none);
     double twice = 0.0;
     if (first < end) {
-      const double2 origin = unscaled(vload2(first, vertices), scale);
+      const int lowest = lowest_corner(first, end, vertices);
+      const double2 origin = scaled_corner(lowest, vertices, scale);
       double2 before = VECTOR(double2, 0.0, 0.0), moment = before, low = before, high = before;
-      for (int i = first + 1; i < end; ++i) {
-        const double2 at = unscaled(vload2(i, vertices), scale) - origin;
+      for (int i = next_around(lowest, first, end); i != lowest; i = next_around(i, first, end)) {
+        const double2 at = scaled_corner(i, vertices, scale) - origin;
         const double area = before.x * at.y - before.y * at.x;
         twice += area;
         moment = moment + area * (before + at);
-        low = VECTOR(double2, min(low.x, at.x), min(low.y, at.y));
+        low.y = min(low.y, at.y);
         high = VECTOR(double2, max(high.x, at.x), max(high.y, at.y));
         before = at;
       }

@@ -549,7 +549,7 @@ class FLAUNAY_API Triangulator {
   /// direction of the centroid of the cell in space (Du, Gunzburger and Ju, 2003), which is that of the sum
   /// over the sides of the cell of their angles times the normals of their planes. With weights, cells are
   /// power cells; hidden points stay where they are, too; on the sphere, points that stay are returned as
-  /// they were given. Except in the plane without weights, no bit depends on the order of the points.
+  /// they were given. No bit depends on the order of the points.
   /// corners: of the polygon, in the plane alone. Throws what triangulate and clipped_voronoi throw;
   /// Error(usage) for a cylinder, where cells have no end.
   std::vector<double> relax(const double* points, std::size_t n, const Space& space,
