@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "flaunay/sphere.hpp"
 #include "flaunay/verify.hpp"
 #include "geometry/arguments.hpp"
 #include "space/triangulate.hpp"
@@ -87,6 +88,13 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
     call::reset(points.space, result);
     calls.triangulate_on_device(self, points, result, parts, enqueue);
   });
+}
+
+std::vector<double> places_of(const double* points, std::size_t n, const Space& space) {
+  check_points(points, n);
+  const call::SpaceCalls& calls = call::calls_in(space.kind, false);
+  if (calls.places == nullptr) return {points, points + 2 * n};
+  return calls.places(call::Engine::of_thread().runtime, points, n, space, "point");
 }
 
 std::string verify(const double* points, const std::vector<std::size_t>& offsets, const Space& space,

@@ -73,7 +73,7 @@ class Laws : public ::testing::TestWithParam<TestSpace> {
     const std::size_t n = points.size() / space_.width;
     const Period period = space_.space.kind == SpaceKind::torus ? space_.space.period : Period{0, 0};
     const Numbers directions =
-        is_sphere() ? directions_of(places_on_sphere(points.data(), n, space_.space.coordinates)) : Numbers();
+        is_sphere() ? directions_of(places_of(points.data(), n, space_.space)) : Numbers();
     Numbers all(n, HUGE_VAL);
     for (std::size_t i = 0; i < n; ++i) {
       const double* const a = is_sphere() ? &directions[3 * i] : &points[space_.width * i];
@@ -92,7 +92,7 @@ class Laws : public ::testing::TestWithParam<TestSpace> {
   // Rows of points in an order, on the sphere their places: of equal ones the first moves.
   std::multiset<Numbers> rows_of(const Numbers& points) const {
     const std::size_t n = points.size() / space_.width;
-    const Numbers all = is_sphere() ? places_on_sphere(points.data(), n, space_.space.coordinates) : points;
+    const Numbers all = is_sphere() ? places_of(points.data(), n, space_.space) : points;
     std::multiset<Numbers> rows;
     const auto columns = static_cast<std::ptrdiff_t>(is_sphere() ? 2 : space_.width);
     for (auto row = all.begin(); row != all.end(); row += columns) rows.emplace(row, row + columns);
@@ -384,7 +384,7 @@ TEST_P(Laws, RelaxedLatticesStay) {
   const Numbers degrees = {0, 0, 90, 0, 180, 0, -90, 0, 0, 90, 0, -90};
   if (is_sphere()) lattice = space_.width == 2 ? degrees : cases_[9].numbers;
   const Numbers at = is_sphere()
-                         ? directions_of(places_on_sphere(lattice.data(), 6, space_.space.coordinates))
+                         ? directions_of(places_of(lattice.data(), 6, space_.space))
                          : space_.with_columns(lattice, [](const Numbers& xy, const Space&) { return xy; });
   for (const double away : distances(relaxed(lattice, 5), at)) EXPECT_GT(1e-14, away);
 }

@@ -22,9 +22,7 @@ namespace {
 // In every space, and besides in some.
 const std::vector<std::string> kCommon = {"--output", "--triangles", "--neighbors", "--duplicates", "--stats",
                                           "--device", "--index",     "--columns",   "--quiet"};
-const std::vector<std::string> kPeriodic = {"--period", "--offsets", "--points"};
 const std::vector<std::string> kChunks = {"--memory", "--chunk-points", "--scratch"};
-const std::vector<std::string> kWeighted = {"--weighted", "--hidden"};
 const std::vector<std::string> kPlanar = {"--halfedges", "--hull", "--areas"};
 
 /// The triangles in the plane, each once: corners in another period are points behind the others. Mesh files
@@ -107,21 +105,29 @@ void add_space_options(CLI::App* command, SpaceRequest& request) {
       "Each point has a weight behind x and y: the regular triangulation, of .npy, .txt, .csv and .xyz");
 }
 
-bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
-  const bool is_periodic = request.is_periodic();
-  if (!is_periodic) refuse(command, "--offsets", "needs --period");
-  if (!request.is_weighted) refuse(command, "--hidden", "needs --weighted");
-  if (!request.is_in_space()) return false;
-  std::vector<std::string> own, common = kCommon;
-  const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  if (is_periodic) add(own, kPeriodic);
-  if (request.is_weighted) add(own, kWeighted);
-  if (is_periodic && !request.is_weighted) add(own, kChunks);
+void check_space_options(const CLI::App& command, const SpaceRequest& request,
+                         const std::vector<std::string>& others) {
+  if (!request.is_periodic()) refuse(command, "--offsets", "needs --period");
+  if (!request.is_in_space()) return;
+  std::vector<std::string> own;
+  if (request.is_periodic()) own = {"--period", "--offsets"};
+  if (request.is_weighted) own.emplace_back("--weighted");
   if (request.is_sphere) own = {"--sphere"};
-  if (!is_periodic && !request.is_sphere) add(common, kPlanar);
-  refuse_all_but(command, own, common);
+  refuse_all_but(command, own, others);
+}
+
+bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
+  if (!request.is_weighted) refuse(command, "--hidden", "needs --weighted");
+  std::vector<std::string> others = kCommon;
+  const auto add = [&](const std::vector<std::string>& more) {
+    others.insert(others.end(), more.begin(), more.end());
+  };
+  if (request.is_weighted) others.emplace_back("--hidden");
+  if (request.is_periodic()) others.emplace_back("--points");
+  if (request.is_periodic() && !request.is_weighted) add(kChunks);
+  if (space_of(request).kind == SpaceKind::plane) add(kPlanar);
+  check_space_options(command, request, others);
+  if (!request.is_in_space()) return false;
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
   const std::string output = command.get_option("--output")->as<std::string>();
   const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh", ".geojson"};

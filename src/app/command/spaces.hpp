@@ -27,8 +27,13 @@ Space space_of(const SpaceRequest& request);
 /// Adds --period, --offsets, --sphere and --weighted.
 void add_space_options(CLI::App* command, SpaceRequest& request);
 
-/// Whether the options ask for another space, or for weights. Throws Error(usage) for options that do not go
-/// together.
+/// Throws Error(usage) for options that do not go with the space that is asked for. others: those that go
+/// with all.
+void check_space_options(const CLI::App& command, const SpaceRequest& request,
+                         const std::vector<std::string>& others);
+
+/// Whether the options of triangulate ask for another space, or for weights. Throws Error(usage) for options
+/// that do not go together.
 bool asks_for_space(const CLI::App& command, const SpaceRequest& request);
 
 struct WeightedPoints {

@@ -246,23 +246,14 @@ std::string problem_without_triangles(const Triangulation& mesh) {
   return "";
 }
 
-/// Returns the places of points, and rounds the period of the space.
-std::vector<double> places_of(const io::Points& points, Space& space) {
-  std::vector<double> places = points.coordinates;
-  if (space.kind == SpaceKind::sphere)
-    return places_on_sphere(places.data(), points.size(), space.coordinates);
-  space = Space::torus(take_to_places(space.period, places.data(), points.size()));
-  return places;
-}
-
 std::string problem_in_space(const VerifyRequest& request, std::size_t& n, Progress& progress) {
   const WeightedPoints read = read_points(request.points, request.columns, request.is_weighted);
   const Space space = space_of(request).with_weights(request.is_weighted ? read.weights.data() : nullptr);
   n = read.points.size();
-  Triangulation mesh;
-  mesh.space = space_of(request);
-  mesh.places =
-      naming_files({{"point ", request.points}}, [&] { return places_of(read.points, mesh.space); });
+  // Of no points, but in the space as it is rounded.
+  Triangulation mesh = Triangulator().triangulate(nullptr, 0, space_of(request));
+  mesh.places = naming_files({{"point ", request.points}},
+                             [&] { return places_of(read.points.coordinates.data(), n, space); });
   const bool has_offsets = !request.offsets.empty();
   if (has_offsets) mesh.corner_offsets = io::read_corner_offsets(request.offsets);
   read_rows(request, n, mesh);
@@ -331,15 +322,8 @@ int verify(const VerifyRequest& request) {
 
 /// Throws Error(usage) for options that do not go together.
 void check_space(const CLI::App& command, const VerifyRequest& request) {
-  const bool is_periodic = request.is_periodic();
-  if (!is_periodic) refuse(command, "--offsets", "needs --period");
-  if (!request.is_in_space()) return;
-  std::vector<std::string> own;
-  if (is_periodic) own = {"--period", "--offsets"};
-  if (request.is_weighted) own.emplace_back("--weighted");
-  if (own.empty()) own = {"--sphere"};
-  refuse_all_but(command, own, {"--neighbors", "--columns", "--quiet"});
-  if (is_periodic && request.offsets.empty())
+  check_space_options(command, request, {"--neighbors", "--columns", "--quiet"});
+  if (request.is_periodic() && request.offsets.empty())
     throw Error(ErrorKind::usage, "--period needs --offsets, as triangulate writes them");
 }
 

@@ -1,4 +1,4 @@
-// Places and directions of points on a sphere.
+// Places of points, and their directions on a sphere.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,11 @@
 
 namespace flaunay {
 
-/// Returns x and y per point: its place, as Triangulation::places has it. Throws what
-/// Triangulator::triangulate throws for points on the sphere. O(n).
-FLAUNAY_API std::vector<double> places_on_sphere(const double* points, std::size_t n,
-                                                 SphereCoordinates coordinates);
+/// Returns x and y per point: its place, as Triangulation::places has it; in the plane its coordinates.
+/// Throws what Triangulator::triangulate throws for a space and points. O(n).
+FLAUNAY_API std::vector<double> places_of(const double* points, std::size_t n, const Space& space);
 
-/// Returns x y z per place: unit vectors, rounded.
+/// Returns x y z per place on a sphere: unit vectors, rounded.
 FLAUNAY_API std::vector<double> directions_of(const std::vector<double>& places);
 
 }  // namespace flaunay

@@ -14,6 +14,7 @@
 #include "blocks/memory.hpp"
 #include "blocks/run.hpp"
 #include "blocks/weighted.hpp"
+#include "flaunay/sphere.hpp"
 #include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
@@ -355,8 +356,7 @@ std::string find_problem_on_torus(const double* points, const std::vector<std::s
   const Period rounded = periodic::period_of(lattice), made = mesh.space.period;
   if (made.x != rounded.x || made.y != rounded.y || made.shear != rounded.shear)
     return "the period is another one";
-  const std::vector<double> places =
-      periodic::to_places(Engine::of_thread().runtime, points, offsets.back(), lattice, "point");
+  const std::vector<double> places = places_of(points, offsets.back(), space);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] != mesh.places[k]) return fmt::format("point {} has another place", k / 2);
   }

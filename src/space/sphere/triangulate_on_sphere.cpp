@@ -291,7 +291,7 @@ std::string find_problem_on_sphere(const double* points, const Offsets& offsets,
                                    const Triangulation& mesh) {
   check_arrays(mesh);
   if (offsets != mesh.point_offsets) return "the sets have other points";
-  return prove::find_problem(places_on_sphere(points, offsets.back(), space.coordinates), mesh);
+  return prove::find_problem(places_of(points, offsets.back(), space), mesh);
 }
 
 }  // namespace
@@ -332,12 +332,6 @@ void call::check_on_sphere(const Triangulation& mesh) {
     }
     call::expect(has_edge, "the arrays are not those of a triangulation on the sphere");
   }
-}
-
-std::vector<double> places_on_sphere(const double* points, std::size_t n, SphereCoordinates coordinates) {
-  check_points(points, n);
-  check_enumerator(coordinates);
-  return sphere::to_places(call::Engine::of_thread().runtime, points, n, Space::sphere(coordinates), "point");
 }
 
 std::vector<double> directions_of(const std::vector<double>& places) {
