@@ -566,6 +566,7 @@ class Triangulator(DeviceHandle):
 class _InTurns(DeviceHandle):
     """A handle that takes the turns of its triangulator."""
 
+    _on_sphere = False
     _coordinates = -1  # of the last queries on the sphere
 
     def __init__(self, triangulator: Triangulator) -> None:
@@ -1509,19 +1510,15 @@ class PointTree(_InTurns):
 
     @classmethod
     def in_space(cls, triangulator: Triangulator, mesh: InSpace) -> PointTree:
-        """A tree of one set on a torus, where each point counts once, as it lies nearest, or on the sphere."""
+        """A tree of one set on a torus, where each point counts once, as it lies nearest, or on the sphere.
+
+        There, queries are longitudes and latitudes, or x, y and z, and distances are angles.
+        """
         tree = cls.__new__(cls)
         _InTurns.__init__(tree, triangulator)
+        tree._on_sphere = mesh.on_sphere
         triangulator.make(tree, library.point_tree_create_in_space, mesh)
         return tree
-
-    def nearest_on_sphere(
-        self, queries: _Doubles, count: int, max_distance: float
-    ) -> tuple[_Indices, _Doubles]:
-        """As `nearest`, with angles. queries: longitudes and latitudes, or x, y and z."""
-        with self._triangulator.turn:
-            self._expect(queries, library.point_tree_set_coordinates)
-            return self.nearest(queries, count, max_distance)
 
     def nearest(
         self, queries: _Doubles, count: int, max_distance: float
@@ -1535,6 +1532,8 @@ class PointTree(_InTurns):
         given = _address_of(queries), m, count, max_distance
         results = _address_of(points), _address_of(distances)
         with self._triangulator.turn:
+            if self._on_sphere:
+                self._expect(queries, library.point_tree_set_coordinates)
             status = library.point_tree_nearest(self.pointer, *given, *results)
         if status:
             check(status)

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional
 
-import numpy as np
-import numpy.typing as npt
-
-from flaunay import _calls, _triangulators
-from flaunay._arrays import summary
-from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
+from flaunay import _calls
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for
+from flaunay._surfaces import DeviceSurface, made_on_device
 
 if TYPE_CHECKING:
     import pyopencl
     import pyopencl.array
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class DeviceSpherical:
+class DeviceSpherical(DeviceSurface):
     """Triangulations of points on the unit sphere in device memory. `spherical_device` makes them.
 
     The arrays are views of buffers that flaunay made for this result.
@@ -35,18 +30,6 @@ class DeviceSpherical:
     event : pyopencl.Event
         Complete when the results are there. The arrays know it: what pyopencl does with them waits.
     """
-
-    points: pyopencl.array.Array
-    places: pyopencl.array.Array
-    simplices: pyopencl.array.Array
-    neighbors: pyopencl.array.Array
-    representatives: pyopencl.array.Array
-    simplex_offsets: npt.NDArray[np.int64]
-    event: pyopencl.Event
-
-    def __repr__(self) -> str:
-        triangles = int(self.simplex_offsets[-1])
-        return summary(self, points=int(self.points.shape[0]), triangles=triangles)
 
 
 def spherical_device(
@@ -92,15 +75,5 @@ def spherical_device(
     """
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points = call.points(points, offsets, "points", widths=(2, 3))
-    triangulator = _triangulators.of_queue(call.queue)
-    device_points.lie_in(_calls.sphere(int(points.shape[1])))
-    made, event = call.run(_calls.DeviceTriangulation, triangulator, device_points, set())
-    places = made.arrays_in_space()
-    views = {name: view(*place, call.queue, event) for name, place in places.items()}
-    return DeviceSpherical(
-        simplices=views.pop("triangles"),
-        **views,
-        points=points,
-        simplex_offsets=made.triangle_offsets,
-        event=event,
-    )
+    _, members = made_on_device(call, device_points.lie_in(_calls.sphere(int(points.shape[1]))))
+    return DeviceSpherical(points=points, **members)

@@ -10,20 +10,12 @@ from typing import TYPE_CHECKING, Literal, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls, _triangulators
-from flaunay._arrays import (
-    ArrayLike,
-    as_floats,
-    as_offsets,
-    as_points,
-    frozen,
-    hint_for,
-    summary,
-)
+from flaunay import _calls
+from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen, hint_for
 from flaunay._cells import ClippedVoronoi
-from flaunay._device_arrays import DeviceCall, Offsets, queue_for, view
+from flaunay._device_arrays import DeviceCall, Offsets, queue_for
 from flaunay._errors import UsageError
-from flaunay._surfaces import Doubles, Indices, WithLocator, as_weights
+from flaunay._surfaces import DeviceSurface, Doubles, Indices, WithLocator, as_weights, made_on_device
 
 if TYPE_CHECKING:
     import pyopencl
@@ -133,35 +125,6 @@ class PeriodicDelaunay(WithLocator):
         vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
         return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
-    def find_simplex(self, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None) -> Indices:
-        """Triangles that contain points, exactly.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2)
-            Any places of the plane.
-        offsets : array_like of int, optional
-            Needed for several sets: set s has the queries ``offsets[s]`` to ``offsets[s + 1]``.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            On an edge or at a corner always the same triangle; -1 beyond the ends of a cylinder.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `periodic`; UsageError for another number of sets, too.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
-        >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
-        array([5, 5], dtype=int32)
-        """
-        return self._find(_as_queries(xi), offsets, _calls.SpaceLocator.locate)
-
     _as_queries = staticmethod(_as_queries)
 
     def interpolate(
@@ -209,7 +172,7 @@ class PeriodicDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
         array([1. , 1.5])
         """
-        return self._interpolate(values, _as_queries(xi), offsets, method, gradients)
+        return self._interpolate(values, xi, offsets, method, gradients)
 
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, ...]:
@@ -332,7 +295,7 @@ def periodic(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DevicePeriodic:
+class DevicePeriodic(DeviceSurface):
     """Triangulations on a torus or a cylinder in device memory. `periodic_device` makes them.
 
     The arrays are views of buffers that flaunay made for this result.
@@ -351,19 +314,8 @@ class DevicePeriodic:
         Complete when the results are there. The arrays know it: what pyopencl does with them waits.
     """
 
-    points: pyopencl.array.Array
-    places: pyopencl.array.Array
-    simplices: pyopencl.array.Array
     corner_offsets: pyopencl.array.Array
-    neighbors: pyopencl.array.Array
-    representatives: pyopencl.array.Array
     period: tuple[float, ...]
-    simplex_offsets: npt.NDArray[np.int64]
-    event: pyopencl.Event
-
-    def __repr__(self) -> str:
-        triangles = int(self.simplex_offsets[-1])
-        return summary(self, points=int(self.points.shape[0]), triangles=triangles)
 
 
 def periodic_device(
@@ -406,16 +358,6 @@ def periodic_device(
     """
     call = DeviceCall(queue_for(points, queue, "points"), wait_for)
     device_points, space = call.points(points, offsets, "points"), _calls.space_of("torus", as_lengths(period))
-    triangulator = _triangulators.of_queue(call.queue)
-    made, event = call.run(_calls.DeviceTriangulation, triangulator, device_points.lie_in(space), set())
-    triangles, places = made.read("triangle_count"), made.arrays_in_space("corner_offsets")
-    views = {name: view(*place, call.queue, event) for name, place in places.items()}
-    return DevicePeriodic(
-        simplices=views.pop("triangles"),
-        corner_offsets=views.pop("corner_offsets").reshape(triangles, 3, 2),
-        **views,
-        points=points,
-        period=as_period(made.period),
-        simplex_offsets=made.triangle_offsets,
-        event=event,
-    )
+    made, members = made_on_device(call, device_points.lie_in(space), "corner_offsets")
+    members["corner_offsets"] = members["corner_offsets"].reshape(-1, 3, 2)
+    return DevicePeriodic(points=points, period=as_period(made.period), **members)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from functools import cached_property
-from typing import Any, Literal, Optional
+from typing import Literal, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from flaunay._errors import UsageError
 from flaunay._surfaces import Doubles, Indices, WithLocator
 
 
-def _as_points(given: ArrayLike, name: str) -> Doubles:
+def _as_points(given: ArrayLike, name: str = "xi") -> Doubles:
     points = np.asarray(as_floats(given, name), np.float64)
     if points.ndim == 0 or points.shape[-1] not in (2, 3):
         raise UsageError(
@@ -182,43 +182,7 @@ class SphericalDelaunay(WithLocator):
         arrays = self._handle.voronoi(self._triangulator)
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
-    def find_simplex(self, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None) -> Indices:
-        """The triangles between whose sides, arcs of great circles, points lie, exactly.
-
-        Parameters
-        ----------
-        xi : array_like, shape (..., 2) or (..., 3)
-            Longitudes and latitudes in degrees, or x, y and z.
-        offsets : array_like of int, optional
-            Needed for several sets: set s has the queries ``offsets[s]`` to ``offsets[s + 1]``.
-
-        Returns
-        -------
-        ndarray of int32, shape (...)
-            Of several the triangle of the smallest index; -1 beyond points that lie within a hemisphere.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `spherical`; UsageError for another number of sets, too.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
-        >>> tri.find_simplex([[10, 20], [190, -20]])
-        array([ 0, -1], dtype=int32)
-        """
-        return self._find(_as_points(xi, "xi"), offsets, _calls.SpaceLocator.locate)
-
-    @staticmethod
-    def _as_queries(given: ArrayLike) -> Doubles:
-        return _as_points(given, "xi")
-
-    def _nearest_points(
-        self, queries: Doubles, count: int, most: float
-    ) -> tuple[Indices, Doubles]:
-        return self._tree.nearest_on_sphere(queries, count, most)
+    _as_queries = staticmethod(_as_points)
 
     def interpolate(
         self,
@@ -267,7 +231,7 @@ class SphericalDelaunay(WithLocator):
         >>> tri.interpolate([1, 2, 3], [45, 45], "laplace").round(3).item()
         2.154
         """
-        return self._interpolate(values, _as_points(xi, "xi"), offsets, method, gradients)
+        return self._interpolate(values, xi, offsets, method, gradients)
 
 
 def spherical(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, ClassVar, Literal, Optional, Union, overload
 
 import numpy as np
@@ -11,8 +12,13 @@ import numpy.typing as npt
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_floats, as_iterations, as_offsets, frozen, number_of, summary
 from flaunay._declarations import INTERPOLATION
+from flaunay._device_arrays import DeviceCall, view
 from flaunay._errors import UsageError
 from flaunay._queries import Kept, count_and_bound
+
+if TYPE_CHECKING:
+    import pyopencl
+    import pyopencl.array
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -128,11 +134,38 @@ class WithLocator(OfPoints):
         """Queries as they are taken, checked."""
         raise NotImplementedError
 
-    def _nearest_points(
-        self, queries: Doubles, count: int, most: float
-    ) -> tuple[Indices, Doubles]:
-        """Rows of so many points, within a distance, and of their distances."""
-        return self._tree.nearest(queries, count, most)
+    def find_simplex(self, xi: ArrayLike, *, offsets: Optional[npt.ArrayLike] = None) -> Indices:
+        """Triangles that contain points, exactly; on the sphere their sides are arcs of great circles.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 2), or on the sphere also (..., 3)
+            Any places of the plane, or longitudes and latitudes in degrees, or x, y and z.
+        offsets : array_like of int, optional
+            Needed for several sets: set s has the queries ``offsets[s]`` to ``offsets[s + 1]``.
+
+        Returns
+        -------
+        ndarray of int32, shape (...)
+            On an edge or at a corner always the same triangle, on the sphere that of the smallest index; -1 beyond the
+            ends of a cylinder, and beyond points that lie within a hemisphere.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `periodic` or `spherical`; UsageError for another number of sets, too.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.find_simplex([[0.5, 0.5], [4.5, -7.5]])
+        array([5, 5], dtype=int32)
+        >>> globe = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
+        >>> globe.find_simplex([[10, 20], [190, -20]])
+        array([ 0, -1], dtype=int32)
+        """
+        return self._find(self._as_queries(xi), offsets, _calls.SpaceLocator.locate)
 
     @overload
     def nearest(
@@ -209,7 +242,7 @@ class WithLocator(OfPoints):
         count, most = count_and_bound(k, distance_upper_bound)
         shape = queries.shape[:-1] if k is None else (*queries.shape[:-1], count)
         rows = queries.reshape(-1, queries.shape[-1])
-        found, distances = self._nearest_points(rows, count, most)
+        found, distances = self._tree.nearest(rows, count, most)
         found = found.reshape(shape)
         return (distances.reshape(shape), found) if return_distances else found
 
@@ -225,11 +258,12 @@ class WithLocator(OfPoints):
     def _interpolate(
         self,
         values: ArrayLike,
-        queries: Doubles,
+        xi: ArrayLike,
         offsets: Optional[npt.ArrayLike],
         method: str,
         gradients: Optional[ArrayLike],
     ) -> Doubles:
+        queries = self._as_queries(xi)
         number_of({name.replace("_", "-"): k for name, k in INTERPOLATION.items()}, method, "method")
         sets = None if offsets is None else as_offsets(offsets)
         rows, shape = self._rows(values)
@@ -278,3 +312,33 @@ class WithLocator(OfPoints):
         iterations = as_iterations(maxiter, tol)
         rows, shape = self._rows(values)
         return self._locator.gradients(rows, tol, iterations).reshape(*shape, self._locator.axes)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DeviceSurface:
+    """What triangulations in device memory have in all spaces but the plane."""
+
+    points: pyopencl.array.Array
+    places: pyopencl.array.Array
+    simplices: pyopencl.array.Array
+    neighbors: pyopencl.array.Array
+    representatives: pyopencl.array.Array
+    simplex_offsets: npt.NDArray[np.int64]
+    event: pyopencl.Event
+
+    def __repr__(self) -> str:
+        triangles = int(self.simplex_offsets[-1])
+        return summary(self, points=int(self.points.shape[0]), triangles=triangles)
+
+
+def made_on_device(
+    call: DeviceCall, points: _calls.DevicePoints, *names: str
+) -> tuple[_calls.DeviceTriangulation, dict[str, Any]]:
+    """Triangulates points in their space. Returns the members of a DeviceSurface, too, and arrays of these names."""
+    triangulator = _triangulators.of_queue(call.queue)
+    made, event = call.run(_calls.DeviceTriangulation, triangulator, points, set())
+    members: dict[str, Any] = {
+        name: view(*place, call.queue, event) for name, place in made.arrays_in_space(*names).items()
+    }
+    members["simplices"] = members.pop("triangles")
+    return made, {**members, "simplex_offsets": made.triangle_offsets, "event": event}
