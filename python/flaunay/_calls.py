@@ -333,7 +333,7 @@ def space_of(
     coordinates: int = 0,
     weights: Optional[_Doubles] = None,
 ) -> _declarations.Space:
-    """A flaunay_space. kind: "plane", "torus" or "sphere". period: in x and y, and perhaps the shear."""
+    """A flaunay_space. kind: a word of SPACE_KINDS. period: in x and y, and perhaps the shear."""
     if weights is None:
         return _space_without_weights(kind, period, coordinates)
     space: _declarations.Space = _struct(_declarations.Space, **_members_of(kind, period, coordinates), weights=weights)

@@ -9,9 +9,8 @@
 #include "space/triangulate.hpp"
 
 namespace flaunay {
-namespace {
 
-const call::SpaceCalls kInPlane{
+const call::SpaceCalls call::kInPlane{
     .triangulate =
         [](call::Implementation& self, const call::HostPoints& points,
            const std::vector<std::size_t>& offsets, const Space&, const Options& options) {
@@ -24,24 +23,22 @@ const call::SpaceCalls kInPlane{
     .cells = call::cells_in_plane,
     .dual = call::dual_in_plane};
 
-// One of wide and narrow is null.
-Triangulation checked_call(call::Implementation& self, const double* wide, const float* narrow,
-                           const std::vector<std::size_t>& offsets, const Options& options) {
-  return call::take_turn(self, [&] {
-    return call::triangulate(self, call::checked_points(wide, narrow, offsets), offsets, options);
-  });
-}
-
-}  // namespace
-
 const call::SpaceCalls& call::calls_in(SpaceKind kind, bool has_weights) {
-  static constexpr const SpaceCalls* kByKind[] = {&kInPlane, &kOnTorus, &kOnSphere};
   static_assert(std::size(kByKind) == names_of_enumerators<SpaceKind>().size());
   check_enumerator(kind);
   if (kind == SpaceKind::plane && has_weights) return kWithWeights;
   const SpaceCalls& calls = *kByKind[static_cast<std::size_t>(kind)];
   expect(!has_weights || calls.refusal_of_weights == nullptr, calls.refusal_of_weights);
   return calls;
+}
+
+bool call::do_arrays_fit(const Triangulation& mesh, std::int32_t least) {
+  const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
+  return mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
+         mesh.neighbors.size() == 3 * triangles && !mesh.point_offsets.empty() &&
+         are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
+         are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
+         are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles, least);
 }
 
 Triangulation Triangulator::triangulate(const double* coordinates, std::size_t n, const Options& options) {
@@ -54,12 +51,15 @@ Triangulation Triangulator::triangulate(const float* coordinates, std::size_t n,
 
 Triangulation Triangulator::triangulate(const double* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return checked_call(*implementation_, coordinates, nullptr, offsets, options);
+  return triangulate(coordinates, offsets, Space::plane(), options);
 }
 
 Triangulation Triangulator::triangulate(const float* coordinates, const std::vector<std::size_t>& offsets,
                                         const Options& options) {
-  return checked_call(*implementation_, nullptr, coordinates, offsets, options);
+  call::Implementation& self = *implementation_;
+  return call::take_turn(self, [&] {
+    return call::triangulate(self, call::checked_points(nullptr, coordinates, offsets), offsets, options);
+  });
 }
 
 Triangulation Triangulator::triangulate(const double* points, std::size_t n, const Space& space,

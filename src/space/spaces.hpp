@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,7 +60,8 @@ struct SpaceCalls {
   std::vector<double> (*centroids)(Implementation& self, const CellInput& input) = nullptr;
   std::unique_ptr<nearest::Tree> (*tree)(Triangulator& triangulator, const Triangulation& mesh) = nullptr;
 };
-extern const SpaceCalls kOnTorus, kOnSphere, kWithWeights;  // the last one: in the plane
+extern const SpaceCalls kInPlane, kWithWeights, kOnTorus, kOnSphere;  // with weights: in the plane
+constexpr const SpaceCalls* kByKind[] = {&kInPlane, &kOnTorus, &kOnSphere};
 /// The cells of points without weights in the plane, and their dual.
 ClippedVoronoi cells_in_plane(Implementation& self, const CellInput& input);
 Voronoi dual_in_plane(Implementation& self, const CellInput& input);
@@ -67,6 +69,9 @@ Voronoi dual_in_plane(Implementation& self, const CellInput& input);
 /// Throws Error(usage) for a number that is no kind, and for weights in a space without.
 const SpaceCalls& calls_in(SpaceKind kind, bool has_weights);
 
+/// Whether the arrays that triangulations in all spaces but the plane have fit each other. Neighbours are not
+/// below `least`.
+bool do_arrays_fit(const Triangulation& mesh, std::int32_t least);
 /// Throws Error(usage) for arrays that are not those of a triangulation of these points with weights.
 void check_with_hidden(const double* points, const std::vector<std::size_t>& offsets,
                        const Triangulation& mesh);

@@ -80,7 +80,7 @@ void write_mesh_in_space(OutputFiles& outputs, const std::string& path, const io
 
 Space space_of(const SpaceRequest& request) {
   const std::vector<double>& period = request.period;
-  if (request.is_sphere) return Space::sphere(SphereCoordinates::degrees);
+  if (request.kind == SpaceKind::sphere) return Space::sphere(SphereCoordinates::degrees);
   if (!request.is_periodic()) return Space::plane();
   return Space::torus({period[0], period[1], period.size() > 2 ? period[2] : 0});
 }
@@ -98,8 +98,9 @@ void add_space_options(CLI::App* command, SpaceRequest& request) {
   add_path(
       command, "--offsets", request.offsets,
       "With --period: in which period corners are, x and y for each, if the first one is at its place: .npy");
-  command->add_flag("--sphere", request.is_sphere,
-                    "The points are longitudes and latitudes in degrees, for a triangulation on the sphere");
+  command->add_flag_callback(
+      "--sphere", [&request] { request.kind = SpaceKind::sphere; },
+      "The points are longitudes and latitudes in degrees, for a triangulation on the sphere");
   command->add_flag(
       "--weighted", request.is_weighted,
       "Each point has a weight behind x and y: the regular triangulation, of .npy, .txt, .csv and .xyz");
@@ -112,7 +113,7 @@ void check_space_options(const CLI::App& command, const SpaceRequest& request,
   std::vector<std::string> own;
   if (request.is_periodic()) own = {"--period", "--offsets"};
   if (request.is_weighted) own.emplace_back("--weighted");
-  if (request.is_sphere) own = {"--sphere"};
+  if (request.kind == SpaceKind::sphere) own = {"--sphere"};
   refuse_all_but(command, own, others);
 }
 
@@ -131,7 +132,7 @@ bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
   const std::string output = command.get_option("--output")->as<std::string>();
   const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh", ".geojson"};
-  if (request.is_sphere && !output.empty() &&
+  if (request.kind == SpaceKind::sphere && !output.empty() &&
       std::find(in_space.begin(), in_space.end(), io::ending_of(output)) == in_space.end()) {
     throw Error(
         ErrorKind::usage,
@@ -141,7 +142,8 @@ bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   }
   if (in_chunks && request.is_weighted) refuse(command, "--device", "weighted points need one device");
   if (in_chunks) refuse(command, "--output", "a triangulation in chunks writes arrays alone");
-  if (in_chunks && request.is_sphere) refuse(command, "--device", "the sphere needs one device");
+  if (in_chunks && request.kind == SpaceKind::sphere)
+    refuse(command, "--device", "the sphere needs one device");
   if (in_chunks) refuse(command, "--points", "a triangulation in chunks does not write places");
   return true;
 }

@@ -11,14 +11,15 @@
 namespace flaunay::cli {
 
 struct SpaceRequest {
-  std::vector<double> period;  ///< x, y and perhaps a shear; empty without --period
-  bool is_sphere = false, is_weighted = false;
+  std::vector<double> period;         ///< x, y and perhaps a shear; empty without --period
+  SpaceKind kind = SpaceKind::plane;  ///< that of a flag; with a period, a torus
+  bool is_weighted = false;
   std::string offsets;  ///< the file for the corners' periods
   std::string hidden;   ///< the file for hidden points
 
   bool is_periodic() const { return !period.empty(); }
   /// Whether points lie in another space than the plane, or have weights.
-  bool is_in_space() const { return is_weighted || is_sphere || is_periodic(); }
+  bool is_in_space() const { return is_weighted || kind != SpaceKind::plane || is_periodic(); }
 };
 
 /// The space that is asked for, without weights.

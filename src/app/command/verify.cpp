@@ -202,44 +202,32 @@ std::vector<std::int32_t> hidden_points(const Triangulation& mesh) {
   return hidden;
 }
 
-/// Checks points with weights in the plane. The hull is where triangles have no neighbours.
-std::string problem_of_weighted(const VerifyRequest& request, std::size_t& n, Progress& progress) {
-  const auto [points, weights] = read_points(request.points, request.columns, true);
-  n = points.size();
-  Triangulation mesh;
-  read_rows(request, n, mesh);
-  progress.update("verifying");
-  const std::vector<double>& at = points.coordinates;
-  mesh.representatives = representatives_by(n, [&, &weights = weights](std::int32_t i) {
-    return std::tuple(at[2 * i], at[2 * i + 1], weights[i]);
-  });
-  const std::vector<std::int32_t> made = prove::neighbors_of(mesh.triangles, n);
-  if (mesh.neighbors.empty()) mesh.neighbors = made;
-  std::vector<std::int32_t> next(n, -1);
+/// The hull of a triangulation in the plane, where triangles have no neighbours.
+std::vector<std::int32_t> hull_of(const Triangulation& mesh, const std::vector<std::int32_t>& neighbors) {
+  const std::size_t n = mesh.representatives.size();
+  std::vector<std::int32_t> next(n, -1), hull;
+  const auto place = [&](std::int32_t v) { return std::pair(mesh.places[2 * v], mesh.places[2 * v + 1]); };
   std::int32_t first = -1;
   for (std::size_t c = 0; c < mesh.triangles.size(); ++c) {
-    if (made[c] >= 0) continue;
+    if (neighbors[c] >= 0) continue;
     const auto [from, to] = mesh::edge_opposite(mesh.triangles, c);
     next[from] = to;
-    const auto place = [&](std::int32_t v) { return std::pair(at[2 * v], at[2 * v + 1]); };
     if (first < 0 || place(from) < place(first)) first = from;
   }
-  for (std::int32_t v = first; v >= 0 && mesh.hull.size() <= n; v = next[v] == first ? -1 : next[v])
-    mesh.hull.push_back(v);
-  mesh.hidden = hidden_points(mesh);
-  // Which points of a line are hidden, triangles do not say.
-  if (mesh.triangles.empty()) return flaunay::verify(at.data(), n, {}).problem;
-  mesh.hull_offsets = {0, mesh.hull.size()};
-  return flaunay::verify(at.data(), {0, n}, Space::plane().with_weights(weights.data()), mesh);
+  for (std::int32_t v = first; v >= 0 && hull.size() <= n; v = next[v] == first ? -1 : next[v])
+    hull.push_back(v);
+  return hull;
 }
 
-/// Checks weighted points on a torus or a cylinder that are said to have no triangles: they must be on one
-/// circle of a cylinder. Which of them are hidden, triangles do not say.
+/// Checks weighted points that are said to have no triangles: they must be on one line, or on one circle of a
+/// cylinder. Which of them are hidden, triangles do not say.
 std::string problem_without_triangles(const Triangulation& mesh) {
+  const std::size_t n = mesh.representatives.size();
+  if (mesh.space.kind == SpaceKind::plane) return flaunay::verify(mesh.places.data(), n, {}).problem;
   const bool is_upright = !std::isfinite(mesh.space.period.x);
   const bool is_cylinder = is_upright || !std::isfinite(mesh.space.period.y);
   const std::size_t axis = is_upright ? 0 : 1;
-  for (std::size_t i = 0; i < mesh.representatives.size(); ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     if (!is_cylinder || mesh.places[2 * i + axis] != mesh.places[axis])
       return "there are no triangles, but the points are not on one circle of a cylinder";
   }
@@ -266,10 +254,15 @@ std::string problem_in_space(const VerifyRequest& request, std::size_t& n, Progr
   mesh.representatives = representatives_by(n, [&](std::int32_t i) {
     return std::tuple(mesh.places[2 * i], mesh.places[2 * i + 1], request.is_weighted ? read.weights[i] : 0);
   });
-  if (mesh.neighbors.empty()) {
-    mesh.neighbors = has_offsets ? prove::neighbors_of(mesh.triangles, mesh.corner_offsets)
-                                 : prove::neighbors_of(mesh.triangles, n);
+  const bool is_planar = space.kind == SpaceKind::plane;
+  std::vector<std::int32_t> made;
+  if (is_planar || mesh.neighbors.empty()) {
+    made = has_offsets ? prove::neighbors_of(mesh.triangles, mesh.corner_offsets)
+                       : prove::neighbors_of(mesh.triangles, n);
   }
+  if (is_planar) mesh.hull = hull_of(mesh, made);
+  mesh.hull_offsets = {0, mesh.hull.size()};
+  if (mesh.neighbors.empty()) mesh.neighbors = std::move(made);
   const auto open = std::find(mesh.neighbors.begin(), mesh.neighbors.end(), -1);
   if (space.kind == SpaceKind::sphere && open != mesh.neighbors.end())
     return fmt::format("triangle {} has no neighbor at an edge", (open - mesh.neighbors.begin()) / 3);
@@ -281,9 +274,7 @@ std::string problem_in_space(const VerifyRequest& request, std::size_t& n, Progr
 Checked verify_in_space(const VerifyRequest& request, Progress& progress) {
   const Stopwatch stopwatch;
   Checked checked;
-  const bool is_planar = space_of(request).kind == SpaceKind::plane;
-  checked.report.problem = is_planar ? problem_of_weighted(request, checked.report.points, progress)
-                                     : problem_in_space(request, checked.report.points, progress);
+  checked.report.problem = problem_in_space(request, checked.report.points, progress);
   checked.report.ok = checked.report.problem.empty();
   checked.seconds = stopwatch.seconds();
   return checked;

@@ -1,5 +1,4 @@
-#include "space/periodic/cells.hpp"
-
+// Voronoi cells on a torus.
 #include <cmath>
 #include <cstdint>
 #include <utility>

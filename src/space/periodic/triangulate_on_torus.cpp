@@ -18,7 +18,6 @@
 #include "geometry/arguments.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "prove/periodic_proof.hpp"
-#include "space/periodic/cells.hpp"
 #include "space/periodic/fold.hpp"
 #include "space/spaces.hpp"
 #include "space/triangulate.hpp"
@@ -51,14 +50,9 @@ void call::check(const Period& period) {
 void call::check_on_torus(const Triangulation& mesh) {
   expect(mesh.space.kind == SpaceKind::torus, "the triangulation is not one on a torus or a cylinder");
   check(mesh.space.period);
-  const std::size_t n = mesh.representatives.size(), triangles = mesh.triangles.size() / 3;
-  expect(mesh.places.size() == 2 * n && mesh.triangles.size() == 3 * triangles &&
-             mesh.corner_offsets.size() == 6 * triangles && mesh.neighbors.size() == 3 * triangles &&
-             !mesh.point_offsets.empty() &&
-             are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
-             are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
-             are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles, -1) &&
-             are_indices(mesh.hidden, n) && std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
+  expect(do_arrays_fit(mesh, -1) && mesh.corner_offsets.size() == 2 * mesh.triangles.size() &&
+             are_indices(mesh.hidden, mesh.representatives.size()) &&
+             std::is_sorted(mesh.hidden.begin(), mesh.hidden.end()),
          "the arrays are not those of a triangulation on a torus or a cylinder");
 }
 

@@ -1,7 +1,7 @@
-// Checks that calls for points on a torus or a cylinder share.
+// Checks that calls for points on a torus or a cylinder share, and cells there.
 #pragma once
 
-#include "flaunay/flaunay.hpp"
+#include "space/spaces.hpp"
 
 namespace flaunay::call {
 
@@ -13,3 +13,10 @@ void check_on_torus(const Triangulation& mesh);
 void check_with_places(const Triangulation& mesh);
 
 }  // namespace flaunay::call
+
+namespace flaunay::periodic {
+
+/// See Triangulator::clipped_voronoi.
+ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input);
+
+}  // namespace flaunay::periodic

@@ -1,5 +1,4 @@
-#include "space/sphere/dual.hpp"
-
+// Voronoi cells of points on the sphere.
 #include <algorithm>
 #include <numbers>
 

@@ -211,14 +211,7 @@ void write_all(call::Frame& call, Triangulation mesh, DeviceTriangulation& resul
 
 void check_arrays(const Triangulation& mesh) {
   call::expect(mesh.space.kind == SpaceKind::sphere, "the triangulation is not one on the sphere");
-  const std::size_t n = mesh.places.size() / 2, triangles = mesh.triangles.size() / 3;
-  const bool is_whole = mesh.places.size() % 2 == 0 && mesh.triangles.size() % 3 == 0 &&
-                        mesh.representatives.size() == n && mesh.neighbors.size() == mesh.triangles.size() &&
-                        !mesh.point_offsets.empty() &&
-                        are_offsets(mesh.point_offsets, mesh.point_offsets.size() - 1, n) &&
-                        are_offsets(mesh.triangle_offsets, mesh.point_offsets.size() - 1, triangles) &&
-                        are_indices(mesh.triangles, n) && are_indices(mesh.neighbors, triangles);
-  call::expect(is_whole, "the arrays are not those of a triangulation on the sphere");
+  call::expect(call::do_arrays_fit(mesh, 0), "the arrays are not those of a triangulation on the sphere");
 }
 
 }  // namespace

@@ -8,12 +8,22 @@
 #include <optional>
 #include <vector>
 
-#include "call/implementation.hpp"
-#include "derived/nearest/point_tree.hpp"
 #include "flaunay/neighbors.hpp"
+#include "space/spaces.hpp"
 #include "space/sphere/places.hpp"
 #include "space/sphere/plane.hpp"
 #include "space/sphere/walk.hpp"
+
+namespace flaunay::sphere {
+
+/// See Triangulator::voronoi.
+Voronoi make_dual(call::Implementation& self, const call::CellInput& input);
+/// Per point the direction of the centroid of its cell: see Triangulator::relax. NaN for points that another
+/// one represents, for a point alone, and for cells that are too small to have one. The mesh is one that a
+/// call made. O(t).
+std::vector<double> centroids(call::Implementation& self, const call::CellInput& input);
+
+}  // namespace flaunay::sphere
 
 namespace flaunay::call {
 
