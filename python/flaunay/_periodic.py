@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, Optional
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -126,53 +126,6 @@ class PeriodicDelaunay(WithLocator):
         return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
 
     _as_queries = staticmethod(_as_queries)
-
-    def interpolate(
-        self,
-        values: ArrayLike,
-        xi: ArrayLike,
-        method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
-        *,
-        gradients: Optional[ArrayLike] = None,
-        offsets: Optional[npt.ArrayLike] = None,
-    ) -> Doubles:
-        """Values between points.
-
-        Parameters
-        ----------
-        values : array_like, shape (npoints, ...)
-            Real numbers. Of equal points, those of the representative count.
-        xi : array_like, shape (..., 2)
-            Any places of the plane.
-        method : {"linear", "nearest", "clough-tocher", "sibson", "laplace"}
-            Linear in triangles, the value of the nearest point, by cubics with a continuous gradient, as
-            `CloughTocherInterpolator`, or between natural neighbors, as `NaturalNeighborInterpolator`.
-        gradients : array_like, shape (npoints, ..., 2), optional
-            Those of the values, for "clough-tocher"; None: as `gradients` estimates them.
-        offsets
-            As of `find_simplex`.
-
-        Returns
-        -------
-        ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
-            Continuous across the border, unless of the nearest points, and at a point that point's value. NaN where
-            `find_simplex` says -1.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`; UsageError for another number of values than of points, and an unknown method;
-            InputError for natural neighbors of so few points that a circle without points is wider than the shorter
-            period.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
-        >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
-        array([1. , 1.5])
-        """
-        return self._interpolate(values, xi, offsets, method, gradients)
 
 
 def as_lengths(period: Sequence[Optional[float]]) -> tuple[float, ...]:

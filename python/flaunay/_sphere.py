@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from functools import cached_property
-from typing import Literal, Optional
+from typing import Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -183,55 +183,6 @@ class SphericalDelaunay(WithLocator):
         return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
 
     _as_queries = staticmethod(_as_points)
-
-    def interpolate(
-        self,
-        values: ArrayLike,
-        xi: ArrayLike,
-        method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
-        *,
-        gradients: Optional[ArrayLike] = None,
-        offsets: Optional[npt.ArrayLike] = None,
-    ) -> Doubles:
-        """Values between points.
-
-        Parameters
-        ----------
-        values : array_like, shape (npoints, ...)
-            Real numbers. Of equal points, those of the representative count.
-        xi : array_like, shape (..., 2) or (..., 3)
-            Longitudes and latitudes in degrees, or x, y and z.
-        method : {"linear", "nearest", "clough-tocher", "sibson", "laplace"}
-            The value where the direction of a query meets its triangle in space, that of the nearest point, by
-            cubics along great circles with a continuous gradient (Renka, 1984), or between natural neighbours
-            (Brown, 1994): by the areas that a query's cell would take from others, or by the lengths of its edges
-            over distances.
-        gradients : array_like, shape (npoints, ..., 3), optional
-            Those of the values, tangent to the sphere, for "clough-tocher"; None: as `gradients` estimates them.
-        offsets
-            As of `find_simplex`.
-
-        Returns
-        -------
-        ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
-            Continuous, unless of the nearest points, and at a point that point's value. NaN where `find_simplex`
-            says -1, but of nearest points only in a set without points.
-
-        Raises
-        ------
-        UsageError, InputError
-            As of `find_simplex`; UsageError for another number of values than of points, and an unknown method.
-
-        Examples
-        --------
-        >>> import flaunay
-        >>> tri = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
-        >>> tri.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
-        array([1.5, 3. ])
-        >>> tri.interpolate([1, 2, 3], [45, 45], "laplace").round(3).item()
-        2.154
-        """
-        return self._interpolate(values, xi, offsets, method, gradients)
 
 
 def spherical(

@@ -255,14 +255,59 @@ class WithLocator(OfPoints):
             )
         return numbers.reshape(self.npoints, math.prod(numbers.shape[1:])), numbers.shape
 
-    def _interpolate(
+    def interpolate(
         self,
         values: ArrayLike,
         xi: ArrayLike,
-        offsets: Optional[npt.ArrayLike],
-        method: str,
-        gradients: Optional[ArrayLike],
+        method: Literal["linear", "nearest", "clough-tocher", "sibson", "laplace"] = "linear",
+        *,
+        gradients: Optional[ArrayLike] = None,
+        offsets: Optional[npt.ArrayLike] = None,
     ) -> Doubles:
+        """Values between points.
+
+        Parameters
+        ----------
+        values : array_like, shape (npoints, ...)
+            Real numbers. Of equal points, those of the representative count.
+        xi : array_like, shape (..., 2), or on the sphere also (..., 3)
+            As of `find_simplex`.
+        method : {"linear", "nearest", "clough-tocher", "sibson", "laplace"}
+            Linear in triangles, the value of the nearest point, by cubics with a continuous gradient, as
+            `CloughTocherInterpolator`, or between natural neighbors, as `NaturalNeighborInterpolator`. On the sphere
+            linear where the direction of a query meets its triangle in space, by cubics along great circles (Renka,
+            1984), or between natural neighbors (Brown, 1994): by the areas that a query's cell would take from others,
+            or by the lengths of its edges over distances.
+        gradients : array_like, shape (npoints, ..., 2), or on the sphere (npoints, ..., 3), optional
+            Those of the values, tangent to the sphere, for "clough-tocher"; None: as `gradients` estimates them.
+        offsets
+            As of `find_simplex`.
+
+        Returns
+        -------
+        ndarray of float64, shape ``xi.shape[:-1] + values.shape[1:]``
+            Continuous, also across the border, unless of the nearest points, and at a point that point's value. NaN
+            where `find_simplex` says -1, but on the sphere of nearest points only in a set without points.
+
+        Raises
+        ------
+        UsageError, InputError
+            As of `find_simplex`; UsageError for another number of values than of points, and an unknown method;
+            InputError for natural neighbors of so few points that a circle without points is wider than the shorter
+            period.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0, 0], [1, 2], [3, 1]], (4, 4))
+        >>> tri.interpolate([1, 2, 3], [[4, 0], [0.5, 1]])
+        array([1. , 1.5])
+        >>> globe = flaunay.spherical([[0, 0], [90, 0], [0, 90]])
+        >>> globe.interpolate([1, 2, 3], [[45, 0], [0, 90]]).round(12)
+        array([1.5, 3. ])
+        >>> globe.interpolate([1, 2, 3], [45, 45], "laplace").round(3).item()
+        2.154
+        """
         queries = self._as_queries(xi)
         number_of({name.replace("_", "-"): k for name, k in INTERPOLATION.items()}, method, "method")
         sets = None if offsets is None else as_offsets(offsets)
