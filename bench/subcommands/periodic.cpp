@@ -61,9 +61,8 @@ void add_jobs(Jobs& jobs, Triangulator& triangulator, Data& on) {
   const double* const queries = on.queries.data();
   add("locate", [&, queries] { return seconds_of([&] { on.locator.locate(queries, on.n); }); });
   add("nearest", [&, queries] { return seconds_of([&] { on.locator.nearest(queries, on.n); }); });
-  add("linear", [&, queries] {
-    return seconds_of([&] { on.locator.interpolate(on.values.data(), 1, queries, on.n); });
-  });
+  add("linear",
+      [&, queries] { return seconds_of([&] { on.locator.interpolate(on.values.data(), queries, on.n); }); });
 }
 
 Result measure_periodic(const Request& request) {

@@ -32,13 +32,14 @@ kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bou
 
 kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
                          global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                         global solved_block* solved, global int2* restrict crossings, global uchar* restrict removed,
-                         global seam_walk* restrict walks, global volatile uint* account COUNTERS) {
+                         global solved_block* solved, global int2* restrict crossings, global int* restrict removals,
+                         global uchar* restrict is_removed, global seam_walk* restrict walks,
+                         global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n && walks[w].outcome == WALK_HAS_STOPPED) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
-    walks[w] = walk_of_cell(&g, &blocks, height, w, walks[w], crossings, removed);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, walks[w], crossings, removals, is_removed);
     COUNT_STEPS(g.counted.steps);
     add_to_account(&g, account);
   }

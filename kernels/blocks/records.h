@@ -9,14 +9,14 @@ BEGIN_SHARED
 
 // A walk along the seam of a merge: the vertices of its first crossing edge (a downward walk's left vertex is
 // on the high side), and the hull edges out of them that it saw there; the edges along which it came to its
-// last crossing edge, out of that edge's vertices, or NO_EDGE before it has found the tangent; its number of
-// crossing edges, and how it ended.
+// last crossing edge, out of that edge's vertices, or NO_EDGE before it has found the tangent; its numbers of
+// crossing edges and of edges that it removes, and how it ended.
 typedef struct {
   int left, right, left_edge, right_edge;
   int left_from, right_from;
-  int crossings, outcome;
+  int crossings, removals, outcome;
 } seam_walk;
-ASSERT_SIZE(seam_walk, 32);
+ASSERT_SIZE(seam_walk, 36);
 
 // Where a block of points lies in its set. All other points of the round are on or beyond the sides of its
 // rectangle; sides without points beyond are infinite. `all` is the box around the set. outside: if the block's

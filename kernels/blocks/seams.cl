@@ -29,14 +29,14 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
                        global const coordinate2* restrict points, global ring_edge* restrict edges,
                        global int* restrict vertex_edge, global solved_block* restrict parts,
                        global solved_block* restrict solved, global int2* restrict crossings,
-                       global uchar* restrict removed, global seam_walk* walks,
+                       global int* restrict removals, global uchar* restrict is_removed, global seam_walk* walks,
                        global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     const seam_walk before = walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_HAS_STOPPED);
-    walks[w] = walk_of_cell(&g, &blocks, height, w, before, crossings, removed);
+    walks[w] = walk_of_cell(&g, &blocks, height, w, before, crossings, removals, is_removed);
 #ifndef RINGS_STOP
     add_to_account(&g, account);
 #endif
@@ -46,28 +46,54 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
 
 SCAN_IN_GROUP(sum_before, uint)
 
-// The data of a work-group for its merge. removed_up and removed_down: by pair of edges, of either walk. slots:
-// the pairs that crossing edges may have, from the merge's first pair on.
+// The data of a work-group for its merge. is_removed_up and is_removed_down: by pair of edges, by either walk.
+// removals_down: the list of the downward walk. slots: the pairs that crossing edges get; its first ones are the list
+// of the upward walk.
 typedef struct {
   whole_seam seam;
   global ring_edge* edges;
   global int* vertex_edge;
-  global uchar* removed_up;
-  global uchar* removed_down;
+  global uchar* is_removed_up;
+  global uchar* is_removed_down;
+  global const int* removals_down;
   global int* slots;
 } sewing;
 
-static inline int is_removed(const sewing* s, int pair) { return s->removed_up[pair] || s->removed_down[pair]; }
-
-static inline int may_be_sewn(const sewing* s, int pair) {
-  return s->edges[2 * pair].to == NO_VERTEX || is_removed(s, pair);
+static inline int is_pair_removed(const sewing* s, int pair) {
+  return s->is_removed_up[pair] || s->is_removed_down[pair];
 }
 
-// Gives a vertex whose edge goes another one, which stays: each has one along the seam.
-static inline void replace_vertex_edge(const sewing* s, int v) {
-  int e = s->vertex_edge[v];
-  while (is_removed(s, e / 2)) e = s->edges[e].next;
-  s->vertex_edge[v] = e;
+// Marks a removed pair, and of each half whether it is the edge of its vertex.
+#define REMOVED_HALF(k) (2 << (k))
+static inline void mark_vertex_edges(const sewing* s, int pair) {
+  int mark = 1;
+  for (int k = 0; k < 2; ++k) {
+    const int e = 2 * pair + k;
+    if (s->vertex_edge[s->edges[e ^ 1].to] == e) mark |= REMOVED_HALF(k);
+  }
+  s->is_removed_up[pair] = mark;
+}
+
+// Gives vertices whose edges go other ones, which stay: each has one along the seam.
+static inline void replace_vertex_edges(const sewing* s, int pair) {
+  const int mark = s->is_removed_up[pair];
+  for (int k = 0; k < 2; ++k) {
+    if (!(mark & REMOVED_HALF(k))) continue;
+    int e = 2 * pair + k;
+    const int v = s->edges[e ^ 1].to;
+    while (is_pair_removed(s, e / 2)) e = s->edges[e].next;
+    s->vertex_edge[v] = e;
+  }
+}
+
+// Takes free edges from the list for the crossing edges from `from` on. Returns whether there are enough.
+static inline int take_free_pairs(rings* g, const sewing* s, int from, int count) {
+  for (int k = from; k < count; ++k) {
+    if (g->free_first == NO_EDGE) return 0;
+    s->slots[k] = g->free_first / 2;
+    g->free_first = g->edges[g->free_first].next;
+  }
+  return 1;
 }
 
 // The half of crossing edge i with this end as its origin.
@@ -109,77 +135,75 @@ static inline void sew_crossing(const sewing* s, int i) {
   sew_half(s, i, ends.y, ends.x, 1, s->seam.up.right_edge, s->seam.down.left_edge, is_long && lowest.y == highest.y);
 }
 
-#define FOUND_BITS 32
-
 kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict points,
                       global const int2* restrict crossings, global const seam_walk* restrict walks,
                       global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                      global solved_block* solved, global uchar* removed, global int* slots,
-                      global volatile uint* account) {
+                      global solved_block* solved, global int* removals, global uchar* is_removed,
+                      global volatile uint* account COUNTERS) {
   local uint sums[LARGEST_TILE_GROUP];
-  local int meets;  // the downward walk's edge that is the last one of the upward walk, or -1
+  local int meets;    // the downward walk's edge that is the last one of the upward walk, or -1
+  local int is_sewn;  // whether all is as it should be
   const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
   const part_halves halves = halves_of_cell(&blocks, height, cell);
-  const int is_merge = halves.part.block >= 0, begin = is_merge ? halves.begin : 0, end = is_merge ? halves.end : 0;
-  const sewing s = {{0, halves.middle, walks[2 * cell], walks[2 * cell + 1], crossings + CROSSINGS_PER_VERTEX * begin,
-                     crossings + CROSSINGS_PER_VERTEX * (places + begin)},
-                    edges,
-                    vertex_edge,
-                    removed,
-                    removed + PAIRS_PER_VERTEX * places,
-                    slots + PAIRS_PER_VERTEX * begin};
+  const int is_merge = halves.part.block >= 0, begin = is_merge ? halves.begin : 0;
+  const int list_up = CROSSINGS_PER_VERTEX * begin, list_down = CROSSINGS_PER_VERTEX * (places + begin);
+  const sewing s = {
+      {0, halves.middle, walks[2 * cell], walks[2 * cell + 1], crossings + list_up, crossings + list_down},
+      edges,
+      vertex_edge,
+      is_removed,
+      is_removed + PAIRS_PER_VERTEX * places,
+      removals + list_down,
+      removals + list_up};
+  const int up = s.seam.up.removals, down = s.seam.down.removals;
   if (me == 0) meets = -1;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (int k = me; k < s.seam.down.crossings; k += lanes) {
     if (walks_meet(&s.seam, k, edges)) meets = k;
   }
-  // Neighbours look at neighbouring pairs. An item need not look up again its results for its first pairs.
-  const int first = PAIRS_PER_VERTEX * begin, last = PAIRS_PER_VERTEX * end;
-  uint own = 0, found = 0, all;
-  for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
-    const int may_be = may_be_sewn(&s, pair);
-    own += may_be;
-    if (k < FOUND_BITS) found |= (uint)may_be << k;
+  // The removals of the downward walk alone.
+  uint own = 0, all;
+  for (int k = me; k < down; k += lanes) own += !s.is_removed_up[s.removals_down[k]];
+  uint slot = up + sum_before(own, sums, &all);
+  for (int k = me; k < down; k += lanes) {
+    const int pair = s.removals_down[k];
+    if (!s.is_removed_up[pair]) s.slots[slot++] = pair;
   }
-  uint slot = sum_before(own, sums, &all);
-  for (int k = 0, pair = first + me; pair < last; ++k, pair += lanes) {
-    if (k < FOUND_BITS ? found >> k & 1 : may_be_sewn(&s, pair)) s.slots[slot++] = pair;
-  }
-  const int count = s.seam.up.crossings + meets;
-  // A walk that has stopped has an incomplete list.
-  const int is_whole = s.seam.up.outcome != WALK_HAS_STOPPED && s.seam.down.outcome != WALK_HAS_STOPPED;
-  const int is_sewn = is_merge && is_whole && meets >= 0 && count <= (int)all;
-  for (int v = begin + me; is_sewn && v < end; v += lanes) replace_vertex_edge(&s, v);
+  const int removed_pairs = up + all, count = s.seam.up.crossings + meets;
   barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  for (int k = me; k < removed_pairs; k += lanes) mark_vertex_edges(&s, s.slots[k]);
+  const filter_bounds none = {0, 0, 0, 0};
+  rings g = rings_on(edges, points, vertex_edge, none);
+  if (me == 0 && is_merge) {
+    join_free_lists(&g, parts[halves.low_at].unused, parts[halves.high_at].unused);
+    const free_edges joined = free_list(&g);
+    // A walk that has stopped has an incomplete list.
+    is_sewn = s.seam.up.outcome != WALK_HAS_STOPPED && s.seam.down.outcome != WALK_HAS_STOPPED && meets >= 0 &&
+              count >= removed_pairs && take_free_pairs(&g, &s, removed_pairs, count);
+    g.free_first = is_sewn ? g.free_first : joined.first;
+    g.free_last = g.free_first == NO_EDGE ? NO_EDGE : joined.last;
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE | CLK_LOCAL_MEM_FENCE);
+  const int is_whole = is_merge && is_sewn;
+  for (int k = me; is_whole && k < removed_pairs; k += lanes) replace_vertex_edges(&s, s.slots[k]);
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int k = me; k < removed_pairs; k += lanes) s.is_removed_up[s.slots[k]] = s.is_removed_down[s.slots[k]] = 0;
   sewing sewn = s;
   sewn.seam.count = count;
-  for (int i = me; is_sewn && i < count; i += lanes) sew_crossing(&sewn, i);
-  // The others are free.
-  for (int k = count + me; is_sewn && k < (int)all; k += lanes) {
-    const int e = 2 * s.slots[k];
-    const ring_edge pair[2] = {{NO_VERTEX, k + 1 < (int)all ? 2 * s.slots[k + 1] : NO_EDGE, e}, {NO_VERTEX, e, e}};
-    edges[e] = pair[0];
-    edges[e + 1] = pair[1];
-  }
-  for (int pair = first + me; pair < last; pair += lanes) s.removed_up[pair] = s.removed_down[pair] = 0;
+  for (int i = me; is_whole && i < count; i += lanes) sew_crossing(&sewn, i);
+  // A step is a removed pair, a free pair or a crossing edge.
+  COUNT_STEPS(is_whole ? (removed_pairs + count) / lanes + (me == 0 ? count - removed_pairs : 0) : 0);
   barrier(CLK_GLOBAL_MEM_FENCE);
   if (me == 0 && is_merge) {
-    const filter_bounds none = {0, 0, 0, 0};
-    rings g = rings_on(edges, points, vertex_edge, none);
-    const solved_block low = parts[halves.low_at], high = parts[halves.high_at];
-    if (!is_sewn) {
-      join_free_lists(&g, low.unused, high.unused);
-      atomic_inc(&account[RINGS_BROKEN]);
-    } else {
+    if (is_whole) {
       const int lowest = crossing_from(&s, 0, 0), highest = crossing_from(&s, count - 1, 1);
       vertex_edge[edges[lowest ^ 1].to] = lowest;
       vertex_edge[edges[highest ^ 1].to] = highest;
-      if (count < (int)all) {
-        g.free_first = 2 * s.slots[count];
-        g.free_last = 2 * s.slots[all - 1];
-      }
+    } else {
+      atomic_inc(&account[RINGS_BROKEN]);
     }
-    finish_part(&g, &blocks, halves.part, joined_ends(&g, low.ends, high.ends, halves.axis));
+    finish_part(&g, &blocks, halves.part,
+                joined_ends(&g, parts[halves.low_at].ends, parts[halves.high_at].ends, halves.axis));
   }
 }

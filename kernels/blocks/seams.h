@@ -1,7 +1,7 @@
 // Merges of two triangulations from both ends of their seam at once. One walk goes up from the lower tangent and one
 // down from the upper one, each until it is beyond the middle of the seam. Each is Guibas and Stolfi's merge
-// (mesh/rings.h), but only reads the rings: it lists the edges that cross the seam, and marks the edges that it would
-// remove. The downward walk is the upward one of the plane turned by half a turn.
+// (mesh/rings.h), but only reads the rings: it lists the edges that cross the seam, and lists and marks the pairs of
+// edges that it would remove. The downward walk is the upward one of the plane turned by half a turn.
 //
 // They meet, since the crossing edges are the same from both ends, ties included: where candidates of both sides and
 // the base are on one circle, the upward walk takes the left one first and the downward walk the right one, which is
@@ -34,11 +34,13 @@ typedef struct {
 } seam_line;
 
 // The data of a walk. crossings: per crossing the edge along which the walk came there, and the vertex on the
-// other side; the walk itself has the vertices of the first one. removed: by pair of edges.
+// other side; the walk itself has the vertices of the first one. removals: the pairs of edges that it removes, each
+// once. is_removed: by pair of edges. most: room in both lists.
 typedef struct {
   seam_line line;
   int is_downward, most;
-  GLOBAL uchar* removed;
+  GLOBAL uchar* is_removed;
+  GLOBAL int* removals;
   GLOBAL int2* crossings;
 } seam;
 
@@ -109,7 +111,7 @@ static inline int is_beyond(const seam* s, coordinate2 low, coordinate2 high) {
 static inline int kept_beyond(const rings* g, const seam* s, int e, int is_right) {
   do {
     e = is_right ? g->edges[e].previous : g->edges[e].next;
-  } while (s->removed[e / 2]);
+  } while (s->is_removed[e / 2]);
   return e;
 }
 
@@ -133,16 +135,17 @@ static inline void look_at_apex(rings* g, seam_side* side, coordinate_pair left,
   side->rises = is_above(g, left, right, side->apex, side->seen);
 }
 
-// Marks the candidates that the circle through the base and the next one rules out.
-static inline void drop_ruled_out(rings* g, const seam* s, seam_side* side, coordinate_pair left, coordinate_pair right,
-                                  int is_right) {
-  while (side->rises && side->edge != side->from) {
+// Removes the candidates that the circle through the base and the next one rules out.
+static inline void drop_ruled_out(rings* g, const seam* s, seam_walk* walk, seam_side* side, coordinate_pair left,
+                                  coordinate_pair right, int is_right) {
+  while (side->rises && side->edge != side->from && walk->removals < s->most) {
     const int then = kept_beyond(g, s, side->edge, is_right), beyond_to = g->edges[then].to;
     const coordinate_pair beyond = point_at(g, beyond_to);
     const real_pair seen = angle_products(beyond, left, right);
     if (!rules_out(g, left, right, side->apex, side->seen, beyond, seen)) break;
     TALLY(*g, steps, 1);
-    s->removed[side->edge / 2] = 1;
+    s->is_removed[side->edge / 2] = 1;
+    s->removals[walk->removals++] = side->edge / 2;
     side->edge = then;
     side->to = beyond_to;
     side->apex = beyond;
@@ -226,10 +229,10 @@ static inline seam_walk walk_along(rings* g, const seam* s, seam_walk walk) {
     look_at_apex(g, &r, l.at, r.at);
     walk.outcome = WALK_IS_WHOLE;
     if (!HAS_STOPPED(g) && !l.rises && !r.rises) return walk;
-    drop_ruled_out(g, s, &l, l.at, r.at, 0);
-    drop_ruled_out(g, s, &r, l.at, r.at, 1);
+    drop_ruled_out(g, s, &walk, &l, l.at, r.at, 0);
+    drop_ruled_out(g, s, &walk, &r, l.at, r.at, 1);
     const int takes_right = !l.rises || (r.rises && rules_out(g, l.at, r.at, l.apex, l.seen, r.apex, r.seen));
-    if (HAS_STOPPED(g) || walk.crossings == s->most) {
+    if (HAS_STOPPED(g) || walk.crossings == s->most || walk.removals == s->most) {
       walk.outcome = WALK_HAS_STOPPED;
       walk.left_from = l.from;
       walk.right_from = r.from;
@@ -246,23 +249,26 @@ static inline seam_walk walk_along(rings* g, const seam* s, seam_walk walk) {
 }
 
 static inline seam_walk walk_from(int left, int right, int crossings, int outcome) {
-  const seam_walk walk = {left, right, NO_EDGE, NO_EDGE, NO_EDGE, NO_EDGE, crossings, outcome};
+  const seam_walk walk = {left, right, NO_EDGE, NO_EDGE, NO_EDGE, NO_EDGE, crossings, 0, outcome};
   return walk;
 }
 
 // Walk w of a height: in cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
-// tangent, otherwise a walk without edges. crossings and removed: of all upward, then of all downward walks.
+// tangent, otherwise a walk without edges. crossings, removals and is_removed: of all upward, then of all downward
+// walks.
 static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
-                                     GLOBAL int2* crossings, GLOBAL uchar* removed) {
+                                     GLOBAL int2* crossings, GLOBAL int* removals, GLOBAL uchar* is_removed) {
   const part_halves halves = halves_of_cell(blocks, height, w / 2);
   if (halves.part.block < 0) return walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_IS_WHOLE);
   const hull_ends low = blocks->parts[halves.low_at].ends, high = blocks->parts[halves.high_at].ends;
-  const int is_downward = w & 1;
+  const int is_downward = w & 1, own_list = CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin);
   g->errors = errors_between(g, joined_ends(g, low, high, halves.axis));
-  const seam s = {seam_line_of(g, blocks, &halves, low, high), is_downward,
+  const seam s = {seam_line_of(g, blocks, &halves, low, high),
+                  is_downward,
                   CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
-                  removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
-                  crossings + CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin)};
+                  is_removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
+                  removals + own_list,
+                  crossings + own_list};
   if (before.left_from != NO_EDGE) return walk_along(g, &s, before);
   // Upwards is along y, or against x.
   const int lowest =

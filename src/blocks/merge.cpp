@@ -26,17 +26,17 @@ bool walks_may_stop(const Workspace& work) {
   return !work.runtime.capabilities().fixed_point && may_stop(work);
 }
 
-// A work-item sews some four vertices, but a warp is there in any case.
+// Of n vertices, some 4 sqrt(n) edges cross a seam, as a rule. A warp is there in any case.
 std::size_t sewing_group_of(const Tuning& tuning, int height) {
-  return std::min(tuning.sewing_group, std::max(tuning.block_group, least_vertices(height) / 4));
+  return std::min(tuning.sewing_group, std::max(tuning.block_group, std::size_t{4} << (height + 1) / 2));
 }
 
 // The arrays of merges from both ends of their seam that all heights share.
 struct Seams {
   Buffer<cl_int2> crossings{};
   Buffer<kernel::seam_walk> walks{};
-  Buffer<cl_uchar> removed{};  // 0, all of them, between heights
-  Buffer<cl_int> slots{};
+  Buffer<cl_int> removals{};
+  Buffer<cl_uchar> is_removed{};  // 0, all of them, between heights
 };
 
 // Two walks and the sewing are more work than one merge, but a shorter chain of steps, and lanes diverge
@@ -49,11 +49,12 @@ int first_height_of_seams(const Tuning& tuning) {
 
 Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
   Arena& scratch = work.scratch();
-  const std::size_t pairs = kernel::PAIRS_PER_VERTEX * blocks.points;
-  const Seams seams{scratch.allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * blocks.points),
+  const std::size_t room = 2 * kernel::CROSSINGS_PER_VERTEX * blocks.points;
+  const std::size_t marks = 2 * kernel::PAIRS_PER_VERTEX * blocks.points;
+  const Seams seams{scratch.allocate<cl_int2>(room),
                     scratch.allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height)),
-                    scratch.allocate<cl_uchar>(2 * pairs), scratch.allocate<cl_int>(pairs)};
-  work.runtime.fill<cl_uchar>(seams.removed, 2 * pairs, 0);
+                    scratch.allocate<cl_int>(room), scratch.allocate<cl_uchar>(marks)};
+  work.runtime.fill<cl_uchar>(seams.is_removed, marks, 0);
   return seams;
 }
 
@@ -103,7 +104,8 @@ void launch_on_walks(const Halves& halves, int height) {
                        .parts = parts,
                        .solved = rings.solved,
                        .crossings = seams.crossings,
-                       .removed = seams.removed,
+                       .removals = seams.removals,
+                       .is_removed = seams.is_removed,
                        .walks = seams.walks,
                        .account = rings.device_account});
 }
@@ -131,9 +133,6 @@ void sew_seams(const Halves& halves, int height) {
   const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
   host::Runtime& runtime = work.runtime;
   const std::size_t group = sewing_group_of(tuning_of(runtime), height);
-  const std::size_t most_pairs =
-      kernel::PAIRS_PER_VERTEX * std::min(blocks.largest, 2 * least_vertices(height));
-  runtime.note_elements((most_pairs + group - 1) / group);
   runtime.launch(group * cells_of(blocks, height), group,
                  kernels::sew_seams{.places_of_parts = places_of_parts(blocks, halved, rings, height),
                                     .points = blocks.vertices,
@@ -143,8 +142,8 @@ void sew_seams(const Halves& halves, int height) {
                                     .vertex_edge = rings.vertex_edge,
                                     .parts = parts,
                                     .solved = rings.solved,
-                                    .removed = seams.removed,
-                                    .slots = seams.slots,
+                                    .removals = seams.removals,
+                                    .is_removed = seams.is_removed,
                                     .account = rings.device_account});
 }
 

@@ -250,7 +250,8 @@ struct WalkedSeam {
                                               .account = rings.device_account});
     }
     crossings = runtime.arena().allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
-    removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
+    removals = runtime.arena().allocate<cl_int>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
+    is_removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
     walks = testing::guarded<kernel::seam_walk>(runtime, 2);
     runtime.map(2, kernels::walk_seams{.spread = 1,
                                        .places_of_parts = {.height = kHeight,
@@ -266,7 +267,8 @@ struct WalkedSeam {
                                        .parts = parts,
                                        .solved = rings.solved,
                                        .crossings = crossings,
-                                       .removed = removed,
+                                       .removals = removals,
+                                       .is_removed = is_removed,
                                        .walks = walks,
                                        .account = rings.device_account});
   }
@@ -302,8 +304,8 @@ struct WalkedSeam {
                                       .vertex_edge = rings.vertex_edge,
                                       .parts = parts,
                                       .solved = rings.solved,
-                                      .removed = removed,
-                                      .slots = runtime.arena().allocate<cl_int>(kPairs),
+                                      .removals = removals,
+                                      .is_removed = is_removed,
                                       .account = rings.device_account});
     return {call, points, on_device};
   }
@@ -315,7 +317,8 @@ struct WalkedSeam {
   HalvedBlocks halved;
   Buffer<kernel::solved_block> parts{};
   Buffer<cl_int2> crossings{};
-  Buffer<cl_uchar> removed{};
+  Buffer<cl_int> removals{};
+  Buffer<cl_uchar> is_removed{};
   Buffer<kernel::seam_walk> walks{};
 };
 const int WalkedSeam::kHeight = kernel::halving_depth(kPoints);
@@ -336,7 +339,7 @@ TEST(SmallMerge, WalksThatDoNotMeet) {
       const Solution after = seam.sewn(up);
       EXPECT_EQ(after.account[kernel::RINGS_BROKEN], change == "none" ? 0u : 1u);
       EXPECT_EQ(after.broken_free_list(0), "");
-      const std::vector<cl_uchar> marks = download(runtime, seam.removed, 2 * WalkedSeam::kPairs);
+      const std::vector<cl_uchar> marks = download(runtime, seam.is_removed, 2 * WalkedSeam::kPairs);
       EXPECT_EQ(std::count(marks.begin(), marks.end(), 0), std::ptrdiff_t{2 * WalkedSeam::kPairs});
       std::size_t changed = 0;
       for (cl_int v = 0; v < static_cast<cl_int>(WalkedSeam::kPoints); ++v) {
