@@ -49,7 +49,7 @@ sanitizers() {
 }
 
 benchmarks() {
-  cmake --preset release -DFLAUNAY_BENCH=ON && build release all || return
+  cmake --preset release -DFLAUNAY_BENCH=ON && build release all test_bench || return
   ctest --preset release -R '^(Bench|Prediction|Paper)Test|^scripts.gpu'
 }
 

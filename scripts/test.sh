@@ -64,7 +64,7 @@ scripts/format.sh --check
 if $quick; then
   build release -DFLAUNAY_BENCH=OFF
 else
-  build release -DFLAUNAY_BENCH=OFF -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
+  build release -DFLAUNAY_BENCH=ON -DFLAUNAY_MPI=ON -DFLAUNAY_GDAL=ON
   # With the tests' objects of the build above: the library is what is to be sanitized.
   build asan -DFLAUNAY_COMMAND=OFF -DFLAUNAY_TEST_OBJECTS="$PWD/build/release" -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
   # PoCL and its compiler leak memory. Leaks of flaunay are detected in the tests that open no device, which turn the

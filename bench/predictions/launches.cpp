@@ -30,11 +30,11 @@ struct LaunchesRequest : Request {
 // "work_items_of_most_work" refers to the launches that do this share of the work.
 constexpr double kMostWork = 0.9;
 
-// Kernels that walk along hulls, so that their steps are not steps of merges.
-const std::set<std::string> kWalkHulls = {"mark_outside", "write_hulls"};
+// Kernels whose steps are not steps of merges: they walk along hulls, or their work-items share a merge.
+const std::set<std::string> kNoMergeSteps = {"mark_outside", "write_hulls", "sew_seams"};
 // Kernels that merge the parts of blocks, not the blocks.
 const std::set<std::string> kSolveBlocks = {"solve_blocks", "merge_parts",  "finish_parts",
-                                            "walk_seams",   "finish_walks", "sew_seams"};
+                                            "walk_seams",   "finish_walks"};
 
 std::size_t steps_of_work_item(const LaunchStatistics& launch) {
   return std::max<std::size_t>(launch.longest_chain, launch.elements);
@@ -45,7 +45,7 @@ std::uint64_t merge_chain(const Launches& launches, bool from_leaves) {
   std::uint64_t sum = 0;
   for (const LaunchStatistics& launch : launches) {
     const bool is_left_out =
-        kWalkHulls.count(launch.kernel) > 0 || (!from_leaves && kSolveBlocks.count(launch.kernel) > 0);
+        kNoMergeSteps.count(launch.kernel) > 0 || (!from_leaves && kSolveBlocks.count(launch.kernel) > 0);
     if (!is_left_out) sum += launch.longest_chain;
   }
   return sum;
