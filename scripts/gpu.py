@@ -25,7 +25,7 @@ DISTRIBUTIONS = ["uniform", "normal", "kuzmin", "line"]
 # Values of src/tuning/tuning.cpp that are tried, one name after the other. round_points=0 merges up the trees instead
 # of rounds. With block_group=1 a warp has one lane that merges, and nothing diverges; merge_items says up to how many
 # merges have a warp each.
-TUNED = {"round_points": [0, 256, 512, 1024], "merge_items": [16384, 65536, 262144], "leaf_spread": [1, 2, 3], "seam_points": [4, 8], "block_group": [1, 4, 32],
+TUNED = {"local_vertices": [0, 256, 512], "round_points": [0, 256, 512, 1024], "merge_items": [16384, 65536, 262144], "leaf_spread": [1, 2, 3], "seam_points": [4, 8], "block_group": [1, 4, 32],
          "block_points": [512, 1024, 2048], "halve_group": [64, 128, 256], "tile_group": [0, 128, 256],
          "blocks_in_parallel": [0, 1], "map_group": [64, 128, 256], "sort_items": [8, 16, 32]}
 PARTS = ["conformance", "device", "tests", "verify", "peers", "modes", "embedding", "batches", "cupy", "tuning",

@@ -33,8 +33,9 @@ constexpr double kMostWork = 0.9;
 // Kernels whose steps are not steps of merges: they walk along hulls, or their work-items share a merge.
 const std::set<std::string> kNoMergeSteps = {"mark_outside", "write_hulls", "sew_seams"};
 // Kernels that merge the parts of blocks, not the blocks.
-const std::set<std::string> kSolveBlocks = {"solve_blocks", "merge_parts",  "finish_parts",
-                                            "walk_seams",   "finish_walks"};
+const std::set<std::string> kSolveBlocks = {"solve_blocks", "solve_local_parts", "finish_local_parts",
+                                            "merge_parts",  "finish_parts",      "walk_seams",
+                                            "finish_walks"};
 
 std::size_t steps_of_work_item(const LaunchStatistics& launch) {
   return std::max<std::size_t>(launch.longest_chain, launch.elements);

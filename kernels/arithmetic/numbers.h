@@ -139,7 +139,7 @@ inline real_pair magnitudes(real_pair p) {
   return reinterpret_cast<real_pair>(reinterpret_cast<real_bits_pair>(p) & ~SIGN_BIT);
 }
 #else
-static inline coordinate_pair load_pair(global const coordinate2* from) { return *from; }
+#define load_pair(from) (*(from))  // in global or local memory
 static inline coordinate2 as_point(coordinate_pair p) { return p; }
 static inline coordinate_pair as_pair(coordinate2 p) { return p; }
 static inline real_pair pair_difference(coordinate_pair a, coordinate_pair b) { return difference2(a, b); }

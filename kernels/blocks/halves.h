@@ -9,6 +9,10 @@
 #define FLAUNAY_HALVES_H
 
 #include "blocks/halving.h"
+#include "blocks/limits.h"
+#include "blocks/parts.h"
+#include "blocks/records.h"
+#include "blocks/seams.h"
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "mesh/rings.h"
@@ -16,38 +20,11 @@
 
 BEGIN_SHARED
 
-// The arrays of all blocks. parts: by half the place of the first vertex of a part; a whole block's is in `solved`.
-typedef struct {
-  int places;
-  GLOBAL const int* offsets;
-  GLOBAL const int* distinct;
-  GLOBAL const int* block_of_place;  // -1 behind the last block
-  GLOBAL const uchar* axes;
-  GLOBAL solved_block* parts;
-  GLOBAL solved_block* solved;
-} halved_blocks;
-
 static inline halved_blocks blocks_in(int places, GLOBAL const int* offsets, GLOBAL const int* distinct,
                                       GLOBAL const int* block_of_place, GLOBAL const uchar* axes,
                                       GLOBAL solved_block* parts, GLOBAL solved_block* solved) {
   const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, parts, solved};
   return blocks;
-}
-
-// Part `number` of its depth, which begins at vertex `begin` of its block. block: -1 for no part.
-typedef struct {
-  int block, first, count, depth, number, begin;
-} block_part;
-
-static inline int edge_at(int place) { return EDGES_PER_VERTEX * place; }
-
-// Frees the edges of a place without a vertex, in one list with the edges of all such places up to `end`.
-static inline void free_place(rings* g, int place, int end) {
-  g->vertex_edge[place] = NO_EDGE;
-  for (int e = edge_at(place); e < edge_at(place + 1); e += 2) {
-    put_edge(g, e, NO_VERTEX, e + 2 < edge_at(end) ? e + 2 : NO_EDGE, e);
-    put_edge(g, e + 1, NO_VERTEX, e, e);
-  }
 }
 
 static inline void finish_part(rings* g, const halved_blocks* blocks, block_part part, hull_ends ends) {
@@ -86,7 +63,7 @@ static inline int begins_before(block_part part, int end) { return part.block >=
 static inline block_part begin_leaf(rings* g, const halved_blocks* blocks, int place) {
   const int block = blocks->block_of_place[place];
   if (block >= 0 && place >= blocks->offsets[block] + blocks->distinct[block]) {
-    free_place(g, place, blocks->offsets[block + 1]);
+    free_place(g->edges, g->vertex_edge, place, blocks->offsets[block + 1]);
   }
   block_part part = part_behind(blocks, block, 0, place);
   if (!begins_before(part, place + 1)) part.block = -1;
@@ -133,29 +110,14 @@ static inline int merge_sides(rings* g, int state, solved_block low, solved_bloc
   return continue_merge(g, state, low.ends, high.ends, both, axis);
 }
 
-// The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,
-// and one vertex behind it. part.block is -1 if there is no part.
-typedef struct {
-  block_part part;
-  int axis, low_at, high_at, begin, middle, end;
-} part_halves;
-
 // The halves of the part of this height that begins in a cell.
 static inline part_halves halves_of_cell(const halved_blocks* blocks, int height, int cell) {
   const int begin = cell << (height + 1), end = min(blocks->places - begin, 2 << height) + begin;
-  part_halves halves;
   block_part part = part_behind(blocks, blocks->block_of_place[begin], height, begin);
   if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
-  if (!begins_before(part, end)) part.block = -1;
-  halves.part = part;
-  if (part.block < 0) return halves;
-  halves.begin = part.first + part.begin;
-  halves.middle = part.first + part_begin(part.count, part.depth + 1, 2 * part.number + 1);
-  halves.end = part.first + part_begin(part.count, part.depth, part.number + 1);
-  halves.low_at = halves.begin / 2;
-  halves.high_at = halves.middle / 2;
-  halves.axis = blocks->axes[part.first + (1 << part.depth) + part.number];
-  return halves;
+  if (begins_before(part, end)) return halves_of_part(blocks, part);
+  part_halves none = {{-1, 0, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  return none;
 }
 
 // Merges the halves of the part of this height that begins in a cell, if there is one. Returns how far it is.
@@ -171,6 +133,17 @@ static inline int merge_halves_of_cell(rings* g, const halved_blocks* blocks, in
     blocks->parts[halves.low_at].unused = free_list(g);
   }
   return state;
+}
+
+// Walk w of a height: in cell w / 2, upwards or downwards. Otherwise as walk_of_halves. crossings, removals and
+// is_removed: of all upward, then of all downward walks.
+static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
+                                     GLOBAL int2* crossings, GLOBAL int* removals, GLOBAL uchar* is_removed) {
+  const part_halves halves = halves_of_cell(blocks, height, w / 2);
+  if (halves.part.block < 0) return walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_IS_WHOLE);
+  const int is_downward = w & 1, first = is_downward * blocks->places;
+  return walk_of_halves(g, blocks, &halves, is_downward, before, crossings + CROSSINGS_PER_VERTEX * first,
+                        removals + CROSSINGS_PER_VERTEX * first, is_removed + PAIRS_PER_VERTEX * first);
 }
 
 // Does all that begins in a cell: leaves, if the height is 0, or merges. Returns how far it is.

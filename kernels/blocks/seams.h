@@ -11,8 +11,8 @@
 #define FLAUNAY_SEAMS_H
 
 #include "arithmetic/language.h"
-#include "blocks/halves.h"
 #include "blocks/limits.h"
+#include "blocks/parts.h"
 #include "blocks/records.h"
 #include "mesh/limits.h"
 #include "mesh/records.h"
@@ -39,7 +39,7 @@ typedef struct {
 typedef struct {
   seam_line line;
   int is_downward, most;
-  GLOBAL uchar* is_removed;
+  RINGS_MEMORY uchar* is_removed;
   GLOBAL int* removals;
   GLOBAL int2* crossings;
 } seam;
@@ -177,7 +177,7 @@ static inline int lowest_end(const rings* g, const seam* s, hull_ends ends, coor
 // may begin anywhere: each move lowers where the line passes the cut, or keeps it and comes nearer to the cut, so none
 // comes back. Returns whether it found the tangent.
 static inline int find_seam_tangent(rings* g, const seam* s, seam_walk* walk) {
-  GLOBAL const ring_edge* edges = g->edges;
+  RINGS_MEMORY const edge_in_rings* edges = g->edges;
   const int axis = s->line.axis;
   walk->left_edge = edges[g->vertex_edge[walk->left]].previous;
   walk->right_edge = g->vertex_edge[walk->right];
@@ -253,26 +253,24 @@ static inline seam_walk walk_from(int left, int right, int crossings, int outcom
   return walk;
 }
 
-// Walk w of a height: in cell w / 2, upwards or downwards. before: the same walk if it has stopped above the
-// tangent, otherwise a walk without edges. crossings, removals and is_removed: of all upward, then of all downward
-// walks.
-static inline seam_walk walk_of_cell(rings* g, const halved_blocks* blocks, int height, int w, seam_walk before,
-                                     GLOBAL int2* crossings, GLOBAL int* removals, GLOBAL uchar* is_removed) {
-  const part_halves halves = halves_of_cell(blocks, height, w / 2);
-  if (halves.part.block < 0) return walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_IS_WHOLE);
-  const hull_ends low = blocks->parts[halves.low_at].ends, high = blocks->parts[halves.high_at].ends;
-  const int is_downward = w & 1, own_list = CROSSINGS_PER_VERTEX * (is_downward * blocks->places + halves.begin);
-  g->errors = errors_between(g, joined_ends(g, low, high, halves.axis));
-  const seam s = {seam_line_of(g, blocks, &halves, low, high),
+// The walk along the seam of two halves, upwards or downwards. before: the same walk if it has stopped above the
+// tangent, otherwise a walk without edges. Crossings and removals have room for CROSSINGS_PER_VERTEX per vertex, in its
+// place.
+static inline seam_walk walk_of_halves(rings* g, const halved_blocks* blocks, const part_halves* halves,
+                                       int is_downward, seam_walk before, GLOBAL int2* crossings, GLOBAL int* removals,
+                                       RINGS_MEMORY uchar* is_removed) {
+  const hull_ends low = blocks->parts[halves->low_at].ends, high = blocks->parts[halves->high_at].ends;
+  const int axis = halves->axis, own_list = CROSSINGS_PER_VERTEX * halves->begin;
+  g->errors = errors_between(g, joined_ends(g, low, high, axis));
+  const seam s = {seam_line_of(g, blocks, halves, low, high),
                   is_downward,
-                  CROSSINGS_PER_VERTEX * (halves.end - halves.begin),
-                  is_removed + is_downward * PAIRS_PER_VERTEX * blocks->places,
+                  CROSSINGS_PER_VERTEX * (halves->end - halves->begin),
+                  is_removed,
                   removals + own_list,
                   crossings + own_list};
   if (before.left_from != NO_EDGE) return walk_along(g, &s, before);
   // Upwards is along y, or against x.
-  const int lowest =
-      (halves.axis == 1) != is_downward ? last_along(high, !halves.axis) : first_along(high, !halves.axis);
+  const int lowest = (axis == 1) != is_downward ? last_along(high, !axis) : first_along(high, !axis);
   const int from_low = lowest_end(g, &s, low, g->points[lowest], 0);
   const int from_high = lowest_end(g, &s, high, g->points[from_low], 1);
   const int left = is_downward ? from_high : from_low, right = is_downward ? from_low : from_high;
@@ -294,12 +292,12 @@ static inline int2 ordered_crossing(int v, int other, int middle) {
 
 // The vertices of a walk's k-th crossing edge, on the low side and on the high side.
 static inline int2 crossing_of(const seam_walk* walk, GLOBAL const int2* crossings, int k,
-                               GLOBAL const ring_edge* edges, int middle) {
+                               RINGS_MEMORY const edge_in_rings* edges, int middle) {
   if (k == 0) return ordered_crossing(walk->left, walk->right, middle);
   return ordered_crossing(edges[crossings[k].x].to, crossings[k].y, middle);
 }
 
-static inline int2 crossing_at(const whole_seam* s, int i, GLOBAL const ring_edge* edges) {
+static inline int2 crossing_at(const whole_seam* s, int i, RINGS_MEMORY const edge_in_rings* edges) {
   return i < s->up.crossings ? crossing_of(&s->up, s->crossings_up, i, edges, s->middle)
                              : crossing_of(&s->down, s->crossings_down, s->count - 1 - i, edges, s->middle);
 }
@@ -310,7 +308,7 @@ static inline int edge_into(const whole_seam* s, int i) {
 }
 
 // Whether the downward walk's k-th crossing edge is the last one of the upward walk.
-static inline int walks_meet(const whole_seam* s, int k, GLOBAL const ring_edge* edges) {
+static inline int walks_meet(const whole_seam* s, int k, RINGS_MEMORY const edge_in_rings* edges) {
   const int2 last = crossing_of(&s->up, s->crossings_up, s->up.crossings - 1, edges, s->middle);
   const int2 other = crossing_of(&s->down, s->crossings_down, k, edges, s->middle);
   return last.x == other.x && last.y == other.y;

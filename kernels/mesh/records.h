@@ -14,6 +14,12 @@ typedef struct {
 } ring_edge;
 ASSERT_SIZE(ring_edge, 12);
 
+// The same in local memory, for few vertices.
+typedef struct {
+  short to, next, previous;
+} short_edge;
+ASSERT_SIZE(short_edge, 6);
+
 // The first and the last vertex in the orders (x, y) and (y, -x). All are corners of the hull, strictly convex.
 // NO_VERTEX, all of them, if there is no vertex.
 typedef struct {

@@ -1,6 +1,7 @@
 // Delaunay triangulations as rings of edges, and Guibas and Stolfi's merge of two of them (ACM Transactions on Graphics
 // 4, 1985). RINGS_TIE breaks the ties of cocircular points. With RINGS_STOP, nothing is evaluated exactly: a merge or a
-// leaf stops at a predicate that floating point cannot decide, and a program without RINGS_STOP continues it.
+// leaf stops at a predicate that floating point cannot decide, and a program without RINGS_STOP continues it. With
+// LOCAL_RINGS, rings are in local memory, and numbers of vertices and edges are short.
 #ifndef FLAUNAY_RINGS_H
 #define FLAUNAY_RINGS_H
 
@@ -13,6 +14,15 @@
 
 BEGIN_SHARED
 
+#ifdef LOCAL_RINGS
+#define RINGS_MEMORY local
+typedef short ring_index;
+typedef short_edge edge_in_rings;
+#else
+#define RINGS_MEMORY GLOBAL
+typedef int ring_index;
+typedef ring_edge edge_in_rings;
+#endif
 INTEGER_CONSTANT(NO_VERTEX, -1);
 INTEGER_CONSTANT(NO_EDGE, -1);
 // How far a merge is, unless it has stopped above a base, which is an edge.
@@ -49,10 +59,10 @@ static inline largest_errors errors_within(real extent, filter_bounds bounds) {
 
 // The data of one work-item: its own edges, all free at first.
 typedef struct {
-  GLOBAL ring_edge* edges;
-  GLOBAL const coordinate2* points;  // by vertex
+  RINGS_MEMORY edge_in_rings* edges;
+  RINGS_MEMORY const coordinate2* points;  // by vertex
   // An edge out of each vertex, or NO_EDGE; out of a hull's strict corner, the counter-clockwise hull edge.
-  GLOBAL int* vertex_edge;
+  RINGS_MEMORY ring_index* vertex_edge;
   filter_bounds bounds;
   largest_errors errors;      // of the triangulations that are being merged
   int free_first, free_last;  // of the list of free edges
@@ -100,8 +110,8 @@ static inline largest_errors errors_between(const rings* g, hull_ends ends) {
   return errors_within(fmax(width, height), g->bounds);
 }
 
-static inline rings rings_on(GLOBAL ring_edge* edges, GLOBAL const coordinate2* points, GLOBAL int* vertex_edge,
-                             filter_bounds bounds) {
+static inline rings rings_on(RINGS_MEMORY edge_in_rings* edges, RINGS_MEMORY const coordinate2* points,
+                             RINGS_MEMORY ring_index* vertex_edge, filter_bounds bounds) {
   rings g;
   g.edges = edges;
   g.points = points;
@@ -218,7 +228,7 @@ static inline int in_circle(rings* g, coordinate2 a, coordinate2 b, coordinate2 
 }
 
 static inline void put_edge(rings* g, int e, int to, int next, int previous) {
-  const ring_edge edge = {to, next, previous};
+  const edge_in_rings edge = {to, next, previous};
   g->edges[e] = edge;
 }
 
@@ -365,7 +375,7 @@ static inline void make_star(rings* g, int4 q) {
 
 // An edge from the right triangulation to the left one that has both above it. Changes nothing before it is found.
 static inline int lower_tangent(rings* g, int left, int right) {
-  GLOBAL const ring_edge* edges = g->edges;
+  RINGS_MEMORY const edge_in_rings* edges = g->edges;
   int left_edge = g->vertex_edge[left], right_edge = g->vertex_edge[right];
   // The clockwise hull edge out of the left vertex; a vertex alone has none.
   if (left_edge != NO_EDGE) left_edge = edges[left_edge].previous;
@@ -424,7 +434,7 @@ static inline coordinate_pair point_at(const rings* g, int vertex) { return load
 // over a base compare angles, which are computed once and also tell which apexes rise above it. The side whose
 // vertex stays keeps its candidate in registers.
 static inline int merge_above(rings* g, int base) {
-  GLOBAL const ring_edge* edges = g->edges;
+  RINGS_MEMORY const edge_in_rings* edges = g->edges;
   int left = edges[base].to, right = edges[base ^ 1].to;
   coordinate_pair left_point = point_at(g, left), right_point = point_at(g, right);
   int left_edge = edges[base ^ 1].next, right_edge = edges[base].previous;

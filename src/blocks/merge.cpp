@@ -5,6 +5,8 @@
 #include "blocks/parts.hpp"
 #include "blocks/pipeline.hpp"
 #include "blocks/records.h"
+#include "launchers/blocks/local_parts.cl.hpp"
+#include "launchers/blocks/local_parts_exact.cl.hpp"
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
@@ -31,11 +33,11 @@ std::size_t sewing_group_of(const Tuning& tuning, int height) {
   return std::min(tuning.sewing_group, std::max(tuning.block_group, std::size_t{4} << (height + 1) / 2));
 }
 
-// The arrays of merges from both ends of their seam that all heights share.
+// The lists of merges from both ends of their seam, and what their launches share.
 struct Seams {
   Buffer<cl_int2> crossings{};
-  Buffer<kernel::seam_walk> walks{};
   Buffer<cl_int> removals{};
+  Buffer<kernel::seam_walk> walks{};
   Buffer<cl_uchar> is_removed{};  // 0, all of them, between heights
 };
 
@@ -47,15 +49,17 @@ int first_height_of_seams(const Tuning& tuning) {
   return height;
 }
 
-Seams seams_of(Workspace& work, const PointBlocks& blocks, int first_height) {
-  Arena& scratch = work.scratch();
+void make_lists(Workspace& work, const PointBlocks& blocks, Seams& seams) {
   const std::size_t room = 2 * kernel::CROSSINGS_PER_VERTEX * blocks.points;
+  seams.crossings = work.scratch().allocate<cl_int2>(room);
+  seams.removals = work.scratch().allocate<cl_int>(room);
+}
+
+void make_walks(Workspace& work, const PointBlocks& blocks, int first_height, Seams& seams) {
   const std::size_t marks = 2 * kernel::PAIRS_PER_VERTEX * blocks.points;
-  const Seams seams{scratch.allocate<cl_int2>(room),
-                    scratch.allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height)),
-                    scratch.allocate<cl_int>(room), scratch.allocate<cl_uchar>(marks)};
+  seams.walks = work.scratch().allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height));
+  seams.is_removed = work.scratch().allocate<cl_uchar>(marks);
   work.runtime.fill<cl_uchar>(seams.is_removed, marks, 0);
-  return seams;
 }
 
 // The data of merges of halves that all heights share.
@@ -110,6 +114,40 @@ void launch_on_walks(const Halves& halves, int height) {
                        .account = rings.device_account});
 }
 
+// The greatest height of parts that are triangulated in local memory; less than 0 for none. If blocks have a
+// fraction of the vertices, most work-items of a group are idle, which costs nothing while they would be idle
+// anyhow.
+int height_in_local_memory(Workspace& work, const PointBlocks& blocks) {
+  const Tuning& tuning = tuning_of(work.runtime);
+  const std::size_t vertices = tuning.local_vertices;
+  const bool are_small =
+      4 * blocks.points < vertices * blocks.count && kernel::LOCAL_MERGES * blocks.count > tuning.merge_items;
+  if (vertices < kernel::LEAF_VERTICES || are_small) return -1;
+  return kernel::halving_depth(static_cast<int>(vertices));
+}
+
+// kernels::solve_local_parts or kernels::finish_local_parts.
+template <typename Kernel>
+void launch_on_local_parts(const Halves& halves, int height, std::size_t parts_per_block) {
+  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const std::size_t groups = parts_per_block * blocks.count,
+                    group = std::min<std::size_t>(tuning_of(work.runtime).halve_group, kernel::LOCAL_MERGES);
+  work.runtime.launch(group * groups, group,
+                      Kernel{.groups = groups,
+                             .parts_per_block = parts_per_block,
+                             .places_of_parts = places_of_parts(blocks, halved, rings, height),
+                             .bounds = work.bounds,
+                             .points = blocks.vertices,
+                             .edges = rings.edges,
+                             .vertex_edge = rings.vertex_edge,
+                             .parts = parts,
+                             .solved = rings.solved,
+                             .crossings = seams.crossings,
+                             .removals = seams.removals,
+                             .states = states,
+                             .account = rings.device_account});
+}
+
 // kernels::merge_trees or kernels::finish_trees.
 template <typename Kernel>
 void launch_on_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t merges,
@@ -154,14 +192,23 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   Arena::Scope scope(work.scratch());
   Halves halves{work, blocks, halved, rings};
   halves.parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
-  halves.states = work.scratch().allocate<cl_int>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
-  const int first_seams = first_height_of_seams(tuning_of(work.runtime));
-  for (int height = 0; height < first_seams && height <= heights; ++height) {
+  const int in_local = height_in_local_memory(work, blocks);
+  const std::size_t parts_per_block = std::size_t{1} << std::max(0, heights - std::max(0, in_local));
+  halves.states =
+      work.scratch().allocate<cl_int>(in_local < 0 ? cells_of(blocks, 0) : parts_per_block * blocks.count);
+  const int first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), in_local + 1);
+  if (in_local >= 0 || first_seams <= heights) make_lists(work, blocks, halves.seams);
+  if (in_local >= 0) {
+    launch_on_local_parts<kernels::solve_local_parts>(halves, in_local, parts_per_block);
+    if (walks_may_stop(work))
+      launch_on_local_parts<kernels::finish_local_parts>(halves, in_local, parts_per_block);
+  }
+  for (int height = in_local + 1; height < first_seams && height <= heights; ++height) {
     launch_on_parts<kernels::merge_parts>(halves, height);
     if (may_stop(work)) launch_on_parts<kernels::finish_parts>(halves, height);
   }
-  if (first_seams <= heights) halves.seams = seams_of(work, blocks, first_seams);
+  if (first_seams <= heights) make_walks(work, blocks, first_seams, halves.seams);
   for (int height = first_seams; height <= heights; ++height) {
     launch_on_walks<kernels::walk_seams>(halves, height);
     if (walks_may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);

@@ -200,6 +200,14 @@ constexpr Row kTable[] = {
      "Of a warp every third lane makes a leaf: caches hold what so many keep in private memory. An H100 "
      "takes 1.2 ms "
      "instead of 3.1 for 10 million points."},
+    {"local_vertices",
+     &Tuning::local_vertices,
+     {0},
+     {kernel::LOCAL_VERTICES},
+     {16},
+     "What 48 KB of local memory hold. There a step takes a third of the time, and all heights one launch, "
+     "by "
+     "the model."},
     {"seam_points",
      &Tuning::seam_points,
      {16},
@@ -590,6 +598,7 @@ void fit_tiles(Tuning& tuning) {
   fit(tuning.samples_per_gap_block, samples);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
+  tuning.local_vertices = std::min<std::size_t>(tuning.local_vertices, kernel::LOCAL_VERTICES);
 }
 
 }  // namespace
@@ -617,6 +626,7 @@ host::Settings settings_for(const boost::compute::device& device, const std::str
   const host::DeviceLimits limits = host::limits_of(device);
   host::fit(tuning, limits);
   fit_tiles(tuning);
+  if (limits.local_memory < kernel::LOCAL_PART_BYTES) tuning.local_vertices = 0;
   if (!host::has_fp64(device)) {
     kind.capabilities.fixed_point = true;
     tuning.fixed_point_from = 0;

@@ -26,6 +26,9 @@ struct Tuning : host::Sizes {
   /// are in different warps. If more cavities of constraints than this are filled at once, floating point is
   /// tried first, with fewer registers.
   std::size_t merge_items = 0;
+  /// Work-groups triangulate parts of blocks with at most this many vertices in local memory, at most
+  /// kernel::LOCAL_VERTICES; 0: none.
+  std::size_t local_vertices = 0;
   /// Halves of blocks with at least this many points together are merged from both ends of their seam.
   std::size_t seam_points = 1;
   /// The least number of work-items launched per leaf. One of them works.

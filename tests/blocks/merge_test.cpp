@@ -103,7 +103,7 @@ struct Solution {
   }
 };
 
-void check_merge(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
+void check_merge_as_tuned(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
   Call call(runtime);
   call.work.bounds = bounds;
   const DeviceBlocks on_device(call, points);
@@ -120,6 +120,24 @@ void check_merge(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met
     ASSERT_EQ(check.run(), "") << "block " << b;
     ASSERT_EQ(found.broken_free_list(b), "") << "block " << b;
     met.triangles += check.triangles().size() / 3;
+  }
+}
+
+void set_local_vertices(Runtime& runtime, std::size_t vertices) {
+  Tuning tuning = tuning_of(runtime);
+  tuning.local_vertices = vertices;
+  runtime.set_sizes(std::make_shared<Tuning>(tuning));
+}
+
+/// In global memory, and from parts in local memory on, small and large ones. PoCL takes ten seconds to
+/// compile these for a size of groups, so they have few.
+void check_merge(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
+  const std::size_t group = tuning_of(runtime).halve_group;
+  for (const std::size_t vertices : {0, 16, kernel::LOCAL_VERTICES}) {
+    if (vertices > 0 && group != 2 && group != kernel::LOCAL_MERGES) continue;
+    SCOPED_TRACE("vertices in local memory: " + std::to_string(vertices));
+    set_local_vertices(runtime, vertices);
+    check_merge_as_tuned(runtime, points, bounds, met);
   }
 }
 
@@ -363,14 +381,20 @@ TEST(Merge, LaunchesAreFew) {
   with_groups(1 << 20, [](Runtime& runtime) {
     BlockPoints points;
     for (int b = 0; b < 4; ++b) points.add(make_fixture("uniform", 2048, 44));
-    Call call(runtime);
-    call.work.bounds = kUsualBounds;
-    const DeviceBlocks on_device(call, points);
-    const std::size_t launches = runtime.accounts().launches, waits = runtime.accounts().waits;
-    solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
-    // From height 2 on, with 8 points, merges are from both ends, and they begin with a fill.
-    EXPECT_EQ(runtime.accounts().launches - launches, 2u + 2 * 2 + 1 + 3 * 8);
-    EXPECT_EQ(runtime.accounts().waits, waits);
+    for (const std::size_t vertices : {0, 512}) {
+      if (vertices > 0 && tuning_of(runtime).halve_group != kernel::LOCAL_MERGES) continue;
+      set_local_vertices(runtime, vertices);
+      Call call(runtime);
+      call.work.bounds = kUsualBounds;
+      const DeviceBlocks on_device(call, points);
+      const std::size_t launches = runtime.accounts().launches, waits = runtime.accounts().waits;
+      solve_in_parallel(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+      // From height 2 on, with 8 points, merges are from both ends, and they begin with a fill. Local memory
+      // has all up to height 7.
+      EXPECT_EQ(runtime.accounts().launches - launches,
+                2u + (vertices == 0 ? 2 * 2 + 1 + 3 * 8 : 2 + 1 + 3 * 2));
+      EXPECT_EQ(runtime.accounts().waits, waits);
+    }
   });
 }
 

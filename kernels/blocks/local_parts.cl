@@ -1,0 +1,26 @@
+// The triangulations of parts of blocks with at most LOCAL_VERTICES vertices, between blocks/halve.cl and the merges of
+// larger parts (blocks/seams.cl): see blocks/local_part.h. One launch, with a work-group per part. A part stops at a
+// predicate that floating point cannot decide, and is left to blocks/local_parts_exact.cl. In fixed point none stops.
+
+#ifndef FIXED_POINT
+#define RINGS_STOP
+#endif
+#define LOCAL_RINGS
+#include "blocks/arguments.h"
+#include "blocks/local_part.h"
+#include "blocks/parts.h"
+#include "blocks/records.h"
+#include "mesh/records.h"
+#include "predicates/records.h"
+
+kernel void solve_local_parts(int groups, int parts_per_block, PLACES_OF_PARTS(), filter_bounds bounds,
+                              global const coordinate2* restrict points, global ring_edge* restrict edges,
+                              global int* restrict vertex_edge, global solved_block* restrict parts,
+                              global solved_block* restrict solved, global int2* restrict crossings,
+                              global int* restrict removals, global int* restrict states,
+                              global volatile uint* account COUNTERS) {
+  LOCAL_ARRAYS(own);
+  const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, 0, solved};
+  solve_local_part(get_group_id(0), groups, parts_per_block, height, 0, blocks, bounds, points, edges, vertex_edge,
+                   parts, crossings, removals, states, own, account WITH_COUNTERS);
+}

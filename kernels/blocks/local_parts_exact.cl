@@ -1,0 +1,23 @@
+// The parts at which blocks/local_parts.cl has stopped, with exact predicates: one launch with the same groups.
+
+// Compiled in half the time, and these are called rarely.
+#define OUT_OF_LINE __attribute__((noinline))
+#define LOCAL_RINGS
+#include "blocks/arguments.h"
+#include "blocks/local_part.h"
+#include "blocks/parts.h"
+#include "blocks/records.h"
+#include "mesh/records.h"
+#include "predicates/records.h"
+
+kernel void finish_local_parts(int groups, int parts_per_block, PLACES_OF_PARTS(), filter_bounds bounds,
+                               global const coordinate2* restrict points, global ring_edge* restrict edges,
+                               global int* restrict vertex_edge, global solved_block* restrict parts,
+                               global solved_block* restrict solved, global int2* restrict crossings,
+                               global int* restrict removals, global int* restrict states,
+                               global volatile uint* account COUNTERS) {
+  LOCAL_ARRAYS(own);
+  const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, 0, solved};
+  solve_local_part(get_group_id(0), groups, parts_per_block, height, 1, blocks, bounds, points, edges, vertex_edge,
+                   parts, crossings, removals, states, own, account WITH_COUNTERS);
+}
