@@ -19,7 +19,7 @@ trap 'rm -f "$log"' EXIT
 [ $# -gt 0 ] || set -- ''
 for call in "$@"; do
   code=0
-  FLAUNAY_TUNING=$tuning oclgrind --build-options "-O0" --check-api --data-races --max-errors 100 --log "$log" \
+  FLAUNAY_TUNING=$tuning oclgrind --build-options "-O0" --local-mem-size 49152 --check-api --data-races --max-errors 100 --log "$log" \
     "$program" devices --test --device '#0' --points 40 ${call:+--only "$call"} || code=$?
   if [ -s "$log" ]; then
     cat "$log" >&2

@@ -1,10 +1,5 @@
 // The leaves of all blocks, and merges of their halves and of blocks. With RINGS_STOP they stop at a predicate that
 // floating point cannot decide, and a program without it continues them.
-//
-// A part of a block is a leaf, which has height 0, or the result of merging two parts of the height below. A
-// part of height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are
-// divided into cells of that size, at most one part of the height begins in each, and one work-item per cell
-// does it.
 #ifndef FLAUNAY_HALVES_H
 #define FLAUNAY_HALVES_H
 
@@ -41,23 +36,6 @@ static inline void finish_part(rings* g, const halved_blocks* blocks, block_part
     blocks->parts[(part.first + part.begin) / 2] = done;
   }
 }
-
-// The part of this depth that begins at the place or, if it must not, behind it. Its block is given.
-static inline block_part part_behind(const halved_blocks* blocks, int block, int height, int place) {
-  block_part part = {-1, 0, 0, 0, 0, 0};
-  if (block < 0) return part;
-  part.first = blocks->offsets[block];
-  part.count = blocks->distinct[block];
-  part.depth = halving_depth(part.count) - height;
-  if (part.depth < 0 || part.count == 0) return part;
-  part.number = part_from(part.count, part.depth, max(0, place - part.first));
-  if (part.number >> part.depth) return part;
-  part.begin = part_begin(part.count, part.depth, part.number);
-  part.block = block;
-  return part;
-}
-
-static inline int begins_before(block_part part, int end) { return part.block >= 0 && part.first + part.begin < end; }
 
 // The leaf that begins at a place, if one does, whose edges are then free. Frees the edges of a place without a vertex.
 static inline block_part begin_leaf(rings* g, const halved_blocks* blocks, int place) {
@@ -112,12 +90,9 @@ static inline int merge_sides(rings* g, int state, solved_block low, solved_bloc
 
 // The halves of the part of this height that begins in a cell.
 static inline part_halves halves_of_cell(const halved_blocks* blocks, int height, int cell) {
-  const int begin = cell << (height + 1), end = min(blocks->places - begin, 2 << height) + begin;
-  block_part part = part_behind(blocks, blocks->block_of_place[begin], height, begin);
-  if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
-  if (begins_before(part, end)) return halves_of_part(blocks, part);
-  part_halves none = {{-1, 0, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
-  return none;
+  const block_part part = part_of_cell(blocks, height, cell);
+  if (part.block >= 0) return halves_of_part(blocks, part);
+  return no_halves();
 }
 
 // Merges the halves of the part of this height that begins in a cell, if there is one. Returns how far it is.

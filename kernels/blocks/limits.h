@@ -3,6 +3,7 @@
 #define FLAUNAY_BLOCKS_LIMITS_H
 
 #include "arithmetic/language.h"
+#include "mesh/limits.h"
 
 BEGIN_SHARED
 
@@ -10,11 +11,11 @@ BEGIN_SHARED
 // less than twice as many edges as vertices. Fewer edges are removed than cross: n vertices have 3 n - 3 - h edges if
 // one goes around their outside along h edges, and a merge adds at most 2 to these of its halves.
 INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
-// Work-groups triangulate parts of blocks with at most this many vertices in so many bytes of local memory
-// (blocks/local_part.h). At most so many merges are of one height.
+// The most vertices of a part that a work-group triangulates in local memory (blocks/local_part.h), LEAF_VERTICES times
+// a power of two; the most merges of a height; and the local memory that this takes.
 INTEGER_CONSTANT(LOCAL_VERTICES, 512);
-INTEGER_CONSTANT(LOCAL_PART_BYTES, 43 * 1024);
-INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / 8);
+INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
+INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
 // Sorts begin with tiles of this many points, a power of two. There each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
 // Work-items of the largest work-group that a kernel with local memory per work-item is made for.

@@ -19,37 +19,26 @@
 
 #define LOCAL_PAIRS (PAIRS_PER_VERTEX * LOCAL_VERTICES)
 
-// How far a merge of two halves is. Its numbers of edges that cross the seam and of pairs that are removed, and its
-// free list.
+// A merge of two halves: where its walks meet, how many edges cross its seam, how many pairs of edges are removed, and
+// its free list.
 typedef struct {
   int meets, count, removed_pairs;
   free_edges unused;
 } local_merge;
 
-// A work-group's arrays. parts: by half the number of the first vertex. is_removed: by pair, by upward and downward
-// walks. walks: two per merge of a height.
+// The arrays of a work-group. parts: by half the number of the first vertex. is_removed: by pair, by upward and then by
+// downward walks. walks: two per merge of a height.
 typedef struct {
-  local short_edge* edges;
-  local coordinate2* points;
-  local short* vertex_edge;
-  local uchar* is_removed;
-  local solved_block* parts;
-  local seam_walk* walks;
-  local local_merge* merges;
-  local int* has_stopped;
+  coordinate2 points[LOCAL_VERTICES];
+  solved_block parts[LOCAL_VERTICES / 2];
+  seam_walk walks[2 * LOCAL_MERGES];
+  local_merge merges[LOCAL_MERGES];
+  short_edge edges[EDGES_PER_VERTEX * LOCAL_VERTICES];
+  short vertex_edge[LOCAL_VERTICES];
+  uchar is_removed[2 * LOCAL_PAIRS];
+  int has_stopped;
 } local_arrays;
-
-#define LOCAL_ARRAYS(NAME)                                                           \
-  local short_edge own_edges[EDGES_PER_VERTEX * LOCAL_VERTICES];                     \
-  local coordinate2 own_points[LOCAL_VERTICES];                                      \
-  local short own_vertex_edge[LOCAL_VERTICES];                                       \
-  local uchar own_is_removed[2 * LOCAL_PAIRS];                                       \
-  local solved_block own_parts[LOCAL_VERTICES / 2];                                  \
-  local seam_walk own_walks[2 * LOCAL_MERGES];                                       \
-  local local_merge own_merges[LOCAL_MERGES];                                        \
-  local int own_has_stopped;                                                         \
-  const local_arrays NAME = {own_edges, own_points, own_vertex_edge, own_is_removed, \
-                             own_parts, own_walks,  own_merges,      &own_has_stopped}
+ASSERT_SIZE(local_arrays, LOCAL_PART_BYTES);
 
 // The tasks of a work-item: every `step`-th from `first` on, each as item `rank` of `size` that share it.
 typedef struct {
@@ -62,21 +51,31 @@ static inline team team_of(int tasks) {
   return t;
 }
 
-// A part, whose vertices are numbered from 0 on here: `first` is the place of its first one among all places. Its block
-// counts from a place before. own_height: -1 if there is no part.
+// A part. Its vertices are numbered from 0 on here; `first` is the place of the first one among all places. own_height:
+// -1 if there is no part.
 typedef struct {
   block_part part;
-  int first, size, own_height, is_last;
+  int first, size, own_height;
 } local_part;
 
-static inline local_part local_part_of(int block, int number, int height, global const int* offsets,
-                                       global const int* distinct) {
-  const int count = distinct[block], depth = max(0, halving_depth(count) - height);
-  const int begin = part_begin(count, depth, number);
-  const block_part part = {block, -begin, count, depth, number, begin};
-  const int is_part = count > 0 && number < 1 << depth;
-  const local_part p = {part, offsets[block] + begin, is_part ? part_begin(count, depth, number + 1) - begin : 0,
-                        is_part ? halving_depth(count) - depth : -1, number == (1 << depth) - 1};
+// The part of a group: a block of at most this height, or the part of this height of a larger block that begins in a
+// cell.
+static inline local_part local_part_of(const halved_blocks* blocks, int block_count, int group, int height) {
+  block_part part = {group, 0, 0, 0, 0, 0};
+  if (group < block_count) {
+    part.count = blocks->distinct[group];
+    part.first = blocks->offsets[group];
+    if (part.count == 0 || halving_depth(part.count) > height) part.block = -1;
+  } else {
+    part = part_of_cell(blocks, height, group - block_count);
+    if (part.depth == 0) part.block = -1;
+  }
+  local_part p = {part, part.first + part.begin, 0, -1};
+  if (part.block >= 0) {
+    p.size = part_begin(part.count, part.depth, part.number + 1) - part.begin;
+    p.own_height = halving_depth(part.count) - part.depth;
+    p.part.first = -part.begin;
+  }
   return p;
 }
 
@@ -88,14 +87,14 @@ static inline block_part part_within(const local_part* p, int height, int j) {
   return part;
 }
 
-static inline void make_local_leaf(rings* g, const local_arrays* own, block_part part) {
+static inline void make_local_leaf(rings* g, local local_arrays* own, block_part part) {
   const int v = part.first + part.begin;
   const int size = part.first + part_begin(part.count, part.depth, part.number + 1) - v;
   g->free_first = g->free_last = NO_EDGE;
   g->unused = edge_at(v);
   const hull_ends ends = make_leaf(g, v, size);
   if (HAS_STOPPED(g)) {
-    atomic_or(own->has_stopped, 1);
+    atomic_or(&own->has_stopped, 1);
   } else {
     free_unused(g, edge_at(v + size));
     const solved_block leaf = {ends, free_list(g)};
@@ -104,7 +103,7 @@ static inline void make_local_leaf(rings* g, const local_arrays* own, block_part
 }
 
 // Merge j of this height. crossings, removals: of the part, by upward walks; by downward walks from places on.
-static inline sewing local_sewing(const local_part* p, const local_arrays* own, const halved_blocks* blocks, int height,
+static inline sewing local_sewing(const local_part* p, local local_arrays* own, const halved_blocks* blocks, int height,
                                   int j, global int2* crossings, global int* removals) {
   const part_halves halves = halves_of_part(blocks, part_within(p, height, j));
   const int up = CROSSINGS_PER_VERTEX * halves.begin, down = CROSSINGS_PER_VERTEX * (blocks->places + halves.begin);
@@ -119,7 +118,7 @@ static inline sewing local_sewing(const local_part* p, const local_arrays* own, 
   return s;
 }
 
-static inline void begin_local_merge(rings* g, const local_arrays* own, const sewing* s, part_halves halves, int j) {
+static inline void begin_local_merge(rings* g, local local_arrays* own, const sewing* s, part_halves halves, int j) {
   int removed_pairs = s->seam.up.removals;
   for (int k = 0; k < s->seam.down.removals; ++k) {
     const int pair = s->removals_down[k];
@@ -131,7 +130,7 @@ static inline void begin_local_merge(rings* g, const local_arrays* own, const se
   merge->unused = free_list(g);
 }
 
-static inline void end_local_merge(const rings* g, const local_arrays* own, const sewing* s, part_halves halves,
+static inline void end_local_merge(const rings* g, local local_arrays* own, const sewing* s, part_halves halves,
                                    local_merge merge, global volatile uint* account) {
   if (merge.count > 0) end_sewing(s, merge.count);
   if (merge.count == 0) atomic_inc(&account[RINGS_BROKEN]);
@@ -162,36 +161,35 @@ static inline int longest_walk(local const seam_walk* walks, int count) {
 #define ADD_LONGEST_WALK(chain, walks, count)
 #endif
 
-// Group `group` of those that have parts_per_block parts of each block, of this height or less. A part that stops is
-// left, with 1 as its state. With is_second, only these are triangulated.
-WITH_BARRIERS void solve_local_part(int group, int groups, int parts_per_block, int height, int is_second,
+// A part that stops is left, with 1 as the state of its group. With is_second, only these are triangulated. There may
+// be groups behind the last one, which do nothing.
+WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int height, int is_second,
                                     halved_blocks blocks, filter_bounds bounds, global const coordinate2* points,
                                     global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                                    global int2* crossings, global int* removals, global int* states, local_arrays own,
-                                    global volatile uint* account COUNTERS) {
+                                    global int2* crossings, global int* removals, global int* states,
+                                    local local_arrays* own, global volatile uint* account COUNTERS) {
   const int me = get_local_id(0), lanes = get_local_size(0);
   const int is_wanted = group < groups && (!is_second || states[group]);
-  local_part p = local_part_of(min(group, groups - 1) / parts_per_block, group % parts_per_block, height,
-                               blocks.offsets, blocks.distinct);
+  local_part p = local_part_of(&blocks, block_count, min(group, groups - 1), height);
   if (!is_wanted) p.own_height = -1;
-  // As seen from the part's first vertex.
+  // Places, too, are counted from the part's first vertex now.
   blocks.axes += p.first;
-  blocks.parts = own.parts;
+  blocks.parts = own->parts;
   crossings += CROSSINGS_PER_VERTEX * p.first;
   removals += CROSSINGS_PER_VERTEX * p.first;
-  rings g = rings_on(own.edges, own.points, own.vertex_edge, bounds);
+  rings g = rings_on(own->edges, own->points, own->vertex_edge, bounds);
   const int leaves = p.own_height < 0 ? 0 : 1 << p.own_height;
   const int size = leaves > 0 ? p.size : 0;
-  for (int v = me; v < size; v += lanes) own.points[v] = points[p.first + v];
-  for (int k = me; k < PAIRS_PER_VERTEX * size; k += lanes) own.is_removed[k] = own.is_removed[LOCAL_PAIRS + k] = 0;
-  if (me == 0) *own.has_stopped = 0;
+  for (int v = me; v < size; v += lanes) own->points[v] = points[p.first + v];
+  for (int k = me; k < PAIRS_PER_VERTEX * size; k += lanes) own->is_removed[k] = own->is_removed[LOCAL_PAIRS + k] = 0;
+  if (me == 0) own->has_stopped = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
-  for (int j = me; j < leaves; j += lanes) make_local_leaf(&g, &own, part_within(&p, 0, j));
+  for (int j = me; j < leaves; j += lanes) make_local_leaf(&g, own, part_within(&p, 0, j));
   barrier(CLK_LOCAL_MEM_FENCE);
-  int has_stopped = *own.has_stopped;
+  int has_stopped = own->has_stopped;
   uint chain = 0;  // of steps
   for (int h = 1; h <= p.own_height; ++h) {
-    barrier(CLK_LOCAL_MEM_FENCE);
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     const int most = 1 << (p.own_height - h);
     int merges = has_stopped ? 0 : most;
     // Of a warp as few walks as possible, since they diverge.
@@ -199,76 +197,82 @@ WITH_BARRIERS void solve_local_part(int group, int groups, int parts_per_block, 
     for (int w = walkers.first; walkers.rank == 0 && w < 2 * merges; w += walkers.step) {
       const part_halves halves = halves_of_part(&blocks, part_within(&p, h, w / 2));
       const int is_downward = w & 1, list = CROSSINGS_PER_VERTEX * is_downward * blocks.places;
-      own.walks[w] = walk_of_halves(&g, &blocks, &halves, is_downward, walk_from(NO_VERTEX, NO_VERTEX, 0, 0),
-                                    crossings + list, removals + list, own.is_removed + is_downward * LOCAL_PAIRS);
-      if (!is_downward) own.merges[w / 2].meets = -1;
-      if (HAS_STOPPED(&g)) atomic_or(own.has_stopped, 1);
+      own->walks[w] = walk_of_halves(&g, &blocks, &halves, is_downward, walk_from(NO_VERTEX, NO_VERTEX, 0, 0),
+                                     crossings + list, removals + list, own->is_removed + is_downward * LOCAL_PAIRS);
+      if (!is_downward) {
+        own->merges[w / 2].meets = -1;
+        own->merges[w / 2].count = 0;
+      }
+      if (HAS_STOPPED(&g)) atomic_or(&own->has_stopped, 1);
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
-    has_stopped = *own.has_stopped;
+    has_stopped = own->has_stopped;
     if (has_stopped) merges = 0;
-    ADD_LONGEST_WALK(chain, own.walks, 2 * merges);
+    ADD_LONGEST_WALK(chain, own->walks, 2 * merges);
     for (int j = sewers.first; j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
       for (int k = sewers.rank; k < s.seam.down.crossings; k += sewers.size) {
-        if (walks_meet(&s.seam, k, own.edges)) own.merges[j].meets = k;
+        if (walks_meet(&s.seam, k, own->edges)) own->merges[j].meets = k;
       }
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int j = sewers.first; sewers.rank == 0 && j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
-      begin_local_merge(&g, &own, &s, halves_of_part(&blocks, part_within(&p, h, j)), j);
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
+      begin_local_merge(&g, own, &s, halves_of_part(&blocks, part_within(&p, h, j)), j);
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     for (int j = sewers.first; j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
-      for (int k = sewers.rank; k < own.merges[j].removed_pairs; k += sewers.size) mark_vertex_edges(&s, s.slots[k]);
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
+      for (int k = sewers.rank; k < own->merges[j].removed_pairs; k += sewers.size) mark_vertex_edges(&s, s.slots[k]);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int j = sewers.first; j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
-      const int removed_pairs = s.seam.count > 0 ? own.merges[j].removed_pairs : 0;
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
+      const int removed_pairs = s.seam.count > 0 ? own->merges[j].removed_pairs : 0;
       for (int k = sewers.rank; k < removed_pairs; k += sewers.size) replace_vertex_edges(&s, s.slots[k]);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int j = sewers.first; j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
-      for (int k = sewers.rank; k < own.merges[j].removed_pairs; k += sewers.size) unmark(&s, s.slots[k]);
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
+      for (int k = sewers.rank; k < own->merges[j].removed_pairs; k += sewers.size) unmark(&s, s.slots[k]);
       for (int i = sewers.rank; i < s.seam.count; i += sewers.size) sew_crossing(&s, i);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (int j = sewers.first; sewers.rank == 0 && j < merges; j += sewers.step) {
-      const sewing s = local_sewing(&p, &own, &blocks, h, j, crossings, removals);
-      end_local_merge(&g, &own, &s, halves_of_part(&blocks, part_within(&p, h, j)), own.merges[j], account);
+      const sewing s = local_sewing(&p, own, &blocks, h, j, crossings, removals);
+      end_local_merge(&g, own, &s, halves_of_part(&blocks, part_within(&p, h, j)), own->merges[j], account);
     }
   }
   barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
   const int is_done = leaves > 0 && !has_stopped;
   if (me == 0 && group < groups && !is_second) states[group] = has_stopped;
   for (int e = me; is_done && e < edge_at(size); e += lanes) {
-    const short_edge from = own.edges[e];
+    const short_edge from = own->edges[e];
     const ring_edge to = {vertex_from(p.first, from.to), edge_from(p.first, from.next),
                           edge_from(p.first, from.previous)};
     edges[edge_at(p.first) + e] = to;
   }
   for (int v = me; is_done && v < size; v += lanes) {
-    vertex_edge[p.first + v] = edge_from(p.first, own.vertex_edge[v]);
+    vertex_edge[p.first + v] = edge_from(p.first, own->vertex_edge[v]);
   }
   // The edges of places without vertices are the block's, too.
-  const int end = blocks.offsets[p.part.block + 1], from = p.is_last && is_wanted ? p.first + p.size : end;
+  const int is_block = is_wanted && group < block_count;
+  const int from = is_block ? blocks.offsets[group] + blocks.distinct[group] : 0;
+  const int end = is_block ? blocks.offsets[group + 1] : 0;
   for (int place = from + me; place < end; place += lanes) free_place(edges, vertex_edge, place, end);
   barrier(CLK_GLOBAL_MEM_FENCE);
   if (me == 0 && is_done) {
-    const solved_block done = placed_part(own.parts[0], p.first);
+    const solved_block done = placed_part(own->parts[0], p.first);
     if (p.part.depth > 0) {
       parts[p.first / 2] = done;
       // The walks of the part's own merge look at its high half's ends.
       if (p.own_height > 0) {
         const int middle = halves_of_part(&blocks, p.part).middle;
-        parts[(p.first + middle) / 2] = placed_part(own.parts[middle / 2], p.first);
+        parts[(p.first + middle) / 2] = placed_part(own->parts[middle / 2], p.first);
       }
     } else {
       blocks.solved[p.part.block] = done;
+      // n vertices have less than 3 n pairs of edges, so that some are free.
       if (from < end) {
         edges[done.unused.last].next = edge_at(from);
         blocks.solved[p.part.block].unused.last = edge_at(end) - 2;

@@ -1,4 +1,9 @@
 // The parts into which blocks are halved: see blocks/halves.h, and blocks/local_part.h for parts in local memory.
+//
+// A part of a block is a leaf, which has height 0, or the result of merging two parts of the height below. A
+// part of height h has at least 2^(h + 1) vertices, unless it is a block of one vertex. So if places are
+// divided into cells of that size, at most one part of the height begins in each, and one work-item or
+// work-group per cell does it.
 #ifndef FLAUNAY_PARTS_H
 #define FLAUNAY_PARTS_H
 
@@ -38,12 +43,43 @@ typedef struct {
   int block, first, count, depth, number, begin;
 } block_part;
 
+// The part of this depth that begins at the place or, if it must not, behind it. Its block is given.
+static inline block_part part_behind(const halved_blocks* blocks, int block, int height, int place) {
+  block_part part = {-1, 0, 0, 0, 0, 0};
+  if (block < 0) return part;
+  part.first = blocks->offsets[block];
+  part.count = blocks->distinct[block];
+  part.depth = halving_depth(part.count) - height;
+  if (part.depth < 0 || part.count == 0) return part;
+  part.number = part_from(part.count, part.depth, max(0, place - part.first));
+  if (part.number >> part.depth) return part;
+  part.begin = part_begin(part.count, part.depth, part.number);
+  part.block = block;
+  return part;
+}
+
+static inline int begins_before(block_part part, int end) { return part.block >= 0 && part.first + part.begin < end; }
+
+// The part of this height that begins in a cell.
+static inline block_part part_of_cell(const halved_blocks* blocks, int height, int cell) {
+  const int begin = cell << (height + 1), end = min(blocks->places - begin, 2 << height) + begin;
+  block_part part = part_behind(blocks, blocks->block_of_place[begin], height, begin);
+  if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
+  if (!begins_before(part, end)) part.block = -1;
+  return part;
+}
+
 // The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,
 // and one vertex behind it. part.block is -1 if there is no part.
 typedef struct {
   block_part part;
   int axis, low_at, high_at, begin, middle, end;
 } part_halves;
+
+static inline part_halves no_halves(void) {
+  const part_halves none = {{-1, 0, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  return none;
+}
 
 static inline part_halves halves_of_part(const halved_blocks* blocks, block_part part) {
   part_halves halves;

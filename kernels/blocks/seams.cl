@@ -47,7 +47,7 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
 
 SCAN_IN_GROUP(sum_before, uint)
 
-kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict points,
+kernel void sew_seams(int cells, PLACES_OF_PARTS(), global const coordinate2* restrict points,
                       global const int2* restrict crossings, global const seam_walk* restrict walks,
                       global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                       global solved_block* solved, global int* removals, global uchar* is_removed,
@@ -56,17 +56,20 @@ kernel void sew_seams(PLACES_OF_PARTS(), global const coordinate2* restrict poin
   local int meets, count;  // see begin_sewing
   const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
   const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
-  const part_halves halves = halves_of_cell(&blocks, height, cell);
+  // There may be groups behind the last cell.
+  const part_halves halves = cell < cells ? halves_of_cell(&blocks, height, cell) : no_halves();
   const int is_merge = halves.part.block >= 0, begin = is_merge ? halves.begin : 0;
   const int list_up = CROSSINGS_PER_VERTEX * begin, list_down = CROSSINGS_PER_VERTEX * (places + begin);
-  const sewing s = {
-      {0, halves.middle, walks[2 * cell], walks[2 * cell + 1], crossings + list_up, crossings + list_down},
-      edges,
-      vertex_edge,
-      is_removed,
-      is_removed + PAIRS_PER_VERTEX * places,
-      removals + list_down,
-      removals + list_up};
+  const seam_walk none_walked = walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_IS_WHOLE);
+  const seam_walk up_walk = is_merge ? walks[2 * cell] : none_walked;
+  const seam_walk down_walk = is_merge ? walks[2 * cell + 1] : none_walked;
+  const sewing s = {{0, halves.middle, up_walk, down_walk, crossings + list_up, crossings + list_down},
+                    edges,
+                    vertex_edge,
+                    is_removed,
+                    is_removed + PAIRS_PER_VERTEX * places,
+                    removals + list_down,
+                    removals + list_up};
   const int up = s.seam.up.removals, down = s.seam.down.removals;
   if (me == 0) meets = -1;
   barrier(CLK_LOCAL_MEM_FENCE);

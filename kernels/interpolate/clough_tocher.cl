@@ -82,8 +82,8 @@ static inline double clough_tocher(const double2* p, const double* value, const 
 }
 
 // n queries in order of places; found: their triangles, less than 0 outside of the hull. Triangles from `kept` on are
-// outside, too. in_place: on a torus, where points have images, by vertex the one of the same point in its place. All
-// triangles around that are there; around an image at the rim some are not. gradients: rows by vertex, or else by
+// outside, too. in_place: on a torus, where points have images, by vertex the one for the same point within the
+// period. All its triangles are there; at the rim, images lack some. gradients: rows by vertex, or else by
 // point; scales: factors by set, to the units of `points`.
 kernel void interpolate_clough_tocher(int n, PLACED_QUERIES(), int columns, int is_by_vertex, int has_images,
                                       double outside, filter_bound bound, int kept, FACES(),

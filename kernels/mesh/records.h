@@ -14,7 +14,7 @@ typedef struct {
 } ring_edge;
 ASSERT_SIZE(ring_edge, 12);
 
-// The same in local memory, for few vertices.
+// The same with numbers of 16 bits, for few vertices in local memory.
 typedef struct {
   short to, next, previous;
 } short_edge;

@@ -1381,7 +1381,7 @@ class Interpolation:
     def __init__(
         self, values: _Doubles, method: str, fill: float, gradients: Optional[_Doubles] = None, axes: int = 2
     ) -> None:
-        self._made_of = values, method, fill, gradients
+        self._made_of = values, method, fill, gradients, axes
         self.values = _as_doubles(values)
         self.address, self.columns = _address_of(self.values), values.shape[1]
         if gradients is not None:
@@ -1401,8 +1401,8 @@ class Interpolation:
         )
 
     def with_fill(self, fill: float) -> Interpolation:
-        values, method, _, gradients = self._made_of
-        return Interpolation(values, method, fill, gradients)
+        values, method, _, *others = self._made_of
+        return Interpolation(values, method, fill, *others)
 
     def of(self, locator: Locator) -> Callable[[_Doubles], _Doubles]:
         """What interpolates at queries."""

@@ -38,8 +38,8 @@ class PeriodicDelaunay(WithLocator):
     points : ndarray of float64, shape (npoints, 2)
         The points as they were given.
     weights : ndarray of float64, shape (npoints,), or None
-        Their weights, as of `WeightedDelaunay`. Then `cells` are power cells, and `interpolate` is linear or "clough-tocher" among points
-        that are not hidden.
+        Their weights, as of `WeightedDelaunay`. Then `cells` are power cells, and `interpolate` is linear or
+        "clough-tocher" among points that are not hidden.
     hidden : ndarray of int32, shape (nhidden,)
         As of `WeightedDelaunay`. Without weights there are none.
     period : tuple of float

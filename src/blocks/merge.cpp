@@ -123,18 +123,23 @@ int height_in_local_memory(Workspace& work, const PointBlocks& blocks) {
   const bool are_small =
       4 * blocks.points < vertices * blocks.count && kernel::LOCAL_MERGES * blocks.count > tuning.merge_items;
   if (vertices < kernel::LEAF_VERTICES || are_small) return -1;
-  return kernel::halving_depth(static_cast<int>(vertices));
+  return kernel::halving_depth(static_cast<int>(vertices / 2 + 1));
+}
+
+// One for each block, whose height may be less, and one for each cell of this height.
+std::size_t local_groups(const PointBlocks& blocks, int height) {
+  return blocks.count + cells_of(blocks, height);
 }
 
 // kernels::solve_local_parts or kernels::finish_local_parts.
 template <typename Kernel>
-void launch_on_local_parts(const Halves& halves, int height, std::size_t parts_per_block) {
+void launch_on_local_parts(const Halves& halves, int height) {
   const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
-  const std::size_t groups = parts_per_block * blocks.count,
+  const std::size_t groups = local_groups(blocks, height),
                     group = std::min<std::size_t>(tuning_of(work.runtime).halve_group, kernel::LOCAL_MERGES);
   work.runtime.launch(group * groups, group,
                       Kernel{.groups = groups,
-                             .parts_per_block = parts_per_block,
+                             .blocks = blocks.count,
                              .places_of_parts = places_of_parts(blocks, halved, rings, height),
                              .bounds = work.bounds,
                              .points = blocks.vertices,
@@ -172,7 +177,8 @@ void sew_seams(const Halves& halves, int height) {
   host::Runtime& runtime = work.runtime;
   const std::size_t group = sewing_group_of(tuning_of(runtime), height);
   runtime.launch(group * cells_of(blocks, height), group,
-                 kernels::sew_seams{.places_of_parts = places_of_parts(blocks, halved, rings, height),
+                 kernels::sew_seams{.cells = cells_of(blocks, height),
+                                    .places_of_parts = places_of_parts(blocks, halved, rings, height),
                                     .points = blocks.vertices,
                                     .crossings = seams.crossings,
                                     .walks = seams.walks,
@@ -194,15 +200,13 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
   halves.parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
   const int in_local = height_in_local_memory(work, blocks);
-  const std::size_t parts_per_block = std::size_t{1} << std::max(0, heights - std::max(0, in_local));
-  halves.states =
-      work.scratch().allocate<cl_int>(in_local < 0 ? cells_of(blocks, 0) : parts_per_block * blocks.count);
+  halves.states = work.scratch().allocate<cl_int>(
+      in_local < 0 ? cells_of(blocks, 0) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
   const int first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), in_local + 1);
   if (in_local >= 0 || first_seams <= heights) make_lists(work, blocks, halves.seams);
   if (in_local >= 0) {
-    launch_on_local_parts<kernels::solve_local_parts>(halves, in_local, parts_per_block);
-    if (walks_may_stop(work))
-      launch_on_local_parts<kernels::finish_local_parts>(halves, in_local, parts_per_block);
+    launch_on_local_parts<kernels::solve_local_parts>(halves, in_local);
+    if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local);
   }
   for (int height = in_local + 1; height < first_seams && height <= heights; ++height) {
     launch_on_parts<kernels::merge_parts>(halves, height);

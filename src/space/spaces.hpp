@@ -36,10 +36,10 @@ struct CellInput {
 };
 
 /// The functions of public calls in a kind of space. It is the triangulator's turn; offsets have been
-/// checked. What a space does not have is null.
+/// checked. What a space does not have is null; all can triangulate and verify.
 struct SpaceCalls {
   const char* refusal_of_weights = nullptr;   ///< what a call with weights says, if points have none
-  const char* refusal_of_polygons = nullptr;  ///< what a call with a polygon says, if it clips no cells
+  const char* refusal_of_polygons = nullptr;  ///< what a call with a polygon says, if cells have none
   Triangulation (*triangulate)(Implementation& self, const HostPoints& points,
                                const std::vector<std::size_t>& offsets, const Space& space,
                                const Options& options);
@@ -54,6 +54,8 @@ struct SpaceCalls {
   std::vector<double> (*places)(host::Runtime& runtime, const double* points, std::size_t n,
                                 const Space& space, const char* what) = nullptr;
   bool returns_places = false;  ///< relaxed points are returned as places
+  /// Throws Error(usage) for a space whose cells have no end. Null: all have.
+  void (*check_cells)(const Space& space) = nullptr;
   ClippedVoronoi (*cells)(Implementation& self, const CellInput& input) = nullptr;
   Voronoi (*dual)(Implementation& self, const CellInput& input) = nullptr;
   /// Per point the centroid of its cell, as points are given; NaN if it has none. Null: as `cells` says.

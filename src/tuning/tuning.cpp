@@ -205,9 +205,9 @@ constexpr Row kTable[] = {
      {0},
      {kernel::LOCAL_VERTICES},
      {16},
-     "What 48 KB of local memory hold. There a step takes a third of the time, and all heights one launch, "
-     "by "
-     "the model."},
+     "What 48 KB of local memory hold. There a step takes a third of the time, as predicted, not measured, "
+     "and "
+     "all heights take one launch."},
     {"seam_points",
      &Tuning::seam_points,
      {16},
@@ -221,7 +221,7 @@ constexpr Row kTable[] = {
      {1},
      {256},
      {4},
-     "A work-item for every four vertices of a merge of a block's halves."},
+     "As many work-items as edges cross the seam of a large merge, as a rule."},
     {"large_blocks",
      &Tuning::large_blocks,
      {4},

@@ -129,4 +129,15 @@ TEST(Memory, FewerPointsNeedNoMore) {
   }
 }
 
+/// Whatever the largest block may be.
+TEST(Memory, GrowsWithThePoints) {
+  for (const char* kind : {"cpu", "gpu"}) {
+    const auto runtime = testing::make_tuned_runtime(kind);
+    const WorkspaceBytes few = workspace_bytes(*runtime, 1000000, 1),
+                         many = workspace_bytes(*runtime, 100000000, 1);
+    EXPECT_LE(many.persistent, 110 * few.persistent) << kind;
+    EXPECT_LE(many.scratch, 110 * few.scratch) << kind;
+  }
+}
+
 }  // namespace flaunay::blocks

@@ -126,6 +126,7 @@ void check_merge_as_tuned(Runtime& runtime, const BlockPoints& points, Bounds bo
 void set_local_vertices(Runtime& runtime, std::size_t vertices) {
   Tuning tuning = tuning_of(runtime);
   tuning.local_vertices = vertices;
+  tuning.merge_items = vertices > 0 ? 1 << 20 : 500;  // so that small blocks are there, too
   runtime.set_sizes(std::make_shared<Tuning>(tuning));
 }
 
@@ -134,7 +135,7 @@ void set_local_vertices(Runtime& runtime, std::size_t vertices) {
 void check_merge(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
   const std::size_t group = tuning_of(runtime).halve_group;
   for (const std::size_t vertices : {0, 16, kernel::LOCAL_VERTICES}) {
-    if (vertices > 0 && group != 2 && group != kernel::LOCAL_MERGES) continue;
+    if (vertices > 0 && group != 2 && group != 256) continue;
     SCOPED_TRACE("vertices in local memory: " + std::to_string(vertices));
     set_local_vertices(runtime, vertices);
     check_merge_as_tuned(runtime, points, bounds, met);
@@ -309,7 +310,8 @@ struct WalkedSeam {
     both[0] = up;
     const std::size_t group = tuning_of(runtime).sewing_group;
     runtime.launch(group, group,
-                   kernels::sew_seams{.places_of_parts = {.height = kHeight,
+                   kernels::sew_seams{.cells = 1,
+                                      .places_of_parts = {.height = kHeight,
                                                           .places = kPoints,
                                                           .offsets = blocks.offsets,
                                                           .distinct = rings.device_distinct,
@@ -382,7 +384,7 @@ TEST(Merge, LaunchesAreFew) {
     BlockPoints points;
     for (int b = 0; b < 4; ++b) points.add(make_fixture("uniform", 2048, 44));
     for (const std::size_t vertices : {0, 512}) {
-      if (vertices > 0 && tuning_of(runtime).halve_group != kernel::LOCAL_MERGES) continue;
+      if (vertices > 0 && tuning_of(runtime).halve_group != 256) continue;
       set_local_vertices(runtime, vertices);
       Call call(runtime);
       call.work.bounds = kUsualBounds;

@@ -488,11 +488,11 @@ TEST(WeightedPeriodic, ErrorsSayWhatIsWrong) {
   ASSERT_EQ(3u, heavy.hidden.size());
   expect_no_more(Locator(triangulator(), heavy, weights.data()));
   expect_error(ErrorKind::usage, "need these", [&] { Locator(triangulator(), heavy); });
-  expect_error(ErrorKind::usage, "with these weights",
+  expect_error(ErrorKind::usage, "points with weights need these",
                [&] { Locator(triangulator(), mesh, weights.data()); });
   Triangulation wrong = mesh;
   wrong.hidden = {0};
-  expect_error(ErrorKind::usage, "with these weights",
+  expect_error(ErrorKind::usage, "points with weights need these",
                [&] { Locator(triangulator(), wrong, weights.data()); });
   weights[3] = NAN;
   expect_error(ErrorKind::input, "point 3 has a weight that is not finite",

@@ -25,8 +25,8 @@ struct Locator {
   /// fixed point a float).
   host::Buffer<cl_double2> points{};
   host::Buffer<cl_int> source{}, first_triangle{}, clearances{};
-  /// On a torus or a cylinder, by vertex the one of the same point in its place: itself, or a vertex of which
-  /// it is an image. Empty in the plane.
+  /// On a torus or a cylinder, by vertex the one for the same point within the period. All its triangles are
+  /// there; at the rim, images lack some. Empty in the plane.
   host::Buffer<cl_int> in_place{};
   host::Buffer<kernel::face> faces{};  ///< triangles, as numbers of vertices
   host::Buffer<cl_double2> hull_points{};

@@ -289,9 +289,10 @@ struct Locator::Implementation {
 
   /// Throws Error(usage) for what a regular triangulation does not tell.
   void expect_no_weights() const {
-    call::expect(!has_weights,
-                 "among points with weights a locator finds no nearest points, which PointTree does, and no "
-                 "natural neighbours");
+    call::expect(
+        !has_weights,
+        "among points with weights a locator finds neither nearest points, as a tree of points does, nor "
+        "natural neighbours");
   }
 
   /// Throws Error(usage) for what there is in the plane alone.

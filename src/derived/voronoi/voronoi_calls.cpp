@@ -31,6 +31,10 @@ void compute(call::Frame& call, const Points& points, const Mesh& triangulation,
   call.end();
 }
 
+void check_has_places(const Triangulation& mesh) {
+  call::expect(mesh.space.kind != SpaceKind::plane, "cells in the plane need the coordinates of the points");
+}
+
 }  // namespace
 
 Voronoi call::dual_in_plane(Implementation& self, const CellInput& input) {
@@ -48,7 +52,10 @@ Voronoi Triangulator::voronoi(const double* coordinates, std::size_t n, const Tr
   });
 }
 
-Voronoi Triangulator::voronoi(const Triangulation& mesh) { return voronoi(nullptr, 0, mesh); }
+Voronoi Triangulator::voronoi(const Triangulation& mesh) {
+  check_has_places(mesh);
+  return voronoi(nullptr, 0, mesh);
+}
 
 void Triangulator::voronoi(const DevicePoints& points, const DeviceTriangulation& triangulation,
                            DeviceVoronoi& result, const Enqueue& enqueue) {
@@ -127,6 +134,7 @@ ClippedVoronoi Triangulator::clipped_voronoi(const double* coordinates, const do
 }
 
 ClippedVoronoi Triangulator::clipped_voronoi(const Triangulation& mesh, const double* weights) {
+  check_has_places(mesh);
   return clipped_voronoi(nullptr, weights, 0, mesh, nullptr, 0);
 }
 
@@ -231,6 +239,7 @@ std::vector<double> Triangulator::relax(const double* points, std::size_t n, con
     const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
     check_points(points, n);
     const voronoi::ClipPolygon polygon = polygon_in(calls, corners, corner_count);
+    if (calls.check_cells != nullptr) calls.check_cells(space);
     const std::size_t width = calls.width(space);
     std::vector<double> relaxed(points, points + width * n), sorted(width * n),
         weights(space.weights == nullptr ? 0 : n);

@@ -1436,7 +1436,8 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// sphere given as the points were; they are in host memory.
 ///
 /// Among points with weights it locates, and interpolates within triangles; nearest points (see
-/// flaunay_point_tree) and natural neighbours are FLAUNAY_ERROR_USAGE.
+/// flaunay_point_tree) and natural neighbours are FLAUNAY_ERROR_USAGE, in the plane if points are hidden:
+/// otherwise a mesh does not tell that it has weights.
 ///
 /// A triangulation with constraints must be of one set. coordinates: of its points and after them those
 /// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points
@@ -1520,12 +1521,12 @@ FLAUNAY_API flaunay_status flaunay_point_tree_nearest(flaunay_point_tree* tree, 
 /// Interpolates by any method, several numbers per point at once. values: one row of options->columns numbers
 /// per input point; results: one row per query, the caller's. options: NULL for the defaults. At a point,
 /// every method gives exactly that point's values; for duplicates, those of their representative are used. On
-/// the sphere, linear interpolation is the value where
-/// the direction of the query meets the triangle in space; Clough-Tocher stands for Renka's interpolant
-/// (1984), of cubics along great circles with a continuous gradient; and natural neighbours (Brown, 1994)
-/// have areas of cells on the sphere, and lengths of arcs. Natural neighbours of so few points on a torus
-/// that a circle without points is wider than the shorter period, on a cylinder one with its centre between
-/// the ends, are FLAUNAY_ERROR_INPUT. The other arguments and the errors are those of flaunay_locator_locate.
+/// the sphere, linear interpolation is the value where the direction of the query meets the triangle in
+/// space; Clough-Tocher stands for Renka's interpolant (1984), of cubics along great circles with a
+/// continuous gradient; and natural neighbours (Brown, 1994) have areas of cells on the sphere, and lengths
+/// of arcs. Natural neighbours of so few points on a torus that a circle without points is wider than the
+/// shorter period, on a cylinder one with its centre between the ends, are FLAUNAY_ERROR_INPUT. The other
+/// arguments and the errors are those of flaunay_locator_locate.
 FLAUNAY_API flaunay_status flaunay_locator_interpolate(flaunay_locator* locator, const double* values,
                                                        const double* queries, size_t m, const size_t* offsets,
                                                        size_t sets,
@@ -1558,8 +1559,8 @@ FLAUNAY_API const double* flaunay_natural_weights_weights(const flaunay_natural_
 /// Estimates the gradients of values at the points, so that the curvature along all edges is least (Nielson,
 /// 1983; Renka and Cline, 1984). values: one row of options->columns numbers per input point. gradients: x
 /// and y per number, on the sphere x, y and z of a vector that is tangent there, the caller's array. They are
-/// NaN at points that another one represents, and at those of a set on one line. Of the options, columns and
-/// those of gradients count. NULL: the defaults.
+/// NaN at points that another one represents, at hidden ones, and at those of a set without triangles. Of the
+/// options, columns and those of gradients count. NULL: the defaults.
 FLAUNAY_API flaunay_status flaunay_locator_gradients(flaunay_locator* locator, const double* values,
                                                      const flaunay_interpolation_options* options,
                                                      double* gradients);

@@ -486,7 +486,7 @@ class FLAUNAY_API Triangulator {
 
   /// Computes the dual of a triangulation of these n points, in one or more sets. Throws Error(usage) for a
   /// triangulation without neighbours or of another number of points. O(n) work; one work-item per point
-  /// takes as many steps as the point has triangles.
+  /// takes as many steps as the point has triangles. In other spaces, coordinates and n are not read.
   Voronoi voronoi(const double* coordinates, std::size_t n, const Triangulation& triangulation);
   /// Computes the dual of a triangulation on the sphere. Throws Error(usage) for another space and for arrays
   /// that do not fit each other. O(n).
@@ -619,7 +619,8 @@ struct NaturalWeights {
 /// names it. The locator shares device and memory with its triangulator, so a call during another one of
 /// either throws Error(usage); it may outlive the triangulator. A locator that was made from host memory
 /// without OpenCL answers queries in host memory only. Among points with weights it locates, and interpolates
-/// within triangles; nearest points (see PointTree) and natural neighbours are Error(usage).
+/// within triangles; nearest points (see PointTree) and natural neighbours are Error(usage), in the plane if
+/// points are hidden: otherwise a mesh does not tell that it has weights.
 class FLAUNAY_API Locator {
  public:
   /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies
@@ -725,9 +726,9 @@ class FLAUNAY_API Locator {
 
   /// Estimates the gradients of values at the points, for Interpolation::clough_tocher. values: rows of
   /// `columns` numbers, one row per input point. Returns x and y per number, on the sphere x, y and z of a
-  /// vector that is tangent there. It is NaN at points that another one
-  /// represents, and at those of a set on one line. O(n) per column and iteration; one work-item takes as
-  /// many steps as a point has neighbours.
+  /// vector that is tangent there. It is NaN at points that another one represents, at hidden ones, and at
+  /// those of a set without triangles. O(n) per column and iteration; one work-item takes as many steps as a
+  /// point has neighbours.
   std::vector<double> gradients(const double* values, std::size_t columns = 1,
                                 const GradientOptions& options = {});
   /// Estimates the gradients in device memory, enqueued like Triangulator::triangulate for device memory.

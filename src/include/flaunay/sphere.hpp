@@ -8,8 +8,8 @@
 
 namespace flaunay {
 
-/// Returns x and y per point: its place, as Triangulation::places has it; in the plane its coordinates.
-/// Throws what Triangulator::triangulate throws for a space and points. O(n).
+/// Returns x and y per point: its place, as Triangulation::places has it; in the plane its coordinates,
+/// unchecked. Elsewhere throws what Triangulator::triangulate throws for the space and the points. O(n).
 FLAUNAY_API std::vector<double> places_of(const double* points, std::size_t n, const Space& space);
 
 /// Returns x y z per place on a sphere: unit vectors, rounded.

@@ -69,17 +69,21 @@ class Views {
 
 }  // namespace
 
+void check_cells(const Space& space) {
+  call::check(space.period);
+  expect(std::isfinite(space.period.x) && std::isfinite(space.period.y), "cells on a cylinder have no end");
+}
+
 ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input) {
   const Triangulation& mesh = input.mesh;
-  const Period& period = mesh.space.period;
   const double* const weights = input.space.weights;
   call::check_with_places(mesh);
-  expect(std::isfinite(period.x) && std::isfinite(period.y), "cells on a cylinder have no end");
+  check_cells(mesh.space);
   expect(weights != nullptr || mesh.hidden.empty(), "cells of points with weights need these");
   host::Runtime& runtime = self.native().runtime;
   const std::size_t n = mesh.places.size() / 2;
   const Stars stars(mesh, n);
-  const Lattice lattice = lattice_of(period);
+  const Lattice lattice = lattice_of(mesh.space.period);
   const Views views(mesh, stars, lattice, weights);
   const auto fetch = [&](std::size_t v) { kernel::fetch(&mesh.places[2 * v]); };
   // Within the period and rounded to its units, so that images are exact and cells have the same corners.

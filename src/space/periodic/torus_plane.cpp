@@ -16,14 +16,16 @@ namespace flaunay::call {
 namespace {
 
 constexpr const char* kOther =
-    "the triangles are not those of a triangulation on a torus or a cylinder with these weights";
+    "the triangles are not those of a triangulation on a torus or a cylinder; points with weights need "
+    "these, "
+    "as they were triangulated";
 
 }  // namespace
 
 TorusPlane::TorusPlane(Implementation& self, const Triangulation& given, const double* weights)
     : point_offsets_(given.point_offsets) {
   check_with_places(given);
-  expect(weights != nullptr || given.hidden.empty(), "queries among points with weights need these");
+  expect(weights != nullptr || given.hidden.empty(), "queries among points with weights need these weights");
   weighted::Visible visible;
   if (weights != nullptr) {
     visible = weighted::visible_points(given.places.data(), given.point_offsets, given);

@@ -386,6 +386,7 @@ const SpaceCalls kOnTorus{.refusal_of_polygons = "cells on a torus are not clipp
                                                            periodic::lattice_of(space.period), what);
                               },
                           .returns_places = true,
+                          .check_cells = periodic::check_cells,
                           .cells = periodic::make_cells,
                           .tree = tree_on_torus};
 

@@ -16,6 +16,8 @@ void check_with_places(const Triangulation& mesh);
 
 namespace flaunay::periodic {
 
+/// See SpaceCalls.
+void check_cells(const Space& space);
 /// See Triangulator::clipped_voronoi.
 ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& input);
 
