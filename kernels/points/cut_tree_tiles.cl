@@ -20,7 +20,7 @@
 #include "points/limits.h"
 #include "points/records.h"
 #include "points/sampled_cuts.h"
-#include "predicates/order.h"
+#include "points/sorted_tile.h"
 
 SCAN_IN_GROUP(scan_samples, uint)
 
@@ -52,51 +52,16 @@ kernel void draw_each_sample(int n, int tree_count, global const int* restrict f
   }
 }
 
-// How many elements of a tile's sorted run [begin, end) come before p, or are equal to it and are to come before it.
-static inline int places_before(coordinate2 p, int equals_count, int begin, int end, local const int* order,
-                                local const coordinate2* points, int axis) {
-  int least = begin, most = end;
-  while (least < most) {
-    const int middle = (least + most) / 2;
-    const coordinate2 q = points[order[middle]];
-    const int is_before = equals_count ? !precedes(p, q, axis) : precedes(q, p, axis);
-    least = is_before ? middle + 1 : least;
-    most = is_before ? most : middle;
-  }
-  return least - begin;
-}
-
-// The place of element i of a tile whose pairs of runs are merged.
-static inline int merged_place(int i, int run, int size, local const int* order, local const coordinate2* points,
-                               int axis) {
-  const int own = i & -run, is_high = (i & run) != 0;
-  const int sibling = is_high ? own - run : min(size, own + run);
-  const int before = places_before(points[order[i]], is_high, sibling, min(size, sibling + run), order, points, axis);
-  return i - (is_high ? run : 0) + before;
-}
-
 // Two work-groups per tile, one per axis. order holds the order along x and then the one along y; ranks, for each
 // sample, its places in both. Equal points stay in the order in which they were drawn, also later.
 kernel void sort_tiles(int tiles, SAMPLED_CHUNKS(), global int* restrict order, global int* restrict ranks) {
   local coordinate2 points[LARGEST_SAMPLE_TILE];
-  local int orders[2 * LARGEST_SAMPLE_TILE];
+  local ushort orders[TILE_ORDERS];
   const int me = get_local_id(0), group = get_local_size(0);
   const int w = get_group_id(0), axis = w % 2;
   const sample_tile tile = tile_of(w / 2, tiles, tree_count, first_chunks, trees);
-  for (int i = me; i < tile.size; i += group) {
-    points[i] = samples[tile.first + i];
-    orders[i] = i;
-  }
-  barrier(CLK_LOCAL_MEM_FENCE);
-  int from = 0;
-  for (int run = 1; run < tile.size; run *= 2) {
-    const int to = LARGEST_SAMPLE_TILE - from;
-    for (int i = me; i < tile.size; i += group) {
-      orders[to + merged_place(i, run, tile.size, orders + from, points, axis)] = orders[from + i];
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-    from = to;
-  }
+  for (int i = me; i < tile.size; i += group) points[i] = samples[tile.first + i];
+  const int from = sort_samples(tile.size, axis, 1, points, orders);
   for (int i = me; i < tile.size; i += group) {
     const int sample = tile.first + orders[from + i];
     order[axis * all_samples + tile.first + i] = sample;

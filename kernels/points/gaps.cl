@@ -1,4 +1,4 @@
-// Cut trees (points/cut_tree.h) of points that lie along the cuts of an earlier tree, made from sorted samples of them
+// Cut trees (points/cut_tree.h) of points that lie along the cuts of an earlier tree, made from samples of them
 // (cut_tree_tiles.cl), on devices with many lanes.
 //
 // Medians would fall onto the old cuts, since that is where the points are. Each node is cut in the middle of its
@@ -6,44 +6,45 @@
 // that would make a part much larger or smaller than a half are not considered, so that all leaves have about as many
 // points.
 //
-// cut_at_gaps cuts the nodes of one level of all trees, in one launch with one work-group per node: it finds the gap,
-// writes the node, and splits the samples of the other order than the one along the axis. That makes one launch per
-// level.
+// cut_at_gaps cuts a few levels of all trees in one launch, with one work-group per node of the first of these levels.
+// The group finds which of the samples of the node a few levels above are in its node, and takes as many of them as its
+// tile has room for, evenly. It sorts these along both axes in local memory and cuts them level by level. A large node
+// is thus cut by some of its samples, and the nodes below it by others.
 
 #include "operations/limits.h"
 #include "operations/search.h"
 #include "operations/work_group.h"
+#include "points/cut_tree.h"
+#include "points/limits.h"
 #include "points/records.h"
 #include "points/sampled_cuts.h"
+#include "points/sorted_tile.h"
 
-SCAN_IN_GROUP(scan_low, uint)
+SCAN_IN_GROUP(scan_pairs, uint64)
 
-// A node's samples [begin, begin + size) in both orders, and how many samples each half has if all leaves are equal.
+// Two counts that are scanned together.
+static inline uint64 pair_of(int low, int high) { return (uint64)high << 32 | (uint64)low; }
+static inline int low_of(uint64 pair) { return (int)(pair & 0xffffffffU); }
+static inline int high_of(uint64 pair) { return (int)(pair >> 32); }
+
+static inline int is_high(coordinate2 p, global const cut_node* cut) {
+  const point_keys keys = keys_of(p);
+  return goes_high(&keys, cut);
+}
+
+// Where a point comes among the nodes `levels` levels below one of its nodes: before (-1) a node, in it (0) or behind.
+static inline int side_of_node(coordinate2 p, int number, int levels, global const cut_node* tree) {
+  for (int k = levels; k > 0; --k) {
+    const int difference = is_high(p, &tree[number >> k]) - (number >> (k - 1) & 1);
+    if (difference != 0) return difference;
+  }
+  return 0;
+}
+
+// A node's samples [begin, begin + size) in both orders of a tile, and how many each half has if all leaves are equal.
 typedef struct {
-  sampled_tree own;
-  int number;  // in the heap
   int begin, size, half_size;
 } gap_node;
-
-// Group w's node at a level. first_groups: of each tree. If there are fewer nodes, it has no samples.
-static inline gap_node node_of_group(int w, int groups, int level, int tree_count, global const int* first_groups,
-                                     global const sampled_tree* trees, global const int2* ranges) {
-  gap_node node;
-  const int t = segment_of(min(w, groups - 1), tree_count, first_groups);
-  node.own = trees[t];
-  node.number = (1 << level) + w - first_groups[t];
-  node.begin = node.own.first_sample;
-  node.size = node.own.samples;
-  node.half_size = node.own.samples >> (level + 1);
-  if (w >= groups) {
-    node.size = 0;
-  } else if (level > 0) {
-    const int2 range = ranges[node.own.first_node + node.number];
-    node.begin = range.x;
-    node.size = range.y - range.x;
-  }
-  return node;
-}
 
 // Each half shall have samples between these shares of the number that it would have if all were equal.
 #define MOST_OF_HALF REAL(1.4)
@@ -78,111 +79,209 @@ static inline gap_range gaps_of(gap_node node) {
   return gaps;
 }
 
-static inline coordinate along(int sample, int axis, global const coordinate2* samples) {
-  return axis ? samples[sample].y : samples[sample].x;
+// A tile's samples and their orders.
+typedef struct {
+  local const coordinate2* points;
+  local const ushort* orders;  // along x, and TILE_ORDERS behind along y
+} sorted_tile;
+
+static inline coordinate2 sorted_sample(sorted_tile tile, int axis, int place) {
+  return tile.points[tile.orders[axis * TILE_ORDERS + place]];
+}
+static inline coordinate along(sorted_tile tile, int axis, int place) {
+  const coordinate2 p = sorted_sample(tile, axis, place);
+  return axis ? p.y : p.x;
 }
 
-// A cut of a node: samples of the order along the axis before place `split` go low.
+// A stretch: along an axis, from a place in the order. Extent 0 and axis NO_AXIS: none.
+#define NO_AXIS 2
 typedef struct {
-  int axis, split;
-  cut_node node;
-} gap_cut;
+  coordinate extent;
+  int axis, place;
+} gap;
 
-// Cuts in the middle of the gap at a place, or without a gap (extent 0) at the node's median sample.
-static inline gap_cut cut_in_gap(gap_node node, gap_range gaps, coordinate extent, int first, int axis, int all_samples,
-                                 global const coordinate2* samples, global const int* order) {
-  gap_cut cut;
-  cut.axis = axis;
-  global const int* const sorted = order + axis * all_samples + node.begin;
-  cut.split = node.size / 2;
-  const coordinate2 median = samples[sorted[min(cut.split, node.size - 1)]];
-  cut.node = node_of(axis, median);
-  if (extent > 0) {
-    const coordinate low = along(sorted[first], axis, samples);
-    const coordinate middle = low + extent / 2;
-    const coordinate at = middle > low ? middle : low + extent;
-    int before = first, behind = first + gaps.size;  // the one is below the cut, the other is not
-    while (behind - before > 1) {
-      const int between = (before + behind) / 2;
-      if (along(sorted[between], axis, samples) < at) {
-        before = between;
-      } else {
-        behind = between;
-      }
+// If gaps are equally wide, the first along x is taken, or else the first along y.
+static inline gap wider_gap(gap a, gap b) {
+  const int is_before = b.axis < a.axis || (b.axis == a.axis && b.place < a.place);
+  return b.extent > a.extent || (b.extent == a.extent && is_before) ? b : a;
+}
+
+static inline gap gap_at(sorted_tile tile, gap_range gaps, int axis, int place) {
+  gap found;
+  found.extent = along(tile, axis, place + gaps.size) - along(tile, axis, place);
+  found.axis = axis;
+  found.place = place;
+  return found;
+}
+
+static inline gap no_gap(void) {
+  const gap none = {0, NO_AXIS, 0};
+  return none;
+}
+
+// The widest of a node's gaps, of those that begin `step` places apart from place `lane` on.
+static inline gap widest_gap(sorted_tile tile, gap_node node, gap_range gaps, int lane, int step) {
+  gap widest = no_gap();
+  for (int axis = 0; axis < 2; ++axis) {
+    for (int i = gaps.first + lane; i <= gaps.last; i += step) {
+      const gap here = gap_at(tile, gaps, axis, node.begin + i);
+      if (here.extent > widest.extent) widest = here;
     }
-    cut.split = behind;
-    // All points that are as high as the cut go high.
-    cut.node = node_of(axis, axis ? VECTOR(coordinate2, 0, at) : VECTOR(coordinate2, at, 0));
-    cut.node.minor = 0;
   }
+  return widest;
+}
+
+// The cut in the middle of a gap, or without a gap at the node's median sample along x.
+static inline cut_node cut_in_gap(sorted_tile tile, gap_node node, gap found) {
+  if (node.size == 0) return node_of(0, VECTOR(coordinate2, 0, 0));
+  if (!(found.extent > 0)) return node_of(0, sorted_sample(tile, 0, node.begin + node.size / 2));
+  const coordinate low = along(tile, found.axis, found.place);
+  const coordinate middle = low + found.extent / 2;
+  const coordinate at = middle > low ? middle : low + found.extent;
+  // All points that are as high as the cut go high.
+  cut_node cut = node_of(found.axis, found.axis ? VECTOR(coordinate2, 0, at) : VECTOR(coordinate2, at, 0));
+  cut.minor = 0;
   return cut;
 }
 
-// groups: the number of nodes of the level. order: along x, then along y; ranks: for each sample, its places in both
-// when they were made. ranges: of each node, where its samples begin and end.
-kernel void cut_at_gaps(int groups, int level, int tree_count, global const int* restrict first_groups,
-                        global const sampled_tree* restrict trees, int all_samples,
-                        global const coordinate2* restrict samples, global const int* restrict ranks,
-                        global const int* restrict from, global int* restrict to, global int2* ranges,
-                        global cut_node* restrict nodes) {
-  local coordinate extents[LARGEST_TILE_GROUP];
-  local int2 places[LARGEST_TILE_GROUP];
-  local uint sums[LARGEST_TILE_GROUP];
+// The place of the node's first sample that goes high.
+static inline int split_at(sorted_tile tile, gap_node node, global const cut_node* cut) {
+  int begin = node.begin, end = node.begin + node.size;
+  while (begin < end) {
+    const int middle = (begin + end) / 2;
+    if (is_high(sorted_sample(tile, cut_axis(*cut), middle), cut)) {
+      end = middle;
+    } else {
+      begin = middle + 1;
+    }
+  }
+  return begin;
+}
+
+// The node of a place in a tile's orders, and how many samples of the nodes before it go low.
+typedef struct {
+  int number, begin, split, end, lows_before;
+} cut_part;
+
+static inline cut_part no_part(void) {
+  const cut_part none = {-1, 0, 0, 0, 0};
+  return none;
+}
+
+// The same of a place behind. count: the number of nodes.
+static inline cut_part part_of_place(int i, cut_part part, int count, int size, local const int* starts) {
+  while (i >= part.end) {
+    part.lows_before += part.split - part.begin;
+    ++part.number;
+    part.begin = part.end;
+    part.split = starts[2 * (count + part.number) + 1];
+    part.end = part.number + 1 < count ? starts[count + part.number + 1] : size;
+  }
+  return part;
+}
+
+// Cuts levels [level, level + levels) of all trees. groups: the number of nodes of the first of these levels.
+// first_groups: of each tree. capacity: how many samples a group takes. from: the samples of the nodes `levels` levels
+// above, which `ranges` says by node; of the first node, all samples of the tree. to: those of the groups' nodes.
+kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tree_count,
+                        global const int* restrict first_groups, global const sampled_tree* restrict trees,
+                        global const coordinate2* restrict from, global coordinate2* to, global int2* ranges,
+                        global cut_node* nodes) {
+  local coordinate2 points[LARGEST_SAMPLE_TILE];
+  local ushort orders[2 * TILE_ORDERS];
+  local uint64 sums[LARGEST_TILE_GROUP];
+  local int starts[2 << GAP_LEVELS];  // by node, in the order of a heap
   const int me = get_local_id(0), group = get_local_size(0);
-  const gap_node node = node_of_group(get_group_id(0), groups, level, tree_count, first_groups, trees, ranges);
-  const gap_range gaps = gaps_of(node);
-  coordinate extent = 0;
-  int2 place = VECTOR(int2, 0, 0);
-  for (int axis = 0; axis < 2; ++axis) {
-    global const int* const sorted = from + axis * all_samples + node.begin;
-    for (int i = gaps.first + me; i <= gaps.last; i += group) {
-      const coordinate here = along(sorted[i + gaps.size], axis, samples) - along(sorted[i], axis, samples);
-      if (here > extent) {
-        extent = here;
-        place = VECTOR(int2, i, axis);
+  const int w = get_group_id(0);
+  const int t = segment_of(min(w, groups - 1), tree_count, first_groups);
+  const sampled_tree own = trees[t];
+  const int number = (1 << level) + w - first_groups[t], above = level == 0 ? number : number >> levels;
+  global cut_node* const tree = nodes + own.first_node;
+  global int2* const tree_ranges = ranges + own.first_node;
+  int2 range = VECTOR(int2, own.first_sample, w < groups ? own.samples : 0);
+  if (above > 1 && w < groups) range = tree_ranges[above];
+  global const coordinate2* source = from;
+  if (level > 0) {
+    const int share = share_of(range.y);
+    const int first = range.x + min(range.y, me * share), last = min(range.x + range.y, first + share);
+    int before = 0, inside = 0;
+    for (int i = first; i < last; ++i) {
+      const int side = side_of_node(from[i], number, levels, tree);
+      before += side < 0;
+      inside += side == 0;
+    }
+    uint64 all;
+    const uint64 scanned = scan_pairs(pair_of(before, inside), sums, &all);
+    range = VECTOR(int2, range.x + low_of(all), high_of(all));
+    int place = range.x + high_of(scanned);
+    for (int i = first; i < last; ++i) {
+      if (side_of_node(from[i], number, levels, tree) == 0) to[place++] = from[i];
+    }
+    if (me == 0 && w < groups) tree_ranges[number] = range;
+    source = to;
+    barrier(CLK_GLOBAL_MEM_FENCE);
+  }
+  const int size = min(range.y, capacity);
+  for (int i = me; i < size; i += group) points[i] = source[range.x + (int)((int64)i * range.y / size)];
+  int at = sort_samples(size, 0, 2, points, orders);
+  // How many samples the node would have if all leaves were equal.
+  const int equal = (int)((int64)(own.samples >> level) * size / max(1, range.y));
+  const int leaves = own.samples / own.leaf;
+  if (me == 0) starts[1] = 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int depth = 0; w < groups && depth < levels && (1 << (level + depth)) < leaves; ++depth) {
+    const sorted_tile tile = {points, orders + at};
+    const int count = 1 << depth, lanes = max(1, group / count), at_once = group / lanes;
+    for (int first = 0; first < count; first += at_once) {
+      const int lane = me % lanes, j = first + me / lanes, is_own = me / lanes < at_once && j < count;
+      gap_node node;
+      node.begin = is_own ? starts[count + j] : 0;
+      node.size = !is_own ? 0 : (j + 1 < count ? starts[count + j + 1] : size) - node.begin;
+      node.half_size = equal >> (depth + 1);
+      const gap_range gaps = gaps_of(node);
+      gap found = widest_gap(tile, node, gaps, lane, lanes);
+      sums[me] = pair_of(found.place, found.axis);
+      for (int step = 1; step < lanes; step *= 2) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        const int other = lane + step < lanes && lane % (2 * step) == 0 ? me + step : me;
+        const uint64 pair = sums[other];
+        if (other != me && high_of(pair) != NO_AXIS)
+          found = wider_gap(found, gap_at(tile, gaps, high_of(pair), low_of(pair)));
+        barrier(CLK_LOCAL_MEM_FENCE);
+        sums[me] = pair_of(found.place, found.axis);
+      }
+      if (is_own && lane == 0) {
+        global cut_node* const cut = &tree[(number << depth) + j];
+        *cut = cut_in_gap(tile, node, found);
+        starts[2 * (count + j)] = node.begin;
+        starts[2 * (count + j) + 1] = split_at(tile, node, cut);
       }
     }
-  }
-  extents[me] = extent;
-  places[me] = place;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  // If gaps are equally wide, the first along x is taken, or else the first along y.
-  for (int k = 0; k < group; ++k) {
-    const int2 other = places[k];
-    const int is_before = other.y < place.y || (other.y == place.y && other.x < place.x);
-    if (extents[k] > extent || (extents[k] == extent && is_before)) {
-      extent = extents[k];
-      place = other;
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+    global const cut_node* const cuts = tree + (number << depth);
+    const int share = share_of(size), first = min(size, me * share), last = min(size, first + share);
+    int lows[2] = {0, 0};
+    cut_part part = no_part();
+    for (int i = first; i < last; ++i) {
+      part = part_of_place(i, part, count, size, starts);
+      for (int axis = 0; axis < 2; ++axis) lows[axis] += !is_high(sorted_sample(tile, axis, i), &cuts[part.number]);
     }
-  }
-  const int has_samples = node.size > 0;
-  // The cut of a node without samples.
-  gap_cut cut;
-  cut.axis = cut.split = 0;
-  cut.node = node_of(0, VECTOR(coordinate2, 0, 0));
-  int rank = 0;
-  if (has_samples) {
-    cut = cut_in_gap(node, gaps, extent, place.x, place.y, all_samples, samples, from);
-    rank = ranks[2 * from[cut.axis * all_samples + node.begin + cut.split] + cut.axis];
-  }
-  const int along_axis = cut.axis * all_samples, other = all_samples - along_axis;
-  for (int i = node.begin + me; i < node.begin + node.size; i += group) to[along_axis + i] = from[along_axis + i];
-  const int share = share_of(node.size);
-  const int first = min(node.size, me * share), last = min(node.size, first + share);
-  uint lows = 0, all;
-  for (int i = first; i < last; ++i) lows += ranks[2 * from[other + node.begin + i] + cut.axis] < rank;
-  const int lows_before = (int)scan_low(lows, sums, &all);
-  int low = node.begin + lows_before, high = node.begin + cut.split + first - lows_before;
-  for (int i = first; i < last; ++i) {
-    const int sample = from[other + node.begin + i];
-    to[other + (ranks[2 * sample + cut.axis] < rank ? low++ : high++)] = sample;
-  }
-  if ((int)get_group_id(0) < groups && me == 0) {
-    nodes[node.own.first_node + node.number] = cut.node;
-    if (2 * node.number < node.own.samples / node.own.leaf) {
-      const int split = node.begin + cut.split;
-      ranges[node.own.first_node + 2 * node.number] = VECTOR(int2, node.begin, split);
-      ranges[node.own.first_node + 2 * node.number + 1] = VECTOR(int2, split, node.begin + node.size);
+    uint64 all;
+    const uint64 scanned = scan_pairs(pair_of(lows[0], lows[1]), sums, &all);
+    lows[0] = low_of(scanned);
+    lows[1] = high_of(scanned);
+    at = LARGEST_SAMPLE_TILE - at;
+    part = no_part();
+    for (int i = first; i < last; ++i) {
+      part = part_of_place(i, part, count, size, starts);
+      for (int axis = 0; axis < 2; ++axis) {
+        const ushort sample = tile.orders[axis * TILE_ORDERS + i];
+        const int low = lows[axis] - part.lows_before, goes_low = !is_high(points[sample], &cuts[part.number]);
+        const int place = goes_low ? part.begin + low : part.split + i - part.begin - low;
+        orders[axis * TILE_ORDERS + at + place] = sample;
+        lows[axis] += goes_low;
+      }
     }
+    barrier(CLK_LOCAL_MEM_FENCE);
   }
 }

@@ -14,6 +14,7 @@ using host::Buffer;
 
 CutTrees::CutTrees(host::Runtime& runtime, const std::vector<SetToCut>& sets, std::size_t samples_per_leaf)
     : runtime_(runtime),
+      samples_per_leaf_(samples_per_leaf),
       by_tiles_(runtime.sizes().tile_group != 0 &&
                 samples_per_leaf <= runtime.sizes().local_bytes / kernel::LOCAL_BYTES_PER_SAMPLE) {
   std::size_t leaves = 0;

@@ -68,6 +68,7 @@ class CutTrees {
                                  const host::Buffer<kernel::cut_node>& nodes) const;
 
   host::Runtime& runtime_;
+  std::size_t samples_per_leaf_;
   bool by_tiles_;  // work-groups take chunks
   std::size_t samples_ = 0, nodes_ = 0, chunks_ = 0;
   int levels_above_chunks_ = 0;

@@ -6,7 +6,9 @@
 #include "launchers/points/gaps.cl.hpp"
 #include "operations/limits.h"
 #include "points/cut_tree.hpp"
+#include "points/limits.h"
 #include "points/records.h"
+#include "tuning/tuning.hpp"
 
 namespace flaunay::points {
 
@@ -90,11 +92,14 @@ Buffer<cl_int> CutTrees::cut_tiles(const Buffer<cl_double2>& samples,
 void CutTrees::cut_at_gaps(const Buffer<cl_double2>& samples, const Buffer<kernel::cut_node>& nodes) const {
   Arena& arena = runtime_.arena();
   Arena::Scope scope(arena);
-  auto [from, to, ranks] = sort_tiles(samples);
+  const std::size_t capacity = tuning_of(runtime_).sample_tile, group = runtime_.sizes().tile_group;
+  int levels = 1;
+  while (levels < kernel::GAP_LEVELS && samples_per_leaf_ << (levels + 1) <= capacity) ++levels;
   const auto ranges = arena.allocate<cl_int2>(nodes_);
-  const std::size_t group = runtime_.sizes().tile_group;
+  auto to = arena.allocate<cl_double2>(samples_), other = arena.allocate<cl_double2>(samples_),
+       from = samples;
   const int depth = *std::max_element(depths_.begin(), depths_.end());
-  for (int level = 0; level < depth; ++level) {
+  for (int level = 0; level < depth; level += levels) {
     std::vector<cl_int> first_groups;
     std::size_t groups = 0;
     for (const int tree_depth : depths_) {
@@ -105,17 +110,18 @@ void CutTrees::cut_at_gaps(const Buffer<cl_double2>& samples, const Buffer<kerne
     runtime_.launch(groups * group, group,
                     kernels::cut_at_gaps{.groups = groups,
                                          .level = level,
+                                         .levels = levels,
+                                         .capacity = capacity,
                                          .tree_count = trees_.size(),
                                          .first_groups = device_first_groups,
                                          .trees = trees_,
-                                         .all_samples = samples_,
-                                         .samples = samples,
-                                         .ranks = ranks,
                                          .from = from,
                                          .to = to,
                                          .ranges = ranges,
                                          .nodes = nodes});
-    std::swap(from, to);
+    if (level == 0) continue;
+    from = to;
+    std::swap(to, other);
   }
 }
 

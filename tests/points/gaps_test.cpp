@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "points/cut_tree.h"
+#include "points/limits.h"
 #include "tests/points/support.hpp"
 
 namespace flaunay::points {
@@ -17,15 +19,25 @@ using Samples = std::vector<cl_double2>;
 
 /// What the twin met.
 struct MetGaps {
-  std::size_t gaps = 0, medians = 0, empty = 0, along[2] = {0, 0};
+  std::size_t gaps = 0, medians = 0, empty = 0, thinned = 0, along[2] = {0, 0};
 };
 
-/// A tree of samples, as gaps.cl describes it. half_size: the samples of a half if all leaves were equal.
+/// How many levels a group cuts, of how many samples.
+struct Groups {
+  int levels;
+  std::size_t capacity;
+
+  Groups(const Tuning& tuning, std::size_t samples_per_leaf) : levels(1), capacity(tuning.sample_tile) {
+    while (levels < kernel::GAP_LEVELS && samples_per_leaf << (levels + 1) <= capacity) ++levels;
+  }
+};
+
+/// A tree of samples, as gaps.cl describes it.
 class GapTwin {
  public:
-  GapTwin(Samples samples, int depth, MetGaps& met)
-      : nodes(std::size_t{1} << depth), all_(samples.size()), met_(met) {
-    if (depth > 0) cut(1, 0, std::move(samples));
+  GapTwin(const Samples& samples, int depth, const Groups& groups, MetGaps& met)
+      : nodes(std::size_t{1} << depth), all_(samples.size()), groups_(groups), met_(met) {
+    cut_levels(1, 0, samples);
   }
 
   std::vector<kernel::cut_node> nodes;
@@ -66,40 +78,57 @@ class GapTwin {
     return gap;
   }
 
-  void cut(std::size_t node, int level, Samples samples) {
+  /// A group's levels: as many of the node's samples as there is room for, evenly.
+  void cut_levels(std::size_t node, int level, const Samples& samples) {
     if (node >= nodes.size()) return;
-    const std::size_t half_size = all_ >> (level + 1);
-    const Samples sorted[2] = {sorted_along(samples, 0), sorted_along(samples, 1)};
-    Samples low, high;
-    if (samples.empty()) {
+    Samples tile(std::min(samples.size(), groups_.capacity));
+    for (std::size_t i = 0; i < tile.size(); ++i) tile[i] = samples[i * samples.size() / tile.size()];
+    met_.thinned += tile.size() < samples.size();
+    const std::size_t equal = (all_ >> level) * tile.size() / std::max<std::size_t>(1, samples.size());
+    cut(node, level, 0, equal, tile, samples);
+  }
+
+  static Samples side_of(Samples samples, const kernel::cut_node& node, bool is_high) {
+    const auto other = [&](const cl_double2& p) {
+      const kernel::point_keys keys = kernel::keys_of({p.s[0], p.s[1]});
+      return (kernel::goes_high(&keys, &node) != 0) != is_high;
+    };
+    samples.erase(std::remove_if(samples.begin(), samples.end(), other), samples.end());
+    return samples;
+  }
+
+  /// tile: the samples by which the node is cut; samples: all of the node. equal: as many as it would have in
+  /// the tile if all leaves were equal.
+  void cut(std::size_t node, int level, int depth, std::size_t equal, const Samples& tile,
+           const Samples& samples) {
+    if (node >= nodes.size()) return;
+    if (depth == groups_.levels) return cut_levels(node, level, samples);
+    if (tile.empty()) {
       ++met_.empty;
       nodes[node] = testing::node_of({{0, 0}}, 0);
     } else {
-      const Gap gap = widest_gap(sorted, half_size);
+      const Samples sorted[2] = {sorted_along(tile, 0), sorted_along(tile, 1)};
+      const Gap gap = widest_gap(sorted, equal / 2);
       const Samples& along = sorted[gap.axis];
-      std::size_t split = along.size() / 2;
-      nodes[node] = testing::node_of(along[split], gap.axis);
+      nodes[node] = testing::node_of(along[along.size() / 2], gap.axis);
       if (gap.extent > 0) {
         const double begin = at(along[gap.first], gap.axis), middle = begin + 0.5 * gap.extent;
-        const double cut = middle > begin ? middle : begin + gap.extent;
-        split = 0;
-        while (at(along[split], gap.axis) < cut) ++split;
-        nodes[node].major = geometry::sort_key(cut + 0.0);
+        nodes[node].major = geometry::sort_key((middle > begin ? middle : begin + gap.extent) + 0.0);
         nodes[node].minor = 0;
         ++met_.along[gap.axis];
         ++met_.gaps;
       } else {
         ++met_.medians;
       }
-      const auto middle = along.begin() + static_cast<std::ptrdiff_t>(split);
-      low.assign(along.begin(), middle);
-      high.assign(middle, along.end());
     }
-    cut(2 * node, level + 1, low);
-    cut(2 * node + 1, level + 1, high);
+    for (const bool is_high : {false, true}) {
+      cut(2 * node + is_high, level + 1, depth + 1, equal / 2, side_of(tile, nodes[node], is_high),
+          side_of(samples, nodes[node], is_high));
+    }
   }
 
   std::size_t all_;
+  Groups groups_;
   MetGaps& met_;
 };
 
@@ -124,7 +153,7 @@ void check_gap_trees(Runtime& runtime, const std::vector<std::pair<Coordinates, 
     for (const cl_int i : spread_indices(coordinates.size() / 2, samples_per_leaf << depth)) {
       samples.push_back(point_of(coordinates, static_cast<std::size_t>(i)));
     }
-    const GapTwin twin(samples, depth, met);
+    const GapTwin twin(samples, depth, {tuning_of(runtime), samples_per_leaf}, met);
     for (std::size_t k = 1; k < twin.nodes.size(); ++k) {
       const kernel::cut_node &node = found[first + k], &expected = twin.nodes[k];
       ASSERT_TRUE(node.major == expected.major && node.minor == expected.minor && node.turn == expected.turn)
@@ -180,6 +209,7 @@ TEST(Gaps, AreThoseOfTheTwin) {
   under_each_group_of_tiles([&](Runtime& runtime) {
     check_gap_trees(runtime, gap_sets(1000, {5, 1, 8, 0, 3}), 64, met);
     check_gap_trees(runtime, gap_sets(300, {4, 7, 2}), 5, met);
+    check_gap_trees(runtime, {{along_cuts(30000, 58), 9}}, 64, met);
     for (const std::size_t samples : {1, 2, 3})
       check_gap_trees(runtime, gap_sets(90, {6, 3, 5}), samples, met);
   });
@@ -187,6 +217,7 @@ TEST(Gaps, AreThoseOfTheTwin) {
   EXPECT_GT(met.along[1], 100u);
   EXPECT_GT(met.medians, 100u);
   EXPECT_GT(met.empty, 0u);
+  EXPECT_GT(met.thinned, 100u);
 }
 
 }  // namespace
