@@ -4,11 +4,11 @@
 // one of them. These passes follow the last merge. They do nothing if no ties were left, by the account of the merges:
 // 1. find_inside, with one work-item per pair of edges, marks the edges that may be inside of polygons, by floating
 //    point; find_inside_exactly decides exactly.
-// 2. leave_inside, with one work-item per vertex, makes the vertices' own edges ones that stay.
-// 3. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
+// 2. find_fans, with one work-item per pair, finds the first vertex of each polygon: as a polygon is convex, that one
 //    comes before both of its neighbours on the polygon. It says so at one edge inside of the polygon: the first one at
-//    that vertex, counter-clockwise, or the one opposite to it, if it has none.
-// 4. build_fans flips the edges of each polygon that do not leave its first vertex. It changes only edges that
+//    that vertex, counter-clockwise, or the one opposite to it, if it has none. It also makes the vertices' own edges
+//    ones that stay.
+// 3. build_fans flips the edges of each polygon that do not leave its first vertex. It changes only edges that
 //    lie inside of one polygon.
 
 #include "blocks/codes.h"
@@ -51,6 +51,12 @@ static inline int inside_of(int k, filter_bound bound, int exactly, global const
   return INSIDE;
 }
 
+// The same by floating point alone; if in doubt, it may be so.
+static inline int may_be_inside(int k, filter_bound bound, global const coordinate2* points,
+                                global const ring_edge* edges) {
+  return edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);
+}
+
 // n pairs of edges; account: of the merges.
 kernel void find_inside(int n, filter_bound bound, global const uint* restrict account,
                         global const coordinate2* restrict points, global const ring_edge* restrict edges,
@@ -59,7 +65,7 @@ kernel void find_inside(int n, filter_bound bound, global const uint* restrict a
   if (k < n && account[RINGS_TIES_LEFT] > 0) {
     fetch_edges(k, n, edges);
     fetch_points(k, n, points);
-    unsure[k] = edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);
+    unsure[k] = may_be_inside(k, bound, points, edges);
   }
 }
 
@@ -69,30 +75,24 @@ static inline int has_unsure_sides(int k, global const ring_edge* edges, global 
   return unsure[there.next >> 1] | unsure[there.previous >> 1] | unsure[back.next >> 1] | unsure[back.previous >> 1];
 }
 
-// n pairs of edges. with_quadrilaterals: whether these are not yet canonical.
+// n pairs of edges. with_quadrilaterals: whether these are not yet canonical; then find_inside is not needed.
 kernel void find_inside_exactly(int n, int with_quadrilaterals, filter_bound bound, global const uint* restrict account,
                                 global const coordinate2* restrict points, global const ring_edge* restrict edges,
                                 global const uchar* restrict unsure, global uchar* restrict inside) {
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES_LEFT] > 0) {
-    const int may_be = unsure[k] && (with_quadrilaterals || has_unsure_sides(k, edges, unsure));
+    const int may_be =
+        with_quadrilaterals ? may_be_inside(k, bound, points, edges) : unsure[k] && has_unsure_sides(k, edges, unsure);
     inside[k] = may_be ? inside_of(k, angle_bound(bound), 1, points, edges) : NOT_INSIDE;
   }
 }
 
 static inline int is_inside(int e, global const uchar* inside) { return inside[e >> 1]; }
 
-// n vertices.
-kernel void leave_inside(int n, global const uint* restrict account, global const ring_edge* restrict edges,
-                         global const uchar* restrict inside, global int* restrict vertex_edge) {
-  const int v = get_global_id(0);
-  if (v < n && account[RINGS_TIES_LEFT] > 0) {
-    int e = vertex_edge[v];
-    if (e != NO_EDGE && is_inside(e, inside)) {
-      while (is_inside(e, inside)) e = edges[e].next;
-      vertex_edge[v] = e;
-    }
-  }
+// The first edge around a vertex from e on that is not inside of a polygon.
+static inline int first_outside(int e, global const ring_edge* edges, global const uchar* inside) {
+  while (e != NO_EDGE && is_inside(e, inside)) e = edges[e].next;
+  return e;
 }
 
 // Whether a polygon's first vertex is the origin of e, an edge inside of it, and e comes behind the polygon's first
@@ -122,9 +122,10 @@ static inline int is_opposite_of_fan(int e, global const coordinate2* points, gl
 // n pairs of edges.
 kernel void find_fans(int n, global const uint* restrict account, global const coordinate2* restrict points,
                       global const ring_edge* restrict edges, global const uchar* restrict inside,
-                      global uchar* restrict found) {
+                      global int* restrict vertex_edge, global uchar* restrict found) {
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES_LEFT] > 0) {
+    if (k < n / PAIRS_PER_VERTEX) vertex_edge[k] = first_outside(vertex_edge[k], edges, inside);
     int where = NOT_HERE;
     for (int odd = 0; inside[k] && odd < 2; ++odd) {
       if (is_first_of_fan(2 * k + odd, points, edges, inside)) where = AT_ORIGIN + odd;

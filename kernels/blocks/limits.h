@@ -22,6 +22,8 @@ INTEGER_CONSTANT(SORTED_TILE, 16);
 INTEGER_CONSTANT(LARGEST_GROUP, 1024);
 // Rounds join the boxes of this many blocks in one step.
 INTEGER_CONSTANT(JOINED_BOXES, 16);
+// A step of rank_hull looks this many times as far ahead as the one before.
+INTEGER_CONSTANT(HULL_HOPS, 4);
 
 // Merges of blocks by single work-items leave polygons with this many consecutive ties, which therefore have
 // more than four points, to fans.cl (mesh/rings.h).

@@ -8,8 +8,8 @@
 //
 // Each round, when the blocks are solved:
 // 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
-//    around each set's points. frame_blocks, per block, finds the rectangle between the cuts. name_round_vertices
-//    numbers each vertex.
+//    around each set's points. begin_round, per vertex, numbers the vertices, and per block finds the rectangle between
+//    the cuts.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. After the first round, emit_unsure, per pair of edges,
 //    decides exactly what the filters could not.
@@ -17,10 +17,11 @@
 // 4. Unless each set has one triangulation: count_open, per vertex, counts vertices that go on; after a scan
 //    write_open writes the points and their open edges.
 // After the rounds:
-// 5. count_rows, per place, and after a scan write_rows, per place, close the gaps between triangles.
-// 6. count_hull and list_hull, per vertex, list the hulls' vertices; rank_hull, in one launch per doubling, finds how
-//    many follow each; write_hull writes them in order.
-// measure_open and measure_sets tell the host how large the sets' parts are.
+// 5. count_results counts triangles, per place, and hull vertices, per vertex. After a scan write_rows, per place,
+//    closes the gaps between triangles.
+// 6. list_hull, per vertex, lists the hulls' vertices; rank_hull, in one launch per factor of HULL_HOPS, finds how many
+//    follow each; write_hull writes them in order.
+// measure_open and measure_sets tell the host how large the parts of several sets are.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
@@ -95,16 +96,24 @@ static inline void find_outside(hull_ends ends, global const ring_edge* edges, g
   outside[2] = third ^ 1;
 }
 
-// n blocks: the leaves of each set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has
-// the set's triangulation. set_boxes: where each set has its box. The hull of a single vertex, which has no edges, is
-// written here.
-kernel void frame_blocks(int n, CUT_SETS(), int is_merged, scaling scale, global const solved_block* restrict solved,
-                         global const int* restrict set_boxes, global const vertex_box* restrict boxes,
-                         global const ring_edge* restrict edges, global const int* restrict vertex_edge,
-                         global const int* restrict vertices, global int* restrict hull_next,
-                         global block_frame* restrict frames) {
+// The number of a round's vertex k in the first round, which all rounds use. listed: where the vertices stood in the
+// list that was made into blocks; listed_vertices: their numbers; of the first round itself, there is no list.
+static inline int round_vertex(int k, int is_first, global const int* listed, global const int* listed_vertices) {
+  return is_first ? k : listed_vertices[listed[k]];
+}
+
+// n: the larger of the numbers of places and of blocks, which are the leaves of each set's tree, whose nodes begin at
+// set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where each set has its box.
+// The hull of a single vertex, which has no edges, is written here.
+kernel void begin_round(int n, int places, int blocks, CUT_SETS(), int is_merged, scaling scale,
+                        global const solved_block* restrict solved, global const int* restrict set_boxes,
+                        global const vertex_box* restrict boxes, global const ring_edge* restrict edges,
+                        global const int* restrict vertex_edge, int is_first, global const int* restrict listed,
+                        global const int* restrict listed_vertices, global int* restrict vertices,
+                        global int2* restrict hull_links, global block_frame* restrict frames) {
   const int b = get_global_id(0);
-  if (b < n) {
+  if (b < places) vertices[b] = round_vertex(b, is_first, listed, listed_vertices);
+  if (b < blocks) {
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
     block_frame frame;
@@ -119,16 +128,11 @@ kernel void frame_blocks(int n, CUT_SETS(), int is_merged, scaling scale, global
     frame.unused = 0;
     frames[b] = frame;
     const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
-    if (is_single && (is_merged || leaves == 1)) hull_next[vertices[ends.first_x]] = vertices[ends.first_x];
+    if (is_single && (is_merged || leaves == 1)) {
+      const int single = round_vertex(ends.first_x, is_first, listed, listed_vertices);
+      hull_links[single].x = single;
+    }
   }
-}
-
-// n vertices of a round. listed: where they stood in the list that was made into blocks; listed_vertices: their numbers
-// in the first round, which all rounds use; of the first round itself, there is no list.
-kernel void name_round_vertices(int n, int is_first, global const int* restrict listed,
-                                global const int* restrict listed_vertices, global int* restrict vertices) {
-  const int k = get_global_id(0);
-  if (k < n) vertices[k] = is_first ? k : listed_vertices[listed[k]];
 }
 
 // The arrays from which and to which a round's triangles are emitted.
@@ -145,8 +149,7 @@ typedef struct {
   global const int* indices;  // in the input, by vertex
   global int* places;
   global int* states;
-  global int* hull_next;
-  global int* hull_previous;
+  global int2* hull_links;  // the next and the previous vertex of the hull
 } emission;
 
 static inline int is_outside(int e, global const ring_edge* edges, const block_frame* frame) {
@@ -193,8 +196,8 @@ static inline void emit_triangle(const emission* m, int e) {
 // The hull goes from v to w. The vertices of a set on one line are a chain in the order of x.
 static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) {
   if (is_line && !precedes(m->points[v], m->points[w], 0)) return;
-  m->hull_next[m->vertices[v]] = m->vertices[w];
-  m->hull_previous[m->vertices[w]] = m->vertices[v];
+  m->hull_links[m->vertices[v]].x = m->vertices[w];
+  m->hull_links[m->vertices[w]].y = m->vertices[v];
 }
 
 // The emitted corner beyond an open edge from one vertex, where that side begins, to another; GHOST if none is.
@@ -256,14 +259,13 @@ kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int block
                            global const block_frame* restrict frames, global const coordinate2* restrict points,
                            global const ring_edge* restrict edges, global const coordinate2* all_points,
                            global const int* restrict indices, global int* restrict places, global int* states,
-                           global int* restrict hull_next, global int* restrict hull_previous,
-                           global uchar* restrict unsure) {
+                           global int2* restrict hull_links, global uchar* restrict unsure) {
   const int k = get_global_id(0);
   int undecided = 0;
   if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
   if (k < n && edges[2 * k].to != NO_VERTEX) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
-                        open_edges, all_points, indices, places, states,   hull_next, hull_previous};
+                        open_edges, all_points, indices, places, states,   hull_links};
     const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
@@ -281,12 +283,11 @@ kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, 
                         global const block_frame* restrict frames, global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
-                        global int* restrict hull_next, global int* restrict hull_previous,
-                        global const uchar* restrict unsure) {
+                        global int2* restrict hull_links, global const uchar* restrict unsure) {
   const int k = get_global_id(0);
   if (k < n && unsure[k] != 0) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
-                        open_edges, all_points, indices, places, states,   hull_next, hull_previous};
+                        open_edges, all_points, indices, places, states,   hull_links};
     const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if ((unsure[k] >> (e - 2 * k) & 1) == 0) continue;
@@ -312,7 +313,7 @@ kernel void link_triangles(int n, OPEN_VERTICES(), global const ring_edge* restr
         other = corner_beyond(listed[edges[e ^ 1].to], vertices[edges[e].to], open_offsets, open_edges);
         if (other >= 0) links[other] = corner;
       }
-      if (other >= 0) links[corner] = other;
+      links[corner] = max(other, -1);
     }
   }
 }
@@ -435,10 +436,13 @@ kernel void write_open(int n, OPEN_VERTICES(), global const coordinate2* restric
   }
 }
 
-// n places of triangles.
-kernel void count_rows(int n, global const int* restrict places, global uint* restrict counts) {
+static inline int is_on_hull(int2 links) { return links.x != NO_VERTEX || links.y != NO_VERTEX; }
+
+// n: the places of triangles, 2 per vertex, and behind them the vertices.
+kernel void count_results(int n, int vertices, global const int* restrict places,
+                          global const int2* restrict hull_links, global uint* restrict counts) {
   const int p = get_global_id(0);
-  if (p < n) counts[p] = places[3 * p] >= 0;
+  if (p < n) counts[p] = p < 2 * vertices ? places[3 * p] >= 0 : is_on_hull(hull_links[p - 2 * vertices]);
 }
 
 // n places of triangles; scanned: the row of each. with_neighbors, with_halfedges: whether these arrays are wanted.
@@ -459,42 +463,42 @@ kernel void write_rows(int n, int with_neighbors, int with_halfedges, global con
   }
 }
 
-// n vertices.
-kernel void count_hull(int n, global const int* restrict hull_next, global const int* restrict hull_previous,
-                       global uint* restrict counts) {
-  const int v = get_global_id(0);
-  if (v < n) counts[v] = hull_next[v] != NO_VERTEX || hull_previous[v] != NO_VERTEX;
+// Where hull vertex v stands in the list of all of n vertices.
+static inline int place_on_hull(int v, int n, global const uint* scanned) {
+  return (int)(scanned[2 * n + v] - scanned[2 * n]);
 }
 
 // Whether the hull's order begins with a vertex: the first one along x.
-static inline int begins_hull(int v, global const coordinate2* points, global const int* hull_next,
-                              global const int* hull_previous) {
-  const int before = hull_previous[v], after = hull_next[v];
+static inline int begins_hull(int v, global const coordinate2* points, global const int2* hull_links) {
+  const int before = hull_links[v].y, after = hull_links[v].x;
   return before == NO_VERTEX || after == v ||
          (after != NO_VERTEX && comes_before(points[v], points[after]) && comes_before(points[v], points[before]));
 }
 
 // Writes the hull vertices of all sets, and for each the place of the next one with 1, their distance, or its own with
-// 0, if it is the last one. n vertices; scanned: each hull vertex's place.
-kernel void list_hull(int n, global const coordinate2* restrict points, global const int* restrict hull_next,
-                      global const int* restrict hull_previous, global const uint* restrict scanned,
-                      global int* restrict hull_vertices, global int2* restrict ahead) {
+// 0, if it is the last one. n vertices; scanned: the prefix sums of count_results.
+kernel void list_hull(int n, global const coordinate2* restrict points, global const int2* restrict hull_links,
+                      global const uint* restrict scanned, global int* restrict hull_vertices,
+                      global int2* restrict ahead) {
   const int v = get_global_id(0);
-  if (v < n && scanned[v + 1] > scanned[v]) {
-    const int at = (int)scanned[v], after = hull_next[v];
-    const int is_last = after == NO_VERTEX || begins_hull(after, points, hull_next, hull_previous);
+  if (v < n && is_on_hull(hull_links[v])) {
+    const int at = place_on_hull(v, n, scanned), after = hull_links[v].x;
+    const int is_last = after == NO_VERTEX || begins_hull(after, points, hull_links);
     hull_vertices[at] = v;
-    ahead[at] = is_last ? VECTOR(int2, at, 0) : VECTOR(int2, (int)scanned[after], 1);
+    ahead[at] = is_last ? VECTOR(int2, at, 0) : VECTOR(int2, place_on_hull(after, n, scanned), 1);
   }
 }
 
-// Doubles how far ahead n hull vertices look (Wyllie, "The complexity of parallel computations", 1979).
+// n hull vertices look HULL_HOPS times as far ahead (Wyllie, "The complexity of parallel computations", 1979, doubles).
 kernel void rank_hull(int n, global const int2* restrict from, global int2* restrict to) {
   const int k = get_global_id(0);
   if (k < n) {
-    const int2 here = from[k];
-    const int2 there = from[here.x];
-    to[k] = VECTOR(int2, there.x, here.y + there.y);
+    int2 here = from[k];
+    for (int hop = 1; hop < HULL_HOPS; ++hop) {
+      const int2 there = from[here.x];
+      here = VECTOR(int2, there.x, here.y + there.y);
+    }
+    to[k] = here;
   }
 }
 
@@ -510,10 +514,13 @@ kernel void write_hull(int n, int sets, global const int* restrict hull_offsets,
 }
 
 // Where sets begin among the rows and among the hull vertices. n: the number of sets plus 1.
-kernel void measure_sets(int n, global const int* restrict set_points, global const uint* restrict row_of_place,
-                         global const uint* restrict hull_of_vertex, global uint2* restrict sizes) {
+kernel void measure_sets(int n, global const int* restrict set_points, global const uint* restrict scanned,
+                         global uint2* restrict sizes) {
   const int s = get_global_id(0);
-  if (s < n) sizes[s] = VECTOR(uint2, row_of_place[2 * set_points[s]], hull_of_vertex[set_points[s]]);
+  if (s < n) {
+    const int hull = place_on_hull(set_points[s], set_points[n - 1], scanned);
+    sizes[s] = VECTOR(uint2, scanned[2 * set_points[s]], (uint)hull);
+  }
 }
 
 // Where sets begin among the points that go on. n: the number of sets plus 1.

@@ -163,21 +163,28 @@ kernel void move_keys(int n, int size, int shift, int bits, int is_first, global
   }
 }
 
-// indices: as for move_keys.
+// indices: as for move_keys. If the blocks have one digit (is_first), `scanned` says where each of them begins;
+// otherwise block_starts finds that in moved_blocks.
 kernel void move_tiles(int n, int size, int shift, int bits, int is_first, global const int* restrict blocks,
                        global const int* restrict indices, global const uint* restrict scanned,
-                       global const coordinate* restrict input, scaling scale, global int* restrict moved_blocks,
+                       global const coordinate* restrict input, scaling scale, int block_count,
+                       global int* restrict offsets, global int* restrict moved_blocks,
                        global coordinate2* restrict points, global int* restrict source) {
   local uint elements[2 * PADDED_TILE];
   local int starts[1 << MOST_BLOCK_BITS];
   local uint64 sums[LARGEST_TILE_GROUP];
   const point_tile tile = points_of(n, size);
   const int sorted = sort_tile(tile, shift, bits, blocks, scanned, elements, starts, sums);
+  if (is_first && get_group_id(0) == 0) {
+    for (int b = get_local_id(0); b <= block_count; b += get_local_size(0)) {
+      offsets[b] = b < block_count ? (int)scanned[b * tile.count] : n;
+    }
+  }
   for (int i = get_local_id(0); i < tile.last - tile.first; i += get_local_size(0)) {
     const uint element = elements[sorted + padded(i)];
     const int from = tile.first + place_of(element), to = starts[digit_of(element)] + i;
     const int point = is_first ? from : indices[from];
-    moved_blocks[to] = blocks[from];
+    if (!is_first) moved_blocks[to] = blocks[from];
     points[to] = scaled_point(point, input, scale);
     source[to] = point;
   }

@@ -128,16 +128,20 @@ std::size_t largest_of(const Blocks& blocks) {
 
 }  // namespace
 
+Buffer<cl_uint> make_account(Workspace& work) {
+  const auto account = work.persistent.allocate<cl_uint>(kernel::RINGS_NUMBERS);
+  work.runtime.fill(account, kernel::RINGS_NUMBERS, cl_uint{0});
+  return account;
+}
+
 Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
-            Milestones* milestones) {
-  host::Runtime& runtime = work.runtime;
+            const Buffer<cl_uint>& account, Milestones* milestones) {
   Rings rings;
   rings.edges = work.persistent.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * blocks.points);
   rings.vertex_edge = work.persistent.allocate<cl_int>(blocks.points);
   rings.solved = work.persistent.allocate<kernel::solved_block>(blocks.count);
   rings.device_distinct = work.persistent.allocate<cl_int>(blocks.count);
-  rings.device_account = work.persistent.allocate<cl_uint>(kernel::RINGS_NUMBERS);
-  runtime.fill(rings.device_account, kernel::RINGS_NUMBERS, cl_uint{0});
+  rings.device_account = account;
   if (work.weights != nullptr) {
     rings.vertex_weights = work.persistent.allocate<cl_double>(blocks.points);
     rings.links = work.persistent.allocate<cl_int>(blocks.points);
@@ -173,7 +177,7 @@ void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones
 
 Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
              Milestones* milestones) {
-  const Rings rings = solve(work, blocks, representatives, milestones);
+  const Rings rings = solve(work, blocks, representatives, make_account(work), milestones);
   merge(work, blocks, rings, milestones);
   return rings;
 }

@@ -12,27 +12,25 @@ void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
   const auto found = work.scratch().allocate<cl_uchar>(pairs);
   const auto& account = rings.device_account;
   const auto& unsure = found;
-  runtime.map(pairs, kernels::find_inside{.bound = work.bounds.circle,
-                                          .account = account,
-                                          .points = blocks.vertices,
-                                          .edges = rings.edges,
-                                          .unsure = unsure});
-  runtime.map(pairs,
-              kernels::find_inside_exactly{.with_quadrilaterals = tuning_of(runtime).blocks_in_parallel != 0,
-                                           .bound = work.bounds.circle,
-                                           .account = account,
-                                           .points = blocks.vertices,
-                                           .edges = rings.edges,
-                                           .unsure = unsure,
-                                           .inside = inside});
-  runtime.map(
-      blocks.points,
-      kernels::leave_inside{
-          .account = account, .edges = rings.edges, .inside = inside, .vertex_edge = rings.vertex_edge});
+  const bool with_quadrilaterals = tuning_of(runtime).blocks_in_parallel != 0;
+  if (!with_quadrilaterals)
+    runtime.map(pairs, kernels::find_inside{.bound = work.bounds.circle,
+                                            .account = account,
+                                            .points = blocks.vertices,
+                                            .edges = rings.edges,
+                                            .unsure = unsure});
+  runtime.map(pairs, kernels::find_inside_exactly{.with_quadrilaterals = with_quadrilaterals,
+                                                  .bound = work.bounds.circle,
+                                                  .account = account,
+                                                  .points = blocks.vertices,
+                                                  .edges = rings.edges,
+                                                  .unsure = unsure,
+                                                  .inside = inside});
   runtime.map(pairs, kernels::find_fans{.account = account,
                                         .points = blocks.vertices,
                                         .edges = rings.edges,
                                         .inside = inside,
+                                        .vertex_edge = rings.vertex_edge,
                                         .found = found});
   runtime.map(
       pairs, kernels::build_fans{.account = account, .inside = inside, .found = found, .edges = rings.edges});

@@ -38,8 +38,12 @@ points::Rings divide(points::Workspace& work, const points::Blocks& blocks,
                      const host::Buffer<cl_int>& representatives, Milestones* milestones = nullptr);
 /// The first part of divide: triangulates each block. If the host has not read the blocks' sizes, those that
 /// are larger than expected are left as blocks without vertices; that takes `blocks_in_parallel`.
+/// account: from make_account, added to.
 points::Rings solve(points::Workspace& work, const points::Blocks& blocks,
-                    const host::Buffer<cl_int>& representatives, Milestones* milestones = nullptr);
+                    const host::Buffer<cl_int>& representatives, const host::Buffer<cl_uint>& account,
+                    Milestones* milestones = nullptr);
+/// The account of rings, with nothing in it.
+host::Buffer<cl_uint> make_account(points::Workspace& work);
 /// The second part of divide: merges the triangulations of blocks.
 void merge(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
            Milestones* milestones = nullptr);

@@ -26,11 +26,11 @@ constexpr std::size_t kMostOpenEdges = 7;
 
 // The arrays into which all rounds emit.
 struct Emitted {
-  Buffer<cl_double2> points{};  // the vertices, as the first round numbers them
-  Buffer<cl_int> indices{};     // in the input
-  Buffer<cl_int> places{};      // 3 per place of a triangle, 2 places per vertex
-  Buffer<cl_int> links{};       // the same for their neighbours; null if these are not wanted
-  Buffer<cl_int> hull_next{}, hull_previous{};
+  Buffer<cl_double2> points{};   // the vertices, as the first round numbers them
+  Buffer<cl_int> indices{};      // in the input
+  Buffer<cl_int> places{};       // 3 per place of a triangle, 2 places per vertex
+  Buffer<cl_int> links{};        // the same for their neighbours; null if these are not wanted
+  Buffer<cl_int2> hull_links{};  // the next and the previous vertex of the hull
 };
 
 // The boxes around the sets' points, found in the first round: later rounds have fewer points.
@@ -132,24 +132,31 @@ std::vector<cl_int> first_nodes(const Blocks& blocks) {
   return nodes;
 }
 
-void frame(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
+// Names the vertices of a round, and finds the blocks' rectangles.
+void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
-  work.runtime.map(blocks.count, kernels::frame_blocks{.cut_sets = {.sets = blocks.sets,
-                                                                    .set_blocks = blocks.device_set_blocks,
-                                                                    .set_nodes = set_nodes,
-                                                                    .nodes = blocks.device_nodes},
-                                                       .is_merged = round.is_merged,
-                                                       .scale = blocks.scale,
-                                                       .solved = round.rings.solved,
-                                                       .set_boxes = boxes.places,
-                                                       .boxes = boxes.boxes,
-                                                       .edges = round.rings.edges,
-                                                       .vertex_edge = round.rings.vertex_edge,
-                                                       .vertices = round.vertices,
-                                                       .hull_next = emitted.hull_next,
-                                                       .frames = round.frames});
+  const std::size_t items = std::max(blocks.points, blocks.count);
+  work.runtime.map(items, kernels::begin_round{.places = blocks.points,
+                                               .blocks = blocks.count,
+                                               .cut_sets = {.sets = blocks.sets,
+                                                            .set_blocks = blocks.device_set_blocks,
+                                                            .set_nodes = set_nodes,
+                                                            .nodes = blocks.device_nodes},
+                                               .is_merged = round.is_merged,
+                                               .scale = blocks.scale,
+                                               .solved = round.rings.solved,
+                                               .set_boxes = boxes.places,
+                                               .boxes = boxes.boxes,
+                                               .edges = round.rings.edges,
+                                               .vertex_edge = round.rings.vertex_edge,
+                                               .is_first = round.is_first,
+                                               .listed = blocks.source,
+                                               .listed_vertices = round.open.vertices,
+                                               .vertices = round.vertices,
+                                               .hull_links = emitted.hull_links,
+                                               .frames = round.frames});
 }
 
 kernels::open_vertices open_vertices(const Round& round) {
@@ -175,28 +182,23 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
                                                    .indices = emitted.indices,
                                                    .places = emitted.places,
                                                    .states = round.states,
-                                                   .hull_next = emitted.hull_next,
-                                                   .hull_previous = emitted.hull_previous,
+                                                   .hull_links = emitted.hull_links,
                                                    .unsure = round.unsure});
 }
 
-// Allocates the arrays that describe a round's triangulations, and names their vertices.
-void begin_emission(Workspace& work, Round& round) {
+// Allocates the arrays that describe a round's triangulations.
+void allocate_states(Workspace& work, Round& round) {
   const Blocks& blocks = round.blocks;
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
   round.unsure = work.scratch().allocate<cl_uchar>(round.is_first ? 1 : round.states.size() / 2);
   round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
-  work.runtime.map(blocks.points, kernels::name_round_vertices{.is_first = round.is_first,
-                                                               .listed = blocks.source,
-                                                               .listed_vertices = round.open.vertices,
-                                                               .vertices = round.vertices});
 }
 
 // Emits the final triangles of a round. Triangles emitted by earlier rounds are written again, unchanged.
 void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   host::Runtime& runtime = work.runtime;
-  frame(work, round, boxes, emitted);
+  begin_round(work, round, boxes, emitted);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   if (!round.is_first) launch_emission<kernels::emit_unsure>(work, round, emitted);
   if (emitted.links.memory() == nullptr) return;
@@ -234,11 +236,15 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
                                                  .states = round.states,
                                                  .counts = counts});
   host::exclusive_scan(runtime, counts, blocks.points, counts);
-  const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
-  const auto set_points = runtime.upload(work.scratch(), integers(round.open.offsets));
-  runtime.map(sizes.size(),
-              kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
-  runtime.read(device_sizes, 0, sizes.size(), sizes.data());
+  if (blocks.sets == 1) {
+    sizes[1] = runtime.read_one(counts, blocks.points);
+  } else {
+    const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
+    const auto set_points = runtime.upload(work.scratch(), integers(round.open.offsets));
+    runtime.map(sizes.size(),
+                kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
+    runtime.read(device_sizes, 0, sizes.size(), sizes.data());
+  }
   numbers.check();
   next.offsets.clear();
   for (std::size_t s = 0; s < sizes.size(); ++s) {
@@ -270,8 +276,7 @@ class Results {
   Results(Workspace& work, const Emitted& emitted, const std::vector<std::size_t>& offsets)
       : work_(work), emitted_(emitted), sets_(offsets.size() - 1), n_(offsets.back()) {
     set_points_ = work.runtime.upload(work.scratch(), integers(offsets));
-    rows_ = work.scratch().allocate<cl_uint>(2 * n_ + 1);
-    hull_places_ = work.scratch().allocate<cl_uint>(n_ + 1);
+    scanned_ = work.scratch().allocate<cl_uint>(3 * n_ + 1);
   }
 
   // Waits once, also for the numbers. set_blocks: of the first round.
@@ -279,17 +284,14 @@ class Results {
     host::Runtime& runtime = work_.runtime;
     std::vector<cl_uint2> found(sets_ + 1);
     const host::Runtime::Settled settled(runtime);
-    runtime.map(2 * n_, kernels::count_rows{.places = emitted_.places, .counts = rows_});
-    host::exclusive_scan(runtime, rows_, 2 * n_, rows_);
-    runtime.map(n_, kernels::count_hull{.hull_next = emitted_.hull_next,
-                                        .hull_previous = emitted_.hull_previous,
-                                        .counts = hull_places_});
-    host::exclusive_scan(runtime, hull_places_, n_, hull_places_);
+    runtime.map(3 * n_, kernels::count_results{.vertices = n_,
+                                               .places = emitted_.places,
+                                               .hull_links = emitted_.hull_links,
+                                               .counts = scanned_});
+    host::exclusive_scan(runtime, scanned_, 3 * n_, scanned_);
     const auto device_sizes = work_.scratch().allocate<cl_uint2>(found.size());
-    runtime.map(found.size(), kernels::measure_sets{.set_points = set_points_,
-                                                    .row_of_place = rows_,
-                                                    .hull_of_vertex = hull_places_,
-                                                    .sizes = device_sizes});
+    runtime.map(found.size(),
+                kernels::measure_sets{.set_points = set_points_, .scanned = scanned_, .sizes = device_sizes});
     runtime.read(device_sizes, 0, found.size(), found.data());
     numbers.check();
     MeshSizes sizes;
@@ -315,7 +317,7 @@ class Results {
                                                     .with_halfedges = mesh.halfedges.memory() != nullptr,
                                                     .places = emitted_.places,
                                                     .links = emitted_.links,
-                                                    .scanned = rows_,
+                                                    .scanned = scanned_,
                                                     .triangles = mesh.triangles,
                                                     .neighbors = mesh.neighbors,
                                                     .halfedges = mesh.halfedges});
@@ -332,16 +334,15 @@ class Results {
     auto ahead = work_.scratch().allocate<cl_int2>(count);
     auto farther = work_.scratch().allocate<cl_int2>(count);
     runtime.map(n_, kernels::list_hull{.points = emitted_.points,
-                                       .hull_next = emitted_.hull_next,
-                                       .hull_previous = emitted_.hull_previous,
-                                       .scanned = hull_places_,
+                                       .hull_links = emitted_.hull_links,
+                                       .scanned = scanned_,
                                        .hull_vertices = vertices,
                                        .ahead = ahead});
     std::size_t longest = 1;
     for (std::size_t s = 0; s < sets_; ++s) {
       longest = std::max(longest, sizes.hull_offsets[s + 1] - sizes.hull_offsets[s]);
     }
-    for (std::size_t reach = 1; reach < longest; reach *= 2) {
+    for (std::size_t reach = 1; reach < longest; reach *= kernel::HULL_HOPS) {
       runtime.map(count, kernels::rank_hull{.from = ahead, .to = farther});
       std::swap(ahead, farther);
     }
@@ -358,7 +359,7 @@ class Results {
   const Emitted& emitted_;
   std::size_t sets_, n_;
   Buffer<cl_int> set_points_{};
-  Buffer<cl_uint> rows_{}, hull_places_{};
+  Buffer<cl_uint> scanned_{};
 };
 
 Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
@@ -369,11 +370,9 @@ Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
   const std::size_t corners = 3 * kMostTrianglesPerPoint * blocks.points;
   emitted.places = arena.allocate<cl_int>(corners);
   if (with_links) emitted.links = arena.allocate<cl_int>(corners);
-  emitted.hull_next = arena.allocate<cl_int>(blocks.points);
-  emitted.hull_previous = arena.allocate<cl_int>(blocks.points);
-  for (const auto& array : {emitted.places, emitted.links, emitted.hull_next, emitted.hull_previous}) {
-    work.runtime.fill(array, array.size(), cl_int{-1});
-  }
+  emitted.hull_links = arena.allocate<cl_int2>(blocks.points);
+  work.runtime.fill(emitted.places, corners, cl_int{-1});
+  work.runtime.fill(emitted.hull_links.as<cl_int>(), 2 * blocks.points, cl_int{-1});
   return emitted;
 }
 
@@ -416,6 +415,8 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   // If more went on from the first round, its blocks would be merged.
   const std::size_t n = offsets.back();
   const std::size_t most = std::clamp<std::size_t>(tuning_of(runtime).merge_from_percent * n / 100, 1, n);
+  // Of all rounds. Ties of one round only make later ones look for polygons, too.
+  const auto account = make_account(work);
   OpenPoints lists[2] = {{.most = most, .offsets = offsets}, {.most = most}};
   Outcome outcome;
   bool is_merged = false;
@@ -426,15 +427,14 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
     std::optional<Blocks> later_blocks;
     if (r > 0) later_blocks = blocks_of(rounds_work, open, is_merged);
     const Blocks& blocks = r > 0 ? *later_blocks : first_blocks;
-    Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives)};
+    Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives, account)};
     complete(rounds_work, round);
     if (r == 0) {
       exchange.while_device_computes();
       boxes = boxes_of_sets(work, blocks, round.rings);
     }
-    begin_emission(rounds_work, round);
+    allocate_states(rounds_work, round);
     emit(rounds_work, round, boxes, emitted);
-    outcome.undecided += numbers.undecided();  // of the round before
     numbers.read_later(runtime, blocks, round.rings, r == 0);
     next.offsets.assign(blocks.sets + 1, 0);
     if (!round.is_last() && !find_open(rounds_work, persistent, round, numbers, next)) {
@@ -457,7 +457,7 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   phases.progress("output", kBlocksMerged);
   Results results(work, emitted, offsets);
   outcome.sizes = results.sizes(first_blocks.set_blocks, numbers);
-  outcome.undecided += numbers.undecided();
+  outcome.undecided = numbers.undecided();
   phases.progress("output", kMeshCounted);
   results.write(outcome.sizes, exchange.mesh(outcome.sizes));
   return outcome;

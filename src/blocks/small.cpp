@@ -202,11 +202,12 @@ std::optional<points::SmallRings> small_rings(const double* coordinates,
                                                      .edges = edges,
                                                      .unsure = found,
                                                      .inside = inside});
-    map_natively(n, kernels::leave_inside{
-                        .account = account, .edges = edges, .inside = inside, .vertex_edge = vertex_edge});
-    map_natively(
-        pairs, kernels::find_fans{
-                   .account = account, .points = vertices, .edges = edges, .inside = inside, .found = found});
+    map_natively(pairs, kernels::find_fans{.account = account,
+                                           .points = vertices,
+                                           .edges = edges,
+                                           .inside = inside,
+                                           .vertex_edge = vertex_edge,
+                                           .found = found});
     map_natively(pairs,
                  kernels::build_fans{.account = account, .inside = inside, .found = found, .edges = edges});
   }

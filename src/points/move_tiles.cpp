@@ -109,8 +109,8 @@ void sort_into_blocks(Workspace& work, const Plan& plan, const std::vector<std::
   count_tile_blocks(work, plan, offsets, input, blocks.device_nodes, tiles, block_of_point, representatives);
   const Keys keys = sort_by_lower_digits(work, tiles, {block_of_point, block_of_point});
   const int lower_digits = tiles.digits.count - 1;
-  // With several digits, the blocks as they were found first are not needed any more.
-  const auto sorted = lower_digits == 0 ? work.scratch().allocate<cl_int>(blocks.points) : block_of_point;
+  // The blocks as they were found first are not needed any more.
+  const auto& sorted = block_of_point;
   tiles.launch(work.runtime, kernels::move_tiles{.size = tiles.size,
                                                  .shift = lower_digits * tiles.digits.bits,
                                                  .bits = tiles.digits.bits,
@@ -120,9 +120,12 @@ void sort_into_blocks(Workspace& work, const Plan& plan, const std::vector<std::
                                                  .scanned = tiles.table,
                                                  .input = input,
                                                  .scale = blocks.scale,
+                                                 .block_count = blocks.count,
+                                                 .offsets = blocks.device_offsets,
                                                  .moved_blocks = sorted,
                                                  .points = blocks.vertices,
                                                  .source = blocks.source});
+  if (lower_digits == 0) return;
   work.runtime.map(
       blocks.count + 1,
       kernels::block_starts{.points = blocks.points, .blocks = sorted, .offsets = blocks.device_offsets});

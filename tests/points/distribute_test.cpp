@@ -167,19 +167,25 @@ TEST(SmallDistribute, GroupsBehindTheLastTileDoNothing) {
   const auto scanned = testing::upload(runtime, std::vector<cl_uint>{0, 2, 2, 4});
   const auto moved = testing::guarded<cl_int>(runtime, n), source = testing::guarded<cl_int>(runtime, n);
   const auto points = testing::guarded<cl_double2>(runtime, n);
-  runtime.launch(groups * group, group, n,
-                 kernels::move_tiles{.size = size,
-                                     .shift = 1,
-                                     .bits = 1,
-                                     .is_first = false,
-                                     .blocks = keys,
-                                     .indices = testing::upload(runtime, indices),
-                                     .scanned = scanned,
-                                     .input = input,
-                                     .scale = kernel::scaling{2, 1, 1},
-                                     .moved_blocks = moved,
-                                     .points = points,
-                                     .source = source});
+  const auto starts = testing::guarded<cl_int>(runtime, 3);
+  const auto move = [&](bool is_first) {
+    runtime.launch(groups * group, group, n,
+                   kernels::move_tiles{.size = size,
+                                       .shift = 1,
+                                       .bits = 1,
+                                       .is_first = is_first,
+                                       .blocks = keys,
+                                       .indices = testing::upload(runtime, indices),
+                                       .scanned = scanned,
+                                       .input = input,
+                                       .scale = kernel::scaling{2, 1, 1},
+                                       .block_count = 2,
+                                       .offsets = starts,
+                                       .moved_blocks = moved,
+                                       .points = points,
+                                       .source = source});
+  };
+  move(false);
   EXPECT_EQ(testing::download(runtime, moved, n), (std::vector<cl_int>{0, 0, 2, 2, 2, 3, 3}));
   const std::vector<cl_int> order{5, 3, 6, 4, 2, 1, 0};
   EXPECT_EQ(testing::download(runtime, source, n), order);
@@ -188,6 +194,10 @@ TEST(SmallDistribute, GroupsBehindTheLastTileDoNothing) {
     EXPECT_EQ(scaled[k].s[0], order[k]);
     EXPECT_EQ(scaled[k].s[1], -2 * order[k]);
   }
+  // By the only digit, all points in their order.
+  move(true);
+  EXPECT_EQ(testing::download(runtime, source, n), (std::vector<cl_int>{1, 3, 0, 2, 4, 5, 6}));
+  EXPECT_EQ(testing::download(runtime, starts, 3), (std::vector<cl_int>{0, 2, 7}));
 }
 
 }  // namespace
