@@ -2,12 +2,12 @@
 // duplicates are dropped, and the remaining points are cut in halves down to leaves (blocks/halving.h), exactly
 // as solve_blocks of blocks/divide.cl does. blocks/merge.cl does the rest.
 //
-// name_blocks finds the block of each place, with one work-item per place. halve_blocks is one launch, with one
-// work-group per block. It sorts tiles of SORTED_TILE points by counting, then merges runs: each element finds
-// its place by binary search in the other run. For blocks of more than `capacity` points, which have many equal
-// points as a rule, launches over all places do the same before: sort_large_tiles, merge_large_runs for each
-// width of runs, flag_distinct, a scan of its flags, move_distinct and name_duplicates. Each cut splits the
-// order that is not cut by position, stably, by a scan over the group, for all parts of a depth at once.
+// halve_blocks is one launch, with one work-group per block. It names the block of each place, and sorts tiles of
+// SORTED_TILE points by counting, then merges runs: each element finds its place by binary search in the other run. For
+// blocks of more than `capacity` points, which have many equal points as a rule, launches over all places do the same
+// before: name_blocks, sort_large_tiles, merge_large_runs for each width of runs, flag_distinct, a scan of its flags,
+// move_distinct and name_duplicates. Each cut splits the order that is not cut by position, stably, by a scan over the
+// group, for all parts of a depth at once.
 //
 // If most blocks are tiny, halve_tiny_blocks, per block, halves blocks of at most TINY_BLOCK points;
 // flag_larger_blocks and a scan list the others for the groups of halve_blocks.
@@ -301,6 +301,16 @@ kernel void name_duplicates(int n, int capacity, global const int* restrict offs
   }
 }
 
+// Names the block of the places [first, end), of which each of `lanes` work-items takes its share.
+static inline void name_places(int b, int first, int end, int lane, int lanes, global int* block_of_place) {
+  for (int i = first + lane; i < end; i += lanes) block_of_place[i] = b;
+}
+
+// Those of n places that are behind the last block, by all work-items of a launch.
+static inline void name_places_behind(int end, int n, global int* block_of_place) {
+  name_places(-1, end, n, get_global_id(0), get_global_size(0), block_of_place);
+}
+
 static inline void end_block(int b, int distinct, global solved_block* solved, global int* distinct_counts) {
   const solved_block none = {no_ends(), {NO_EDGE, NO_EDGE}};
   if (distinct == 0) solved[b] = none;
@@ -361,11 +371,14 @@ static inline int axis_of_tiny(int count, global const coordinate2* points) {
 }
 
 // n blocks. Halves blocks of at most TINY_BLOCK points as halve_blocks would.
-kernel void halve_tiny_blocks(int n, global const int* restrict offsets, BLOCK_POINTS(), global uchar* axes,
+kernel void halve_tiny_blocks(int n, int places, global const int* restrict offsets, BLOCK_POINTS(),
+                              global int* restrict block_of_place, global uchar* axes,
                               global coordinate2* scratch_points, global int* scratch_source) {
   const int b = get_global_id(0);
   const int first = b < n ? offsets[b] : 0, count = b < n ? offsets[b + 1] - first : 0;
+  name_places_behind(offsets[n], places, block_of_place);
   if (b < n && count <= TINY_BLOCK) {
+    name_places(b, first, first + count, 0, 1, block_of_place);
     block_arrays s;
     s.points = scratch_points + first;
     s.source = scratch_source + first;
@@ -394,13 +407,16 @@ kernel void halve_tiny_blocks(int n, global const int* restrict offsets, BLOCK_P
 // scanned. Blocks of more than `largest` points get no vertices.
 // are_listed: the groups take the blocks that flag_larger_blocks has flagged; larger_blocks: the flags' prefix sums.
 kernel void halve_blocks(int blocks, int are_listed, global const uint* restrict larger_blocks, int capacity,
-                         int largest, global const int* restrict offsets, global const uint* restrict scanned,
-                         BLOCK_POINTS(), global uchar* axes, BLOCK_SCRATCH(), global int* scratch_lows) {
+                         int largest, int places, global const int* restrict offsets,
+                         global const uint* restrict scanned, BLOCK_POINTS(), global int* restrict block_of_place,
+                         global uchar* axes, BLOCK_SCRATCH(), global int* scratch_lows) {
   local uint sums[LARGEST_GROUP];
   const int me = get_local_id(0), lanes = get_local_size(0);
   const int b = are_listed ? listed_block(get_group_id(0), blocks, larger_blocks) : (int)get_group_id(0);
   const int first = b < blocks ? offsets[b] : 0, points_of_block = b < blocks ? offsets[b + 1] - first : 0;
   const int count = points_of_block <= largest ? points_of_block : 0;
+  name_places(b, first, first + points_of_block, me, lanes, block_of_place);
+  name_places_behind(offsets[blocks], places, block_of_place);
   block_arrays s;
   s.points = scratch_points + first;
   s.source = scratch_source + first;

@@ -39,6 +39,9 @@ void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlo
   Arena::Scope scope(work.scratch());
   auto order = work.scratch().allocate<cl_int>(blocks.points);
   auto merged = work.scratch().allocate<cl_int>(blocks.points);
+  runtime.map(blocks.points, kernels::name_blocks{.blocks = blocks.count,
+                                                  .offsets = blocks.offsets,
+                                                  .block_of_place = halved.block_of_place});
   runtime.map(blocks.points, kernels::sort_large_tiles{.capacity = capacity,
                                                        .offsets = blocks.offsets,
                                                        .block_of_place = halved.block_of_place,
@@ -91,12 +94,14 @@ std::size_t halve_tiny(Workspace& work, const PointBlocks& blocks, const HalvedB
                        const Buffer<cl_uint>& larger_blocks) {
   host::Runtime& runtime = work.runtime;
   runtime.map(blocks.count,
-              kernels::halve_tiny_blocks{.offsets = blocks.offsets,
+              kernels::halve_tiny_blocks{.places = blocks.points,
+                                         .offsets = blocks.offsets,
                                          .block_points = {.points = blocks.vertices,
                                                           .source = blocks.source,
                                                           .representatives = representatives,
                                                           .solved = rings.solved,
                                                           .distinct_counts = rings.device_distinct},
+                                         .block_of_place = halved.block_of_place,
                                          .axes = halved.axes,
                                          .scratch_points = sorted.points,
                                          .scratch_source = sorted.source});
@@ -116,9 +121,6 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   const HalvedBlocks halved{scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uchar>(blocks.points)};
   Arena::Scope scope(scratch);
-  runtime.map(blocks.points, kernels::name_blocks{.blocks = blocks.count,
-                                                  .offsets = blocks.offsets,
-                                                  .block_of_place = halved.block_of_place});
   const std::size_t capacity = tuning.large_blocks * tuning.block_points;
   const bool has_large = blocks.largest > capacity;
   const SortedPoints sorted{scratch.allocate<cl_double2>(blocks.points),
@@ -140,6 +142,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                             .larger_blocks = larger_blocks,
                             .capacity = capacity,
                             .largest = blocks.largest,
+                            .places = blocks.points,
                             .offsets = blocks.offsets,
                             .scanned = sorted.scanned,
                             .block_points = {.points = blocks.vertices,
@@ -147,6 +150,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                                              .representatives = representatives,
                                              .solved = rings.solved,
                                              .distinct_counts = rings.device_distinct},
+                            .block_of_place = halved.block_of_place,
                             .axes = halved.axes,
                             .block_scratch = {.scratch_points = sorted.points,
                                               .scratch_source = sorted.source,

@@ -394,7 +394,7 @@ TEST(Merge, LaunchesAreFew) {
       // From height 2 on, with 8 points, merges are from both ends, and they begin with a fill. Local memory
       // has all up to height 7.
       EXPECT_EQ(runtime.accounts().launches - launches,
-                2u + (vertices == 0 ? 2 * 2 + 1 + 3 * 8 : 2 + 1 + 3 * 2));
+                1u + (vertices == 0 ? 2 * 2 + 1 + 3 * 8 : 2 + 1 + 3 * 2));
       EXPECT_EQ(runtime.accounts().waits, waits);
     }
   });
