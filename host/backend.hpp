@@ -109,6 +109,8 @@ class Backend {
 
   /// Called before a program is compiled from its source, which takes time.
   std::function<void()> before_compiling;
+  /// See Sizes.
+  std::size_t staging_bytes = 0;
 
  protected:
   Accounts& accounts() const { return accounts_; }

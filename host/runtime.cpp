@@ -50,6 +50,7 @@ Runtime::Runtime(Settings settings, const MakeBackend& make)
       is_native_(backend_->threads() > 0),
 #endif
       arena_(memory()) {
+  backend_->staging_bytes = sizes_->staging_bytes;
 }
 
 // Kernels may still use kept buffers and the memory of the arena.
@@ -71,6 +72,7 @@ void Runtime::set(Settings settings) {
   const std::string compiled_for = build_options();
   sizes_ = std::move(settings.sizes);
   capabilities_ = settings.capabilities;
+  backend_->staging_bytes = sizes_->staging_bytes;
   if (build_options() == compiled_for) return;
   for (auto& kernels : kernels_) kernels.clear();
   backend_->forget_programs();

@@ -181,14 +181,15 @@ class Runtime {
     if (count == 0) return;
     backend_->write(to.memory(), first * sizeof(T), count * sizeof(T), from, true);
   }
-  /// Enqueues a copy to the host without waiting, so that several copies share a wait. `to` has the values
-  /// after the next wait.
+  /// Enqueues a copy to the host, so that several copies share a wait. `to` has the values after the next
+  /// wait. Large copies wait here for all but their end.
   template <typename T>
   void read_later(const Buffer<T>& from, std::size_t first, std::size_t count, T* to) {
     if (count == 0) return;
     backend_->read(from.memory(), first * sizeof(T), count * sizeof(T), to, false);
   }
-  /// Enqueues a copy to the device without waiting. `from` must not be changed until the next wait.
+  /// Enqueues a copy to the device. `from` must not be changed until the next wait. Large copies wait here
+  /// for all but their end.
   template <typename T>
   void write_later(const Buffer<T>& to, std::size_t first, std::size_t count, const T* from) {
     if (count == 0) return;

@@ -150,6 +150,8 @@ FAULTS = [Fault(*each) for each in [
      "blocks_[0] = {memory, begin, offset + bytes < begin ? 0 : offset + bytes - begin, 0};",
      "blocks_[0] = {memory, begin, offset + bytes - begin, 0};",
      "a difference below 0", "test_host SmallArena.*"),
+    ("staged-chunk", "host/opencl/staging.cpp", "    chunk.to = nullptr;\n", "",
+     "a chunk that goes where an earlier read failed", "test_host SmallStaging.*"),
     ("reclaimable-memory", "host/memory/memory_left_posix.cpp",
      "limit(left, difference(*most, difference(*used, reclaimable)),", "limit(left, difference(*most, *used),",
      "a forgotten term", "test_host SmallSystemMemory.*"),

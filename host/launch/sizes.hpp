@@ -59,6 +59,8 @@ struct Sizes {
   std::size_t scan_groups = 1;
   /// Other than 0: kernels read and write the caller's host memory instead of copies.
   std::size_t in_host_memory = 0;
+  /// Large transfers between host and device go through pinned memory, in chunks of this size; 0: none do.
+  std::size_t staging_bytes = 0;
   /// How arrays get memory: a value of ArrayMemory.
   std::size_t separate_buffers = 0;
 

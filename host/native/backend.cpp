@@ -37,16 +37,12 @@ void NativeBackend::write(cl_mem to, std::size_t offset, std::size_t bytes, cons
   copy_bytes(address_of(to) + offset, static_cast<const char*>(from), bytes);
 }
 
-// Many bytes are copied by several threads, unless they overlap.
 void NativeBackend::copy_bytes(char* to, const char* from, std::size_t bytes) {
-  constexpr std::size_t kPart = std::size_t{1} << 19;
-  if (bytes <= kPart || (to < from + bytes && from < to + bytes)) {
+  if (to < from + bytes && from < to + bytes) {
     std::memmove(to, from, bytes);
-    return;
+  } else {
+    threads_.copy(to, from, bytes);
   }
-  threads_.share(bytes, kPart, [&](std::size_t first, std::size_t last) {
-    std::memcpy(to + first, from + first, last - first);
-  });
 }
 
 void NativeBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,

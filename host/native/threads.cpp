@@ -148,4 +148,10 @@ void Threads::share(std::size_t n, std::size_t part, const Work& work) {
   pool_->share(job);
 }
 
+void Threads::copy(char* to, const char* from, std::size_t bytes) {
+  constexpr std::size_t kPart = std::size_t{1} << 19;
+  share(bytes, kPart,
+        [&](std::size_t begin, std::size_t end) { std::memcpy(to + begin, from + begin, end - begin); });
+}
+
 }  // namespace flaunay::host

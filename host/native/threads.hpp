@@ -29,6 +29,8 @@ class Threads {
   /// and the exception is thrown here; of several exceptions, that of the first part is. If the system
   /// refuses threads, the others do their work.
   void share(std::size_t n, std::size_t part, const Work& work);
+  /// Copies bytes, many by all threads. They must not overlap.
+  void copy(char* to, const char* from, std::size_t bytes);
   /// Calls work(k) for each k below n.
   template <typename WorkOnOne>
   void share_each(std::size_t n, const WorkOnOne& work) {

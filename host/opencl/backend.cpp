@@ -121,6 +121,7 @@ cl_event OpenClBackend::mark() {
 void OpenClBackend::await(cl_event event) {
   ++accounts().waits;
   FLAUNAY_CL(clWaitForEvents(1, &event));
+  finish_reads();
 }
 
 void OpenClBackend::keep_order() {
@@ -169,26 +170,59 @@ void OpenClBackend::launch(Kernel& launched, std::size_t work_items, std::size_t
   if (profiling_ && events_.size() >= 4096) collect_times();
 }
 
-void OpenClBackend::read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) {
-  FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, wait ? CL_TRUE : CL_FALSE, offset, bytes, to, 0, nullptr,
-                                 nullptr));
-  accounts().bytes_to_host += bytes;
-  if (wait) {
-    ++accounts().waits;
-  } else {
-    keep_order();
+Staging* OpenClBackend::staging_for(std::size_t bytes) {
+  // The host begins to copy fewer bytes no sooner than the driver does.
+  constexpr std::size_t kLeastShare = 4;
+  if (staging_bytes == 0 || bytes < staging_bytes / kLeastShare) return nullptr;
+  if (staging_of_ != staging_bytes) {
+    finish_reads();
+    staging_.reset();
+    staging_of_ = staging_bytes;
+    try {
+      staging_ = std::make_unique<Staging>(own_queues_[0], staging_bytes);
+    } catch (const DeviceError&) {
+      // Without that memory, transfers take longer.
+    }
   }
+  return staging_.get();
+}
+
+void OpenClBackend::end_transfer(bool wait) {
+  if (!wait) return keep_order();
+  ++accounts().waits;
+  finish_reads();
+}
+
+void OpenClBackend::read(cl_mem from, std::size_t offset, std::size_t bytes, void* to, bool wait) {
+  if (Staging* const staging = staging_for(bytes)) {
+    staging->read(bytes, to, [&](std::size_t begin, std::size_t part, char* staged, cl_event* event) {
+      FLAUNAY_CL(
+          clEnqueueReadBuffer(queue_.get(), from, CL_FALSE, offset + begin, part, staged, 0, nullptr, event));
+      keep_order();
+      flush();
+    });
+  } else {
+    FLAUNAY_CL(clEnqueueReadBuffer(queue_.get(), from, wait ? CL_TRUE : CL_FALSE, offset, bytes, to, 0,
+                                   nullptr, nullptr));
+  }
+  accounts().bytes_to_host += bytes;
+  end_transfer(wait);
 }
 
 void OpenClBackend::write(cl_mem to, std::size_t offset, std::size_t bytes, const void* from, bool wait) {
-  FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait ? CL_TRUE : CL_FALSE, offset, bytes, from, 0,
-                                  nullptr, nullptr));
-  accounts().bytes_to_device += bytes;
-  if (wait) {
-    ++accounts().waits;
+  if (Staging* const staging = staging_for(bytes)) {
+    staging->write(bytes, from, [&](std::size_t begin, std::size_t part, char* staged, cl_event* event) {
+      FLAUNAY_CL(
+          clEnqueueWriteBuffer(queue_.get(), to, CL_FALSE, offset + begin, part, staged, 0, nullptr, event));
+      keep_order();
+      flush();
+    });
   } else {
-    keep_order();
+    FLAUNAY_CL(clEnqueueWriteBuffer(queue_.get(), to, wait ? CL_TRUE : CL_FALSE, offset, bytes, from, 0,
+                                    nullptr, nullptr));
   }
+  accounts().bytes_to_device += bytes;
+  end_transfer(wait);
 }
 
 void OpenClBackend::fill(cl_mem to, std::size_t offset, std::size_t bytes, const void* value,
@@ -224,10 +258,18 @@ void OpenClBackend::hand_over(cl_mem shared, std::size_t bytes) {
 
 void OpenClBackend::flush() { FLAUNAY_CL(clFlush(queue_.get())); }
 
-void OpenClBackend::settle() const { clFinish(queue_.get()); }
+void OpenClBackend::settle() const {
+  try {
+    if (staging_ != nullptr) staging_->finish();
+  } catch (const std::exception&) {
+    // As of other commands, nobody asks what became of it.
+  }
+  clFinish(queue_.get());
+}
 
 void OpenClBackend::finish() {
   ++accounts().waits;
+  finish_reads();
   FLAUNAY_CL(clFinish(queue_.get()));
 }
 

@@ -5,6 +5,7 @@
 
 #include "host/backend.hpp"
 #include "host/opencl/programs.hpp"
+#include "host/opencl/staging.hpp"
 
 namespace flaunay::host {
 
@@ -51,6 +52,14 @@ class OpenClBackend : public Backend {
   void follow(cl_command_queue other);
   /// To be called after each command: on an out-of-order queue, makes the next command wait for it.
   void keep_order();
+  /// The memory through which so many bytes go; null if they are transferred directly.
+  Staging* staging_for(std::size_t bytes);
+  /// To be called after the commands of a transfer.
+  void end_transfer(bool wait);
+  /// After a wait: the values of earlier reads have arrived.
+  void finish_reads() {
+    if (staging_ != nullptr) staging_->finish();
+  }
 
   boost::compute::device device_;
   boost::compute::context context_;
@@ -66,6 +75,8 @@ class OpenClBackend : public Backend {
     std::size_t launch;  // in the log, if there is one
   };
   std::vector<TimedLaunch> events_;
+  std::unique_ptr<Staging> staging_;  // made for the first large transfer
+  std::size_t staging_of_ = 0;        // the staging_bytes for which it was made, or could not be
 };
 
 }  // namespace flaunay::host

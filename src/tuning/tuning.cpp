@@ -363,6 +363,13 @@ constexpr Row kTable[] = {
      {0},
      {0},
      "A CPU's kernels need no copies of the caller's memory."},
+    {"staging_bytes",
+     &Tuning::staging_bytes,
+     {0},
+     {std::size_t{1} << 22},
+     {3000},
+     "A GPU copies several times faster from and to pinned memory. Larger chunks would begin later, smaller "
+     "ones would wake up the threads that copy more often; 4 of them are kept."},
     {"separate_buffers",
      &Tuning::separate_buffers,
      {0},
@@ -627,6 +634,7 @@ host::Settings settings_for(const boost::compute::device& device, const std::str
   host::fit(tuning, limits);
   fit_tiles(tuning);
   if (limits.local_memory < kernel::LOCAL_PART_BYTES) tuning.local_vertices = 0;
+  if (given.empty() && host::shares_host_memory(device)) tuning.staging_bytes = 0;
   if (!host::has_fp64(device)) {
     kind.capabilities.fixed_point = true;
     tuning.fixed_point_from = 0;

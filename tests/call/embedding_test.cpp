@@ -1374,6 +1374,26 @@ TEST(SmallEmbeddingMisuse, FailuresOfOpenclAreNamed) {
   expect_same(result, expected_of(coordinates, {0, 20}));
 }
 
+TEST(SmallEmbedding, PinnedMemoryIsMadeOnceOrDoneWithout) {
+  const std::size_t n = 3000;
+  const Coordinates coordinates = make_fixture("uniform", n, 5);
+  const Triangulation expected = expected_of(coordinates, {0, n});
+  const ScopedEnvironment tuning("FLAUNAY_TUNING", "gpu,staging_bytes=5000");
+  for (const bool has_some : {true, false}) {
+    Triangulator fresh(embedder().context(), embedder().device());
+    opencl_calls().reset();
+    opencl_calls().without_pinned = !has_some;
+    for (int call = 0; call < 2; ++call) {
+      const Triangulation found = fresh.triangulate(coordinates.data(), n);
+      EXPECT_TRUE(same(found.triangles, expected.triangles)) << has_some << ", call " << call;
+      EXPECT_TRUE(same(found.hull, expected.hull)) << has_some << ", call " << call;
+      EXPECT_TRUE(same(found.representatives, expected.representatives)) << has_some << ", call " << call;
+    }
+    opencl_calls().without_pinned = false;
+    EXPECT_EQ(opencl_calls().pinned, has_some ? 1u : 0u);
+  }
+}
+
 // Without room for the first buffer, the second, and so on: an error each time, after which the objects do
 // what they did before.
 TEST(SmallEmbeddingMisuse, DevicesMayLackMemoryAtAnyTime) {

@@ -43,8 +43,14 @@ extern "C" {
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
   static auto* const real = next(clCreateBuffer, "clCreateBuffer");
+  const bool is_pinned = flags & CL_MEM_ALLOC_HOST_PTR;
+  if (is_pinned && opencl_calls().without_pinned) {
+    *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    return nullptr;
+  }
   if (!fits(code)) return nullptr;
   ++opencl_calls().buffers;
+  opencl_calls().pinned += is_pinned;
   return real(context, flags, bytes, host, code);
 }
 
