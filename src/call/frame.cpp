@@ -163,6 +163,7 @@ void Frame::check_size(std::size_t n) const {
 }
 
 void Frame::fetch() {
+  runtime.flush();  // the device computes while vectors get their length
   for (const Transfer& transfer : transfers_) transfer.run(*this, transfer);
   runtime.finish();
 }

@@ -110,14 +110,14 @@ class Frame {
   Buffer<T> change(std::vector<T>& values, std::size_t /*count*/ = 0, const char* /*what*/ = "") {
     const Buffer<T> buffer = runtime.output(values);
     if (runtime.sizes().in_host_memory == 0) runtime.write_later(buffer, 0, values.size(), values.data());
-    transfers_.push_back({buffer.kept_memory(), nullptr, in_place(values), values.size(), fetch<T>});
+    transfers_.push_back({buffer.kept_memory(), nullptr, in_place(values), values.size(), 0, fetch<T>});
     return buffer;
   }
   template <typename T>
   Buffer<T> change(const DeviceBuffer& array, std::size_t count, const char* what) {
     const Buffer<T> buffer = in<T>(array, count, what);
     if (place_.is_apart()) {
-      transfers_.push_back({buffer.kept_memory(), retained(array.memory()), nullptr, count, copy<T>});
+      transfers_.push_back({buffer.kept_memory(), retained(array.memory()), nullptr, count, 0, copy<T>});
     }
     return buffer;
   }
@@ -195,13 +195,24 @@ class Frame {
   struct Transfer {
     std::shared_ptr<_cl_mem> from, to;  // to: the caller's device memory if the host computes
     std::shared_ptr<void> values;       // the vector for them, if there is one
-    std::size_t count;
+    std::size_t count, most;
     void (*run)(Frame& call, const Transfer& transfer);
   };
   static constexpr std::size_t kUsualTransfers = 5;
+  // Makes the vector as long as its results. If more than half of its memory is unused, it is released.
+  // Otherwise the vector keeps its reserved capacity: unused pages cost no memory, and a caller can append
+  // without a copy.
+  template <typename T>
+  static void fit(host::Runtime& runtime, std::vector<T>& values, const Transfer& transfer) {
+    const std::size_t count = transfer.count;
+    runtime.resize(values, count, transfer.most / 2 > count ? count : transfer.most);
+    if (values.capacity() / 2 > count) values.shrink_to_fit();
+  }
   template <typename T>
   static void fetch(Frame& call, const Transfer& transfer) {
     auto& values = *static_cast<std::vector<T>*>(transfer.values.get());
+    const bool is_copy = call.runtime.sizes().in_host_memory == 0;
+    if (is_copy && values.size() != transfer.count) fit(call.runtime, values, transfer);
     call.runtime.fetch_later(Buffer<T>(transfer.from, transfer.count), values);
     if (call.place_.is_apart()) call.write<T>(transfer, std::move(values));
   }
@@ -233,23 +244,29 @@ class Output {
   /// One that is not wanted.
   Output() = default;
   bool is_wanted() const { return frame_ != nullptr; }
+  bool is_in_host_memory() const { return values_ != nullptr; }
   /// Touches host memory for `count` values while the device computes; otherwise page faults would take
-  /// longer than writing the results.
+  /// longer than writing the results. Another thread may do it before the transfer.
   void reserve(std::size_t count) const {
     if (values_ != nullptr) frame_->runtime.resize(*values_, count);
   }
-  /// The buffer to which kernels write `count` values; none if the array is not wanted. If more than half of
-  /// the vector's memory is unused, it is released. Otherwise the vector keeps its reserved capacity: unused
-  /// pages cost no memory, and a caller can append without a copy.
+  /// The buffer to which kernels write `count` values; none if the array is not wanted. A vector gets its
+  /// length here if kernels write to it, otherwise when the results are transferred, while the device
+  /// computes.
   Buffer<T> buffer(std::size_t count) const {
     if (values_ == nullptr) return there_;
-    frame_->runtime.resize(*values_, count, most_ / 2 > count ? count : most_);
-    if (values_->capacity() / 2 > count) values_->shrink_to_fit();
-    const bool stays = frame_->stages_ && frame_->runtime.sizes().in_host_memory == 0;
-    const Buffer<T> made =
-        stays ? frame_->engine.even.template allocate<T>(count) : frame_->runtime.output(*values_);
+    host::Runtime& runtime = frame_->runtime;
+    Frame::Transfer transfer{{}, there_.kept_memory(), values_, count, most_, Frame::fetch<T>};
+    Buffer<T> made;
+    if (runtime.sizes().in_host_memory != 0) {
+      Frame::fit(runtime, *values_, transfer);
+      made = runtime.output(*values_);
+    } else {
+      made = (frame_->stages_ ? frame_->engine.even : runtime.arena()).template allocate<T>(count);
+    }
+    transfer.from = made.kept_memory();
     if (frame_->transfers_.empty()) frame_->transfers_.reserve(Frame::kUsualTransfers);
-    frame_->transfers_.push_back({made.kept_memory(), there_.kept_memory(), values_, count, Frame::fetch<T>});
+    frame_->transfers_.push_back(std::move(transfer));
     return made;
   }
 

@@ -1,15 +1,15 @@
 #include "space/triangulate.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <future>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "blocks/run.hpp"
 #include "blocks/small.hpp"
 #include "call/groups.hpp"
 #include "host/clock.hpp"
-#include "host/native/threads.hpp"
 #include "host/opencl/device.hpp"
 #include "launchers/call/areas.cl.hpp"
 #include "predicates/rounded_area.h"
@@ -25,7 +25,8 @@ namespace {
 class Arrays {
  public:
   template <typename Result>
-  Arrays(Frame& call, const Parts& wanted, std::size_t n, Result& result) : rows_(most_rows_of(n)) {
+  Arrays(Frame& call, const Parts& wanted, std::size_t n, Result& result)
+      : points_(n), rows_(most_rows_of(n)) {
     const auto make = [&](bool is_wanted, auto& to, std::size_t most, const char* what) {
       return is_wanted && n > 0 ? call.output<cl_int>(to, most, what) : Output<cl_int>();
     };
@@ -38,15 +39,25 @@ class Arrays {
   }
 
   bool have_links() const { return neighbors_.is_wanted() || halfedges_.is_wanted(); }
-  // For a GPU's results a thread each: the system takes longer for so much new memory than the GPU computes.
-  void reserve(const host::Runtime& runtime) const {
+  // Makes room for results while the device computes; for many results of a device by a thread per array,
+  // since the system takes longer for so much new memory than a GPU computes.
+  void reserve(const host::Runtime& runtime) {
     constexpr std::size_t kWorthAThread = std::size_t{1} << 20;
-    const Output<cl_int>* const arrays[] = {&triangles_, &neighbors_, &halfedges_};
     const bool alone = runtime.is_native() || rows_ < kWorthAThread;
-    host::Threads threads(alone ? 1 : std::min(std::size(arrays), host::native_threads()));
-    threads.share_each(std::size(arrays), [&](std::size_t k) { arrays[k]->reserve(rows_); });
+    const auto make_room = [&](const Output<cl_int>& array, std::size_t count) {
+      if (!array.is_in_host_memory()) return;
+      if (alone) return array.reserve(count);
+      reserving_.push_back(std::async([&array, count] { array.reserve(count); }));
+    };
+    for (const auto* array : {&triangles_, &neighbors_, &halfedges_}) make_room(*array, rows_);
+    if (runtime.sizes().in_host_memory == 0) make_room(representatives, points_);
   }
-  points::DeviceMesh mesh(const blocks::MeshSizes& sizes) const {
+  // Waits for threads that make room, or does what they could not begin.
+  void await_room() {
+    for (auto& each : std::exchange(reserving_, {})) each.get();
+  }
+  points::DeviceMesh mesh(const blocks::MeshSizes& sizes) {
+    await_room();
     const std::size_t rows = 3 * sizes.triangles();
     points::DeviceMesh mesh;
     mesh.triangles = triangles_.buffer(rows);
@@ -62,8 +73,9 @@ class Arrays {
  private:
   static std::size_t most_rows_of(std::size_t n) { return 3 * blocks::kMostTrianglesPerPoint * n; }
 
-  std::size_t rows_;
+  std::size_t points_, rows_;
   Output<cl_int> triangles_, neighbors_, halfedges_, hull_;
+  std::vector<std::future<void>> reserving_;
 };
 
 // Bytes of the persistent arena per point. Weights take a scaled copy, those of vertices, and links.
@@ -74,7 +86,7 @@ std::size_t persistent_bytes(bool has_weights) {
 // Triangulates points of a call, at least one. Writes the result's offsets and statistics.
 template <typename Points, typename Result>
 geometry::Fitted<points::DeviceMesh> compute(Frame& call, const Points& points,
-                                             const std::vector<std::size_t>& offsets, const Arrays& arrays,
+                                             const std::vector<std::size_t>& offsets, Arrays& arrays,
                                              const std::optional<points::Weights>& weights,
                                              statistics::Phases& phases, Result& result) {
   Engine& engine = call.engine;
@@ -127,8 +139,7 @@ geometry::Fitted<points::DeviceMesh> triangulate_in(Frame& call, const Points& p
   const host::Runtime::BeforeCompiling announce(engine.runtime,
                                                 [&] { phases.interrupt("compiling kernels"); });
   engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
-  const Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n,
-                      result);
+  Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n, result);
   const auto mesh = compute(call, points, offsets, arrays, weights_in(call, n, weights), phases, result);
   if (!mesh) return mesh;
   if (ends) call.end();
@@ -169,7 +180,7 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
   const double begin = device.runtime.working_clock();
   std::vector<std::size_t> offsets = call.offsets(points);
   const std::size_t n = points.count, sets = offsets.size() - 1;
-  const Arrays arrays(call, parts, n, result);
+  Arrays arrays(call, parts, n, result);
   const std::optional<points::Weights> by_point = weights_in(call, n, weights);
   call.check_distinct({device.workspace.get()});
   result.statistics = {};
