@@ -171,7 +171,7 @@ void OpenClBackend::launch(Kernel& launched, std::size_t work_items, std::size_t
 }
 
 Staging* OpenClBackend::staging_for(std::size_t bytes) {
-  // The host begins to copy fewer bytes no sooner than the driver does.
+  // To wake threads up for fewer bytes takes as long as the driver's own copy.
   constexpr std::size_t kLeastShare = 4;
   if (staging_bytes == 0 || bytes < staging_bytes / kLeastShare) return nullptr;
   if (staging_of_ != staging_bytes) {
@@ -262,7 +262,7 @@ void OpenClBackend::settle() const {
   try {
     if (staging_ != nullptr) staging_->finish();
   } catch (const std::exception&) {
-    // As of other commands, nobody asks what became of it.
+    // Errors are ignored here, as those of clFinish.
   }
   clFinish(queue_.get());
 }

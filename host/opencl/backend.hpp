@@ -52,7 +52,7 @@ class OpenClBackend : public Backend {
   void follow(cl_command_queue other);
   /// To be called after each command: on an out-of-order queue, makes the next command wait for it.
   void keep_order();
-  /// The memory through which so many bytes go; null if they are transferred directly.
+  /// Returns the pinned memory for a transfer of so many bytes; null if they are transferred directly.
   Staging* staging_for(std::size_t bytes);
   /// To be called after the commands of a transfer.
   void end_transfer(bool wait);

@@ -52,7 +52,10 @@ void Staging::transfer(std::size_t bytes, const char* from, char* to, const Enqu
 
 void Staging::complete(Chunk& chunk) {
   if (chunk.event == nullptr) return;
-  const cl_int code = clWaitForEvents(1, &chunk.event);
+  cl_int code = clWaitForEvents(1, &chunk.event), status = CL_COMPLETE;
+  if (code != CL_SUCCESS)  // which does not say what went wrong
+    clGetEventInfo(chunk.event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  if (status < 0) code = status;
   clReleaseEvent(std::exchange(chunk.event, nullptr));
   check_call(code, "clWaitForEvents");
   if (chunk.to != nullptr) threads_.copy(std::exchange(chunk.to, nullptr), chunk.memory, chunk.bytes);

@@ -38,7 +38,7 @@ class Staging {
   void finish();
 
  private:
-  // Some are transferred while one is copied. The memory is no more, however many bytes there are.
+  // Some are transferred while one is copied. Memory does not grow with the transfer.
   static constexpr std::size_t kChunks = 4;
   struct Chunk {
     char* memory = nullptr;

@@ -51,7 +51,7 @@ static inline int inside_of(int k, filter_bound bound, int exactly, global const
   return INSIDE;
 }
 
-// The same by floating point alone; if in doubt, it may be so.
+// By floating point alone. Edges in doubt may be inside.
 static inline int may_be_inside(int k, filter_bound bound, global const coordinate2* points,
                                 global const ring_edge* edges) {
   return edges[2 * k].to == NO_VERTEX ? NOT_INSIDE : inside_of(k, angle_bound(bound), 0, points, edges);

@@ -306,7 +306,7 @@ static inline void name_places(int b, int first, int end, int lane, int lanes, g
   for (int i = first + lane; i < end; i += lanes) block_of_place[i] = b;
 }
 
-// Those of n places that are behind the last block, by all work-items of a launch.
+// Names the places from `end` to n, which are behind the last block, by all work-items of a launch.
 static inline void name_places_behind(int end, int n, global int* block_of_place) {
   name_places(-1, end, n, get_global_id(0), get_global_size(0), block_of_place);
 }

@@ -102,6 +102,11 @@ static inline int round_vertex(int k, int is_first, global const int* listed, gl
   return is_first ? k : listed_vertices[listed[k]];
 }
 
+// The next and the previous vertex of a hull vertex, in its pair of links. Different work-items write them, which must
+// not write whole pairs.
+#define NEXT_ON_HULL(v) (2 * (v))
+#define PREVIOUS_ON_HULL(v) (2 * (v) + 1)
+
 // n: the larger of the numbers of places and of blocks, which are the leaves of each set's tree, whose nodes begin at
 // set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where each set has its box.
 // The hull of a single vertex, which has no edges, is written here.
@@ -110,7 +115,7 @@ kernel void begin_round(int n, int places, int blocks, CUT_SETS(), int is_merged
                         global const vertex_box* restrict boxes, global const ring_edge* restrict edges,
                         global const int* restrict vertex_edge, int is_first, global const int* restrict listed,
                         global const int* restrict listed_vertices, global int* restrict vertices,
-                        global int2* restrict hull_links, global block_frame* restrict frames) {
+                        global int* restrict hull_links, global block_frame* restrict frames) {
   const int b = get_global_id(0);
   if (b < places) vertices[b] = round_vertex(b, is_first, listed, listed_vertices);
   if (b < blocks) {
@@ -130,7 +135,7 @@ kernel void begin_round(int n, int places, int blocks, CUT_SETS(), int is_merged
     const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
     if (is_single && (is_merged || leaves == 1)) {
       const int single = round_vertex(ends.first_x, is_first, listed, listed_vertices);
-      hull_links[single].x = single;
+      hull_links[NEXT_ON_HULL(single)] = single;
     }
   }
 }
@@ -149,7 +154,7 @@ typedef struct {
   global const int* indices;  // in the input, by vertex
   global int* places;
   global int* states;
-  global int2* hull_links;  // the next and the previous vertex of the hull
+  global int* hull_links;
 } emission;
 
 static inline int is_outside(int e, global const ring_edge* edges, const block_frame* frame) {
@@ -196,8 +201,8 @@ static inline void emit_triangle(const emission* m, int e) {
 // The hull goes from v to w. The vertices of a set on one line are a chain in the order of x.
 static inline void emit_hull_edge(const emission* m, int v, int w, int is_line) {
   if (is_line && !precedes(m->points[v], m->points[w], 0)) return;
-  m->hull_links[m->vertices[v]].x = m->vertices[w];
-  m->hull_links[m->vertices[w]].y = m->vertices[v];
+  m->hull_links[NEXT_ON_HULL(m->vertices[v])] = m->vertices[w];
+  m->hull_links[PREVIOUS_ON_HULL(m->vertices[w])] = m->vertices[v];
 }
 
 // The emitted corner beyond an open edge from one vertex, where that side begins, to another; GHOST if none is.
@@ -259,7 +264,7 @@ kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int block
                            global const block_frame* restrict frames, global const coordinate2* restrict points,
                            global const ring_edge* restrict edges, global const coordinate2* all_points,
                            global const int* restrict indices, global int* restrict places, global int* states,
-                           global int2* restrict hull_links, global uchar* restrict unsure) {
+                           global int* restrict hull_links, global uchar* restrict unsure) {
   const int k = get_global_id(0);
   int undecided = 0;
   if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
@@ -283,7 +288,7 @@ kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, 
                         global const block_frame* restrict frames, global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
-                        global int2* restrict hull_links, global const uchar* restrict unsure) {
+                        global int* restrict hull_links, global const uchar* restrict unsure) {
   const int k = get_global_id(0);
   if (k < n && unsure[k] != 0) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,

@@ -168,7 +168,7 @@ static inline cut_part no_part(void) {
   return none;
 }
 
-// The same of a place behind. count: the number of nodes.
+// Moves on to the node of place i, which is not before `part`. count: the number of nodes.
 static inline cut_part part_of_place(int i, cut_part part, int count, int size, local const int* starts) {
   while (i >= part.end) {
     part.lows_before += part.split - part.begin;
@@ -243,7 +243,7 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
       sums[me] = pair_of(found.place, found.axis);
       for (int step = 1; step < lanes; step *= 2) {
         barrier(CLK_LOCAL_MEM_FENCE);
-        const int other = lane + step < lanes && lane % (2 * step) == 0 ? me + step : me;
+        const int other = is_own && lane + step < lanes && lane % (2 * step) == 0 ? me + step : me;
         const uint64 pair = sums[other];
         if (other != me && high_of(pair) != NO_AXIS)
           found = wider_gap(found, gap_at(tile, gaps, high_of(pair), low_of(pair)));

@@ -155,7 +155,7 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
                                                .listed = blocks.source,
                                                .listed_vertices = round.open.vertices,
                                                .vertices = round.vertices,
-                                               .hull_links = emitted.hull_links,
+                                               .hull_links = emitted.hull_links.as<cl_int>(),
                                                .frames = round.frames});
 }
 
@@ -182,7 +182,7 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
                                                    .indices = emitted.indices,
                                                    .places = emitted.places,
                                                    .states = round.states,
-                                                   .hull_links = emitted.hull_links,
+                                                   .hull_links = emitted.hull_links.as<cl_int>(),
                                                    .unsure = round.unsure});
 }
 
@@ -195,7 +195,7 @@ void allocate_states(Workspace& work, Round& round) {
   round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
 }
 
-// Emits the final triangles of a round. Triangles emitted by earlier rounds are written again, unchanged.
+// Emits the final triangles of a round; of a round whose blocks are merged after all, a second time.
 void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   host::Runtime& runtime = work.runtime;
   begin_round(work, round, boxes, emitted);

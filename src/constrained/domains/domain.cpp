@@ -179,6 +179,7 @@ void walk_borders(const std::vector<std::int32_t>& between, const std::vector<st
 // Reaches deep regions on the host.
 void reach_on_host(host::Runtime& runtime, FillRule rule, const Borders& borders, std::size_t regions) {
   std::vector<cl_int> between(2 * borders.count), steps(borders.count), levels(regions), potentials(regions);
+  const host::Runtime::Settled settled(runtime);
   runtime.read_later(borders.regions, 0, between.size(), between.data());
   runtime.read_later(borders.levels, 0, regions, levels.data());
   if (rule != FillRule::nesting) {
@@ -383,6 +384,7 @@ std::vector<std::int32_t> find_places(host::Runtime& runtime, const DomainMesh& 
                                   .barred = barred});
   std::vector<cl_int> first(count);
   std::vector<std::uint8_t> on_constraint(count);
+  const host::Runtime::Settled settled(runtime);
   runtime.read_later(found, 0, count, first.data());
   runtime.read_later(barred, 0, count, on_constraint.data());
   runtime.finish();
@@ -429,6 +431,7 @@ LeftPlaces place_left(host::Runtime& runtime, const DomainMesh& mesh, const Regi
                                           .offsets = offsets});
   std::vector<cl_uint> found(ends);
   cl_uint left = 0;
+  const host::Runtime::Settled settled(runtime);
   runtime.read_later(offsets, 0, ends, found.data());
   runtime.read_later(places.numbers, regions.count, 1, &left);
   runtime.finish();
