@@ -1432,7 +1432,7 @@ static void test_weighted(void) {
   int32_t found = -1;
   OK(flaunay_locator_locate(locator, places, 1, NULL, 0, &found));
   CHECK(found >= 0);
-  REFUSED(flaunay_locator_nearest(locator, places, 1, NULL, 0, &found), "PointTree");
+  REFUSED(flaunay_locator_nearest(locator, places, 1, NULL, 0, &found), "a tree of points");
   flaunay_locator_destroy(locator);
   OK(flaunay_voronoi_clip(triangulator, NULL, weights, 0, with_period, NULL, 0, &cells));
   CHECK(fabs(total(flaunay_clipped_voronoi_areas(cells), 6) - 64) < 1e-12);

@@ -474,8 +474,8 @@ TEST(WeightedPeriodic, ErrorsSayWhatIsWrong) {
     const Numbers query = {0.5, 0.5}, values(4, 1.0);
     InterpolationOptions options;
     EXPECT_EQ(Numbers{1}, locator.interpolate(values.data(), query.data(), 1, options));
-    expect_error(ErrorKind::usage, "PointTree", [&] { locator.nearest(query.data(), 1); });
-    expect_error(ErrorKind::usage, "PointTree", [&] { locator.natural_weights(query.data(), 1); });
+    expect_error(ErrorKind::usage, "a tree of points", [&] { locator.nearest(query.data(), 1); });
+    expect_error(ErrorKind::usage, "a tree of points", [&] { locator.natural_weights(query.data(), 1); });
     for (const Interpolation method :
          {Interpolation::nearest, Interpolation::sibson, Interpolation::laplace}) {
       options.method = method;
