@@ -1401,8 +1401,8 @@ class Interpolation:
         )
 
     def with_fill(self, fill: float) -> Interpolation:
-        values, method, _, *others = self._made_of
-        return Interpolation(values, method, fill, *others)
+        values, method, _, gradients, axes = self._made_of
+        return Interpolation(values, method, fill, gradients, axes)
 
     def of(self, locator: Locator) -> Callable[[_Doubles], _Doubles]:
         """What interpolates at queries."""
