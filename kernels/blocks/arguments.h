@@ -27,6 +27,11 @@
   int PREFIX##is_first, global const int* restrict PREFIX##vertices, global const int* restrict PREFIX##listed, \
   global const int* restrict PREFIX##open_offsets, global const open_edge* restrict PREFIX##open_edges
 
+// The parts of blocks that a round certifies: how many there are, where each begins, and where it lies.
+#define FRAMES(PREFIX) \
+  int PREFIX##frame_count, global const int* restrict PREFIX##frame_offsets, \
+  global const block_frame* restrict PREFIX##frames
+
 // Sets whose blocks were cut from each other by trees.
 #define CUT_SETS(PREFIX) \
   int PREFIX##sets, global const int* restrict PREFIX##set_blocks, global const int* restrict PREFIX##set_nodes, \

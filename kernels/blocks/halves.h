@@ -50,12 +50,8 @@ static inline block_part begin_leaf(rings* g, const halved_blocks* blocks, int p
   return part;
 }
 
-static inline int vertices_of_leaf(block_part part) {
-  return part_begin(part.count, part.depth, part.number + 1) - part.begin;
-}
-
 static inline void finish_leaf(rings* g, const halved_blocks* blocks, block_part part, hull_ends ends) {
-  free_unused(g, edge_at(part.first + part.begin + vertices_of_leaf(part)));
+  free_unused(g, edge_at(part.first + part.begin + vertices_of_part(part)));
   finish_part(g, blocks, part, ends);
 }
 
@@ -66,7 +62,7 @@ static inline int make_leaves_of_cell(rings* g, const halved_blocks* blocks, int
   for (int place = 2 * cell; place < end; ++place) {
     const block_part part = begin_leaf(g, blocks, place);
     if (part.block < 0) continue;
-    const hull_ends ends = make_leaf(g, place, vertices_of_leaf(part));
+    const hull_ends ends = make_leaf(g, place, vertices_of_part(part));
     if (HAS_STOPPED(g)) {
       state = MERGE_IS_NEW;
     } else {

@@ -16,6 +16,8 @@ INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
 INTEGER_CONSTANT(LOCAL_VERTICES, 512);
 INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
 INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
+// Rounds certify parts of blocks, at most 2 to this power of each.
+INTEGER_CONSTANT(MOST_FRAME_DEPTH, 3);
 // Sorts begin with tiles of this many points, a power of two. There each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
 // Work-items of the largest work-group that a kernel with local memory per work-item is made for.

@@ -72,7 +72,7 @@ static inline local_part local_part_of(const halved_blocks* blocks, int block_co
   }
   local_part p = {part, part.first + part.begin, 0, -1};
   if (part.block >= 0) {
-    p.size = part_begin(part.count, part.depth, part.number + 1) - part.begin;
+    p.size = vertices_of_part(part);
     p.own_height = halving_depth(part.count) - part.depth;
     p.part.first = -part.begin;
   }
@@ -89,14 +89,13 @@ static inline block_part part_within(const local_part* p, int height, int j) {
 
 static inline void make_local_leaf(rings* g, local local_arrays* own, block_part part) {
   const int v = part.first + part.begin;
-  const int size = part.first + part_begin(part.count, part.depth, part.number + 1) - v;
   g->free_first = g->free_last = NO_EDGE;
   g->unused = edge_at(v);
-  const hull_ends ends = make_leaf(g, v, size);
+  const hull_ends ends = make_leaf(g, v, vertices_of_part(part));
   if (HAS_STOPPED(g)) {
     atomic_or(&own->has_stopped, 1);
   } else {
-    free_unused(g, edge_at(v + size));
+    free_unused(g, edge_at(v + vertices_of_part(part)));
     const solved_block leaf = {ends, free_list(g)};
     own->parts[v / 2] = leaf;
   }

@@ -58,6 +58,10 @@ static inline block_part part_behind(const halved_blocks* blocks, int block, int
   return part;
 }
 
+static inline int vertices_of_part(block_part part) {
+  return part_begin(part.count, part.depth, part.number + 1) - part.begin;
+}
+
 static inline int begins_before(block_part part, int end) { return part.block >= 0 && part.first + part.begin < end; }
 
 // The part of this height that begins in a cell.
@@ -67,6 +71,28 @@ static inline block_part part_of_cell(const halved_blocks* blocks, int height, i
   if (!begins_before(part, end)) part = part_behind(blocks, blocks->block_of_place[end - 1], height, begin);
   if (!begins_before(part, end)) part.block = -1;
   return part;
+}
+
+// The part of a block in its frame j of 2^depth: in each the part of this height that comes there in the order of cuts,
+// or in the first one the whole block, if it is no higher. block: -1 if the frame is empty.
+static inline block_part part_in_frame(const halved_blocks* blocks, int block, int height, int depth, int j) {
+  block_part part = {-1, blocks->offsets[block], blocks->distinct[block], 0, 0, 0};
+  part.depth = min(depth, max(0, halving_depth(part.count) - height));
+  part.number = j >> (depth - part.depth);
+  if (part.number << (depth - part.depth) == j) part.block = block;
+  part.begin = part_begin(part.count, part.depth, part.number);
+  return part;
+}
+
+// The place where frame j begins. Places of a block that are no vertices are behind its last part, in that one's frame.
+static inline int begin_of_frame(const halved_blocks* blocks, int block, block_part part, int depth, int j) {
+  const int shift = depth - part.depth, next = (j + (1 << shift) - 1) >> shift;
+  return next >> part.depth ? blocks->offsets[block + 1] : part.first + part_begin(part.count, part.depth, next);
+}
+
+static inline hull_ends ends_of_part(const halved_blocks* blocks, block_part part) {
+  if (part.block < 0) return no_ends();
+  return part.depth == 0 ? blocks->solved[part.block].ends : blocks->parts[(part.first + part.begin) / 2].ends;
 }
 
 // The halves of a part, by the number of its first vertex: their places in `parts`, the first vertex of the high one,

@@ -18,13 +18,13 @@ typedef struct {
 } seam_walk;
 ASSERT_SIZE(seam_walk, 36);
 
-// Where a block of points lies in its set. All other points of the round are on or beyond the sides of its
-// rectangle; sides without points beyond are infinite. `all` is the box around the set. outside: if the block's
+// Where a block of points, or one of its parts, lies in its set. All other points of the round are on or beyond the
+// sides of its rectangle; sides without points beyond are infinite. `all` is the box around the set. outside: if its
 // hull has three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
 typedef struct {
   vertex_box rectangle, all;
   int outside[3];
-  int unused;  // where doubles are aligned to 4 bytes there would be no gap here
+  int vertices;
 } block_frame;
 ASSERT_SIZE(block_frame, 80);
 

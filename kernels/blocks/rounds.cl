@@ -1,7 +1,9 @@
 // Rounds of blocks: final triangles of the blocks' triangulations are emitted, and the points around which
-// triangles are missing go on to the next round, in other blocks.
+// triangles are missing go on to the next round, in other blocks. Where blocks are triangulated part by part
+// (blocks/parts.h) up to a height, that is done with these parts, and the others need not be merged. Each has a frame;
+// a block has 2^depth frames, some of which are empty.
 //
-// A triangle is final if its circumcircle lies within the block's rectangle (blocks/certify.h): then it belongs
+// A triangle is final if its circumcircle lies within the frame's rectangle (blocks/certify.h): then it belongs
 // to the triangulation of all points of the round. These are the points that are not done yet, so that
 // triangulation also has triangles over the area that earlier rounds emitted. The open sectors at a vertex
 // (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted per hull edge.
@@ -29,6 +31,7 @@
 #include "blocks/certify.h"
 #include "blocks/limits.h"
 #include "blocks/open_sectors.h"
+#include "blocks/parts.h"
 #include "blocks/records.h"
 #include "blocks/rows.h"
 #include "mesh/halfedges.h"
@@ -52,18 +55,33 @@ static inline vertex_box no_box(void) {
   return none;
 }
 
+static inline vertex_box box_of(hull_ends ends, global const coordinate2* points) {
+  vertex_box box = no_box();
+  if (ends.first_x != NO_VERTEX) {
+    box.low = VECTOR(coordinate2, points[ends.first_x].x, points[ends.first_y].y);
+    box.high = VECTOR(coordinate2, points[ends.last_x].x, points[ends.last_y].y);
+  }
+  return box;
+}
+
+// The box around the points of a block's frames first..last - 1.
+static inline vertex_box box_of_frames(const halved_blocks* blocks, int b, int height, int depth, int first, int last,
+                                       global const coordinate2* points) {
+  vertex_box box = no_box();
+  for (int j = first; j < last; ++j) {
+    const block_part part = part_in_frame(blocks, b, height, depth, j);
+    box = joined_boxes(box, box_of(ends_of_part(blocks, part), points));
+  }
+  return box;
+}
+
 // n blocks.
-kernel void box_blocks(int n, global const solved_block* restrict solved, global const coordinate2* restrict points,
-                       global vertex_box* restrict boxes) {
+kernel void box_blocks(int n, PLACES_OF_PARTS(), int depth, global solved_block* parts, global solved_block* solved,
+                       global const coordinate2* restrict points, global vertex_box* restrict boxes) {
   const int b = get_global_id(0);
   if (b < n) {
-    const hull_ends ends = solved[b].ends;
-    vertex_box box = no_box();
-    if (ends.first_x != NO_VERTEX) {
-      box.low = VECTOR(coordinate2, points[ends.first_x].x, points[ends.first_y].y);
-      box.high = VECTOR(coordinate2, points[ends.last_x].x, points[ends.last_y].y);
-    }
-    boxes[b] = box;
+    const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, parts, solved};
+    boxes[b] = box_of_frames(&blocks, b, height, depth, 0, 1 << depth, points);
   }
 }
 
@@ -107,18 +125,40 @@ static inline int round_vertex(int k, int is_first, global const int* listed, gl
 #define NEXT_ON_HULL(v) (2 * (v))
 #define PREVIOUS_ON_HULL(v) (2 * (v) + 1)
 
-// n: the larger of the numbers of places and of blocks, which are the leaves of each set's tree, whose nodes begin at
-// set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where each set has its box.
-// The hull of a single vertex, which has no edges, is written here.
-kernel void begin_round(int n, int places, int blocks, CUT_SETS(), int is_merged, scaling scale,
-                        global const solved_block* restrict solved, global const int* restrict set_boxes,
-                        global const vertex_box* restrict boxes, global const ring_edge* restrict edges,
-                        global const int* restrict vertex_edge, int is_first, global const int* restrict listed,
-                        global const int* restrict listed_vertices, global int* restrict vertices,
-                        global int* restrict hull_links, global block_frame* restrict frames) {
-  const int b = get_global_id(0);
-  if (b < places) vertices[b] = round_vertex(b, is_first, listed, listed_vertices);
+// The part of a rectangle that lies in frame j of a block, between the cuts into parts: points on the other side of
+// each are on the box around them or beyond it.
+static inline vertex_box rectangle_in_block(vertex_box rectangle, const halved_blocks* blocks, int b, int height,
+                                            int depth, int j, global const coordinate2* points) {
+  for (int up = 0; up < depth; ++up) {
+    const int is_high = j >> up & 1, others = (j >> up ^ 1) << up;
+    const vertex_box box = box_of_frames(blocks, b, height, depth, others, others + (1 << up), points);
+    if (box.low.x > box.high.x) continue;  // the parts are not cut here
+    const int axis = blocks->axes[blocks->offsets[b] + (1 << (depth - up - 1)) + (j >> (up + 1))];
+    if (axis != 0 && is_high) rectangle.low.y = max(rectangle.low.y, box.high.y);
+    if (axis != 0 && !is_high) rectangle.high.y = min(rectangle.high.y, box.low.y);
+    if (axis == 0 && is_high) rectangle.low.x = max(rectangle.low.x, box.high.x);
+    if (axis == 0 && !is_high) rectangle.high.x = min(rectangle.high.x, box.low.x);
+  }
+  return rectangle;
+}
+
+// n: the larger of the numbers of places and of frames, and one more. Blocks are the leaves of each set's tree, whose
+// nodes begin at set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where each
+// set has its box. frame_offsets: where frames begin, and the end. The hull of a single vertex, which has no edges, is
+// written here.
+kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SETS(), int is_merged, scaling scale,
+                        global solved_block* parts, global solved_block* solved, global const int* restrict set_boxes,
+                        global const vertex_box* restrict boxes, global const coordinate2* restrict points,
+                        global const ring_edge* restrict edges, global const int* restrict vertex_edge, int is_first,
+                        global const int* restrict listed, global const int* restrict listed_vertices,
+                        global int* restrict vertices, global int* restrict hull_links,
+                        global int* restrict frame_offsets, global block_frame* restrict frames) {
+  const int f = get_global_id(0), b = f >> depth, j = f - (b << depth);
+  if (f < places) vertices[f] = round_vertex(f, is_first, listed, listed_vertices);
+  if (b == blocks && j == 0) frame_offsets[f] = offsets[blocks];
   if (b < blocks) {
+    const halved_blocks halved = {places, offsets, distinct, block_of_place, axes, parts, solved};
+    const block_part part = part_in_frame(&halved, b, height, depth, j);
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
     block_frame frame;
@@ -128,10 +168,12 @@ kernel void begin_round(int n, int places, int blocks, CUT_SETS(), int is_merged
     for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
       frame.rectangle = cut_rectangle(frame.rectangle, nodes[set_nodes[s] + (node >> 1)], node & 1, scale);
     }
-    const hull_ends ends = solved[is_merged ? first : b].ends;
+    frame.rectangle = rectangle_in_block(frame.rectangle, &halved, b, height, depth, j, points);
+    const hull_ends ends = is_merged ? solved[first].ends : ends_of_part(&halved, part);
     find_outside(ends, edges, vertex_edge, frame.outside);
-    frame.unused = 0;
-    frames[b] = frame;
+    frame.vertices = part.block < 0 ? 0 : vertices_of_part(part);
+    frames[f] = frame;
+    frame_offsets[f] = begin_of_frame(&halved, b, part, depth, j);
     const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
     if (is_single && (is_merged || leaves == 1)) {
       const int single = round_vertex(ends.first_x, is_first, listed, listed_vertices);
@@ -260,18 +302,18 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
 
 // n pairs of edges. unsure: by pair, a bit for each edge on whose left side emit_unsure decides; not in the first
 // round, in which all that is final is missing.
-kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
-                           global const block_frame* restrict frames, global const coordinate2* restrict points,
-                           global const ring_edge* restrict edges, global const coordinate2* all_points,
-                           global const int* restrict indices, global int* restrict places, global int* states,
-                           global int* restrict hull_links, global uchar* restrict unsure) {
+kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, FRAMES(),
+                           global const coordinate2* restrict points, global const ring_edge* restrict edges,
+                           global const coordinate2* all_points, global const int* restrict indices,
+                           global int* restrict places, global int* states, global int* restrict hull_links,
+                           global uchar* restrict unsure) {
   const int k = get_global_id(0);
   int undecided = 0;
   if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
   if (k < n && edges[2 * k].to != NO_VERTEX) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_links};
-    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
+    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, frame_count, frame_offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
         undecided |= decide_ghost(&m, &frame, e, 0) << (e - 2 * k);
@@ -284,8 +326,7 @@ kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, int block
 }
 
 // n pairs of edges.
-kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, global const int* restrict offsets,
-                        global const block_frame* restrict frames, global const coordinate2* restrict points,
+kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, FRAMES(), global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const coordinate2* all_points,
                         global const int* restrict indices, global int* restrict places, global int* states,
                         global int* restrict hull_links, global const uchar* restrict unsure) {
@@ -293,7 +334,7 @@ kernel void emit_unsure(int n, OPEN_VERTICES(), filter_bound bound, int blocks, 
   if (k < n && unsure[k] != 0) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_links};
-    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, blocks, offsets)];
+    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, frame_count, frame_offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if ((unsure[k] >> (e - 2 * k) & 1) == 0) continue;
       if (is_outside(e, edges, &frame)) {
@@ -399,17 +440,16 @@ static inline open_list open_list_of(int k, int is_first, global const int* list
   return list;
 }
 
-// Counts each vertex that goes on, and its open edges. n places; in the first round, the first `distinct` of each block
-// are vertices, later all, also in blocks that were left unsolved. No vertex of a set with one block goes on.
-kernel void count_open(int n, OPEN_VERTICES(), int sets, int blocks, global const int* restrict set_blocks,
-                       global const int* restrict offsets, global const int* restrict distinct,
+// Counts each vertex that goes on, and its open edges. n places; in the first round, the first ones of each frame are
+// vertices, later all, also in blocks that were left unsolved. No vertex of a set with one block goes on.
+kernel void count_open(int n, OPEN_VERTICES(), int sets, global const int* restrict set_blocks, int depth, FRAMES(),
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
                        global const int* restrict states, global uint2* restrict counts) {
   const int k = get_global_id(0);
   if (k < n) {
-    const int b = segment_of(k, blocks, offsets);
-    const int s = segment_of(b, sets, set_blocks);
-    const int is_vertex = !is_first || k - offsets[b] < distinct[b];
+    const int f = segment_of(k, frame_count, frame_offsets);
+    const int s = segment_of(f >> depth, sets, set_blocks);
+    const int is_vertex = !is_first || k - frame_offsets[f] < frames[f].vertices;
     uint2 count = VECTOR(uint2, 0, 0);
     if (is_vertex && set_blocks[s + 1] - set_blocks[s] > 1) {
       open_list list = open_list_of(k, is_first, listed, open_offsets, open_edges);

@@ -75,7 +75,7 @@ static inline void make_power_leaves_of_cell(power_rings* g, const halved_blocks
   for (int place = 2 * cell; place < end; ++place) {
     const block_part part = begin_leaf(&g->all, blocks, place);
     if (part.block < 0) continue;
-    finish_leaf(&g->all, blocks, part, make_power_leaf(g, place, vertices_of_leaf(part)));
+    finish_leaf(&g->all, blocks, part, make_power_leaf(g, place, vertices_of_part(part)));
   }
 }
 

@@ -117,6 +117,10 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
 
 bool are_in_parallel(const Workspace& work) { return tuning_of(work.runtime).blocks_in_parallel != 0; }
 
+PointBlocks points_of(const Blocks& blocks, std::size_t largest) {
+  return {blocks.count, blocks.points, largest, blocks.device_offsets, blocks.vertices, blocks.source};
+}
+
 std::size_t largest_of(const Blocks& blocks) {
   if (blocks.offsets.empty()) return blocks.largest;
   std::size_t largest = 1;
@@ -135,7 +139,7 @@ Buffer<cl_uint> make_account(Workspace& work) {
 }
 
 Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& representatives,
-            const Buffer<cl_uint>& account, Milestones* milestones) {
+            const Buffer<cl_uint>& account, Milestones* milestones, PartsOfBlocks* parts) {
   Rings rings;
   rings.edges = work.persistent.allocate<kernel::ring_edge>(kernel::EDGES_PER_VERTEX * blocks.points);
   rings.vertex_edge = work.persistent.allocate<cl_int>(blocks.points);
@@ -149,14 +153,19 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 
   const std::size_t largest = largest_of(blocks);
   if (are_in_parallel(work)) {
-    solve_in_parallel(
-        work, {blocks.count, blocks.points, largest, blocks.device_offsets, blocks.vertices, blocks.source},
-        representatives, rings);
+    solve_in_parallel(work, points_of(blocks, largest), representatives, rings, parts);
     if (milestones != nullptr) milestones->set("triangulate", kBlocksSolved);
   } else {
     solve_one_by_one(work, blocks, largest, representatives, rings, milestones);
   }
   return rings;
+}
+
+void merge_parts(Workspace& work, const Blocks& blocks, const Rings& rings, PartsOfBlocks& parts) {
+  if (parts.depth == 0) return;
+  const PointBlocks whole = points_of(blocks, largest_of(blocks));
+  merge_halves(work, whole, parts, rings, parts.height + 1, whole.height());
+  parts = {};
 }
 
 void merge(Workspace& work, const Blocks& blocks, const Rings& rings, Milestones* milestones) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "blocks/halving.h"
 #include "blocks/limits.h"
@@ -116,13 +117,14 @@ void launch_on_walks(const Halves& halves, int height) {
 
 // The greatest height of parts that are triangulated in local memory; less than 0 for none. If blocks have a
 // fraction of the vertices, most work-items of a group are idle, which costs nothing while they would be idle
-// anyhow.
+// anyhow. A leaf of a block may begin in one cell with a block of a single vertex, which is no leaf of a
+// larger part.
 int height_in_local_memory(Workspace& work, const PointBlocks& blocks) {
   const Tuning& tuning = tuning_of(work.runtime);
   const std::size_t vertices = tuning.local_vertices;
   const bool are_small =
       4 * blocks.points < vertices * blocks.count && kernel::LOCAL_MERGES * blocks.count > tuning.merge_items;
-  if (vertices < kernel::LEAF_VERTICES || are_small) return -1;
+  if (vertices < 2 * kernel::LEAF_VERTICES || are_small) return -1;
   return kernel::halving_depth(static_cast<int>(vertices / 2 + 1));
 }
 
@@ -193,27 +195,26 @@ void sew_seams(const Halves& halves, int height) {
 
 }  // namespace
 
-void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
-                  const Rings& rings) {
+void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlocks& parts, const Rings& rings,
+                  int from, int to) {
   Arena::Scope scope(work.scratch());
-  Halves halves{work, blocks, halved, rings};
-  halves.parts = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
-  const int heights = kernel::halving_depth(static_cast<int>(blocks.largest));
-  const int in_local = height_in_local_memory(work, blocks);
+  Halves halves{work, blocks, parts.halved, rings, parts.solved};
+  const int in_local = from == 0 ? height_in_local_memory(work, blocks) : -1;
   halves.states = work.scratch().allocate<cl_int>(
-      in_local < 0 ? cells_of(blocks, 0) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
-  const int first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), in_local + 1);
-  if (in_local >= 0 || first_seams <= heights) make_lists(work, blocks, halves.seams);
+      in_local < 0 ? cells_of(blocks, from) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
+  const int first = std::max(from, in_local + 1),
+            first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), first);
+  if (in_local >= 0 || first_seams <= to) make_lists(work, blocks, halves.seams);
   if (in_local >= 0) {
     launch_on_local_parts<kernels::solve_local_parts>(halves, in_local);
     if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local);
   }
-  for (int height = in_local + 1; height < first_seams && height <= heights; ++height) {
+  for (int height = first; height < first_seams && height <= to; ++height) {
     launch_on_parts<kernels::merge_parts>(halves, height);
     if (may_stop(work)) launch_on_parts<kernels::finish_parts>(halves, height);
   }
-  if (first_seams <= heights) make_walks(work, blocks, first_seams, halves.seams);
-  for (int height = first_seams; height <= heights; ++height) {
+  if (first_seams <= to) make_walks(work, blocks, first_seams, halves.seams);
+  for (int height = first_seams; height <= to; ++height) {
     launch_on_walks<kernels::walk_seams>(halves, height);
     if (walks_may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);
     sew_seams(halves, height);
@@ -221,12 +222,20 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const HalvedBlocks
 }
 
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
-                       const Rings& rings) {
-  Arena::Scope scope(work.scratch());
-  const HalvedBlocks halved = halve(work, blocks, representatives, rings);
+                       const Rings& rings, PartsOfBlocks* parts) {
+  std::optional<Arena::Scope> scope;
+  if (parts == nullptr) scope.emplace(work.scratch());
+  PartsOfBlocks own{.halved = halve(work, blocks, representatives, rings)};
   if (work.weights != nullptr)
-    return work.weights->solver->merge_halves(work, blocks, halved, representatives, rings);
-  merge_halves(work, blocks, halved, rings);
+    return work.weights->solver->merge_halves(work, blocks, own.halved, representatives, rings);
+  own.solved = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
+  own.height = blocks.height();
+  if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
+    own.depth = std::clamp<int>(own.height - in_local, 0, kernel::MOST_FRAME_DEPTH);
+    own.height -= own.depth;
+  }
+  merge_halves(work, blocks, own, rings, 0, own.height);
+  if (parts != nullptr) *parts = own;
 }
 
 void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,

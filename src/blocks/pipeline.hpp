@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blocks/halving.h"
 #include "blocks/milestones.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/runtime.hpp"
@@ -31,6 +32,20 @@ constexpr double kBlocksMerged = 0.8;
 constexpr double kMeshCounted = 0.85;
 constexpr double kTrianglesWritten = 0.95;
 
+/// The result of stage `halve` for stage `merge`, from the scratch arena.
+struct HalvedBlocks {
+  host::Buffer<cl_int> block_of_place{};
+  host::Buffer<cl_uchar> axes{};
+};
+
+/// Blocks that are triangulated part by part (kernels/blocks/parts.h): all parts of at most this height, at
+/// most 2^depth of each block. Arrays are from the scratch arena.
+struct PartsOfBlocks {
+  int height = 0, depth = 0;
+  HalvedBlocks halved{};
+  host::Buffer<kernel::solved_block> solved{};  ///< by half the place of a part's first vertex
+};
+
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
 /// sets the numbers in Rings that are on the host. Sets a milestone for some of the blocks each, and for each
 /// level of merges, unless milestones are null.
@@ -38,10 +53,13 @@ points::Rings divide(points::Workspace& work, const points::Blocks& blocks,
                      const host::Buffer<cl_int>& representatives, Milestones* milestones = nullptr);
 /// The first part of divide: triangulates each block. If the host has not read the blocks' sizes, those that
 /// are larger than expected are left as blocks without vertices; that takes `blocks_in_parallel`.
-/// account: from make_account, added to.
+/// account: from make_account, added to. parts: if not null, set to the parts that blocks may be left as.
 points::Rings solve(points::Workspace& work, const points::Blocks& blocks,
                     const host::Buffer<cl_int>& representatives, const host::Buffer<cl_uint>& account,
-                    Milestones* milestones = nullptr);
+                    Milestones* milestones = nullptr, PartsOfBlocks* parts = nullptr);
+/// Merges the parts of each block, if they are several.
+void merge_parts(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings,
+                 PartsOfBlocks& parts);
 /// The account of rings, with nothing in it.
 host::Buffer<cl_uint> make_account(points::Workspace& work);
 /// The second part of divide: merges the triangulations of blocks.
@@ -62,6 +80,8 @@ struct PointBlocks {
   /// As in Blocks.
   host::Buffer<cl_double2> vertices{};
   host::Buffer<cl_int> source{};
+
+  int height() const { return kernel::halving_depth(static_cast<int>(largest)); }
 };
 
 /// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
@@ -69,23 +89,19 @@ struct PointBlocks {
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
 /// wait. Makes up to 5 launches, 2 or 3 per height of parts that local memory does not hold, and some more if
 /// blocks may have more than large_blocks times block_points points, or if most are tiny.
+/// parts: as of solve.
 void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
-                       const host::Buffer<cl_int>& representatives, const points::Rings& rings);
-
-/// The result of stage `halve` for stage `merge`, from the scratch arena.
-struct HalvedBlocks {
-  host::Buffer<cl_int> block_of_place{};
-  host::Buffer<cl_uchar> axes{};
-};
+                       const host::Buffer<cl_int>& representatives, const points::Rings& rings,
+                       PartsOfBlocks* parts = nullptr);
 
 /// Sorts each block's points, drops duplicates, and halves the remaining points down to leaves. Sets the
 /// vertices, the sources, the representatives of duplicates, and in `rings` the numbers of vertices and the
 /// entries of empty blocks.
 HalvedBlocks halve(points::Workspace& work, const PointBlocks& blocks,
                    const host::Buffer<cl_int>& representatives, const points::Rings& rings);
-/// Triangulates halved blocks, from the leaves up.
-void merge_halves(points::Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
-                  const points::Rings& rings);
+/// Merges the halves of parts from one height up to another; at height 0, makes the leaves.
+void merge_halves(points::Workspace& work, const PointBlocks& blocks, const PartsOfBlocks& parts,
+                  const points::Rings& rings, int from, int to);
 /// Merges the blocks of a level of the trees: merges [first, end).
 void merge_trees(points::Workspace& work, const points::Blocks& blocks, std::size_t first, std::size_t end,
                  const points::Rings& rings);

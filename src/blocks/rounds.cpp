@@ -83,17 +83,45 @@ struct Round {
   bool is_merged;          // up the tree
   const OpenPoints& open;  // the list from which its points are made; in the first round, the offsets alone
   const Blocks& blocks;
-  Rings rings;
+  PartsOfBlocks parts{};
+  Rings rings{};
   Buffer<cl_int> vertices{};  // by place in the blocks
   Buffer<cl_int> states{};    // by edge
   Buffer<cl_uchar> unsure{};  // by pair of edges; in the first round of one pair
+  Buffer<cl_int> frame_offsets{};
   Buffer<kernel::block_frame> frames{};
 
   // Whether each set has one triangulation.
   bool is_last() const { return is_merged || blocks.count == blocks.sets; }
   // Whether every block is solved for certain: others are no larger than is guessed, as a rule.
   bool can_be_merged() const { return !blocks.offsets.empty(); }
+  std::size_t frame_count() const { return blocks.count << parts.depth; }
 };
+
+// Whether the parts of blocks may stay apart. The only block of a set needs no later round if it is whole.
+bool may_be_parts(const Workspace& work, const Round& round) {
+  const std::vector<cl_int>& blocks = round.blocks.set_blocks;
+  const std::vector<std::size_t>& points = round.open.offsets;
+  bool may = !round.is_merged;
+  for (std::size_t s = 0; may && s < round.blocks.sets; ++s) {
+    may =
+        blocks[s + 1] - blocks[s] > 1 || points[s + 1] - points[s] <= tuning_of(work.runtime).local_vertices;
+  }
+  return may;
+}
+
+kernels::places_of_parts places_of_parts(const Round& round) {
+  return {.height = round.parts.height,
+          .places = round.blocks.points,
+          .offsets = round.blocks.device_offsets,
+          .distinct = round.rings.device_distinct,
+          .block_of_place = round.parts.halved.block_of_place,
+          .axes = round.parts.halved.axes};
+}
+
+kernels::frames frames_of(const Round& round) {
+  return {.frame_count = round.frame_count(), .frame_offsets = round.frame_offsets, .frames = round.frames};
+}
 
 // Makes the triangulations of the blocks canonical; if blocks are merged, the triangulations of the sets.
 void complete(Workspace& work, const Round& round) {
@@ -102,11 +130,15 @@ void complete(Workspace& work, const Round& round) {
   if (work.runtime.at_most(work.bounds.circle != 0.0, true)) make_fans(work, round.blocks, round.rings);
 }
 
-SetBoxes boxes_of_sets(Workspace& work, const Blocks& blocks, const Rings& rings) {
+SetBoxes boxes_of_sets(Workspace& work, const Round& round) {
+  const Blocks& blocks = round.blocks;
   const SetBoxes found{work.persistent.allocate<kernel::vertex_box>(blocks.count), blocks.device_set_blocks};
-  work.runtime.map(
-      blocks.count,
-      kernels::box_blocks{.solved = rings.solved, .points = blocks.vertices, .boxes = found.boxes});
+  work.runtime.map(blocks.count, kernels::box_blocks{.places_of_parts = places_of_parts(round),
+                                                     .depth = round.parts.depth,
+                                                     .parts = round.parts.solved,
+                                                     .solved = round.rings.solved,
+                                                     .points = blocks.vertices,
+                                                     .boxes = found.boxes});
   std::size_t most = 1;
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     most = std::max<std::size_t>(most, blocks.set_blocks[s + 1] - blocks.set_blocks[s]);
@@ -132,13 +164,14 @@ std::vector<cl_int> first_nodes(const Blocks& blocks) {
   return nodes;
 }
 
-// Names the vertices of a round, and finds the blocks' rectangles.
+// Names the vertices of a round, and finds where frames lie.
 void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
   const Blocks& blocks = round.blocks;
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
-  const std::size_t items = std::max(blocks.points, blocks.count);
-  work.runtime.map(items, kernels::begin_round{.places = blocks.points,
+  const std::size_t items = std::max(blocks.points, round.frame_count() + 1);
+  work.runtime.map(items, kernels::begin_round{.places_of_parts = places_of_parts(round),
+                                               .depth = round.parts.depth,
                                                .blocks = blocks.count,
                                                .cut_sets = {.sets = blocks.sets,
                                                             .set_blocks = blocks.device_set_blocks,
@@ -146,9 +179,11 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
                                                             .nodes = blocks.device_nodes},
                                                .is_merged = round.is_merged,
                                                .scale = blocks.scale,
+                                               .parts = round.parts.solved,
                                                .solved = round.rings.solved,
                                                .set_boxes = boxes.places,
                                                .boxes = boxes.boxes,
+                                               .points = blocks.vertices,
                                                .edges = round.rings.edges,
                                                .vertex_edge = round.rings.vertex_edge,
                                                .is_first = round.is_first,
@@ -156,6 +191,7 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
                                                .listed_vertices = round.open.vertices,
                                                .vertices = round.vertices,
                                                .hull_links = emitted.hull_links.as<cl_int>(),
+                                               .frame_offsets = round.frame_offsets,
                                                .frames = round.frames});
 }
 
@@ -173,9 +209,7 @@ void launch_emission(Workspace& work, const Round& round, const Emitted& emitted
   const Blocks& blocks = round.blocks;
   work.runtime.map(round.states.size() / 2, Kernel{.open_vertices = open_vertices(round),
                                                    .bound = work.bounds.orient,
-                                                   .blocks = blocks.count,
-                                                   .offsets = blocks.device_offsets,
-                                                   .frames = round.frames,
+                                                   .frames = frames_of(round),
                                                    .points = blocks.vertices,
                                                    .edges = round.rings.edges,
                                                    .all_points = emitted.points,
@@ -192,7 +226,10 @@ void allocate_states(Workspace& work, Round& round) {
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
   round.unsure = work.scratch().allocate<cl_uchar>(round.is_first ? 1 : round.states.size() / 2);
-  round.frames = work.scratch().allocate<kernel::block_frame>(blocks.count);
+  const std::size_t frames = blocks.count
+                             << work.runtime.at_most<int>(round.parts.depth, kernel::MOST_FRAME_DEPTH);
+  round.frame_offsets = work.scratch().allocate<cl_int>(frames + 1);
+  round.frames = work.scratch().allocate<kernel::block_frame>(frames);
 }
 
 // Emits the final triangles of a round; of a round whose blocks are merged after all, a second time.
@@ -227,10 +264,9 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
   const auto counts = work.scratch().allocate<cl_uint2>(blocks.points + 1);
   runtime.map(blocks.points, kernels::count_open{.open_vertices = open_vertices(round),
                                                  .sets = blocks.sets,
-                                                 .blocks = blocks.count,
                                                  .set_blocks = blocks.device_set_blocks,
-                                                 .offsets = blocks.device_offsets,
-                                                 .distinct = round.rings.device_distinct,
+                                                 .depth = round.parts.depth,
+                                                 .frames = frames_of(round),
                                                  .edges = round.rings.edges,
                                                  .vertex_edge = round.rings.vertex_edge,
                                                  .states = round.states,
@@ -268,6 +304,18 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
                                                  .next_offsets = next.offsets_of_edges,
                                                  .next_edges = next.edges});
   return true;
+}
+
+// Emits what is final of a round, and finds the points that go on, unless it is the last one. Returns false
+// if its blocks should be merged instead.
+bool finish(Workspace& work, Arena& persistent, Round& round, const SetBoxes& boxes, const Emitted& emitted,
+            Numbers& numbers, OpenPoints& next) {
+  Arena::Scope scope(work.scratch());
+  allocate_states(work, round);
+  emit(work, round, boxes, emitted);
+  numbers.read_later(work.runtime, round.blocks, round.rings, round.is_first && !round.is_merged);
+  next.offsets.assign(round.blocks.sets + 1, 0);
+  return round.is_last() || find_open(work, persistent, round, numbers, next);
 }
 
 // Makes rows and hulls from the emitted triangles.
@@ -427,22 +475,19 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
     std::optional<Blocks> later_blocks;
     if (r > 0) later_blocks = blocks_of(rounds_work, open, is_merged);
     const Blocks& blocks = r > 0 ? *later_blocks : first_blocks;
-    Round round{r == 0, is_merged, open, blocks, solve(rounds_work, blocks, representatives, account)};
+    Round round{r == 0, is_merged, open, blocks};
+    round.rings = solve(rounds_work, blocks, representatives, account, nullptr,
+                        may_be_parts(rounds_work, round) ? &round.parts : nullptr);
     complete(rounds_work, round);
     if (r == 0) {
       exchange.while_device_computes();
-      boxes = boxes_of_sets(work, blocks, round.rings);
+      boxes = boxes_of_sets(work, round);
     }
-    allocate_states(rounds_work, round);
-    emit(rounds_work, round, boxes, emitted);
-    numbers.read_later(runtime, blocks, round.rings, r == 0);
-    next.offsets.assign(blocks.sets + 1, 0);
-    if (!round.is_last() && !find_open(rounds_work, persistent, round, numbers, next)) {
+    if (!finish(rounds_work, persistent, round, boxes, emitted, numbers, next)) {
       round.is_merged = true;
+      merge_parts(rounds_work, blocks, round.rings, round.parts);
       complete(rounds_work, round);
-      emit(rounds_work, round, boxes, emitted);
-      numbers.read_later(runtime, blocks, round.rings, false);
-      next.offsets.assign(blocks.sets + 1, 0);
+      finish(rounds_work, persistent, round, boxes, emitted, numbers, next);
     }
     ++outcome.rounds;
     outcome.round_points += open.count();

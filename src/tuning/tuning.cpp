@@ -356,7 +356,8 @@ constexpr Row kTable[] = {
      {50},
      {50},
      {50},
-     "Uniform points leave 13 % of the first round and 7 % of the second; points on a circle leave all."},
+     "Uniform points leave 28 % of the first round, in parts of 512, and 11 % of the second; points on a "
+     "circle leave all."},
     {"in_host_memory",
      &Tuning::in_host_memory,
      {1},

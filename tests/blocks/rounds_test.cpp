@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,7 +64,8 @@ Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const
 
 /// What rounds depend on. tile_group: 0 for cuts at medians.
 struct RoundSizes {
-  std::size_t block_points, round_points, merge_from_percent = 100, tile_group = 0, samples = 4;
+  std::size_t block_points, round_points, merge_from_percent = 100, tile_group = 0, samples = 4,
+                                          local_vertices = 0;
 };
 
 /// Calls check with these sizes.
@@ -79,6 +81,7 @@ void with_sizes(const RoundSizes& sizes, const Check& check) {
   if (!runtime.is_native()) {
     tuning.blocks_in_parallel = 1;
     tuning.tile_group = sizes.tile_group;
+    tuning.local_vertices = sizes.local_vertices;
   }
   runtime.set_sizes(std::make_shared<Tuning>(tuning));
   check(runtime);
@@ -99,7 +102,7 @@ void compare(const RoundSizes& sizes, const Coordinates& coordinates, const Offs
                std::to_string(sizes.tile_group));
   Triangulation expected, found;
   RoundSizes merging = sizes;
-  merging.round_points = 0;
+  merging.round_points = merging.local_vertices = 0;
   with_sizes(merging, [&](Runtime& runtime) { expected = run_blocks(runtime, coordinates, offsets); });
   with_sizes(sizes, [&](Runtime& runtime) { found = run_blocks(runtime, coordinates, offsets); });
   EXPECT_EQ(expected.statistics.rounds, 0u);
@@ -245,6 +248,27 @@ TEST(Rounds, OfManySetsAreTheSameAsMerges) {
   EXPECT_GE(met.most, 4u);
 }
 
+/// Parts of blocks that are not merged, of several depths; blocks that are merged after all, and sets for
+/// whose only block there is no other way.
+TEST(Rounds, OfPartsAreTheSameAsMerges) {
+  if (testing::tests_native()) GTEST_SKIP() << "the host has no local memory";
+  MetRounds met;
+  for (const std::size_t local_vertices : {8u, 16u}) {
+    const RoundSizes sizes{64, 40, 50, 32, 16, local_vertices};
+    for (const char* const name : {"uniform", "line", "rotated-grid", "circle", "half-duplicates"}) {
+      SCOPED_TRACE(name);
+      compare(sizes, make_fixture(name, 3000, 13), met);
+    }
+    const Nested sets = sets_of_all_kinds(150, 14);
+    compare(sizes, sets.coordinates, sets.offsets, met);
+    Nested large;
+    for (const std::size_t n : {400u, 3u, 900u}) large.add(make_fixture("uniform", n, n));
+    compare(sizes, large.coordinates, large.offsets, met);
+  }
+  EXPECT_GE(met.most, 3u);
+  EXPECT_GE(met.merged, 2u);
+}
+
 /// Parallelograms and ellipses full of points, in all directions. Of some, a round leaves two points: those
 /// of an edge of the upper hull, with nothing missing but the outside.
 TEST(Rounds, ThatLeaveAHullEdgeAreTheSameAsMerges) {
@@ -350,6 +374,141 @@ TEST(Rounds, WalksThatDoNotMeetAreAnError) {
     testing::expect_error(ErrorKind::internal, {"walks along a seam"}, [&] {
       run_blocks(*runtime, points, {0, 900});
     });
+  }
+}
+
+/// Blocks that are cut along any axes into parts of a height, whose ends alone are known.
+struct CutBlocks {
+  int height;
+  std::vector<cl_int> offsets{0}, distinct{};
+  std::vector<cl_double2> points{};
+  std::vector<cl_uchar> axes{};
+  std::vector<kernel::solved_block> parts{}, solved{};
+
+  /// A block of these vertices, with further places.
+  void add(std::vector<cl_double2> vertices, std::size_t places, FixtureRandom& random) {
+    const std::size_t first = points.size();
+    points.insert(points.end(), vertices.begin(), vertices.end());
+    points.resize(first + vertices.size() + places, {{-7, -7}});
+    axes.resize(points.size());
+    parts.resize(points.size() / 2 + 1);
+    solved.push_back({kernel::no_ends(), {-1, -1}});
+    offsets.push_back(static_cast<cl_int>(points.size()));
+    distinct.push_back(static_cast<cl_int>(vertices.size()));
+    if (!vertices.empty()) cut(first, distinct.back(), 0, 0, random);
+  }
+
+ private:
+  static bool before(cl_double2 a, cl_double2 b, int axis) {
+    return kernel::precedes({a.s[0], a.s[1]}, {b.s[0], b.s[1]}, axis) != 0;
+  }
+  void cut(std::size_t first, int count, int depth, int number, FixtureRandom& random) {
+    const int begin = kernel::part_begin(count, depth, number),
+              end = kernel::part_begin(count, depth, number + 1), own_height = kernel::halving_depth(count);
+    const auto from = points.begin() + static_cast<std::ptrdiff_t>(first) + begin, to = from + (end - begin);
+    if (own_height - depth <= height || depth == 0) {
+      const auto place_of = [&](auto extreme, int axis) {
+        return static_cast<int>(
+            extreme(from, to, [&](cl_double2 a, cl_double2 b) { return before(a, b, axis); }) -
+            points.begin());
+      };
+      const auto least = [](auto... args) { return std::min_element(args...); };
+      const auto greatest = [](auto... args) { return std::max_element(args...); };
+      const kernel::hull_ends ends = kernel::ends_of(place_of(least, 0), place_of(greatest, 0),
+                                                     place_of(least, 1), place_of(greatest, 1));
+      (depth == 0 ? solved.back() : parts[(first + static_cast<std::size_t>(begin)) / 2]).ends = ends;
+    }
+    if (own_height - depth <= height) return;
+    const int axis = static_cast<int>(random.integer(0, 1));
+    std::sort(from, to, [&](cl_double2 a, cl_double2 b) { return before(a, b, axis); });
+    axes[first + static_cast<std::size_t>((1 << depth) + number)] = static_cast<cl_uchar>(axis);
+    for (const int half : {0, 1}) cut(first, count, depth + 1, 2 * number + half, random);
+  }
+};
+
+/// Each set has one block, so that frames are between the cuts into parts alone.
+TEST(SmallRounds, FramesLieBetweenTheCutsIntoParts) {
+  Runtime& runtime = Runtimes::get("rounds");
+  FixtureRandom random(21);
+  for (const auto& [height, depth] : {std::pair{0, 3}, {1, 3}, {2, 2}, {3, 1}, {6, 0}}) {
+    SCOPED_TRACE("height " + std::to_string(height) + ", depth " + std::to_string(depth));
+    const Arena::Scope scope(runtime.arena());
+    CutBlocks given{.height = height};
+    const auto most = std::size_t{kernel::LEAF_VERTICES} << (height + depth);
+    for (std::size_t n = 0; n <= most; n += 1 + n / 3) {
+      std::vector<cl_double2> vertices;
+      while (vertices.size() < n) {
+        const cl_double2 p{{static_cast<double>(random.integer(0, 40)), random.unit()}};
+        vertices.push_back(p);
+      }
+      given.add(vertices, n % 3, random);
+    }
+    const std::size_t blocks = given.distinct.size(), places = given.points.size(), frames = blocks << depth;
+    std::vector<cl_int> each(blocks + 1), none(places, kernel::NO_EDGE);
+    std::iota(each.begin(), each.end(), 0);
+    const kernel::vertex_box all{{0, 0}, {40, 1}};
+    const auto ints = [&](const std::vector<cl_int>& values) { return testing::upload(runtime, values); };
+    const auto frame_offsets = ints(std::vector<cl_int>(frames + 1, -7));
+    const auto device_frames = testing::upload(runtime, std::vector<kernel::block_frame>(frames));
+    runtime.map(std::max(places, frames + 1),
+                kernels::begin_round{.places_of_parts = {.height = height,
+                                                         .places = places,
+                                                         .offsets = ints(given.offsets),
+                                                         .distinct = ints(given.distinct),
+                                                         .block_of_place = Buffer<cl_int>{},
+                                                         .axes = testing::upload(runtime, given.axes)},
+                                     .depth = depth,
+                                     .blocks = blocks,
+                                     .cut_sets = {.sets = blocks,
+                                                  .set_blocks = ints(each),
+                                                  .set_nodes = Buffer<cl_int>{},
+                                                  .nodes = Buffer<kernel::cut_node>{}},
+                                     .is_merged = 0,
+                                     .scale = kernel::scaling{1, 1, 1},
+                                     .parts = testing::upload(runtime, given.parts),
+                                     .solved = testing::upload(runtime, given.solved),
+                                     .set_boxes = ints(std::vector<cl_int>(blocks, 0)),
+                                     .boxes = testing::upload(runtime, std::vector<kernel::vertex_box>{all}),
+                                     .points = testing::upload(runtime, given.points),
+                                     .edges = Buffer<kernel::ring_edge>{},
+                                     .vertex_edge = ints(none),
+                                     .is_first = 1,
+                                     .listed = Buffer<cl_int>{},
+                                     .listed_vertices = Buffer<cl_int>{},
+                                     .vertices = ints(none),
+                                     .hull_links = ints(std::vector<cl_int>(2 * places, -1)),
+                                     .frame_offsets = frame_offsets,
+                                     .frames = device_frames});
+    const auto begins = testing::download(runtime, frame_offsets, frames + 1);
+    const auto found = testing::download(runtime, device_frames, frames);
+    EXPECT_EQ(begins[frames], static_cast<cl_int>(places));
+    std::size_t cut = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const cl_int first = given.offsets[b], end = first + given.distinct[b];
+      EXPECT_EQ(begins[b << depth], first);
+      cl_int next = first;
+      for (std::size_t f = b << depth; f < (b + 1) << depth; ++f) {
+        const kernel::vertex_box& r = found[f].rectangle;
+        const auto is_within = [&](cl_double2 p) {
+          return r.low.x < p.s[0] && p.s[0] < r.high.x && r.low.y < p.s[1] && p.s[1] < r.high.y;
+        };
+        const auto is_around = [&](cl_double2 p) {
+          return r.low.x <= p.s[0] && p.s[0] <= r.high.x && r.low.y <= p.s[1] && p.s[1] <= r.high.y;
+        };
+        EXPECT_EQ(begins[f], next);
+        const cl_int own_end = next + found[f].vertices;
+        for (cl_int v = first; v < end && found[f].vertices > 0; ++v) {
+          const cl_double2 p = given.points[static_cast<std::size_t>(v)];
+          const bool is_own = next <= v && v < own_end;
+          EXPECT_TRUE(is_own ? is_around(p) : !is_within(p))
+              << "block " << b << ", frame " << f << ", vertex " << v;
+        }
+        cut += found[f].vertices > 0 && found[f].vertices < given.distinct[b];
+        next = own_end == end ? given.offsets[b + 1] : own_end;
+      }
+      EXPECT_EQ(next, given.offsets[b + 1]);
+    }
+    EXPECT_EQ(cut > 0, depth > 0);
   }
 }
 
