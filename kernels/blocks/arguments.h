@@ -12,6 +12,12 @@
   global const int* restrict PREFIX##distinct, global const int* restrict PREFIX##block_of_place, \
   global const uchar* restrict PREFIX##axes
 
+// The triangulations of parts: their vertices, the rings around these, and what parts and blocks are by their ends.
+#define RINGS_OF_PARTS(PREFIX) \
+  global const coordinate2* restrict PREFIX##points, global ring_edge* restrict PREFIX##edges, \
+  global int* restrict PREFIX##vertex_edge, global solved_block* restrict PREFIX##parts, \
+  global solved_block* restrict PREFIX##solved
+
 // The points of blocks, which are sorted, and the results: representatives, solved blocks, numbers of points.
 #define BLOCK_POINTS(PREFIX) \
   global coordinate2* PREFIX##points, global int* PREFIX##source, global int* PREFIX##representatives, \

@@ -16,10 +16,8 @@
 #include "points/records.h"
 #include "predicates/records.h"
 
-kernel void merge_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
-                        global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                        global solved_block* solved, global int* restrict states,
-                        global volatile uint* account COUNTERS) {
+kernel void merge_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, RINGS_OF_PARTS(),
+                        global int* restrict states, global volatile uint* account COUNTERS) {
   const int cell = spread_item(n, spread);
   if (cell < n) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);

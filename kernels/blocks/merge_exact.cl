@@ -16,10 +16,8 @@
 #include "points/records.h"
 #include "predicates/records.h"
 
-kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
-                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                         global solved_block* solved, global int* restrict states,
-                         global volatile uint* account COUNTERS) {
+kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, RINGS_OF_PARTS(),
+                         global int* restrict states, global volatile uint* account COUNTERS) {
   const int cell = spread_item(n, spread);
   if (cell < n && states[cell] != MERGE_IS_DONE) {
     const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
@@ -30,9 +28,8 @@ kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bou
   }
 }
 
-kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, global const coordinate2* points,
-                         global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                         global solved_block* solved, global int2* restrict crossings, global int* restrict removals,
+kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, RINGS_OF_PARTS(),
+                         global int2* restrict crossings, global int* restrict removals,
                          global uchar* restrict is_removed, global seam_walk* restrict walks,
                          global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);

@@ -26,11 +26,9 @@
 #include "operations/work_group.h"
 #include "predicates/records.h"
 
-kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds,
-                       global const coordinate2* restrict points, global ring_edge* restrict edges,
-                       global int* restrict vertex_edge, global solved_block* restrict parts,
-                       global solved_block* restrict solved, global int2* restrict crossings,
-                       global int* restrict removals, global uchar* restrict is_removed, global seam_walk* walks,
+kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bounds, RINGS_OF_PARTS(),
+                       global int2* restrict crossings, global int* restrict removals,
+                       global uchar* restrict is_removed, global seam_walk* walks,
                        global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n) {
@@ -47,10 +45,8 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
 
 SCAN_IN_GROUP(sum_before, uint)
 
-kernel void sew_seams(int cells, PLACES_OF_PARTS(), global const coordinate2* restrict points,
-                      global const int2* restrict crossings, global const seam_walk* restrict walks,
-                      global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                      global solved_block* solved, global int* removals, global uchar* is_removed,
+kernel void sew_seams(int cells, PLACES_OF_PARTS(), RINGS_OF_PARTS(), global const int2* restrict crossings,
+                      global const seam_walk* restrict walks, global int* removals, global uchar* is_removed,
                       global volatile uint* account COUNTERS) {
   local uint sums[LARGEST_TILE_GROUP];
   local int meets, count;  // see begin_sewing

@@ -72,6 +72,14 @@ struct Halves {
   Buffer<kernel::solved_block> parts{};
   Buffer<cl_int> states{};
   Seams seams{};
+
+  kernels::rings_of_parts rings_of_parts() const {
+    return {.points = blocks.vertices,
+            .edges = rings.edges,
+            .vertex_edge = rings.vertex_edge,
+            .parts = parts,
+            .solved = rings.solved};
+  }
 };
 
 // kernels::merge_parts or kernels::finish_parts.
@@ -84,11 +92,7 @@ void launch_on_parts(const Halves& halves, int height) {
                 Kernel{.spread = spread,
                        .places_of_parts = places_of_parts(blocks, halved, rings, height),
                        .bounds = work.bounds,
-                       .points = blocks.vertices,
-                       .edges = rings.edges,
-                       .vertex_edge = rings.vertex_edge,
-                       .parts = parts,
-                       .solved = rings.solved,
+                       .rings_of_parts = halves.rings_of_parts(),
                        .states = states,
                        .account = rings.device_account});
 }
@@ -103,11 +107,7 @@ void launch_on_walks(const Halves& halves, int height) {
                 Kernel{.spread = spread,
                        .places_of_parts = places_of_parts(blocks, halved, rings, height),
                        .bounds = work.bounds,
-                       .points = blocks.vertices,
-                       .edges = rings.edges,
-                       .vertex_edge = rings.vertex_edge,
-                       .parts = parts,
-                       .solved = rings.solved,
+                       .rings_of_parts = halves.rings_of_parts(),
                        .crossings = seams.crossings,
                        .removals = seams.removals,
                        .is_removed = seams.is_removed,
@@ -144,11 +144,7 @@ void launch_on_local_parts(const Halves& halves, int height) {
                              .blocks = blocks.count,
                              .places_of_parts = places_of_parts(blocks, halved, rings, height),
                              .bounds = work.bounds,
-                             .points = blocks.vertices,
-                             .edges = rings.edges,
-                             .vertex_edge = rings.vertex_edge,
-                             .parts = parts,
-                             .solved = rings.solved,
+                             .rings_of_parts = halves.rings_of_parts(),
                              .crossings = seams.crossings,
                              .removals = seams.removals,
                              .states = states,
@@ -181,13 +177,9 @@ void sew_seams(const Halves& halves, int height) {
   runtime.launch(group * cells_of(blocks, height), group,
                  kernels::sew_seams{.cells = cells_of(blocks, height),
                                     .places_of_parts = places_of_parts(blocks, halved, rings, height),
-                                    .points = blocks.vertices,
+                                    .rings_of_parts = halves.rings_of_parts(),
                                     .crossings = seams.crossings,
                                     .walks = seams.walks,
-                                    .edges = rings.edges,
-                                    .vertex_edge = rings.vertex_edge,
-                                    .parts = parts,
-                                    .solved = rings.solved,
                                     .removals = seams.removals,
                                     .is_removed = seams.is_removed,
                                     .account = rings.device_account});

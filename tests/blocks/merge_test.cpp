@@ -11,6 +11,7 @@
 #include "blocks/codes.h"
 #include "blocks/halving.h"
 #include "blocks/limits.h"
+#include "blocks/parts.hpp"
 #include "blocks/records.h"
 #include "blocks/seams.h"
 #include "launchers/blocks/merge.cl.hpp"
@@ -252,44 +253,34 @@ struct WalkedSeam {
     const auto& [blocks, representatives, rings] = on_device;
     for (int height = 0; height < kHeight; ++height) {
       const std::size_t cells = (kPoints + (2u << height) - 1) / (2u << height);
-      runtime.map(cells, kernels::merge_parts{.spread = 1,
-                                              .places_of_parts = {.height = height,
-                                                                  .places = kPoints,
-                                                                  .offsets = blocks.offsets,
-                                                                  .distinct = rings.device_distinct,
-                                                                  .block_of_place = halved.block_of_place,
-                                                                  .axes = halved.axes},
-                                              .bounds = call.work.bounds,
-                                              .points = blocks.vertices,
-                                              .edges = rings.edges,
-                                              .vertex_edge = rings.vertex_edge,
-                                              .parts = parts,
-                                              .solved = rings.solved,
-                                              .states = states,
-                                              .account = rings.device_account});
+      runtime.map(cells,
+                  kernels::merge_parts{.spread = 1,
+                                       .places_of_parts = places_of_parts(blocks, halved, rings, height),
+                                       .bounds = call.work.bounds,
+                                       .rings_of_parts = own_rings(),
+                                       .states = states,
+                                       .account = rings.device_account});
     }
     crossings = runtime.arena().allocate<cl_int2>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
     removals = runtime.arena().allocate<cl_int>(2 * kernel::CROSSINGS_PER_VERTEX * kPoints);
     is_removed = testing::upload(runtime, std::vector<cl_uchar>(2 * kPairs, 0));
     walks = testing::guarded<kernel::seam_walk>(runtime, 2);
     runtime.map(2, kernels::walk_seams{.spread = 1,
-                                       .places_of_parts = {.height = kHeight,
-                                                           .places = kPoints,
-                                                           .offsets = blocks.offsets,
-                                                           .distinct = rings.device_distinct,
-                                                           .block_of_place = halved.block_of_place,
-                                                           .axes = halved.axes},
+                                       .places_of_parts = places_of_parts(blocks, halved, rings, kHeight),
                                        .bounds = call.work.bounds,
-                                       .points = blocks.vertices,
-                                       .edges = rings.edges,
-                                       .vertex_edge = rings.vertex_edge,
-                                       .parts = parts,
-                                       .solved = rings.solved,
+                                       .rings_of_parts = own_rings(),
                                        .crossings = crossings,
                                        .removals = removals,
                                        .is_removed = is_removed,
                                        .walks = walks,
                                        .account = rings.device_account});
+  }
+  kernels::rings_of_parts own_rings() const {
+    return {.points = on_device.blocks.vertices,
+            .edges = on_device.rings.edges,
+            .vertex_edge = on_device.rings.vertex_edge,
+            .parts = parts,
+            .solved = on_device.rings.solved};
   }
   /// Distinct points of a grid.
   static BlockPoints spread_points() {
@@ -311,19 +302,10 @@ struct WalkedSeam {
     const std::size_t group = tuning_of(runtime).sewing_group;
     runtime.launch(group, group,
                    kernels::sew_seams{.cells = 1,
-                                      .places_of_parts = {.height = kHeight,
-                                                          .places = kPoints,
-                                                          .offsets = blocks.offsets,
-                                                          .distinct = rings.device_distinct,
-                                                          .block_of_place = halved.block_of_place,
-                                                          .axes = halved.axes},
-                                      .points = blocks.vertices,
+                                      .places_of_parts = places_of_parts(blocks, halved, rings, kHeight),
+                                      .rings_of_parts = own_rings(),
                                       .crossings = crossings,
                                       .walks = testing::upload(runtime, both),
-                                      .edges = rings.edges,
-                                      .vertex_edge = rings.vertex_edge,
-                                      .parts = parts,
-                                      .solved = rings.solved,
                                       .removals = removals,
                                       .is_removed = is_removed,
                                       .account = rings.device_account});
