@@ -476,9 +476,11 @@ TEST(Embedding, ASecondCallAllocatesNothingAndOnlySizesCross) {
 TEST(Embedding, WorksInTheCallersWorkspace) {
   Triangulator fresh(embedder().context(), embedder().device());
   const Queue queue = embedder().make_queue();
-  // The worst that a size can need: all points in one block; a tree for each set; no duplicates at all.
+  // The worst that a size can need: all points in one block; a tree for each set; no duplicates at all;
+  // rounds that end with a merge.
   const std::vector<std::pair<Coordinates, Offsets>> inputs = {
       {make_fixture("uniform", 20000, 1), {0, 20000}},
+      {make_fixture("circle", 20000, 1), {0, 20000}},
       {Coordinates(40000, 0.25), {0, 20000}},
       {make_fixture("grid", 20000, 2), {0, 3000, 6000, 6000, 9000, 20000}},
       {make_fixture("collinear", 3000, 2), {0, 1, 1, 1, 2, 3000}},
