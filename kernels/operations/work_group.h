@@ -1,7 +1,8 @@
 // Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is one
 // work-group's share. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind
-// the last tile, which do nothing. All work-items of a group must call them at the same place. In OpenCL C
-// alone.
+// the last tile, which do nothing. All work-items of a group must call them at the same place. Loops with barriers
+// have a first turn in any case, and no barrier is in a branch, where that is possible: PoCL compiles what follows them
+// once more for each that may be left out. In OpenCL C alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 
@@ -15,13 +16,15 @@
     const int me = get_local_id(0), group = get_local_size(0); \
     sums[me] = value;                                          \
     barrier(CLK_LOCAL_MEM_FENCE);                              \
-    for (int distance = 1; distance < group; distance *= 2) {  \
+    int distance = 1;                                          \
+    do {                                                       \
       T sum = sums[me];                                        \
       if (me >= distance) sum += sums[me - distance];          \
       barrier(CLK_LOCAL_MEM_FENCE);                            \
       sums[me] = sum;                                          \
       barrier(CLK_LOCAL_MEM_FENCE);                            \
-    }                                                          \
+      distance *= 2;                                           \
+    } while (distance < group);                                \
     const T before = sums[me] - value;                         \
     *total = sums[group - 1];                                  \
     barrier(CLK_LOCAL_MEM_FENCE);                              \

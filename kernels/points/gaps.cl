@@ -200,27 +200,26 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
   global int2* const tree_ranges = ranges + own.first_node;
   int2 range = VECTOR(int2, own.first_sample, w < groups ? own.samples : 0);
   if (above > 1 && w < groups) range = tree_ranges[above];
-  global const coordinate2* source = from;
-  if (level > 0) {
-    const int share = share_of(range.y);
-    const int first = range.x + min(range.y, me * share), last = min(range.x + range.y, first + share);
-    int before = 0, inside = 0;
-    for (int i = first; i < last; ++i) {
-      const int side = side_of_node(from[i], number, levels, tree);
-      before += side < 0;
-      inside += side == 0;
-    }
-    uint64 all;
-    const uint64 scanned = scan_pairs(pair_of(before, inside), sums, &all);
-    range = VECTOR(int2, range.x + low_of(all), high_of(all));
-    int place = range.x + high_of(scanned);
-    for (int i = first; i < last; ++i) {
-      if (side_of_node(from[i], number, levels, tree) == 0) to[place++] = from[i];
-    }
-    if (me == 0 && w < groups) tree_ranges[number] = range;
-    source = to;
-    barrier(CLK_GLOBAL_MEM_FENCE);
+  // The first node's samples are there.
+  const int divided = level > 0 ? range.y : 0, divided_share = share_of(divided);
+  const int first_divided = range.x + min(divided, me * divided_share);
+  const int last_divided = min(range.x + divided, first_divided + divided_share);
+  int before = 0, inside = 0;
+  for (int i = first_divided; i < last_divided; ++i) {
+    const int side = side_of_node(from[i], number, levels, tree);
+    before += side < 0;
+    inside += side == 0;
   }
+  uint64 all;
+  const uint64 counts_before = scan_pairs(pair_of(before, inside), sums, &all);
+  if (level > 0) range = VECTOR(int2, range.x + low_of(all), high_of(all));
+  int to_place = range.x + high_of(counts_before);
+  for (int i = first_divided; i < last_divided; ++i) {
+    if (side_of_node(from[i], number, levels, tree) == 0) to[to_place++] = from[i];
+  }
+  if (level > 0 && me == 0 && w < groups) tree_ranges[number] = range;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  global const coordinate2* const source = level > 0 ? to : from;
   const int size = min(range.y, capacity);
   for (int i = me; i < size; i += group) points[i] = source[range.x + (int)((int64)i * range.y / size)];
   int at = sort_samples(size, 0, 2, points, orders);
@@ -232,8 +231,9 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
   for (int depth = 0; w < groups && depth < levels && (1 << (level + depth)) < leaves; ++depth) {
     const sorted_tile tile = {points, orders + at};
     const int count = 1 << depth, lanes = max(1, group / count), at_once = group / lanes;
-    for (int first = 0; first < count; first += at_once) {
-      const int lane = me % lanes, j = first + me / lanes, is_own = me / lanes < at_once && j < count;
+    int nodes_before = 0;
+    do {
+      const int lane = me % lanes, j = nodes_before + me / lanes, is_own = me / lanes < at_once && j < count;
       gap_node node;
       node.begin = is_own ? starts[count + j] : 0;
       node.size = !is_own ? 0 : (j + 1 < count ? starts[count + j + 1] : size) - node.begin;
@@ -241,7 +241,8 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
       const gap_range gaps = gaps_of(node);
       gap found = widest_gap(tile, node, gaps, lane, lanes);
       sums[me] = pair_of(found.place, found.axis);
-      for (int step = 1; step < lanes; step *= 2) {
+      int step = 1;
+      do {
         barrier(CLK_LOCAL_MEM_FENCE);
         const int other = is_own && lane + step < lanes && lane % (2 * step) == 0 ? me + step : me;
         const uint64 pair = sums[other];
@@ -249,14 +250,16 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
           found = wider_gap(found, gap_at(tile, gaps, high_of(pair), low_of(pair)));
         barrier(CLK_LOCAL_MEM_FENCE);
         sums[me] = pair_of(found.place, found.axis);
-      }
+        step *= 2;
+      } while (step < lanes);
       if (is_own && lane == 0) {
         global cut_node* const cut = &tree[(number << depth) + j];
         *cut = cut_in_gap(tile, node, found);
         starts[2 * (count + j)] = node.begin;
         starts[2 * (count + j) + 1] = split_at(tile, node, cut);
       }
-    }
+      nodes_before += at_once;
+    } while (nodes_before < count);
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
     global const cut_node* const cuts = tree + (number << depth);
     const int share = share_of(size), first = min(size, me * share), last = min(size, first + share);
@@ -266,7 +269,6 @@ kernel void cut_at_gaps(int groups, int level, int levels, int capacity, int tre
       part = part_of_place(i, part, count, size, starts);
       for (int axis = 0; axis < 2; ++axis) lows[axis] += !is_high(sorted_sample(tile, axis, i), &cuts[part.number]);
     }
-    uint64 all;
     const uint64 scanned = scan_pairs(pair_of(lows[0], lows[1]), sums, &all);
     lows[0] = low_of(scanned);
     lows[1] = high_of(scanned);

@@ -40,8 +40,8 @@ WITH_BARRIERS int sort_samples(int size, int axis, int axes, local const coordin
     for (int i = me; i < size; i += group) orders[k * TILE_ORDERS + i] = (ushort)i;
   }
   barrier(CLK_LOCAL_MEM_FENCE);
-  int from = 0;
-  for (int run = 1; run < size; run *= 2) {
+  int from = 0, run = 1;
+  do {
     const int to = LARGEST_SAMPLE_TILE - from;
     for (int k = 0; k < axes; ++k) {
       local ushort* const order = orders + k * TILE_ORDERS;
@@ -51,7 +51,8 @@ WITH_BARRIERS int sort_samples(int size, int axis, int axes, local const coordin
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     from = to;
-  }
+    run *= 2;
+  } while (run < size);
   return from;
 }
 
