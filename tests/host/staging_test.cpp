@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/compute/command_queue.hpp>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -34,30 +36,28 @@ std::vector<cl_uchar> numbers(std::size_t count, std::size_t first) {
   return values;
 }
 
-// Writes parts of an array that are as long as the sizes say, reads them back, and compares.
+// Writes parts of an array that are as long as the sizes say, reads each back while the next one is written,
+// and compares. Parts lie at the same places of arrays of the host: with odd gaps at unaligned addresses.
 void expect_round_trips(Runtime& runtime, const std::vector<std::size_t>& sizes, std::size_t gap) {
   const Arena::Scope scope(runtime.arena());
   const std::size_t all = std::accumulate(sizes.begin(), sizes.end(), gap * (sizes.size() + 1));
   const auto array = runtime.arena().allocate<cl_uchar>(all);
-  std::vector<cl_uchar> expected(all, 7), whole(all);
+  const std::vector<cl_uchar> given = numbers(all, gap);
+  std::vector<cl_uchar> expected(all, 7), found(all, 7), whole(all);
   runtime.fill(array, all, cl_uchar{7});
-  std::vector<std::vector<cl_uchar>> given, found;
   const Runtime::Settled settled(runtime);
-  std::size_t first = gap;
+  std::size_t first = gap, before = 0, size_before = 0;
   for (const std::size_t size : sizes) {
-    given.push_back(numbers(size, first));
-    runtime.write_later(array, first, size, given.back().data());
-    std::copy(given.back().begin(), given.back().end(), expected.begin() + first);
+    std::copy_n(given.begin() + first, size, expected.begin() + first);
+    runtime.write_later(array, first, size, given.data() + first);
+    runtime.read_later(array, before, size_before, found.data() + before);
+    before = first;
+    size_before = size;
     first += size + gap;
   }
-  first = gap;
-  for (const std::size_t size : sizes) {
-    found.emplace_back(size);
-    runtime.read_later(array, first, size, found.back().data());
-    first += size + gap;
-  }
+  runtime.read_later(array, before, size_before, found.data() + before);
   runtime.read(array, 0, all, whole.data());
-  for (std::size_t k = 0; k < sizes.size(); ++k) expect_same(found[k], given[k], "part " + std::to_string(k));
+  expect_same(found, expected, "each part");
   expect_same(whole, expected, "all parts");
 }
 
@@ -101,6 +101,33 @@ TEST(SmallStaging, QueuesInAnyOrder) {
     runtime->use_queue(queue, false);
     expect_round_trips(*runtime, {9 * kChunk + 1, kChunk, 2 * kChunk - 1}, 3);
   }
+}
+
+// Behind commands that have not begun, as many chunks are written as there are without waiting for any.
+TEST(SmallStaging, WritesWaitForChunksAlone) {
+  const auto runtime = staged(1);
+  const boost::compute::command_queue queue(runtime->context(), runtime->device());
+  const auto values = numbers(9 * kChunk + 1, 1);
+  std::vector<cl_uchar> found(values.size());
+  const auto array = runtime->arena().allocate<cl_uchar>(values.size());
+  cl_int code = CL_SUCCESS;
+  const cl_event ready = clCreateUserEvent(runtime->context().get(), &code);
+  check_call(code, "clCreateUserEvent");
+  runtime->use_queue(queue.get(), false);
+  runtime->wait_for({ready});
+  runtime->write_later(array, 0, 4 * kChunk, values.data());
+  std::atomic<bool> is_ready{false};
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    is_ready = true;
+    clSetUserEventStatus(ready, CL_COMPLETE);
+  });
+  runtime->write_later(array, 4 * kChunk, values.size() - 4 * kChunk, values.data() + 4 * kChunk);
+  EXPECT_TRUE(is_ready);
+  runtime->read(array, 0, found.size(), found.data());
+  expect_same(found, values, "values");
+  other.join();
+  clReleaseEvent(ready);
 }
 
 // After an error, nothing goes to where earlier reads should have gone.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "launchers/points/gaps.cl.hpp"
 #include "points/cut_tree.h"
 #include "points/limits.h"
 #include "tests/points/support.hpp"
@@ -26,11 +27,14 @@ struct MetGaps {
 struct Groups {
   int levels;
   std::size_t capacity;
-
-  Groups(const Tuning& tuning, std::size_t samples_per_leaf) : levels(1), capacity(tuning.sample_tile) {
-    while (levels < kernel::GAP_LEVELS && samples_per_leaf << (levels + 1) <= capacity) ++levels;
-  }
 };
+
+Groups groups_of(const Tuning& tuning, std::size_t samples_per_leaf) {
+  Groups groups{1, tuning.sample_tile};
+  while (groups.levels < kernel::GAP_LEVELS && samples_per_leaf << (groups.levels + 1) <= groups.capacity)
+    ++groups.levels;
+  return groups;
+}
 
 /// A tree of samples, as gaps.cl describes it.
 class GapTwin {
@@ -153,7 +157,7 @@ void check_gap_trees(Runtime& runtime, const std::vector<std::pair<Coordinates, 
     for (const cl_int i : spread_indices(coordinates.size() / 2, samples_per_leaf << depth)) {
       samples.push_back(point_of(coordinates, static_cast<std::size_t>(i)));
     }
-    const GapTwin twin(samples, depth, {tuning_of(runtime), samples_per_leaf}, met);
+    const GapTwin twin(samples, depth, groups_of(tuning_of(runtime), samples_per_leaf), met);
     for (std::size_t k = 1; k < twin.nodes.size(); ++k) {
       const kernel::cut_node &node = found[first + k], &expected = twin.nodes[k];
       ASSERT_TRUE(node.major == expected.major && node.minor == expected.minor && node.turn == expected.turn)
@@ -200,6 +204,49 @@ TEST(SmallGaps, AreThoseOfTheTwin) {
     check_gap_trees(runtime, gap_sets(9, {2, 1, 3}), 1, met);
     EXPECT_GT(met.gaps, 10u);
     EXPECT_GT(met.medians, 3u);
+  });
+}
+
+/// There are such groups if the device runs a kernel in smaller groups than it was told.
+TEST(SmallGaps, GroupsBehindTheLastDoNothing) {
+  under_tiles("tiles", [](Runtime& runtime) {
+    const Arena::Scope scope(runtime.arena());
+    // A tree with leaves of 3 samples, cut level by level.
+    const cl_int m = 12, depth = 2;
+    const std::size_t group = 3;
+    const Samples samples = points_of(along_cuts(m, 59));
+    const auto from = testing::upload(runtime, samples);
+    const auto trees = testing::upload(runtime, std::vector<kernel::sampled_tree>{{0, m, 3, m, 0, 0, m}});
+    const auto zero = testing::upload(runtime, std::vector<cl_int>{0});
+    const auto to = testing::guarded<cl_double2>(runtime, m);
+    const auto ranges = testing::guarded<cl_int2>(runtime, 1 << depth);
+    const auto nodes = testing::guarded<kernel::cut_node>(runtime, 1 << depth);
+    const std::size_t capacity = tuning_of(runtime).sample_tile;
+    MetGaps met;
+    const GapTwin twin(samples, depth, {1, capacity}, met);
+    for (cl_int level = 0; level < depth; ++level) {
+      const std::size_t groups = std::size_t{1} << level;
+      runtime.launch((groups + 3) * group, group,
+                     kernels::cut_at_gaps{.groups = groups,
+                                          .level = level,
+                                          .levels = 1,
+                                          .capacity = capacity,
+                                          .tree_count = 1,
+                                          .first_groups = zero,
+                                          .trees = trees,
+                                          .from = from,
+                                          .to = to,
+                                          .ranges = ranges,
+                                          .nodes = nodes});
+      const auto found = testing::download(runtime, nodes, 1 << depth);
+      for (std::size_t k = 1; k < found.size(); ++k) {
+        const bool is_cut = k < 2 * groups;
+        EXPECT_EQ(found[k].major == twin.nodes[k].major && found[k].minor == twin.nodes[k].minor, is_cut)
+            << k;
+      }
+    }
+    testing::download(runtime, to, m);
+    testing::download(runtime, ranges, 1 << depth);
   });
 }
 
