@@ -62,6 +62,17 @@ Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const
   return result;
 }
 
+void expect_same(const Triangulation& found, const Triangulation& expected) {
+  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
+  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
+  EXPECT_TRUE(same(found.triangles, expected.triangles)) << "triangles";
+  EXPECT_TRUE(same(found.neighbors, expected.neighbors)) << "neighbors";
+  EXPECT_TRUE(same(found.halfedges, expected.halfedges)) << "halfedges";
+  EXPECT_TRUE(same(found.hull, expected.hull)) << "hull";
+  EXPECT_TRUE(same(found.representatives, expected.representatives)) << "representatives";
+  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
+}
+
 /// What rounds depend on. tile_group: 0 for cuts at medians.
 struct RoundSizes {
   std::size_t block_points, round_points, merge_from_percent = 100, tile_group = 0, samples = 4,
@@ -107,14 +118,7 @@ void compare(const RoundSizes& sizes, const Coordinates& coordinates, const Offs
   with_sizes(sizes, [&](Runtime& runtime) { found = run_blocks(runtime, coordinates, offsets); });
   EXPECT_EQ(expected.statistics.rounds, 0u);
   EXPECT_EQ(expected.statistics.round_points, 0u);
-  EXPECT_EQ(found.triangle_offsets, expected.triangle_offsets);
-  EXPECT_EQ(found.hull_offsets, expected.hull_offsets);
-  EXPECT_TRUE(same(found.triangles, expected.triangles)) << "triangles";
-  EXPECT_TRUE(same(found.neighbors, expected.neighbors)) << "neighbors";
-  EXPECT_TRUE(same(found.halfedges, expected.halfedges)) << "halfedges";
-  EXPECT_TRUE(same(found.hull, expected.hull)) << "hull";
-  EXPECT_TRUE(same(found.representatives, expected.representatives)) << "representatives";
-  EXPECT_EQ(found.statistics.duplicates, expected.statistics.duplicates);
+  expect_same(found, expected);
   EXPECT_GE(found.statistics.rounds, 1u);
   EXPECT_GE(found.statistics.round_points, offsets.back());
   EXPECT_LE(found.statistics.merged_points, offsets.back());
@@ -360,6 +364,36 @@ std::string with_short_walks(std::string seams) {
 
 /// An error of ours that the account tells, before anything is made of such triangulations: in rounds, in the
 /// last round, and with merging.
+/// As a GPU solves blocks, with groups of any size and any share of a part in local memory.
+TEST(Rounds, OfManyLanesHaveTheBytesOfTheHost) {
+  if (testing::tests_native()) GTEST_SKIP() << "native kernels have no work-groups";
+  Runtime& runtime = Runtimes::get("rounds");
+  Runtime host(native_tuning());
+  const Tuning before = tuning_of(runtime);
+  FixtureRandom random(62);
+  std::vector<Coordinates> inputs{coarse(700, 12, 12, random)};
+  for (const char* const name : {"uniform", "grid", "integer-circle", "line"}) {
+    for (const std::size_t n : {300, 2500}) inputs.push_back(make_fixture(name, n, 63));
+  }
+  for (const auto& [vertices, group] :
+       {std::pair<std::size_t, std::size_t>{0, 3}, {0, 256}, {16, 32}, {64, 3}, {512, 1}, {512, 256}}) {
+    Tuning tuning = before;
+    tuning.blocks_in_parallel = 1;
+    tuning.round_points = 500;
+    tuning.local_vertices = vertices;
+    tuning.merge_items = 1 << 20;
+    tuning.tile_group = tuning.halve_group = tuning.block_group = tuning.sewing_group = group;
+    runtime.set_sizes(std::make_shared<Tuning>(tuning));
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      SCOPED_TRACE("input " + std::to_string(k) + ", " + std::to_string(vertices) +
+                   " vertices in local memory, groups of " + std::to_string(group));
+      const Offsets offsets{0, inputs[k].size() / 2};
+      expect_same(run_blocks(runtime, inputs[k], offsets), run_blocks(host, inputs[k], offsets));
+    }
+  }
+  runtime.set_sizes(std::make_shared<Tuning>(before));
+}
+
 TEST(Rounds, WalksThatDoNotMeetAreAnError) {
   if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
   const testing::ChangedKernels changed("blocks/seams.h", with_short_walks);
