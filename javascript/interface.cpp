@@ -3,12 +3,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "c/handles.hpp"
 #include "declarations.h"
 #include "flaunay/flaunay.h"
+#include "space/spaces.hpp"
+#include "space/triangulate.hpp"
 
 namespace {
+
+namespace call = flaunay::call;
+using call::Implementation;
+
+template <typename Work>
+auto in_turn(flaunay_triangulator* triangulator, const Work& work) {
+  Implementation& self = flaunay::TriangulatorAccess::implementation(triangulator->cpp);
+  return call::take_turn(self, [&] { return work(self); });
+}
 
 // Halfedge k of a triangle joins the same vertices as halfedge 2 - k of the triangle that is turned.
 std::int32_t turned(std::int32_t halfedge) {
@@ -19,32 +31,39 @@ std::int32_t turned(std::int32_t halfedge) {
 
 extern "C" {
 
-// flaunay_triangulate in mode blocks alone: the modes for research would double the module.
+// flaunay_triangulate in mode blocks and in the plane alone: all modes and spaces would double the module.
 flaunay_status triangulate(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
                            const std::size_t* offsets, std::size_t sets, unsigned parts,
                            flaunay_triangulation** result) {
   return flaunay::c::create(result, [&] {
     flaunay::Options options;
     flaunay::c::request(parts, options);
-    return std::make_unique<flaunay_triangulation>(
-        triangulator->cpp.triangulate(coordinates, flaunay::c::to_offsets(offsets, sets, n), options));
+    const std::vector<std::size_t> all = flaunay::c::to_offsets(offsets, sets, n);
+    return std::make_unique<flaunay_triangulation>(in_turn(triangulator, [&](Implementation& self) {
+      return call::triangulate(self, call::checked_points(coordinates, nullptr, all), all, options);
+    }));
   });
 }
 
-// The functions of these names for the plane alone, for the same reason.
+// The functions of these names, likewise.
 flaunay_status voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
                        const flaunay_triangulation* mesh, flaunay_voronoi** result) {
   return flaunay::c::create(result, [&] {
-    return std::make_unique<flaunay_voronoi>(
-        flaunay_voronoi{triangulator->cpp.voronoi(coordinates, n, mesh->plain())});
+    const call::CellInput input{{coordinates, nullptr, n}, flaunay::Space::plane(), mesh->plain(), {}};
+    return std::make_unique<flaunay_voronoi>(flaunay_voronoi{
+        in_turn(triangulator, [&](Implementation& self) { return call::dual_in_plane(self, input); })});
   });
 }
 flaunay_status clipped_voronoi(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,
                                const flaunay_triangulation* mesh, const double* corners,
                                std::size_t corner_count, flaunay_clipped_voronoi** result) {
   return flaunay::c::create(result, [&] {
+    const call::CellInput input{{coordinates, nullptr, n},
+                                flaunay::Space::plane(),
+                                mesh->plain(),
+                                flaunay::voronoi::checked_polygon(corners, corner_count)};
     return std::make_unique<flaunay_clipped_voronoi>(flaunay_clipped_voronoi{
-        triangulator->cpp.clipped_voronoi(coordinates, n, mesh->plain(), corners, corner_count)});
+        in_turn(triangulator, [&](Implementation& self) { return call::cells_in_plane(self, input); })});
   });
 }
 flaunay_status locator(flaunay_triangulator* triangulator, const double* coordinates, std::size_t n,

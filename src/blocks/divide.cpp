@@ -115,7 +115,9 @@ void merge_one_by_one(Workspace& work, const Blocks& blocks, std::size_t first, 
                                             .account = rings.device_account});
 }
 
-bool are_in_parallel(const Workspace& work) { return tuning_of(work.runtime).blocks_in_parallel != 0; }
+bool are_in_parallel(const Workspace& work) {
+  return !work.runtime.is_native() && tuning_of(work.runtime).blocks_in_parallel != 0;
+}
 
 PointBlocks points_of(const Blocks& blocks, std::size_t largest) {
   return {blocks.count, blocks.points, largest, blocks.device_offsets, blocks.vertices, blocks.source};

@@ -43,10 +43,9 @@ class Arrays {
   // since the system takes longer for so much new memory than a GPU computes.
   void reserve(const host::Runtime& runtime) {
     constexpr std::size_t kWorthAThread = std::size_t{1} << 20;
-    const bool alone = runtime.is_native() || rows_ < kWorthAThread;
     const auto make_room = [&](const Output<cl_int>& array, std::size_t count) {
       if (!array.is_in_host_memory()) return;
-      if (alone) return array.reserve(count);
+      if (runtime.is_native() || rows_ < kWorthAThread) return array.reserve(count);
       reserving_.push_back(std::async([&array, count] { array.reserve(count); }));
     };
     for (const auto* array : {&triangles_, &neighbors_, &halfedges_}) make_room(*array, rows_);
