@@ -213,6 +213,11 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
   }
 }
 
+std::size_t most_frames(const Workspace& work, std::size_t blocks, std::size_t places) {
+  const std::size_t least_points = std::max<std::size_t>(1, tuning_of(work.runtime).local_vertices / 8);
+  return std::max(blocks, places / least_points);
+}
+
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings, PartsOfBlocks* parts) {
   std::optional<Arena::Scope> scope;
@@ -224,6 +229,8 @@ void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<
   own.height = blocks.height();
   if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
     own.depth = std::clamp<int>(own.height - in_local, 0, kernel::MOST_FRAME_DEPTH);
+    while (own.depth > 0 && blocks.count << own.depth > most_frames(work, blocks.count, blocks.points))
+      --own.depth;
     own.height -= own.depth;
   }
   merge_halves(work, blocks, own, rings, 0, own.height);

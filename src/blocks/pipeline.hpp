@@ -46,6 +46,10 @@ struct PartsOfBlocks {
   host::Buffer<kernel::solved_block> solved{};  ///< by half the place of a part's first vertex
 };
 
+/// How many parts this number of blocks may have. If they have fewer points each than local memory holds, it
+/// is not worth while to leave the parts of a few larger ones apart.
+std::size_t most_frames(const points::Workspace& work, std::size_t blocks, std::size_t places);
+
 /// Triangulates blocks and merges them; sets the representatives of duplicates. Does not wait: await_rings
 /// sets the numbers in Rings that are on the host. Sets a milestone for some of the blocks each, and for each
 /// level of merges, unless milestones are null.

@@ -226,8 +226,8 @@ void allocate_states(Workspace& work, Round& round) {
   round.vertices = work.scratch().allocate<cl_int>(blocks.points);
   round.states = work.scratch().allocate<cl_int>(round.rings.edges.size());
   round.unsure = work.scratch().allocate<cl_uchar>(round.is_first ? 1 : round.states.size() / 2);
-  const std::size_t frames = blocks.count
-                             << work.runtime.at_most<int>(round.parts.depth, kernel::MOST_FRAME_DEPTH);
+  const std::size_t frames =
+      work.runtime.at_most(round.frame_count(), most_frames(work, blocks.count, blocks.points));
   round.frame_offsets = work.scratch().allocate<cl_int>(frames + 1);
   round.frames = work.scratch().allocate<kernel::block_frame>(frames);
 }
