@@ -164,7 +164,7 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 }
 
 void merge_parts(Workspace& work, const Blocks& blocks, const Rings& rings, PartsOfBlocks& parts) {
-  if (parts.depth == 0) return;
+  if (!are_in_parallel(work) || parts.depth == 0) return;
   const PointBlocks whole = points_of(blocks, largest_of(blocks));
   merge_halves(work, whole, parts, rings, parts.height + 1, whole.height());
   parts = {};
