@@ -10,6 +10,9 @@
 //    ones that stay.
 // 3. build_fans flips the edges of each polygon that do not leave its first vertex. It changes only edges that
 //    lie inside of one polygon.
+//
+// Where blocks are not merged, they have no polygons in common: make_fans_of_blocks makes these passes over the pairs
+// of each block, by a work-group per block, in one launch.
 
 #include "blocks/codes.h"
 #include "mesh/limits.h"
@@ -119,6 +122,16 @@ static inline int is_opposite_of_fan(int e, global const coordinate2* points, gl
 #define AT_ORIGIN 2
 #define AT_APEX 4
 
+static inline int where_fan_is(int k, global const coordinate2* points, global const ring_edge* edges,
+                               global const uchar* inside) {
+  int where = NOT_HERE;
+  for (int odd = 0; inside[k] && odd < 2; ++odd) {
+    if (is_first_of_fan(2 * k + odd, points, edges, inside)) where = AT_ORIGIN + odd;
+    if (is_opposite_of_fan(2 * k + odd, points, edges, inside)) where = AT_APEX + odd;
+  }
+  return where;
+}
+
 // n pairs of edges.
 kernel void find_fans(int n, global const uint* restrict account, global const coordinate2* restrict points,
                       global const ring_edge* restrict edges, global const uchar* restrict inside,
@@ -126,12 +139,7 @@ kernel void find_fans(int n, global const uint* restrict account, global const c
   const int k = get_global_id(0);
   if (k < n && account[RINGS_TIES_LEFT] > 0) {
     if (k < n / PAIRS_PER_VERTEX) vertex_edge[k] = first_outside(vertex_edge[k], edges, inside);
-    int where = NOT_HERE;
-    for (int odd = 0; inside[k] && odd < 2; ++odd) {
-      if (is_first_of_fan(2 * k + odd, points, edges, inside)) where = AT_ORIGIN + odd;
-      if (is_opposite_of_fan(2 * k + odd, points, edges, inside)) where = AT_APEX + odd;
-    }
-    found[k] = where;
+    found[k] = where_fan_is(k, points, edges, inside);
   }
 }
 
@@ -149,23 +157,50 @@ static inline void flip_towards(rings* g, int e, int opposite) {
   insert_after(g, opposite ^ 1, from_apex);
 }
 
+// found: where the first vertex of pair k's polygon is.
+static inline void build_fan(int k, int found, global const uchar* inside, global ring_edge* edges) {
+  const filter_bounds no_bounds = {0, 0, 0, 0};
+  rings g = rings_on(edges, 0, 0, no_bounds);
+  const int seen_from = 2 * k + (found & 1);
+  int e = found < AT_APEX ? edges[seen_from].previous : edges[seen_from].next ^ 1;
+  for (int grows = 1; grows;) {
+    const int opposite = edges[e ^ 1].previous, next = edges[e].next;
+    grows = is_inside(opposite, inside) || is_inside(next, inside);
+    if (is_inside(opposite, inside)) {
+      flip_towards(&g, e, opposite);
+    } else {
+      e = next;
+    }
+  }
+}
+
 // n pairs of edges.
 kernel void build_fans(int n, global const uint* restrict account, global const uchar* restrict inside,
                        global const uchar* restrict found, global ring_edge* edges) {
   const int k = get_global_id(0);
-  if (k < n && account[RINGS_TIES_LEFT] > 0 && found[k] != NOT_HERE) {
-    const filter_bounds no_bounds = {0, 0, 0, 0};
-    rings g = rings_on(edges, 0, 0, no_bounds);
-    const int seen_from = 2 * k + (found[k] & 1);
-    int e = found[k] < AT_APEX ? edges[seen_from].previous : edges[seen_from].next ^ 1;
-    for (int grows = 1; grows;) {
-      const int opposite = edges[e ^ 1].previous, next = edges[e].next;
-      grows = is_inside(opposite, inside) || is_inside(next, inside);
-      if (is_inside(opposite, inside)) {
-        flip_towards(&g, e, opposite);
-      } else {
-        e = next;
-      }
-    }
+  if (k < n && account[RINGS_TIES_LEFT] > 0 && found[k] != NOT_HERE) build_fan(k, found[k], inside, edges);
+}
+
+// offsets: the first place of each block, and the end.
+kernel void make_fans_of_blocks(int blocks, global const int* restrict offsets, filter_bound bound,
+                                global const uint* restrict account, global const coordinate2* restrict points,
+                                global ring_edge* edges, global int* restrict vertex_edge, global uchar* inside,
+                                global uchar* restrict found) {
+  const int b = get_group_id(0), lanes = get_local_size(0);
+  const int is_wanted = b < blocks && account[RINGS_TIES_LEFT] > 0;
+  const int begin = is_wanted ? offsets[b] : 0, end = is_wanted ? offsets[b + 1] : 0;
+  const int first = PAIRS_PER_VERTEX * begin + (int)get_local_id(0), last = PAIRS_PER_VERTEX * end;
+  for (int k = first; k < last; k += lanes) {
+    inside[k] =
+        may_be_inside(k, bound, points, edges) ? inside_of(k, angle_bound(bound), 1, points, edges) : NOT_INSIDE;
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int v = begin + (int)get_local_id(0); v < end; v += lanes) {
+    vertex_edge[v] = first_outside(vertex_edge[v], edges, inside);
+  }
+  for (int k = first; k < last; k += lanes) found[k] = where_fan_is(k, points, edges, inside);
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int k = first; k < last; k += lanes) {
+    if (found[k] != NOT_HERE) build_fan(k, found[k], inside, edges);
   }
 }

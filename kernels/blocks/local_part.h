@@ -160,13 +160,15 @@ static inline int longest_walk(local const seam_walk* walks, int count) {
 #define ADD_LONGEST_WALK(chain, walks, count)
 #endif
 
-// A part that stops is left, with 1 as the state of its group. With is_second, only these are triangulated. There may
-// be groups behind the last one, which do nothing.
+// A part that stops is left, with 1 as the state of its group. With is_second, only these are triangulated. is_removed:
+// of walks along the seams of larger parts, to be cleared; null if there are none. There may be groups behind the last
+// one, which do nothing.
 WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int height, int is_second,
                                     halved_blocks blocks, filter_bounds bounds, global const coordinate2* points,
                                     global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                                    global int2* crossings, global int* removals, global int* states,
-                                    local local_arrays* own, global volatile uint* account COUNTERS) {
+                                    global int2* crossings, global int* removals, global uchar* is_removed,
+                                    global int* states, local local_arrays* own,
+                                    global volatile uint* account COUNTERS) {
   const int me = get_local_id(0), lanes = get_local_size(0);
   const int is_wanted = group < groups && (!is_second || states[group]);
   local_part p = local_part_of(&blocks, block_count, min(group, groups - 1), height);
@@ -180,7 +182,11 @@ WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int 
   const int leaves = p.own_height < 0 ? 0 : 1 << p.own_height;
   const int size = leaves > 0 ? p.size : 0;
   for (int v = me; v < size; v += lanes) own->points[v] = points[p.first + v];
-  for (int k = me; k < PAIRS_PER_VERTEX * size; k += lanes) own->is_removed[k] = own->is_removed[LOCAL_PAIRS + k] = 0;
+  for (int k = me; k < PAIRS_PER_VERTEX * size; k += lanes) {
+    own->is_removed[k] = own->is_removed[LOCAL_PAIRS + k] = 0;
+    if (is_removed == 0 || is_second) continue;
+    is_removed[PAIRS_PER_VERTEX * p.first + k] = is_removed[PAIRS_PER_VERTEX * (blocks.places + p.first) + k] = 0;
+  }
   if (me == 0) own->has_stopped = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (int j = me; j < leaves; j += lanes) make_local_leaf(&g, own, part_within(&p, 0, j));

@@ -20,7 +20,8 @@ ASSERT_SIZE(seam_walk, 36);
 
 // Where a block of points, or one of its parts, lies in its set. All other points of the round are on or beyond the
 // sides of its rectangle; sides without points beyond are infinite. `all` is the box around the set. outside: if its
-// hull has three vertices, the three edges that have the outside on their left; otherwise NO_EDGE.
+// hull has three vertices, the three edges that have the outside on their left; otherwise NO_EDGE. If a set
+// has a single vertex, outside[0] is -2 minus its place.
 typedef struct {
   vertex_box rectangle, all;
   int outside[3];

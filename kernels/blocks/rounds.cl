@@ -9,9 +9,10 @@
 // (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted per hull edge.
 //
 // Each round, when the blocks are solved:
-// 1. In the first round, box_blocks, per block, and join_boxes, in one launch per factor of 16 blocks, find the box
-//    around each set's points. begin_round, per vertex, numbers the vertices, and per block finds the rectangle between
-//    the cuts.
+// 1. In the first round, if a set has several blocks or frames, box_blocks, per block, and join_boxes, in one launch
+// per factor of
+//    16 blocks, find the box around each set's points. begin_round, per vertex, numbers the vertices, in the first
+//    round with nothing emitted, and per block finds the rectangle between the cuts.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. After the first round, emit_unsure, per pair of edges,
 //    decides exactly what the filters could not.
@@ -19,16 +20,18 @@
 // 4. Unless each set has one triangulation: count_open, per vertex, counts vertices that go on; after a scan
 //    write_open writes the points and their open edges.
 // After the rounds:
-// 5. count_results counts triangles, per place, and hull vertices, per vertex. After a scan write_rows, per place,
-//    closes the gaps between triangles.
-// 6. list_hull, per vertex, lists the hulls' vertices; rank_hull, in one launch per factor of HULL_HOPS, finds how many
-//    follow each; write_hull writes them in order.
-// measure_open and measure_sets tell the host how large the parts of several sets are.
+// 5. count_results counts triangles, per place, and hull vertices, per vertex; then there is a scan, and measure_sets
+//    tells where sets begin. For few points count_few_results does all this in one launch, by a work-group.
+// 6. write_results, per place, closes the gaps between triangles, and per vertex lists the hulls' vertices.
+// 7. rank_hull, in one launch per factor of HULL_HOPS, finds how many vertices of a hull follow each; write_hull writes
+//    them in order. For few hull vertices order_hull does all this in one launch, by a work-group.
+// measure_open tells the host how large the parts of several sets are that go on.
 
 #include "arithmetic/coordinates.h"
 #include "arithmetic/records.h"
 #include "blocks/arguments.h"
 #include "blocks/certify.h"
+#include "blocks/codes.h"
 #include "blocks/limits.h"
 #include "blocks/open_sectors.h"
 #include "blocks/parts.h"
@@ -38,7 +41,9 @@
 #include "mesh/limits.h"
 #include "mesh/records.h"
 #include "mesh/rings.h"
+#include "operations/limits.h"
 #include "operations/search.h"
+#include "operations/work_group.h"
 #include "points/cut_tree.h"
 #include "points/records.h"
 
@@ -142,27 +147,35 @@ static inline vertex_box rectangle_in_block(vertex_box rectangle, const halved_b
   return rectangle;
 }
 
-// n: the larger of the numbers of places and of frames, and one more. Blocks are the leaves of each set's tree, whose
-// nodes begin at set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where each
-// set has its box. frame_offsets: where frames begin, and the end. The hull of a single vertex, which has no edges, is
-// written here.
+// n: the largest of the numbers of places, of frames and one more, and of RINGS_NUMBERS. Blocks are the leaves of each
+// set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has the set's triangulation.
+// set_boxes: where each set of several blocks or frames has its box. frame_offsets: where frames begin, and the end.
+// numbers: of the host, behind 2 per set and 2 more the account and the blocks' numbers of vertices in the first round.
 kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SETS(), int is_merged, scaling scale,
                         global solved_block* parts, global solved_block* solved, global const int* restrict set_boxes,
                         global const vertex_box* restrict boxes, global const coordinate2* restrict points,
                         global const ring_edge* restrict edges, global const int* restrict vertex_edge, int is_first,
                         global const int* restrict listed, global const int* restrict listed_vertices,
-                        global int* restrict vertices, global int* restrict hull_links,
-                        global int* restrict frame_offsets, global block_frame* restrict frames) {
+                        global int* restrict vertices, global int* restrict emitted, global int* restrict hull_links,
+                        global int* restrict frame_offsets, global block_frame* restrict frames,
+                        global const uint* restrict account, global int* restrict numbers) {
   const int f = get_global_id(0), b = f >> depth, j = f - (b << depth);
   if (f < places) vertices[f] = round_vertex(f, is_first, listed, listed_vertices);
   if (b == blocks && j == 0) frame_offsets[f] = offsets[blocks];
+  if (f < places && is_first) {
+    emitted[6 * f] = emitted[6 * f + 3] = NO_VERTEX;
+    hull_links[NEXT_ON_HULL(f)] = hull_links[PREVIOUS_ON_HULL(f)] = NO_VERTEX;
+  }
+  global int* const own_numbers = numbers + 2 * (sets + 1);
+  if (f < RINGS_NUMBERS) own_numbers[f] = (int)account[f];
+  if (f < blocks && is_first) own_numbers[RINGS_NUMBERS + f] = distinct[f];
   if (b < blocks) {
     const halved_blocks halved = {places, offsets, distinct, block_of_place, axes, parts, solved};
     const block_part part = part_in_frame(&halved, b, height, depth, j);
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
     block_frame frame;
-    frame.all = boxes[set_boxes[s]];
+    frame.all = depth > 0 || (leaves > 1 && !is_merged) ? boxes[set_boxes[s]] : no_box();
     frame.rectangle.low = VECTOR(coordinate2, -COORDINATE_LARGEST, -COORDINATE_LARGEST);
     frame.rectangle.high = VECTOR(coordinate2, COORDINATE_LARGEST, COORDINATE_LARGEST);
     for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
@@ -171,14 +184,11 @@ kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SET
     frame.rectangle = rectangle_in_block(frame.rectangle, &halved, b, height, depth, j, points);
     const hull_ends ends = is_merged ? solved[first].ends : ends_of_part(&halved, part);
     find_outside(ends, edges, vertex_edge, frame.outside);
+    const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
+    if (is_single && (is_merged || leaves == 1)) frame.outside[0] = -2 - ends.first_x;
     frame.vertices = part.block < 0 ? 0 : vertices_of_part(part);
     frames[f] = frame;
     frame_offsets[f] = begin_of_frame(&halved, b, part, depth, j);
-    const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
-    if (is_single && (is_merged || leaves == 1)) {
-      const int single = round_vertex(ends.first_x, is_first, listed, listed_vertices);
-      hull_links[NEXT_ON_HULL(single)] = single;
-    }
   }
 }
 
@@ -301,7 +311,7 @@ static inline int is_from_middle(int e, global const ring_edge* edges, global co
 }
 
 // n pairs of edges. unsure: by pair, a bit for each edge on whose left side emit_unsure decides; not in the first
-// round, in which all that is final is missing.
+// round, in which all that is final is missing. The first pair of a single vertex, which has no edges, is for its hull.
 kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, FRAMES(),
                            global const coordinate2* restrict points, global const ring_edge* restrict edges,
                            global const coordinate2* all_points, global const int* restrict indices,
@@ -309,11 +319,15 @@ kernel void emit_triangles(int n, OPEN_VERTICES(), filter_bound bound, FRAMES(),
                            global uchar* restrict unsure) {
   const int k = get_global_id(0);
   int undecided = 0;
-  if (k < n && edges[2 * k].to == NO_VERTEX) states[2 * k] = states[2 * k + 1] = OPEN;
+  const block_frame frame = frames[segment_of(min(k, n - 1) / PAIRS_PER_VERTEX, frame_count, frame_offsets)];
+  if (k < n && edges[2 * k].to == NO_VERTEX) {
+    states[2 * k] = states[2 * k + 1] = OPEN;
+    const int v = -2 - frame.outside[0];
+    if (v >= 0 && k == PAIRS_PER_VERTEX * v) hull_links[NEXT_ON_HULL(vertices[v])] = vertices[v];
+  }
   if (k < n && edges[2 * k].to != NO_VERTEX) {
     const emission m = {is_first,   bound,      points,  edges,  vertices, listed,    open_offsets,
                         open_edges, all_points, indices, places, states,   hull_links};
-    const block_frame frame = frames[segment_of(k / PAIRS_PER_VERTEX, frame_count, frame_offsets)];
     for (int e = 2 * k; e < 2 * k + 2; ++e) {
       if (is_outside(e, edges, &frame)) {
         undecided |= decide_ghost(&m, &frame, e, 0) << (e - 2 * k);
@@ -483,34 +497,77 @@ kernel void write_open(int n, OPEN_VERTICES(), global const coordinate2* restric
 
 static inline int is_on_hull(int2 links) { return links.x != NO_VERTEX || links.y != NO_VERTEX; }
 
-// n: the places of triangles, 2 per vertex, and behind them the vertices.
+// How many results are at p: of the places of triangles, 2 per vertex, and behind them the vertices, for hulls.
+static inline uint results_at(int p, int vertices, global const int* places, global const int2* hull_links) {
+  return p < 2 * vertices ? places[3 * p] >= 0 : is_on_hull(hull_links[p - 2 * vertices]);
+}
+
+// n: 3 per vertex.
 kernel void count_results(int n, int vertices, global const int* restrict places,
                           global const int2* restrict hull_links, global uint* restrict counts) {
   const int p = get_global_id(0);
-  if (p < n) counts[p] = p < 2 * vertices ? places[3 * p] >= 0 : is_on_hull(hull_links[p - 2 * vertices]);
-}
-
-// n places of triangles; scanned: the row of each. with_neighbors, with_halfedges: whether these arrays are wanted.
-kernel void write_rows(int n, int with_neighbors, int with_halfedges, global const int* restrict places,
-                       global const int* restrict links, global const uint* restrict scanned,
-                       global int* restrict triangles, global int* restrict neighbors, global int* restrict halfedges) {
-  const int p = get_global_id(0);
-  if (p < n && places[3 * p] >= 0) {
-    const int row = (int)scanned[p];
-    for (int k = 0; k < 3; ++k) {
-      triangles[3 * row + k] = places[3 * p + k];
-      if (!with_neighbors && !with_halfedges) continue;
-      const int link = links[3 * p + k];
-      const int other = link < 0 ? -1 : (int)scanned[link / 3];
-      if (with_neighbors) neighbors[3 * row + k] = other;
-      if (with_halfedges) halfedges[3 * row + next_corner(k)] = link < 0 ? -1 : 3 * other + next_corner(link % 3);
-    }
-  }
+  if (p < n) counts[p] = results_at(p, vertices, places, hull_links);
 }
 
 // Where hull vertex v stands in the list of all of n vertices.
 static inline int place_on_hull(int v, int n, global const uint* scanned) {
   return (int)(scanned[2 * n + v] - scanned[2 * n]);
+}
+
+// Where a set, or the end, stands among the rows, and behind all of these among the hull vertices.
+static inline void measure_set(int s, int sets, global const int* set_points, global const uint* scanned,
+                               global int* sizes) {
+  sizes[s] = (int)scanned[2 * set_points[s]];
+  sizes[sets + 1 + s] = place_on_hull(set_points[s], set_points[sets], scanned);
+}
+
+// n: the number of sets plus 1.
+kernel void measure_sets(int n, global const int* restrict set_points, global const uint* restrict scanned,
+                         global int* restrict sizes) {
+  const int s = get_global_id(0);
+  if (s < n) measure_set(s, n - 1, set_points, scanned, sizes);
+}
+
+SCAN_IN_GROUP(results_before, uint)
+
+// n: 3 per vertex. Each work-item of the first group counts `items` consecutive results of a tile, one tile after the
+// other.
+kernel void count_few_results(int n, int vertices, int items, global const int* restrict places,
+                              global const int2* restrict hull_links, int sets, global const int* restrict set_points,
+                              global uint* scanned, global int* restrict sizes) {
+  local uint sums[LARGEST_TILE_GROUP];
+  const int me = get_local_id(0), lanes = get_local_size(0), is_first = get_group_id(0) == 0;
+  const int end = is_first ? n : 0;
+  uint all_before = 0;
+  for (int tile = 0; tile < end; tile += items * lanes) {
+    const int first = tile + me * items, last = min(end, first + items);
+    uint count = 0, all;
+    for (int p = first; p < last; ++p) count += results_at(p, vertices, places, hull_links);
+    uint before = all_before + results_before(count, sums, &all);
+    for (int p = first; p < last; ++p) {
+      scanned[p] = before;
+      before += results_at(p, vertices, places, hull_links);
+    }
+    all_before += all;
+  }
+  if (is_first && me == 0) scanned[n] = all_before;
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (int s = me; is_first && s <= sets; s += lanes) measure_set(s, sets, set_points, scanned, sizes);
+}
+
+// A place p of a triangle; scanned: the row of each. with_neighbors, with_halfedges: whether these arrays are wanted.
+static inline void write_row(int p, int with_neighbors, int with_halfedges, global const int* places,
+                             global const int* links, global const uint* scanned, global int* triangles,
+                             global int* neighbors, global int* halfedges) {
+  const int row = (int)scanned[p];
+  for (int k = 0; k < 3; ++k) {
+    triangles[3 * row + k] = places[3 * p + k];
+    if (!with_neighbors && !with_halfedges) continue;
+    const int link = links[3 * p + k];
+    const int other = link < 0 ? -1 : (int)scanned[link / 3];
+    if (with_neighbors) neighbors[3 * row + k] = other;
+    if (with_halfedges) halfedges[3 * row + next_corner(k)] = link < 0 ? -1 : 3 * other + next_corner(link % 3);
+  }
 }
 
 // Whether the hull's order begins with a vertex: the first one along x.
@@ -520,52 +577,75 @@ static inline int begins_hull(int v, global const coordinate2* points, global co
          (after != NO_VERTEX && comes_before(points[v], points[after]) && comes_before(points[v], points[before]));
 }
 
-// Writes the hull vertices of all sets, and for each the place of the next one with 1, their distance, or its own with
-// 0, if it is the last one. n vertices; scanned: the prefix sums of count_results.
-kernel void list_hull(int n, global const coordinate2* restrict points, global const int2* restrict hull_links,
-                      global const uint* restrict scanned, global int* restrict hull_vertices,
-                      global int2* restrict ahead) {
-  const int v = get_global_id(0);
-  if (v < n && is_on_hull(hull_links[v])) {
-    const int at = place_on_hull(v, n, scanned), after = hull_links[v].x;
+// n: 3 per vertex, as for count_results; scanned: its prefix sums. Writes the rows, if with_triangles. Lists the hull
+// vertices of all sets, and for each the place of the next one with 1, their distance, or its own with 0, if it is the
+// last one.
+kernel void write_results(int n, int vertices, int with_triangles, int with_neighbors, int with_halfedges,
+                          global const int* restrict places, global const int* restrict links,
+                          global const uint* restrict scanned, global int* restrict triangles,
+                          global int* restrict neighbors, global int* restrict halfedges,
+                          global const coordinate2* restrict points, global const int2* restrict hull_links,
+                          global int* restrict hull_vertices, global int2* restrict ahead) {
+  const int p = get_global_id(0), v = p - 2 * vertices;
+  if (p < n && v < 0 && with_triangles && places[3 * p] >= 0) {
+    write_row(p, with_neighbors, with_halfedges, places, links, scanned, triangles, neighbors, halfedges);
+  }
+  if (p < n && v >= 0 && is_on_hull(hull_links[v])) {
+    const int at = place_on_hull(v, vertices, scanned), after = hull_links[v].x;
     const int is_last = after == NO_VERTEX || begins_hull(after, points, hull_links);
     hull_vertices[at] = v;
-    ahead[at] = is_last ? VECTOR(int2, at, 0) : VECTOR(int2, place_on_hull(after, n, scanned), 1);
+    ahead[at] = is_last ? VECTOR(int2, at, 0) : VECTOR(int2, place_on_hull(after, vertices, scanned), 1);
   }
 }
 
-// n hull vertices look HULL_HOPS times as far ahead (Wyllie, "The complexity of parallel computations", 1979, doubles).
+// Hull vertex k looks HULL_HOPS times as far ahead (Wyllie, "The complexity of parallel computations", 1979, doubles).
+static inline int2 farther_ahead(int k, global const int2* ahead) {
+  int2 here = ahead[k];
+  for (int hop = 1; hop < HULL_HOPS; ++hop) {
+    const int2 there = ahead[here.x];
+    here = VECTOR(int2, there.x, here.y + there.y);
+  }
+  return here;
+}
+
+// n hull vertices.
 kernel void rank_hull(int n, global const int2* restrict from, global int2* restrict to) {
   const int k = get_global_id(0);
-  if (k < n) {
-    int2 here = from[k];
-    for (int hop = 1; hop < HULL_HOPS; ++hop) {
-      const int2 there = from[here.x];
-      here = VECTOR(int2, there.x, here.y + there.y);
-    }
-    to[k] = here;
-  }
+  if (k < n) to[k] = farther_ahead(k, from);
 }
 
-// n hull vertices; set s has the ones from hull_offsets[s] on. Each knows the distance to the end.
-kernel void write_hull(int n, int sets, global const int* restrict hull_offsets,
-                       global const int* restrict hull_vertices, global const int2* restrict ahead,
-                       global const int* restrict indices, global int* restrict hull) {
+// Writes hull vertex k, which knows the distance to the end of its hull: beyond its begin only if walks of merges did
+// not meet, which the host may not know yet. sizes: of measure_sets.
+static inline void write_hull_vertex(int k, int sets, global const int* sizes, global const int* hull_vertices,
+                                     int2 ahead, global const int* indices, global int* hull) {
+  global const int* const hull_offsets = sizes + sets + 1;
+  const int s = segment_of(k, sets, hull_offsets), size = hull_offsets[s + 1] - hull_offsets[s];
+  if (ahead.y < size) hull[hull_offsets[s] + size - 1 - ahead.y] = indices[hull_vertices[k]];
+}
+
+// n hull vertices.
+kernel void write_hull(int n, int sets, global const int* restrict sizes, global const int* restrict hull_vertices,
+                       global const int2* restrict ahead, global const int* restrict indices,
+                       global int* restrict hull) {
   const int k = get_global_id(0);
-  if (k < n) {
-    const int s = segment_of(k, sets, hull_offsets);
-    hull[hull_offsets[s + 1] - 1 - ahead[k].y] = indices[hull_vertices[k]];
-  }
+  if (k < n) write_hull_vertex(k, sets, sizes, hull_vertices, ahead[k], indices, hull);
 }
 
-// Where sets begin among the rows and among the hull vertices. n: the number of sets plus 1.
-kernel void measure_sets(int n, global const int* restrict set_points, global const uint* restrict scanned,
-                         global uint2* restrict sizes) {
-  const int s = get_global_id(0);
-  if (s < n) {
-    const int hull = place_on_hull(set_points[s], set_points[n - 1], scanned);
-    sizes[s] = VECTOR(uint2, scanned[2 * set_points[s]], (uint)hull);
+// As rank_hull and write_hull, by the first work-group.
+kernel void order_hull(int sets, global const int* restrict sizes, global const int* restrict hull_vertices,
+                       global int2* ahead, global int2* spare, global const int* restrict indices,
+                       global int* restrict hull) {
+  const int me = get_local_id(0), lanes = get_local_size(0);
+  const int n = get_group_id(0) == 0 ? sizes[2 * sets + 1] : 0;
+  global int2 *from = ahead, *to = spare;
+  for (int reach = 1; reach < n; reach *= HULL_HOPS) {
+    for (int k = me; k < n; k += lanes) to[k] = farther_ahead(k, from);
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    global int2* const ranked = to;
+    to = from;
+    from = ranked;
   }
+  for (int k = me; k < n; k += lanes) write_hull_vertex(k, sets, sizes, hull_vertices, from[k], indices, hull);
 }
 
 // Where sets begin among the points that go on. n: the number of sets plus 1.

@@ -2,9 +2,13 @@
 // work-group's share. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind
 // the last tile, which do nothing. All work-items of a group must call them at the same place. Loops with barriers
 // have a first turn in any case, and no barrier is in a branch, where that is possible: PoCL compiles what follows them
-// once more for each that may be left out. In OpenCL C alone.
+// once more for each that may be left out. For kernel files alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
+
+#include "arithmetic/language.h"
+
+BEGIN_SHARED
 
 // For functions with barriers: PoCL 3.1 loses barriers of functions that are called twice and not inlined.
 #define WITH_BARRIERS static inline __attribute__((always_inline))
@@ -36,5 +40,7 @@ static inline int share_of(int elements) {
   const int group = get_local_size(0);
   return (elements + group - 1) / group;
 }
+
+END_SHARED
 
 #endif

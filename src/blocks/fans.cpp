@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "blocks/pipeline.hpp"
 #include "launchers/blocks/fans.cl.hpp"
 
@@ -34,6 +36,24 @@ void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
                                         .found = found});
   runtime.map(
       pairs, kernels::build_fans{.account = account, .inside = inside, .found = found, .edges = rings.edges});
+}
+
+void make_fans_of_blocks(Workspace& work, const Blocks& blocks, const Rings& rings) {
+  Arena::Scope scope(work.scratch());
+  const std::size_t pairs = rings.edges.size() / 2, most = tuning_of(work.runtime).halve_group;
+  // Of the blocks' pairs of edges, few for each work-item.
+  std::size_t group = std::min(tuning_of(work.runtime).block_group, most);
+  while (group < most && group * blocks.count < pairs) group = std::min(2 * group, most);
+  work.runtime.launch(group * blocks.count, group,
+                      kernels::make_fans_of_blocks{.blocks = blocks.count,
+                                                   .offsets = blocks.device_offsets,
+                                                   .bound = work.bounds.circle,
+                                                   .account = rings.device_account,
+                                                   .points = blocks.vertices,
+                                                   .edges = rings.edges,
+                                                   .vertex_edge = rings.vertex_edge,
+                                                   .inside = work.scratch().allocate<cl_uchar>(pairs),
+                                                   .found = work.scratch().allocate<cl_uchar>(pairs)});
 }
 
 }  // namespace flaunay::blocks

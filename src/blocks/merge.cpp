@@ -56,11 +56,13 @@ void make_lists(Workspace& work, const PointBlocks& blocks, Seams& seams) {
   seams.removals = work.scratch().allocate<cl_int>(room);
 }
 
-void make_walks(Workspace& work, const PointBlocks& blocks, int first_height, Seams& seams) {
+// are_cleared: the marks, by the launch on local parts.
+void make_walks(Workspace& work, const PointBlocks& blocks, int first_height, bool are_cleared,
+                Seams& seams) {
   const std::size_t marks = 2 * kernel::PAIRS_PER_VERTEX * blocks.points;
   seams.walks = work.scratch().allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height));
   seams.is_removed = work.scratch().allocate<cl_uchar>(marks);
-  work.runtime.fill<cl_uchar>(seams.is_removed, marks, 0);
+  if (!are_cleared) work.runtime.fill<cl_uchar>(seams.is_removed, marks, 0);
 }
 
 // The data of merges of halves that all heights share.
@@ -137,8 +139,13 @@ std::size_t local_groups(const PointBlocks& blocks, int height) {
 template <typename Kernel>
 void launch_on_local_parts(const Halves& halves, int height) {
   const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
-  const std::size_t groups = local_groups(blocks, height),
-                    group = std::min<std::size_t>(tuning_of(work.runtime).halve_group, kernel::LOCAL_MERGES);
+  const Tuning& tuning = tuning_of(work.runtime);
+  const std::size_t groups = local_groups(blocks, height);
+  std::size_t group = std::min<std::size_t>(tuning.halve_group, kernel::LOCAL_MERGES);
+  // If a GPU has room for more work-items, fewer walks that diverge share a warp.
+  while (group < tuning.halve_group && 2 * group * groups <= tuning.merge_items) {
+    group = std::min(2 * group, tuning.halve_group);
+  }
   work.runtime.launch(group * groups, group,
                       Kernel{.groups = groups,
                              .blocks = blocks.count,
@@ -147,6 +154,7 @@ void launch_on_local_parts(const Halves& halves, int height) {
                              .rings_of_parts = halves.rings_of_parts(),
                              .crossings = seams.crossings,
                              .removals = seams.removals,
+                             .is_removed = seams.is_removed,
                              .states = states,
                              .account = rings.device_account});
 }
@@ -197,6 +205,7 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
   const int first = std::max(from, in_local + 1),
             first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), first);
   if (in_local >= 0 || first_seams <= to) make_lists(work, blocks, halves.seams);
+  if (first_seams <= to) make_walks(work, blocks, first_seams, in_local >= 0, halves.seams);
   if (in_local >= 0) {
     launch_on_local_parts<kernels::solve_local_parts>(halves, in_local);
     if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local);
@@ -205,7 +214,6 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
     launch_on_parts<kernels::merge_parts>(halves, height);
     if (may_stop(work)) launch_on_parts<kernels::finish_parts>(halves, height);
   }
-  if (first_seams <= to) make_walks(work, blocks, first_seams, halves.seams);
   for (int height = first_seams; height <= to; ++height) {
     launch_on_walks<kernels::walk_seams>(halves, height);
     if (walks_may_stop(work)) launch_on_walks<kernels::finish_walks>(halves, height);

@@ -113,6 +113,8 @@ void merge_trees(points::Workspace& work, const points::Blocks& blocks, std::siz
 /// Makes the triangulations canonical, unless the account says that there were no ties: then they are
 /// already. Does not wait. Temporary memory: 6 bytes per point.
 void make_fans(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings);
+/// The same of blocks that are not merged, in one launch.
+void make_fans_of_blocks(points::Workspace& work, const points::Blocks& blocks, const points::Rings& rings);
 
 /// The size of a mesh.
 struct MeshSizes {

@@ -28,32 +28,43 @@ constexpr std::size_t kMostOpenEdges = 7;
 struct Emitted {
   Buffer<cl_double2> points{};   // the vertices, as the first round numbers them
   Buffer<cl_int> indices{};      // in the input
-  Buffer<cl_int> places{};       // 3 per place of a triangle, 2 places per vertex
+  Buffer<cl_int> places{};       // 3 per place of a triangle, 2 places per vertex; -1 first in empty places
   Buffer<cl_int> links{};        // the same for their neighbours; null if these are not wanted
   Buffer<cl_int2> hull_links{};  // the next and the previous vertex of the hull
 };
 
-// The boxes around the sets' points, found in the first round: later rounds have fewer points.
+// The boxes around the sets' points, found in the first round: later rounds have fewer points. Nothing if
+// each set is one block.
 struct SetBoxes {
   Buffer<kernel::vertex_box> boxes{};
   Buffer<cl_int> places{};  // by set
 };
 
-// Numbers of a round's triangulations that the host reads with its next wait.
+// Numbers that the host reads together with a wait: the sizes of results, and as begin_round copies them, the
+// account of triangulations, and how many vertices each block of the first round has.
 struct Numbers {
-  std::vector<cl_int> distinct{};  // by block, of the first round
-  std::vector<cl_uint> account = std::vector<cl_uint>(kernel::RINGS_NUMBERS);
+  std::size_t sizes = 0;  // how many
+  std::vector<cl_int> values{};
+  Buffer<cl_int> on_device{};
 
-  void read_later(host::Runtime& runtime, const Blocks& blocks, const Rings& rings, bool with_distinct) {
-    if (with_distinct) {
-      distinct.resize(blocks.count);
-      runtime.read_later(rings.device_distinct, 0, blocks.count, distinct.data());
-    }
-    runtime.read_later(rings.device_account, 0, account.size(), account.data());
+  void allocate(Arena& persistent, const Blocks& blocks) {
+    sizes = 2 * (blocks.sets + 1);
+    values.resize(sizes + kernel::RINGS_NUMBERS + blocks.count);
+    on_device = persistent.allocate<cl_int>(values.size());
   }
+  void read_account_later(host::Runtime& runtime) {
+    runtime.read_later(on_device, sizes, kernel::RINGS_NUMBERS, values.data() + sizes);
+  }
+  void read(host::Runtime& runtime) { runtime.read(on_device, 0, values.size(), values.data()); }
+  const cl_uint* account() const { return reinterpret_cast<const cl_uint*>(values.data() + sizes); }
   // Must be called after that wait, before anything relies on the triangulations.
-  void check() const { check_account(account.data()); }
-  std::size_t undecided() const { return account[kernel::RINGS_UNDECIDED]; }
+  void check() const { check_account(account()); }
+  std::size_t undecided() const { return account()[kernel::RINGS_UNDECIDED]; }
+  // The number of vertices of the blocks [first, last).
+  std::size_t vertices(cl_int first, cl_int last) const {
+    const auto distinct = values.begin() + static_cast<std::ptrdiff_t>(sizes + kernel::RINGS_NUMBERS);
+    return std::accumulate(distinct + first, distinct + last, std::size_t{0});
+  }
 };
 
 // The points that go on to a round, and their open edges.
@@ -127,11 +138,13 @@ kernels::frames frames_of(const Round& round) {
 void complete(Workspace& work, const Round& round) {
   if (round.is_merged) merge(work, round.blocks, round.rings);
   // Coarse coordinates have no ties: merges break them.
-  if (work.runtime.at_most(work.bounds.circle != 0.0, true)) make_fans(work, round.blocks, round.rings);
+  if (!work.runtime.at_most(work.bounds.circle != 0.0, true)) return;
+  (round.is_merged ? make_fans : make_fans_of_blocks)(work, round.blocks, round.rings);
 }
 
 SetBoxes boxes_of_sets(Workspace& work, const Round& round) {
   const Blocks& blocks = round.blocks;
+  if (work.runtime.at_most(blocks.merges.empty() && round.parts.depth == 0, false)) return {};
   const SetBoxes found{work.persistent.allocate<kernel::vertex_box>(blocks.count), blocks.device_set_blocks};
   work.runtime.map(blocks.count, kernels::box_blocks{.places_of_parts = places_of_parts(round),
                                                      .depth = round.parts.depth,
@@ -152,9 +165,10 @@ SetBoxes boxes_of_sets(Workspace& work, const Round& round) {
   return found;
 }
 
-// Where the nodes of each set's tree begin.
+// Where the nodes of each set's tree begin, if there are any.
 std::vector<cl_int> first_nodes(const Blocks& blocks) {
   std::vector<cl_int> nodes;
+  if (blocks.merges.empty()) return nodes;
   cl_int next = 0;
   for (std::size_t s = 0; s < blocks.sets; ++s) {
     nodes.push_back(next);
@@ -165,11 +179,13 @@ std::vector<cl_int> first_nodes(const Blocks& blocks) {
 }
 
 // Names the vertices of a round, and finds where frames lie.
-void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
+void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted,
+                 const Numbers& numbers) {
   const Blocks& blocks = round.blocks;
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
-  const std::size_t items = std::max(blocks.points, round.frame_count() + 1);
+  const std::size_t items =
+      std::max({blocks.points, round.frame_count() + 1, std::size_t{kernel::RINGS_NUMBERS}});
   work.runtime.map(items, kernels::begin_round{.places_of_parts = places_of_parts(round),
                                                .depth = round.parts.depth,
                                                .blocks = blocks.count,
@@ -190,9 +206,12 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
                                                .listed = blocks.source,
                                                .listed_vertices = round.open.vertices,
                                                .vertices = round.vertices,
+                                               .emitted = emitted.places,
                                                .hull_links = emitted.hull_links.as<cl_int>(),
                                                .frame_offsets = round.frame_offsets,
-                                               .frames = round.frames});
+                                               .frames = round.frames,
+                                               .account = round.rings.device_account,
+                                               .numbers = numbers.on_device});
 }
 
 kernels::open_vertices open_vertices(const Round& round) {
@@ -233,9 +252,10 @@ void allocate_states(Workspace& work, Round& round) {
 }
 
 // Emits the final triangles of a round; of a round whose blocks are merged after all, a second time.
-void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted) {
+void emit(Workspace& work, const Round& round, const SetBoxes& boxes, const Emitted& emitted,
+          const Numbers& numbers) {
   host::Runtime& runtime = work.runtime;
-  begin_round(work, round, boxes, emitted);
+  begin_round(work, round, boxes, emitted, numbers);
   launch_emission<kernels::emit_triangles>(work, round, emitted);
   if (!round.is_first) launch_emission<kernels::emit_unsure>(work, round, emitted);
   if (emitted.links.memory() == nullptr) return;
@@ -276,9 +296,9 @@ bool find_open(Workspace& work, Arena& persistent, const Round& round, const Num
     sizes[1] = runtime.read_one(counts, blocks.points);
   } else {
     const auto device_sizes = work.scratch().allocate<cl_uint2>(sizes.size());
-    const auto set_points = runtime.upload(work.scratch(), integers(round.open.offsets));
     runtime.map(sizes.size(),
-                kernels::measure_open{.set_points = set_points, .scanned = counts, .sizes = device_sizes});
+                kernels::measure_open{
+                    .set_points = blocks.device_set_points, .scanned = counts, .sizes = device_sizes});
     runtime.read(device_sizes, 0, sizes.size(), sizes.data());
   }
   numbers.check();
@@ -312,8 +332,8 @@ bool finish(Workspace& work, Arena& persistent, Round& round, const SetBoxes& bo
             Numbers& numbers, OpenPoints& next) {
   Arena::Scope scope(work.scratch());
   allocate_states(work, round);
-  emit(work, round, boxes, emitted);
-  numbers.read_later(work.runtime, round.blocks, round.rings, round.is_first && !round.is_merged);
+  emit(work, round, boxes, emitted, numbers);
+  if (!round.is_last()) numbers.read_account_later(work.runtime);
   next.offsets.assign(round.blocks.sets + 1, 0);
   return round.is_last() || find_open(work, persistent, round, numbers, next);
 }
@@ -321,36 +341,60 @@ bool finish(Workspace& work, Arena& persistent, Round& round, const SetBoxes& bo
 // Makes rows and hulls from the emitted triangles.
 class Results {
  public:
-  Results(Workspace& work, const Emitted& emitted, const std::vector<std::size_t>& offsets)
-      : work_(work), emitted_(emitted), sets_(offsets.size() - 1), n_(offsets.back()) {
-    set_points_ = work.runtime.upload(work.scratch(), integers(offsets));
+  // blocks: of the first round.
+  Results(Workspace& work, const Emitted& emitted, const Blocks& blocks, Numbers& numbers)
+      : work_(work),
+        emitted_(emitted),
+        sets_(blocks.sets),
+        n_(blocks.points),
+        set_blocks_(blocks.set_blocks),
+        set_points_(blocks.device_set_points),
+        numbers_(numbers) {
     scanned_ = work.scratch().allocate<cl_uint>(3 * n_ + 1);
   }
 
-  // Waits once, also for the numbers. set_blocks: of the first round.
-  MeshSizes sizes(const std::vector<cl_int>& set_blocks, const Numbers& numbers) {
+  // Whether a work-group scans the results alone. Then it takes longer to wait for their sizes than to
+  // transfer some more.
+  bool are_few() const {
+    const host::Sizes& sizes = work_.runtime.sizes();
+    return 3 * n_ <= sizes.scan_tiles_alone * group() * sizes.scan_items;
+  }
+
+  void count() {
     host::Runtime& runtime = work_.runtime;
-    std::vector<cl_uint2> found(sets_ + 1);
-    const host::Runtime::Settled settled(runtime);
+    if (are_few()) {
+      return runtime.launch(group(), group(), 3 * n_,
+                            kernels::count_few_results{.vertices = n_,
+                                                       .items = runtime.sizes().scan_items,
+                                                       .places = emitted_.places,
+                                                       .hull_links = emitted_.hull_links,
+                                                       .sets = sets_,
+                                                       .set_points = set_points_,
+                                                       .scanned = scanned_,
+                                                       .sizes = numbers_.on_device});
+    }
     runtime.map(3 * n_, kernels::count_results{.vertices = n_,
                                                .places = emitted_.places,
                                                .hull_links = emitted_.hull_links,
                                                .counts = scanned_});
     host::exclusive_scan(runtime, scanned_, 3 * n_, scanned_);
-    const auto device_sizes = work_.scratch().allocate<cl_uint2>(found.size());
-    runtime.map(found.size(),
-                kernels::measure_sets{.set_points = set_points_, .scanned = scanned_, .sizes = device_sizes});
-    runtime.read(device_sizes, 0, found.size(), found.data());
-    numbers.check();
+    runtime.map(sets_ + 1, kernels::measure_sets{
+                               .set_points = set_points_, .scanned = scanned_, .sizes = numbers_.on_device});
+  }
+
+  // Upper bounds.
+  MeshSizes most() const { return {{0, kMostTrianglesPerPoint * n_}, {0, n_}}; }
+
+  // Waits once, for all numbers.
+  MeshSizes sizes() const {
+    numbers_.read(work_.runtime);
+    numbers_.check();
     MeshSizes sizes;
-    for (std::size_t s = 0; s <= sets_; ++s) {
-      sizes.triangle_offsets.push_back(found[s].s[0]);
-      sizes.hull_offsets.push_back(found[s].s[1]);
-    }
+    const auto rows = numbers_.values.begin(), hulls = rows + static_cast<std::ptrdiff_t>(sets_ + 1);
+    sizes.triangle_offsets.assign(rows, hulls);
+    sizes.hull_offsets.assign(hulls, hulls + static_cast<std::ptrdiff_t>(sets_ + 1));
     for (std::size_t s = 0; s < sets_; ++s) {
-      const auto first = numbers.distinct.begin();
-      const std::size_t vertices =
-          std::accumulate(first + set_blocks[s], first + set_blocks[s + 1], std::size_t{0});
+      const std::size_t vertices = numbers_.vertices(set_blocks_[s], set_blocks_[s + 1]);
       geometry::check_euler(sizes.triangle_offsets[s + 1] - sizes.triangle_offsets[s],
                             sizes.hull_offsets[s + 1] - sizes.hull_offsets[s], vertices,
                             fmt::format(" in set {}", s));
@@ -360,45 +404,67 @@ class Results {
   }
 
   void write(const MeshSizes& sizes, const DeviceMesh& mesh) {
-    if (mesh.triangles.memory() != nullptr) {
-      work_.runtime.map(2 * n_, kernels::write_rows{.with_neighbors = mesh.neighbors.memory() != nullptr,
-                                                    .with_halfedges = mesh.halfedges.memory() != nullptr,
-                                                    .places = emitted_.places,
-                                                    .links = emitted_.links,
-                                                    .scanned = scanned_,
-                                                    .triangles = mesh.triangles,
-                                                    .neighbors = mesh.neighbors,
-                                                    .halfedges = mesh.halfedges});
-    }
-    if (mesh.hull.memory() != nullptr) write_hulls(sizes, mesh.hull);
+    host::Runtime& runtime = work_.runtime;
+    Arena::Scope scope(work_.scratch());
+    const bool with_hull = mesh.hull.memory() != nullptr;
+    const std::size_t count = with_hull ? runtime.at_most(sizes.hull_vertices(), n_) : 0;
+    const HullLists lists{work_.scratch().allocate<cl_int>(count), work_.scratch().allocate<cl_int2>(count),
+                          work_.scratch().allocate<cl_int2>(count)};
+    runtime.map((with_hull ? 3 : 2) * n_,
+                kernels::write_results{.vertices = n_,
+                                       .with_triangles = mesh.triangles.memory() != nullptr,
+                                       .with_neighbors = mesh.neighbors.memory() != nullptr,
+                                       .with_halfedges = mesh.halfedges.memory() != nullptr,
+                                       .places = emitted_.places,
+                                       .links = emitted_.links,
+                                       .scanned = scanned_,
+                                       .triangles = mesh.triangles,
+                                       .neighbors = mesh.neighbors,
+                                       .halfedges = mesh.halfedges,
+                                       .points = emitted_.points,
+                                       .hull_links = emitted_.hull_links,
+                                       .hull_vertices = lists.vertices,
+                                       .ahead = lists.ahead});
+    if (with_hull) write_hulls(sizes, lists, mesh.hull);
   }
 
  private:
-  void write_hulls(const MeshSizes& sizes, const Buffer<cl_int>& hull) {
+  // The vertices of hulls, and where those ahead of them stand, in two arrays in turn.
+  struct HullLists {
+    Buffer<cl_int> vertices;
+    Buffer<cl_int2> ahead, farther;
+  };
+
+  std::size_t group() const { return std::max<std::size_t>(1, work_.runtime.sizes().tile_group); }
+
+  void write_hulls(const MeshSizes& sizes, HullLists lists, const Buffer<cl_int>& hull) {
     host::Runtime& runtime = work_.runtime;
-    Arena::Scope scope(work_.scratch());
-    const std::size_t count = runtime.at_most(sizes.hull_vertices(), n_);
-    const auto vertices = work_.scratch().allocate<cl_int>(count);
-    auto ahead = work_.scratch().allocate<cl_int2>(count);
-    auto farther = work_.scratch().allocate<cl_int2>(count);
-    runtime.map(n_, kernels::list_hull{.points = emitted_.points,
-                                       .hull_links = emitted_.hull_links,
-                                       .scanned = scanned_,
-                                       .hull_vertices = vertices,
-                                       .ahead = ahead});
+    const std::size_t count = lists.vertices.size(), per_item = (count + group() - 1) / group();
+    // More launches take no longer than more vertices per work-item.
+    constexpr std::size_t kMostPerItem = 4;
+    if (are_few() || per_item <= kMostPerItem) {
+      if (!are_few()) runtime.note_elements(per_item);
+      return runtime.launch(group(), group(),
+                            kernels::order_hull{.sets = sets_,
+                                                .sizes = numbers_.on_device,
+                                                .hull_vertices = lists.vertices,
+                                                .ahead = lists.ahead,
+                                                .spare = lists.farther,
+                                                .indices = emitted_.indices,
+                                                .hull = hull});
+    }
     std::size_t longest = 1;
     for (std::size_t s = 0; s < sets_; ++s) {
       longest = std::max(longest, sizes.hull_offsets[s + 1] - sizes.hull_offsets[s]);
     }
     for (std::size_t reach = 1; reach < longest; reach *= kernel::HULL_HOPS) {
-      runtime.map(count, kernels::rank_hull{.from = ahead, .to = farther});
-      std::swap(ahead, farther);
+      runtime.map(count, kernels::rank_hull{.from = lists.ahead, .to = lists.farther});
+      std::swap(lists.ahead, lists.farther);
     }
-    const auto offsets = runtime.upload(work_.scratch(), integers(sizes.hull_offsets));
     runtime.map(count, kernels::write_hull{.sets = sets_,
-                                           .hull_offsets = offsets,
-                                           .hull_vertices = vertices,
-                                           .ahead = ahead,
+                                           .sizes = numbers_.on_device,
+                                           .hull_vertices = lists.vertices,
+                                           .ahead = lists.ahead,
                                            .indices = emitted_.indices,
                                            .hull = hull});
   }
@@ -406,8 +472,10 @@ class Results {
   Workspace& work_;
   const Emitted& emitted_;
   std::size_t sets_, n_;
-  Buffer<cl_int> set_points_{};
+  const std::vector<cl_int>& set_blocks_;
+  Buffer<cl_int> set_points_;
   Buffer<cl_uint> scanned_{};
+  Numbers& numbers_;  // the sizes are where sets begin among rows, and among hull vertices
 };
 
 Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
@@ -419,8 +487,6 @@ Emitted make_emitted(Workspace& work, const Blocks& blocks, bool with_links) {
   emitted.places = arena.allocate<cl_int>(corners);
   if (with_links) emitted.links = arena.allocate<cl_int>(corners);
   emitted.hull_links = arena.allocate<cl_int2>(blocks.points);
-  work.runtime.fill(emitted.places, corners, cl_int{-1});
-  work.runtime.fill(emitted.hull_links.as<cl_int>(), 2 * blocks.points, cl_int{-1});
   return emitted;
 }
 
@@ -448,7 +514,7 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   const Buffer<cl_int>& representatives = exchange.representatives;
   const geometry::Fitted<Blocks> made = [&] {
     Arena::Scope points_scope(runtime.arena());
-    return make_blocks(work, exchange.points(), offsets, representatives);
+    return make_blocks(work, exchange.points(), offsets, representatives, exchange.host_points);
   }();
   if (!made) return made.too_wide();
   const Blocks& first_blocks = *made;
@@ -465,6 +531,7 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   const std::size_t most = std::clamp<std::size_t>(tuning_of(runtime).merge_from_percent * n / 100, 1, n);
   // Of all rounds. Ties of one round only make later ones look for polygons, too.
   const auto account = make_account(work);
+  numbers.allocate(persistent, first_blocks);
   OpenPoints lists[2] = {{.most = most, .offsets = offsets}, {.most = most}};
   Outcome outcome;
   bool is_merged = false;
@@ -500,11 +567,17 @@ geometry::Fitted<Outcome> run_rounds(host::Runtime& runtime, Arena& persistent,
   phases.end("triangulate");
 
   phases.progress("output", kBlocksMerged);
-  Results results(work, emitted, offsets);
-  outcome.sizes = results.sizes(first_blocks.set_blocks, numbers);
+  Results results(work, emitted, first_blocks, numbers);
+  results.count();
+  if (results.are_few()) {
+    const MeshSizes bounds = results.most();
+    results.write(bounds, exchange.mesh(bounds));
+    exchange.transfer();
+  }
+  outcome.sizes = results.sizes();
   outcome.undecided = numbers.undecided();
   phases.progress("output", kMeshCounted);
-  results.write(outcome.sizes, exchange.mesh(outcome.sizes));
+  if (!results.are_few()) results.write(outcome.sizes, exchange.mesh(outcome.sizes));
   return outcome;
 }
 

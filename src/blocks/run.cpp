@@ -34,7 +34,7 @@ geometry::Fitted<Outcome> run(host::Runtime& runtime, Arena& persistent,
   const Buffer<cl_int>& representatives = exchange.representatives;
   const geometry::Fitted<Blocks> made = [&] {
     Arena::Scope points_scope(runtime.arena());
-    return make_blocks(work, exchange.points(), offsets, representatives);
+    return make_blocks(work, exchange.points(), offsets, representatives, exchange.host_points);
   }();
   if (!made) return made.too_wide();
   const Blocks& blocks = *made;

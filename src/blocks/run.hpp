@@ -19,13 +19,18 @@ struct Exchange {
   std::function<Buffer<cl_double>()> points;
   Buffer<cl_int> representatives;  ///< one per point
   bool wants_links;                ///< whether neighbours or halfedges are wanted
-  /// Returns the arrays for the parts of the mesh, when its size is known. Parts that are not wanted have no
-  /// memory.
+  /// Returns the arrays for the parts of the mesh, when its size is known, or for few points on devices with
+  /// many lanes an upper bound. Parts that are not wanted have no memory.
   std::function<points::DeviceMesh(const MeshSizes&)> mesh;
   /// Called while the device computes, for work of the host that needs no results.
   std::function<void()> while_device_computes = [] {};
   /// Not null for regular triangulations, which blocks make without rounds.
   const points::Weights* weights = nullptr;
+  /// Called after the last kernel if there was an upper bound, before the wait for the size, so that the
+  /// transfer of the results needs no other wait.
+  std::function<void()> transfer = [] {};
+  /// The points if they are in host memory, too; otherwise null.
+  const double* host_points = nullptr;
 };
 
 /// Facts about a result that the host knows when run returns.

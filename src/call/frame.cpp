@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "host/note.hpp"
 #include "points/inspect.hpp"
 
@@ -162,7 +164,14 @@ void Frame::check_size(std::size_t n) const {
   if (place_.device != &engine) engine.check_size(n);
 }
 
+void Frame::transfer() {
+  if (place_.device != nullptr) return;
+  for (const Transfer& transfer : std::exchange(transfers_, {})) transfer.run(*this, transfer);
+  has_transferred_ = true;
+}
+
 void Frame::fetch() {
+  if (has_transferred_ && transfers_.empty()) return;
   runtime.flush();  // the device computes while vectors get their length
   for (const Transfer& transfer : transfers_) transfer.run(*this, transfer);
   runtime.finish();

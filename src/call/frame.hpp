@@ -150,11 +150,21 @@ class Frame {
   void check_size(std::size_t n) const;
   /// Transfers results in host memory before the end, as they are now, and waits for them.
   void fetch();
+  /// Enqueues these transfers before a wait of the caller's. The end need not wait again for them alone.
+  void transfer();
   /// Leaves out the transfer of a result in host memory, after a later stage has written another one.
   template <typename T>
   void drop(const std::vector<T>& values) {
     const auto is_dropped = [&](const Transfer& transfer) { return transfer.values.get() == &values; };
     transfers_.erase(std::remove_if(transfers_.begin(), transfers_.end(), is_dropped), transfers_.end());
+  }
+  /// Makes an array of results in host memory shorter, whether it is transferred already or not.
+  template <typename T>
+  void trim(std::vector<T>& values, std::size_t count) {
+    for (Transfer& transfer : transfers_) {
+      if (transfer.values.get() == &values) transfer.count = count;
+    }
+    if (values.size() > count) values.resize(count);
   }
   /// Transfers the results, and waits for them if they are in host memory; otherwise sets the caller's event.
   void end();
@@ -231,6 +241,7 @@ class Frame {
   Enqueue enqueue_;
   std::vector<ReadBack> read_;
   std::vector<Transfer> transfers_;
+  bool has_transferred_ = false;
   std::vector<cl_mem> memories_;  // of the caller's arrays
   std::optional<host::Arena::Scope> scope_, stages_;
   std::optional<QueuedCall> queued_;
@@ -249,6 +260,10 @@ class Output {
   /// longer than writing the results. Another thread may do it before the transfer.
   void reserve(std::size_t count) const {
     if (values_ != nullptr) frame_->runtime.resize(*values_, count);
+  }
+  /// After buffer() for an upper bound: how many values there are.
+  void trim(std::size_t count) const {
+    if (values_ != nullptr) frame_->trim(*values_, count);
   }
   /// The buffer to which kernels write `count` values; none if the array is not wanted. A vector gets its
   /// length here if kernels write to it, otherwise when the results are transferred, while the device

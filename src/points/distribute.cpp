@@ -86,6 +86,7 @@ Plan begin_blocks(Workspace& work, const std::vector<std::size_t>& offsets, std:
   blocks.vertices = work.persistent.allocate<cl_double2>(blocks.points);
   blocks.source = work.persistent.allocate<cl_int>(blocks.points);
   blocks.device_offsets = work.persistent.allocate<cl_int>(blocks.count + 1);
+  blocks.device_set_points = work.runtime.upload(work.persistent, integers(offsets));
   blocks.device_set_blocks = work.runtime.upload(work.persistent, blocks.set_blocks);
   blocks.device_merges = work.runtime.upload(work.persistent, blocks.merges);
   return plan;
@@ -106,13 +107,14 @@ void fill_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& coo
 }  // namespace
 
 Fitted<Blocks> make_blocks(Workspace& work, const Buffer<cl_double>& input,
-                           const std::vector<std::size_t>& offsets, const Buffer<cl_int>& representatives) {
+                           const std::vector<std::size_t>& offsets, const Buffer<cl_int>& representatives,
+                           const double* host_points) {
   Blocks blocks;
   const host::Runtime::Settled settled(work.runtime);
   const std::size_t block_points = tuning_of(work.runtime).block_points;
   const Plan plan = begin_blocks(work, offsets, block_points, block_points, blocks);
   Arena::Scope scope(work.scratch());
-  const Fitted<UniformPoints> uniform = make_uniform(work.runtime, input, offsets);
+  const Fitted<UniformPoints> uniform = make_uniform(work.runtime, input, offsets, host_points);
   if (!uniform) return uniform.too_wide();
   work.bounds = uniform->scaling.bounds;
   blocks.scale = uniform->scaling.powers();

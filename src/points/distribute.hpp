@@ -57,6 +57,7 @@ struct Blocks {
   std::vector<kernel::block_merge> merges;  ///< from the leaves to the root
   /// Merges [level_ends[l - 1], level_ends[l]) are independent of each other.
   std::vector<std::size_t> level_ends;
+  Buffer<cl_int> device_set_points{};  ///< sets + 1: the first point of each set
   Buffer<cl_int> device_set_blocks{}, device_offsets{};
   Buffer<kernel::block_merge> device_merges{};
   Buffer<kernel::cut_node> device_nodes{};  ///< the nodes of all trees
@@ -69,11 +70,12 @@ struct Blocks {
 };
 
 /// Checks and scales the points, x0 y0 x1 y1 ..., and distributes them to blocks. representatives: set to its
-/// own index for every point. Throws Error(input) for points that are not finite or whose magnitudes differ
-/// too much. O(n log n).
+/// own index for every point. host_points: the points in host memory, or null. Throws Error(input) for points
+/// that are not finite or whose magnitudes differ too much. O(n log n).
 geometry::Fitted<Blocks> make_blocks(Workspace& work, const Buffer<cl_double>& input,
                                      const std::vector<std::size_t>& offsets,
-                                     const Buffer<cl_int>& representatives);
+                                     const Buffer<cl_int>& representatives,
+                                     const double* host_points = nullptr);
 
 /// Where trees cut: at medians, or in gaps, which suits points along the cuts of an earlier tree.
 enum class Cuts { at_medians, in_gaps };

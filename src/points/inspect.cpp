@@ -105,9 +105,13 @@ std::vector<Magnitudes> inspect_sets(host::Runtime& runtime, const host::Buffer<
 }
 
 Fitted<UniformPoints> make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                                   const std::vector<std::size_t>& offsets) {
+                                   const std::vector<std::size_t>& offsets, const double* host_points) {
   const std::size_t n = offsets.back(), sets = offsets.size() - 1;
-  const Magnitudes magnitudes = inspect(runtime, points, n);
+  // The host reads so many in the time of a launch and a wait.
+  constexpr std::size_t kFewPoints = 8192;
+  const bool is_on_host = host_points != nullptr && n <= kFewPoints;
+  const Magnitudes magnitudes =
+      is_on_host ? geometry::inspect(host_points, 0, n) : inspect(runtime, points, n);
   const bool differ = differ_too_much(magnitudes);
   const bool is_fixed = runtime.capabilities().fixed_point;
   if (sets > 1 && !is_fixed && runtime.at_most(differ, true)) return scale_sets(runtime, points, offsets);

@@ -27,9 +27,11 @@ struct UniformPoints {
 /// Chooses the scaling of sets of points. If the magnitudes of sets differ too much for one, the points are a
 /// copy in the runtime's arena in which each set is scaled by its own; otherwise they are those given. Throws
 /// Error(input), which names a point, if one is not finite or if magnitudes differ too much in a set; points
-/// are copied to the host only in that case. Waits once, for such a copy twice. O(n).
+/// are copied to the host only in that case. Waits once, for such a copy twice, and not at all for few points
+/// that are in host memory, too. host_points: these, or null. O(n).
 geometry::Fitted<UniformPoints> make_uniform(host::Runtime& runtime, const host::Buffer<cl_double>& points,
-                                             const std::vector<std::size_t>& offsets);
+                                             const std::vector<std::size_t>& offsets,
+                                             const double* host_points = nullptr);
 
 /// Returns n points as they are, or if the shift is not 0, a copy in the runtime's arena, multiplied by
 /// 2^shift. Does not wait. O(n).

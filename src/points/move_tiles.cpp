@@ -55,18 +55,16 @@ Keys allocate_keys(Workspace& work, std::size_t points) {
   return {work.scratch().allocate<cl_int>(points), work.scratch().allocate<cl_int>(points)};
 }
 
-void count_tile_blocks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
-                       const Buffer<cl_double>& input, const Buffer<kernel::cut_node>& nodes,
-                       const Tiles& tiles, const Buffer<cl_int>& block_of_point,
-                       const Buffer<cl_int>& representatives) {
-  const auto set_offsets = work.runtime.upload(work.scratch(), integers(offsets));
+void count_tile_blocks(Workspace& work, const Plan& plan, const Blocks& blocks,
+                       const Buffer<cl_double>& input, const Tiles& tiles,
+                       const Buffer<cl_int>& block_of_point, const Buffer<cl_int>& representatives) {
   const auto sets = work.runtime.upload(work.scratch(), plan.sets);
   tiles.launch(work.runtime, kernels::count_tile_blocks{.size = tiles.size,
                                                         .set_count = plan.sets.size(),
-                                                        .set_offsets = set_offsets,
+                                                        .set_offsets = blocks.device_set_points,
                                                         .sets = sets,
                                                         .input = input,
-                                                        .nodes = nodes,
+                                                        .nodes = blocks.device_nodes,
                                                         .bits = tiles.digits.bits,
                                                         .block_of_point = block_of_point,
                                                         .representatives = representatives,
@@ -102,11 +100,11 @@ Keys sort_by_lower_digits(Workspace& work, const Tiles& tiles, Keys keys) {
   return keys;
 }
 
-void sort_into_blocks(Workspace& work, const Plan& plan, const std::vector<std::size_t>& offsets,
-                      const Buffer<cl_double>& input, const Buffer<cl_int>& representatives, Blocks& blocks) {
+void sort_into_blocks(Workspace& work, const Plan& plan, const Buffer<cl_double>& input,
+                      const Buffer<cl_int>& representatives, Blocks& blocks) {
   const Tiles tiles(work, blocks);
   const auto block_of_point = work.scratch().allocate<cl_int>(blocks.points);
-  count_tile_blocks(work, plan, offsets, input, blocks.device_nodes, tiles, block_of_point, representatives);
+  count_tile_blocks(work, plan, blocks, input, tiles, block_of_point, representatives);
   const Keys keys = sort_by_lower_digits(work, tiles, {block_of_point, block_of_point});
   const int lower_digits = tiles.digits.count - 1;
   // The blocks as they were found first are not needed any more.
@@ -138,7 +136,7 @@ void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::siz
                    Blocks& blocks) {
   Arena::Scope scope(work.scratch());
   if (!plan.cut.empty()) {
-    sort_into_blocks(work, plan, offsets, input, representatives, blocks);
+    sort_into_blocks(work, plan, input, representatives, blocks);
     if (sizes == BlockSizes::guessed) return;
     blocks.offsets.resize(blocks.count + 1);
     work.runtime.read(blocks.device_offsets, 0, blocks.count, blocks.offsets.data());
@@ -152,7 +150,7 @@ void move_by_tiles(Workspace& work, const Plan& plan, const std::vector<std::siz
                                                        .representatives = representatives});
   // Each set is one block.
   blocks.offsets.assign(offsets.begin(), offsets.end());
-  work.runtime.write_kept(blocks.device_offsets, blocks.offsets);
+  blocks.device_offsets = blocks.device_set_points;
 }
 
 }  // namespace flaunay::points

@@ -55,6 +55,11 @@ class Arrays {
   void await_room() {
     for (auto& each : std::exchange(reserving_, {})) each.get();
   }
+  // After mesh() for an upper bound.
+  void trim(const blocks::MeshSizes& sizes) {
+    for (const auto* array : {&triangles_, &neighbors_, &halfedges_}) array->trim(3 * sizes.triangles());
+    hull_.trim(sizes.hull_vertices());
+  }
   points::DeviceMesh mesh(const blocks::MeshSizes& sizes) {
     await_room();
     const std::size_t rows = 3 * sizes.triangles();
@@ -82,26 +87,39 @@ std::size_t persistent_bytes(bool has_weights) {
   return blocks::kPersistentBytesPerPoint + (has_weights ? 2 * sizeof(cl_double) + sizeof(cl_int) : 0);
 }
 
-// Triangulates points of a call, at least one. Writes the result's offsets and statistics.
+const double* in_host_memory(const HostPoints& points) { return points.wide; }
+template <typename Points>
+const double* in_host_memory(const Points& /*in_device_memory*/) {
+  return nullptr;
+}
+
+// Triangulates points of a call, at least one. Writes the result's offsets and statistics. ends: as below.
 template <typename Points, typename Result>
 geometry::Fitted<points::DeviceMesh> compute(Frame& call, const Points& points,
                                              const std::vector<std::size_t>& offsets, Arrays& arrays,
                                              const std::optional<points::Weights>& weights,
-                                             statistics::Phases& phases, Result& result) {
+                                             statistics::Phases& phases, bool ends, Result& result) {
   Engine& engine = call.engine;
   const std::size_t n = offsets.back();
   Arena::Scope scope(engine.persistent), scratch_scope(engine.runtime.arena());
   points::DeviceMesh mesh;
+  bool has_upper_bounds = false;
+  const auto transfer = [&] {
+    has_upper_bounds = true;
+    if (ends) call.transfer();
+  };
   const auto representatives = arrays.representatives.is_wanted() ? arrays.representatives.buffer(n)
                                                                   : engine.persistent.allocate<cl_int>(n);
   geometry::Fitted<blocks::Outcome> run =
       blocks::run(engine.runtime, engine.persistent, offsets,
                   {[&] { return call.points(points); }, representatives, arrays.have_links(),
                    [&](const blocks::MeshSizes& sizes) { return mesh = arrays.mesh(sizes); },
-                   [&] { arrays.reserve(engine.runtime); }, weights ? &*weights : nullptr},
+                   [&] { arrays.reserve(engine.runtime); }, weights ? &*weights : nullptr, transfer,
+                   in_host_memory(points)},
                   phases);
   if (!run) return run.too_wide();
   blocks::Outcome outcome = *std::move(run);
+  if (has_upper_bounds) arrays.trim(outcome.sizes);
   if (arrays.areas.is_wanted()) {
     // Points that are a copy in the arena are copied again, because they would take memory all the time.
     const std::size_t triangles = outcome.sizes.triangles();
@@ -139,7 +157,8 @@ geometry::Fitted<points::DeviceMesh> triangulate_in(Frame& call, const Points& p
                                                 [&] { phases.interrupt("compiling kernels"); });
   engine.persistent.reserve(n * persistent_bytes(weights != nullptr));
   Arrays arrays(call, {true, options.neighbors, options.halfedges, true, true, options.areas}, n, result);
-  const auto mesh = compute(call, points, offsets, arrays, weights_in(call, n, weights), phases, result);
+  const auto mesh =
+      compute(call, points, offsets, arrays, weights_in(call, n, weights), phases, ends, result);
   if (!mesh) return mesh;
   if (ends) call.end();
   phases.end("output");
@@ -199,7 +218,7 @@ geometry::Fitted<geometry::Done> triangulate_on(Implementation& self, const Plac
     }
     const Options unheard;
     statistics::Phases phases(unheard);
-    const auto mesh = compute(call, points, offsets, arrays, by_point, phases, result);
+    const auto mesh = compute(call, points, offsets, arrays, by_point, phases, true, result);
     if (!mesh) return mesh.too_wide();
     call.end();
     if (place.is_apart()) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "tests/blocks/support.hpp"
 
@@ -99,6 +100,39 @@ TEST(SmallFans, ThatMergesLeave) {
     EXPECT_GT(quadrilaterals.rings.ties, 5u);
     EXPECT_EQ(quadrilaterals.rings.ties_left, leaves_all ? quadrilaterals.rings.ties : 0);
     EXPECT_GT(polygon.rings.ties_left, 0u);
+  });
+}
+
+/// In one launch, by a work-group per block, as by passes over all pairs of edges.
+TEST(SmallFans, OfBlocksAreThoseOfAllPasses) {
+  under_each_tuning([](Runtime& runtime) {
+    Coordinates points;
+    for (int k = 0; k < 36; ++k) add_point(5 * (k / 6) - 3 * (k % 6), 3 * (k / 6) + 5 * (k % 6), points);
+    add_circle(65, 200, 0, points);
+    const std::size_t n = points.size() / 2;
+    std::vector<kernel::ring_edge> edges[2];
+    std::vector<cl_int> vertex_edge[2];
+    for (const bool by_block : {false, true}) {
+      Call call(runtime);
+      std::vector<cl_int> representatives(n);
+      const auto output = runtime.output(representatives);
+      const auto input = runtime.view(points.data(), points.size());
+      const Blocks blocks = *make_blocks(call.work, input, {0, n}, output);
+      const Rings rings = solve(call.work, blocks, output, make_account(call.work));
+      (by_block ? make_fans_of_blocks : make_fans)(call.work, blocks, rings);
+      edges[by_block] = call.read(rings.edges, rings.edges.size());
+      vertex_edge[by_block] = call.read(rings.vertex_edge, n);
+    }
+    // Where merges have made quadrilaterals, other passes take their diagonals for edges that stay.
+    if (tuning_of(runtime).blocks_in_parallel != 0) {
+      EXPECT_EQ(vertex_edge[0], vertex_edge[1]);
+    }
+    for (std::size_t e = 0; e < edges[0].size(); ++e) {
+      if (edges[0][e].to < 0) continue;
+      EXPECT_EQ(edges[0][e].to, edges[1][e].to);
+      EXPECT_EQ(edges[0][e].next, edges[1][e].next);
+      EXPECT_EQ(edges[0][e].previous, edges[1][e].previous);
+    }
   });
 }
 

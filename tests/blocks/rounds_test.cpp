@@ -56,6 +56,11 @@ Triangulation run_blocks(Runtime& runtime, const Coordinates& coordinates, const
   runtime.fetch_later(mesh.halfedges, result.halfedges);
   runtime.fetch_later(mesh.hull, result.hull);
   runtime.finish();
+  // Of few points the arrays had room for the most that there may be.
+  for (auto* const array : {&result.triangles, &result.neighbors, &result.halfedges}) {
+    array->resize(3 * outcome.sizes.triangles());
+  }
+  result.hull.resize(outcome.sizes.hull_vertices());
   outcome.write(offsets.back(), result.statistics);
   result.triangle_offsets = std::move(outcome.sizes.triangle_offsets);
   result.hull_offsets = std::move(outcome.sizes.hull_offsets);
@@ -171,6 +176,7 @@ Nested sets_of_all_kinds(std::size_t most, std::uint64_t seed) {
 void run_rounds_of_all_kinds() {
   const Coordinates uniform = make_fixture("uniform", 500, 1), circle = make_fixture("integer-circle", 60, 1);
   with_sizes({24, 12, 100, 3}, [&](Runtime& runtime) {
+    run_blocks(runtime, uniform, {0, 5});
     run_blocks(runtime, uniform, {0, uniform.size() / 2});
     run_blocks(runtime, uniform, {0, 100, uniform.size() / 2});
     run_blocks(runtime, circle, {0, circle.size() / 2});
@@ -484,7 +490,7 @@ TEST(SmallRounds, FramesLieBetweenTheCutsIntoParts) {
     const auto ints = [&](const std::vector<cl_int>& values) { return testing::upload(runtime, values); };
     const auto frame_offsets = ints(std::vector<cl_int>(frames + 1, -7));
     const auto device_frames = testing::upload(runtime, std::vector<kernel::block_frame>(frames));
-    runtime.map(std::max(places, frames + 1),
+    runtime.map(std::max({places, frames + 1, std::size_t{kernel::RINGS_NUMBERS}}),
                 kernels::begin_round{.places_of_parts = {.height = height,
                                                          .places = places,
                                                          .offsets = ints(given.offsets),
@@ -510,9 +516,12 @@ TEST(SmallRounds, FramesLieBetweenTheCutsIntoParts) {
                                      .listed = Buffer<cl_int>{},
                                      .listed_vertices = Buffer<cl_int>{},
                                      .vertices = ints(none),
+                                     .emitted = ints(std::vector<cl_int>(6 * places, -1)),
                                      .hull_links = ints(std::vector<cl_int>(2 * places, -1)),
                                      .frame_offsets = frame_offsets,
-                                     .frames = device_frames});
+                                     .frames = device_frames,
+                                     .account = testing::upload(runtime, std::vector<cl_uint>(4, 0)),
+                                     .numbers = ints(std::vector<cl_int>(3 * blocks + 6, -1))});
     const auto begins = testing::download(runtime, frame_offsets, frames + 1);
     const auto found = testing::download(runtime, device_frames, frames);
     EXPECT_EQ(begins[frames], static_cast<cl_int>(places));
@@ -543,6 +552,73 @@ TEST(SmallRounds, FramesLieBetweenTheCutsIntoParts) {
       EXPECT_EQ(next, given.offsets[b + 1]);
     }
     EXPECT_EQ(cut > 0, depth > 0);
+  }
+}
+
+/// One work-group counts results, and orders hulls, as its twins do here one by one.
+TEST(SmallRounds, AWorkGroupMakesFewResults) {
+  Runtime& runtime = Runtimes::get("rounds");
+  const Arena::Scope scope(runtime.arena());
+  FixtureRandom random(21);
+  for (const std::size_t group : {1, 3, 32, 64, 256}) {
+    std::vector<cl_int> set_points{0}, hull_offsets{0}, hull_vertices, indices, hull, places;
+    std::vector<cl_int2> hull_links, ahead;
+    std::vector<cl_uint> scanned{0};
+    for (const std::size_t points : {0, 1, 70, 300, 2}) {
+      const cl_int first = hull_offsets.back();
+      std::vector<cl_int> order;
+      for (std::size_t v = 0; v < points; ++v) {
+        const bool is_on_hull = random.integer(0, 2) > 0, is_before = random.integer(0, 1) > 0;
+        hull_links.push_back({{is_on_hull && !is_before ? 3 : -1, is_on_hull && is_before ? 4 : -1}});
+        indices.push_back(static_cast<cl_int>(random.integer(0, 1000)));
+        if (!is_on_hull) continue;
+        order.insert(order.begin() + random.integer(0, static_cast<std::int64_t>(order.size())),
+                     first + static_cast<cl_int>(order.size()));
+        hull_vertices.push_back(static_cast<cl_int>(hull_links.size()) - 1);
+      }
+      set_points.push_back(static_cast<cl_int>(hull_links.size()));
+      hull_offsets.push_back(first + static_cast<cl_int>(order.size()));
+      ahead.resize(hull_vertices.size());
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        const auto at = static_cast<std::size_t>(order[k]);
+        ahead[at] = k + 1 < order.size() ? cl_int2{{order[k + 1], 1}} : cl_int2{{order[k], 0}};
+        hull.push_back(indices[static_cast<std::size_t>(hull_vertices[at])]);
+      }
+    }
+    const std::size_t n = hull_links.size(), sets = set_points.size() - 1;
+    for (std::size_t p = 0; p < 2 * n; ++p) {
+      places.insert(places.end(), {static_cast<cl_int>(random.integer(-1, 0)), -1, 7});
+      scanned.push_back(scanned.back() + (places[3 * p] >= 0));
+    }
+    for (const cl_int2& links : hull_links)
+      scanned.push_back(scanned.back() + (links.s[0] + links.s[1] > -2));
+    std::vector<cl_int> sizes;
+    for (const cl_int first : set_points) sizes.push_back(static_cast<cl_int>(scanned[2 * first]));
+    sizes.insert(sizes.end(), hull_offsets.begin(), hull_offsets.end());
+
+    const auto found_scanned = testing::guarded<cl_uint>(runtime, 3 * n + 1);
+    const auto found_sizes = testing::guarded<cl_int>(runtime, 2 * (sets + 1));
+    runtime.launch(group, group, 3 * n,
+                   kernels::count_few_results{.vertices = n,
+                                              .items = 5,
+                                              .places = testing::upload(runtime, places),
+                                              .hull_links = testing::upload(runtime, hull_links),
+                                              .sets = sets,
+                                              .set_points = testing::upload(runtime, set_points),
+                                              .scanned = found_scanned,
+                                              .sizes = found_sizes});
+    EXPECT_EQ(testing::download(runtime, found_scanned, 3 * n + 1), scanned) << group;
+    EXPECT_EQ(testing::download(runtime, found_sizes, 2 * (sets + 1)), sizes) << group;
+    const auto found_hull = testing::guarded<cl_int>(runtime, hull.size());
+    runtime.launch(group, group,
+                   kernels::order_hull{.sets = sets,
+                                       .sizes = found_sizes,
+                                       .hull_vertices = testing::upload(runtime, hull_vertices),
+                                       .ahead = testing::upload(runtime, ahead),
+                                       .spare = runtime.arena().allocate<cl_int2>(ahead.size()),
+                                       .indices = testing::upload(runtime, indices),
+                                       .hull = found_hull});
+    EXPECT_EQ(testing::download(runtime, found_hull, hull.size()), hull) << group;
   }
 }
 

@@ -327,7 +327,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, testing::tests_native() ? 40u : 70u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 42u : 72u);
 }
 
 }  // namespace
