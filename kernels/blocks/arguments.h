@@ -5,18 +5,18 @@
 
 // clang-format off
 
-// Where parts of a height are: how many places there are, where blocks begin, how many vertices they have, the block
-// of each place, and the axes of cuts.
+// Where parts of a height are, at depths from least_depth on below end_depth: how many places there are, where blocks
+// begin, how many vertices they have, the block of each place, and the axes of cuts.
 #define PLACES_OF_PARTS(PREFIX) \
-  int PREFIX##height, int PREFIX##places, global const int* restrict PREFIX##offsets, \
+  int PREFIX##height, int PREFIX##least_depth, int PREFIX##end_depth, int PREFIX##places, global const int* restrict PREFIX##offsets, \
   global const int* restrict PREFIX##distinct, global const int* restrict PREFIX##block_of_place, \
   global const uchar* restrict PREFIX##axes
 
-// The triangulations of parts: their vertices, the rings around these, and what parts and blocks are by their ends.
+// The triangulations of parts: their vertices, the rings around these, and the ends of parts and of whole blocks. In
+// kernels with barriers, work-items read what others have written.
 #define RINGS_OF_PARTS(PREFIX) \
-  global const coordinate2* restrict PREFIX##points, global ring_edge* restrict PREFIX##edges, \
-  global int* restrict PREFIX##vertex_edge, global solved_block* restrict PREFIX##parts, \
-  global solved_block* restrict PREFIX##solved
+  global const coordinate2* restrict PREFIX##points, global ring_edge* PREFIX##edges, \
+  global int* PREFIX##vertex_edge, global solved_block* PREFIX##parts, global solved_block* PREFIX##solved
 
 // The points of blocks, which are sorted, and the results: representatives, solved blocks, numbers of points.
 #define BLOCK_POINTS(PREFIX) \

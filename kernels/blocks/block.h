@@ -11,7 +11,6 @@
 
 BEGIN_SHARED
 
-#define MOST_DEPTH 32
 #define FETCHED_VERTICES_AHEAD 256
 // Edges are used for the first time by the leaves, about in this order.
 static inline void fetch_edges_ahead(GLOBAL const ring_edge* edges, int vertex) {

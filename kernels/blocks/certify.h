@@ -1,4 +1,4 @@
-// Whether a triangle of a block's triangulation is one of all points: its circumcircle holds no point of another block.
+// Whether a triangle of the points in a frame is one of all points: its circumcircle holds no point of another frame.
 // This is decided by floating point with a bound for its errors. If it is in doubt, the answer is no, and a later round
 // asks again.
 #ifndef FLAUNAY_CERTIFY_H
@@ -24,7 +24,7 @@ static inline int beyond_side(const block_frame* frame, int k, vertex_box* beyon
   return beyond->low.x <= beyond->high.x && beyond->low.y <= beyond->high.y;
 }
 
-static inline int has_other_blocks(const block_frame* frame) {
+static inline int has_other_frames(const block_frame* frame) {
   vertex_box beyond;
   int any = 0;
   for (int k = 0; k < FRAME_SIDES; ++k) any |= beyond_side(frame, k, &beyond);
@@ -67,10 +67,10 @@ static inline real gap_to(real x, coordinate origin, coordinate low, coordinate 
   return sure > 0 ? sure : 0;
 }
 
-// Whether no point of another block is inside of the closed circle or on it.
+// Whether no point of another frame is inside of the closed circle or on it.
 static inline int is_circle_inside(const block_frame* frame, coordinate2 a, coordinate2 b, coordinate2 c) {
   circle_found circle;
-  if (!has_other_blocks(frame)) return 1;
+  if (!has_other_frames(frame)) return 1;
   if (!circle_through(a, b, c, &circle)) return 0;
   const real extent = fabs(circle.x) + fabs(circle.y);
   const real squared = circle.x * circle.x + circle.y * circle.y;
@@ -93,7 +93,7 @@ static inline int is_not_right(coordinate2 a, coordinate2 b, coordinate2 p) {
   return left - right >= ORIENT_BOUND * (fabs(left) + fabs(right));
 }
 
-// Whether no point of another block is right of the line from a to b or on the segment.
+// Whether no point of another frame is right of the line from a to b or on the segment.
 static inline int is_half_plane_inside(const block_frame* frame, coordinate2 a, coordinate2 b) {
   const vertex_box r = frame->rectangle;
   int inside = r.low.x < a.x && a.x < r.high.x && r.low.y < a.y && a.y < r.high.y && r.low.x < b.x && b.x < r.high.x &&

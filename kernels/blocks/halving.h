@@ -16,6 +16,9 @@ static inline ranks ranks_of(int own, int other) { return (uint64)other << 32 | 
 static inline int own_rank(ranks both) { return (int)(uint)both; }
 static inline int other_rank(ranks both) { return (int)(both >> 32); }
 
+// More than the depth of any part.
+INTEGER_CONSTANT(MOST_DEPTH, 32);
+
 // The least depth at which all parts are leaves.
 static inline int halving_depth(int count) {
   return count <= LEAF_VERTICES ? 0 : 32 - (int)clz((count - 1) / LEAF_VERTICES);

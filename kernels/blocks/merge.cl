@@ -20,7 +20,8 @@ kernel void merge_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds boun
                         global int* restrict states, global volatile uint* account COUNTERS) {
   const int cell = spread_item(n, spread);
   if (cell < n) {
-    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, MERGE_IS_NEW);
     COUNT_STEPS(g.counted.steps);

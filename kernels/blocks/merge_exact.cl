@@ -20,7 +20,8 @@ kernel void finish_parts(int n, int spread, PLACES_OF_PARTS(), filter_bounds bou
                          global int* restrict states, global volatile uint* account COUNTERS) {
   const int cell = spread_item(n, spread);
   if (cell < n && states[cell] != MERGE_IS_DONE) {
-    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     states[cell] = do_cell(&g, &blocks, height, cell, states[cell]);
     COUNT_STEPS(g.counted.steps);
@@ -34,7 +35,8 @@ kernel void finish_walks(int n, int spread, PLACES_OF_PARTS(), filter_bounds bou
                          global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n && walks[w].outcome == WALK_HAS_STOPPED) {
-    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     walks[w] = walk_of_cell(&g, &blocks, height, w, walks[w], crossings, removals, is_removed);
     COUNT_STEPS(g.counted.steps);

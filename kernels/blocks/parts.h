@@ -15,9 +15,10 @@
 
 BEGIN_SHARED
 
-// The arrays of all blocks. parts: by half the place of the first vertex of a part; a whole block's is in `solved`.
+// The arrays of all blocks. Parts at other depths are none. parts: by half the place of the first vertex of a part; a
+// whole block's is in `solved`.
 typedef struct {
-  int places;
+  int least_depth, end_depth, places;
   GLOBAL const int* offsets;
   GLOBAL const int* distinct;
   GLOBAL const int* block_of_place;  // -1 behind the last block
@@ -50,7 +51,7 @@ static inline block_part part_behind(const halved_blocks* blocks, int block, int
   part.first = blocks->offsets[block];
   part.count = blocks->distinct[block];
   part.depth = halving_depth(part.count) - height;
-  if (part.depth < 0 || part.count == 0) return part;
+  if (part.depth < blocks->least_depth || part.depth >= blocks->end_depth || part.count == 0) return part;
   part.number = part_from(part.count, part.depth, max(0, place - part.first));
   if (part.number >> part.depth) return part;
   part.begin = part_begin(part.count, part.depth, part.number);
@@ -74,7 +75,8 @@ static inline block_part part_of_cell(const halved_blocks* blocks, int height, i
 }
 
 // The part of a block in its frame j of 2^depth: in each the part of this height that comes there in the order of cuts,
-// or in the first one the whole block, if it is no higher. block: -1 if the frame is empty.
+// or a higher one if the block has more of them, or in the first one the whole block, if it is no higher. block: -1 if
+// the frame is empty.
 static inline block_part part_in_frame(const halved_blocks* blocks, int block, int height, int depth, int j) {
   block_part part = {-1, blocks->offsets[block], blocks->distinct[block], 0, 0, 0};
   part.depth = min(depth, max(0, halving_depth(part.count) - height));

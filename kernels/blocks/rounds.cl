@@ -10,9 +10,9 @@
 //
 // Each round, when the blocks are solved:
 // 1. In the first round, if a set has several blocks or frames, box_blocks, per block, and join_boxes, in one launch
-// per factor of
-//    16 blocks, find the box around each set's points. begin_round, per vertex, numbers the vertices, in the first
-//    round with nothing emitted, and per block finds the rectangle between the cuts.
+// per
+//    factor of 16 blocks, find the box around each set's points. begin_round, per vertex, numbers the vertices, in the
+//    first round with nothing emitted, and per frame finds the rectangle between the cuts.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the
 //    vertex, and notes the state of each edge's left side. After the first round, emit_unsure, per pair of edges,
 //    decides exactly what the filters could not.
@@ -85,7 +85,8 @@ kernel void box_blocks(int n, PLACES_OF_PARTS(), int depth, global solved_block*
                        global const coordinate2* restrict points, global vertex_box* restrict boxes) {
   const int b = get_global_id(0);
   if (b < n) {
-    const halved_blocks blocks = {places, offsets, distinct, block_of_place, axes, parts, solved};
+    const halved_blocks blocks = {least_depth,    end_depth, places, offsets, distinct,
+                                  block_of_place, axes,      parts,  solved};
     boxes[b] = box_of_frames(&blocks, b, height, depth, 0, 1 << depth, points);
   }
 }
@@ -130,15 +131,14 @@ static inline int round_vertex(int k, int is_first, global const int* listed, gl
 #define NEXT_ON_HULL(v) (2 * (v))
 #define PREVIOUS_ON_HULL(v) (2 * (v) + 1)
 
-// The part of a rectangle that lies in frame j of a block, between the cuts into parts: points on the other side of
-// each are on the box around them or beyond it.
-static inline vertex_box rectangle_in_block(vertex_box rectangle, const halved_blocks* blocks, int b, int height,
-                                            int depth, int j, global const coordinate2* points) {
-  for (int up = 0; up < depth; ++up) {
+// The part of a rectangle that lies in frame j of a block, which has this part, between the cuts into parts: the points
+// on the other side of each are in a box.
+static inline vertex_box rectangle_in_block(vertex_box rectangle, const halved_blocks* blocks, block_part part,
+                                            int height, int depth, int j, global const coordinate2* points) {
+  for (int up = depth - part.depth; up < depth; ++up) {
     const int is_high = j >> up & 1, others = (j >> up ^ 1) << up;
-    const vertex_box box = box_of_frames(blocks, b, height, depth, others, others + (1 << up), points);
-    if (box.low.x > box.high.x) continue;  // the parts are not cut here
-    const int axis = blocks->axes[blocks->offsets[b] + (1 << (depth - up - 1)) + (j >> (up + 1))];
+    const vertex_box box = box_of_frames(blocks, part.block, height, depth, others, others + (1 << up), points);
+    const int axis = blocks->axes[part.first + (1 << (depth - up - 1)) + (j >> (up + 1))];
     if (axis != 0 && is_high) rectangle.low.y = max(rectangle.low.y, box.high.y);
     if (axis != 0 && !is_high) rectangle.high.y = min(rectangle.high.y, box.low.y);
     if (axis == 0 && is_high) rectangle.low.x = max(rectangle.low.x, box.high.x);
@@ -147,10 +147,10 @@ static inline vertex_box rectangle_in_block(vertex_box rectangle, const halved_b
   return rectangle;
 }
 
-// n: the largest of the numbers of places, of frames and one more, and of RINGS_NUMBERS. Blocks are the leaves of each
-// set's tree, whose nodes begin at set_nodes. is_merged: the first block of each set has the set's triangulation.
-// set_boxes: where each set of several blocks or frames has its box. frame_offsets: where frames begin, and the end.
-// numbers: of the host, behind 2 per set and 2 more the account and the blocks' numbers of vertices in the first round.
+// n: the largest of the numbers of places, of frames, and of RINGS_NUMBERS. Blocks are the leaves of each set's tree,
+// whose nodes begin at set_nodes. is_merged: the first block of each set has the set's triangulation. set_boxes: where
+// each set of several blocks or frames has its box. frame_offsets: where frames begin. numbers: of the host, behind 2
+// per set and 2 more the account and the blocks' numbers of vertices in the first round.
 kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SETS(), int is_merged, scaling scale,
                         global solved_block* parts, global solved_block* solved, global const int* restrict set_boxes,
                         global const vertex_box* restrict boxes, global const coordinate2* restrict points,
@@ -161,7 +161,6 @@ kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SET
                         global const uint* restrict account, global int* restrict numbers) {
   const int f = get_global_id(0), b = f >> depth, j = f - (b << depth);
   if (f < places) vertices[f] = round_vertex(f, is_first, listed, listed_vertices);
-  if (b == blocks && j == 0) frame_offsets[f] = offsets[blocks];
   if (f < places && is_first) {
     emitted[6 * f] = emitted[6 * f + 3] = NO_VERTEX;
     hull_links[NEXT_ON_HULL(f)] = hull_links[PREVIOUS_ON_HULL(f)] = NO_VERTEX;
@@ -170,7 +169,8 @@ kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SET
   if (f < RINGS_NUMBERS) own_numbers[f] = (int)account[f];
   if (f < blocks && is_first) own_numbers[RINGS_NUMBERS + f] = distinct[f];
   if (b < blocks) {
-    const halved_blocks halved = {places, offsets, distinct, block_of_place, axes, parts, solved};
+    const halved_blocks halved = {least_depth,    end_depth, places, offsets, distinct,
+                                  block_of_place, axes,      parts,  solved};
     const block_part part = part_in_frame(&halved, b, height, depth, j);
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;
@@ -181,7 +181,7 @@ kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SET
     for (int node = leaves + b - first; node > 1 && !is_merged; node >>= 1) {
       frame.rectangle = cut_rectangle(frame.rectangle, nodes[set_nodes[s] + (node >> 1)], node & 1, scale);
     }
-    frame.rectangle = rectangle_in_block(frame.rectangle, &halved, b, height, depth, j, points);
+    if (part.block >= 0) frame.rectangle = rectangle_in_block(frame.rectangle, &halved, part, height, depth, j, points);
     const hull_ends ends = is_merged ? solved[first].ends : ends_of_part(&halved, part);
     find_outside(ends, edges, vertex_edge, frame.outside);
     const int is_single = ends.first_x != NO_VERTEX && ends.first_x == ends.last_x;
@@ -280,7 +280,7 @@ static inline int decide_ghost(const emission* m, const block_frame* frame, int 
   const int is_line = is_outside(e ^ 1, m->edges, frame);
   // If the points are on one line, it is not known on which side others are.
   const int is_final =
-      !has_other_blocks(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
+      !has_other_frames(frame) || (!is_line && is_half_plane_inside(frame, m->points[to], m->points[from]));
   const int missing = is_final && !m->is_first ? is_ghost_missing(m, from, to, is_line, exactly) : is_final;
   // If something is emitted, the set has triangles, and the points on one line are the rest of its hull.
   const int is_set_on_line = is_line && (m->is_first || open_count(m, from) == 0);

@@ -32,7 +32,8 @@ kernel void walk_seams(int n, int spread, PLACES_OF_PARTS(), filter_bounds bound
                        global volatile uint* account COUNTERS) {
   const int w = spread_item(n, spread);
   if (w < n) {
-    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     rings g = rings_on(edges, points, vertex_edge, bounds);
     const seam_walk before = walk_from(NO_VERTEX, NO_VERTEX, 0, WALK_HAS_STOPPED);
     walks[w] = walk_of_cell(&g, &blocks, height, w, before, crossings, removals, is_removed);
@@ -51,7 +52,8 @@ kernel void sew_seams(int cells, PLACES_OF_PARTS(), RINGS_OF_PARTS(), global con
   local uint sums[LARGEST_TILE_GROUP];
   local int meets, count;  // see begin_sewing
   const int cell = get_group_id(0), me = get_local_id(0), lanes = get_local_size(0);
-  const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+  const halved_blocks blocks =
+      blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
   // There may be groups behind the last cell.
   const part_halves halves = cell < cells ? halves_of_cell(&blocks, height, cell) : no_halves();
   const int is_merge = halves.part.block >= 0, begin = is_merge ? halves.begin : 0;

@@ -95,7 +95,8 @@ kernel void merge_weighted_halves(int n, int spread, PLACES_OF_PARTS(), filter_b
                                   global volatile uint* account COUNTERS) {
   const int cell = spread_item(n, spread);
   if (cell < n) {
-    const halved_blocks blocks = blocks_in(places, offsets, distinct, block_of_place, axes, parts, solved);
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     power_rings g = power_rings_on(edges, points, vertex_edge, bounds, vertex_weights, links, weight_range);
     if (height == 0) {
       make_power_leaves_of_cell(&g, &blocks, cell);

@@ -166,7 +166,7 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 void merge_parts(Workspace& work, const Blocks& blocks, const Rings& rings, PartsOfBlocks& parts) {
   if (!are_in_parallel(work) || parts.depth == 0) return;
   const PointBlocks whole = points_of(blocks, largest_of(blocks));
-  merge_halves(work, whole, parts, rings, parts.height + 1, whole.height());
+  merge_halves(work, whole, parts, rings, parts.height + 1, whole.height(), {0, parts.depth});
   parts = {};
 }
 

@@ -72,6 +72,7 @@ struct Halves {
   const HalvedBlocks& halved;
   const Rings& rings;
   Buffer<kernel::solved_block> parts{};
+  Depths depths{};
   Buffer<cl_int> states{};
   Seams seams{};
 
@@ -87,12 +88,12 @@ struct Halves {
 // kernels::merge_parts or kernels::finish_parts.
 template <typename Kernel>
 void launch_on_parts(const Halves& halves, int height) {
-  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
   const std::size_t cells = cells_of(blocks, height);
   const std::size_t spread = spread_of_parts(tuning_of(work.runtime), blocks, height);
   launch_spread(work, spread, cells,
                 Kernel{.spread = spread,
-                       .places_of_parts = places_of_parts(blocks, halved, rings, height),
+                       .places_of_parts = places_of_parts(blocks, halved, rings, height, depths),
                        .bounds = work.bounds,
                        .rings_of_parts = halves.rings_of_parts(),
                        .states = states,
@@ -102,12 +103,12 @@ void launch_on_parts(const Halves& halves, int height) {
 // kernels::walk_seams or kernels::finish_walks.
 template <typename Kernel>
 void launch_on_walks(const Halves& halves, int height) {
-  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
   const std::size_t walks = 2 * cells_of(blocks, height);
   const std::size_t spread = spread_of(tuning_of(work.runtime), walks);
   launch_spread(work, spread, walks,
                 Kernel{.spread = spread,
-                       .places_of_parts = places_of_parts(blocks, halved, rings, height),
+                       .places_of_parts = places_of_parts(blocks, halved, rings, height, depths),
                        .bounds = work.bounds,
                        .rings_of_parts = halves.rings_of_parts(),
                        .crossings = seams.crossings,
@@ -138,7 +139,7 @@ std::size_t local_groups(const PointBlocks& blocks, int height) {
 // kernels::solve_local_parts or kernels::finish_local_parts.
 template <typename Kernel>
 void launch_on_local_parts(const Halves& halves, int height) {
-  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
   const Tuning& tuning = tuning_of(work.runtime);
   const std::size_t groups = local_groups(blocks, height);
   std::size_t group = std::min<std::size_t>(tuning.halve_group, kernel::LOCAL_MERGES);
@@ -179,12 +180,12 @@ void launch_on_trees(Workspace& work, const Blocks& blocks, std::size_t first, s
 }
 
 void sew_seams(const Halves& halves, int height) {
-  const auto& [work, blocks, halved, rings, parts, states, seams] = halves;
+  const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
   host::Runtime& runtime = work.runtime;
   const std::size_t group = sewing_group_of(tuning_of(runtime), height);
   runtime.launch(group * cells_of(blocks, height), group,
                  kernels::sew_seams{.cells = cells_of(blocks, height),
-                                    .places_of_parts = places_of_parts(blocks, halved, rings, height),
+                                    .places_of_parts = places_of_parts(blocks, halved, rings, height, depths),
                                     .rings_of_parts = halves.rings_of_parts(),
                                     .crossings = seams.crossings,
                                     .walks = seams.walks,
@@ -196,9 +197,9 @@ void sew_seams(const Halves& halves, int height) {
 }  // namespace
 
 void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlocks& parts, const Rings& rings,
-                  int from, int to) {
+                  int from, int to, Depths depths) {
   Arena::Scope scope(work.scratch());
-  Halves halves{work, blocks, parts.halved, rings, parts.solved};
+  Halves halves{work, blocks, parts.halved, rings, parts.ends, depths};
   const int in_local = from == 0 ? height_in_local_memory(work, blocks) : -1;
   halves.states = work.scratch().allocate<cl_int>(
       in_local < 0 ? cells_of(blocks, from) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
@@ -233,15 +234,15 @@ void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<
   PartsOfBlocks own{.halved = halve(work, blocks, representatives, rings)};
   if (work.weights != nullptr)
     return work.weights->solver->merge_halves(work, blocks, own.halved, representatives, rings);
-  own.solved = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
+  own.ends = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   own.height = blocks.height();
   if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
     own.depth = std::clamp<int>(own.height - in_local, 0, kernel::MOST_FRAME_DEPTH);
     while (own.depth > 0 && blocks.count << own.depth > most_frames(work, blocks.count, blocks.points))
       --own.depth;
-    own.height -= own.depth;
+    if (own.depth > 0) own.height = in_local;
   }
-  merge_halves(work, blocks, own, rings, 0, own.height);
+  merge_halves(work, blocks, own, rings, 0, blocks.height() - own.depth, {own.depth});
   if (parts != nullptr) *parts = own;
 }
 

@@ -38,8 +38,10 @@ inline std::size_t spread_of_parts(const Tuning& tuning, const PointBlocks& bloc
 }
 
 inline kernels::places_of_parts places_of_parts(const PointBlocks& blocks, const HalvedBlocks& halved,
-                                                const points::Rings& rings, int height) {
+                                                const points::Rings& rings, int height, Depths depths = {}) {
   return {.height = height,
+          .least_depth = depths.least,
+          .end_depth = depths.end,
           .places = blocks.points,
           .offsets = blocks.offsets,
           .distinct = rings.device_distinct,

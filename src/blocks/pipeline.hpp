@@ -38,12 +38,17 @@ struct HalvedBlocks {
   host::Buffer<cl_uchar> axes{};
 };
 
-/// Blocks that are triangulated part by part (kernels/blocks/parts.h): all parts of at most this height, at
-/// most 2^depth of each block. Arrays are from the scratch arena.
+/// Depths of parts in their blocks.
+struct Depths {
+  int least = 0, end = kernel::MOST_DEPTH;
+};
+
+/// Blocks that are triangulated part by part (kernels/blocks/parts.h): all parts of at most this height, and
+/// higher ones of blocks that had more than 2^depth. Arrays are from the scratch arena.
 struct PartsOfBlocks {
   int height = 0, depth = 0;
   HalvedBlocks halved{};
-  host::Buffer<kernel::solved_block> solved{};  ///< by half the place of a part's first vertex
+  host::Buffer<kernel::solved_block> ends{};  ///< by half the place of a part's first vertex
 };
 
 /// How many parts this number of blocks may have. If they have fewer points each than local memory holds, it
@@ -103,9 +108,10 @@ void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
 /// entries of empty blocks.
 HalvedBlocks halve(points::Workspace& work, const PointBlocks& blocks,
                    const host::Buffer<cl_int>& representatives, const points::Rings& rings);
-/// Merges the halves of parts from one height up to another; at height 0, makes the leaves.
+/// Merges the halves of parts from one height up to another; at height 0, makes the leaves. depths: of the
+/// parts that local memory does not hold.
 void merge_halves(points::Workspace& work, const PointBlocks& blocks, const PartsOfBlocks& parts,
-                  const points::Rings& rings, int from, int to);
+                  const points::Rings& rings, int from, int to, Depths depths = {});
 /// Merges the blocks of a level of the trees: merges [first, end).
 void merge_trees(points::Workspace& work, const points::Blocks& blocks, std::size_t first, std::size_t end,
                  const points::Rings& rings);

@@ -109,7 +109,7 @@ struct Round {
   std::size_t frame_count() const { return blocks.count << parts.depth; }
 };
 
-// Whether the parts of blocks may stay apart. The only block of a set needs no later round if it is whole.
+// Whether the parts of blocks may stay apart. A set with one block has no later round, so that must be whole.
 bool may_be_parts(const Workspace& work, const Round& round) {
   const std::vector<cl_int>& blocks = round.blocks.set_blocks;
   const std::vector<std::size_t>& points = round.open.offsets;
@@ -123,6 +123,8 @@ bool may_be_parts(const Workspace& work, const Round& round) {
 
 kernels::places_of_parts places_of_parts(const Round& round) {
   return {.height = round.parts.height,
+          .least_depth = 0,
+          .end_depth = kernel::MOST_DEPTH,
           .places = round.blocks.points,
           .offsets = round.blocks.device_offsets,
           .distinct = round.rings.device_distinct,
@@ -148,7 +150,7 @@ SetBoxes boxes_of_sets(Workspace& work, const Round& round) {
   const SetBoxes found{work.persistent.allocate<kernel::vertex_box>(blocks.count), blocks.device_set_blocks};
   work.runtime.map(blocks.count, kernels::box_blocks{.places_of_parts = places_of_parts(round),
                                                      .depth = round.parts.depth,
-                                                     .parts = round.parts.solved,
+                                                     .parts = round.parts.ends,
                                                      .solved = round.rings.solved,
                                                      .points = blocks.vertices,
                                                      .boxes = found.boxes});
@@ -185,7 +187,7 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
   Arena::Scope scope(work.scratch());
   const auto set_nodes = work.runtime.upload(work.scratch(), first_nodes(blocks));
   const std::size_t items =
-      std::max({blocks.points, round.frame_count() + 1, std::size_t{kernel::RINGS_NUMBERS}});
+      std::max({blocks.points, round.frame_count(), std::size_t{kernel::RINGS_NUMBERS}});
   work.runtime.map(items, kernels::begin_round{.places_of_parts = places_of_parts(round),
                                                .depth = round.parts.depth,
                                                .blocks = blocks.count,
@@ -195,7 +197,7 @@ void begin_round(Workspace& work, const Round& round, const SetBoxes& boxes, con
                                                             .nodes = blocks.device_nodes},
                                                .is_merged = round.is_merged,
                                                .scale = blocks.scale,
-                                               .parts = round.parts.solved,
+                                               .parts = round.parts.ends,
                                                .solved = round.rings.solved,
                                                .set_boxes = boxes.places,
                                                .boxes = boxes.boxes,
@@ -247,7 +249,7 @@ void allocate_states(Workspace& work, Round& round) {
   round.unsure = work.scratch().allocate<cl_uchar>(round.is_first ? 1 : round.states.size() / 2);
   const std::size_t frames =
       work.runtime.at_most(round.frame_count(), most_frames(work, blocks.count, blocks.points));
-  round.frame_offsets = work.scratch().allocate<cl_int>(frames + 1);
+  round.frame_offsets = work.scratch().allocate<cl_int>(frames);
   round.frames = work.scratch().allocate<kernel::block_frame>(frames);
 }
 

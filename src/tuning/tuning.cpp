@@ -606,6 +606,9 @@ void fit_tiles(Tuning& tuning) {
   fit(tuning.samples_per_gap_block, samples);
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
+  // Parts have LEAF_VERTICES times a power of two.
+  while ((tuning.local_vertices & (tuning.local_vertices - 1)) != 0)
+    tuning.local_vertices &= tuning.local_vertices - 1;
   tuning.local_vertices = std::min<std::size_t>(tuning.local_vertices, kernel::LOCAL_VERTICES);
 }
 

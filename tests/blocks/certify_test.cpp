@@ -234,11 +234,11 @@ TEST(SmallCertify, WithoutOtherBlocksAllIsFinal) {
   block_frame frame{};
   frame.rectangle = {{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};
   frame.all = {{0, 0}, {1, 1}};
-  EXPECT_FALSE(kernel::has_other_blocks(&frame));
+  EXPECT_FALSE(kernel::has_other_frames(&frame));
   EXPECT_TRUE(kernel::is_circle_inside(&frame, {0, 0}, {0.5, 0}, {1, 0}));  // though there is none
   EXPECT_TRUE(kernel::is_half_plane_inside(&frame, {0, 0}, {0, 1}));
   frame.rectangle.high.x = 1;
-  EXPECT_TRUE(kernel::has_other_blocks(&frame));
+  EXPECT_TRUE(kernel::has_other_frames(&frame));
   EXPECT_FALSE(kernel::is_circle_inside(&frame, {0, 0}, {0.5, 0}, {1, 0}));
   EXPECT_FALSE(kernel::is_half_plane_inside(&frame, {0, 0}, {1, 1}));
   EXPECT_FALSE(kernel::is_half_plane_inside(&frame, {0, 0}, {0, 1}));
