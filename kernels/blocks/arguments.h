@@ -23,6 +23,13 @@
   global coordinate2* PREFIX##points, global int* PREFIX##source, global int* PREFIX##representatives, \
   global solved_block* PREFIX##solved, global int* PREFIX##distinct_counts
 
+// Blocks that work-groups halve. are_listed: groups take the blocks that flag_larger_blocks has flagged; larger_blocks:
+// the flags' prefix sums. Of blocks with more than `capacity` points, scanned has the number of distinct points before
+// each place. Blocks of more than `largest` points get no vertices.
+#define BLOCKS_TO_HALVE(PREFIX) \
+  int PREFIX##blocks, int PREFIX##are_listed, global const uint* restrict PREFIX##larger_blocks, int PREFIX##capacity, \
+  int PREFIX##largest, global const int* restrict PREFIX##offsets, global const uint* restrict PREFIX##scanned
+
 // Room for sorting the points of blocks.
 #define BLOCK_SCRATCH(PREFIX) \
   global coordinate2* PREFIX##scratch_points, global int* PREFIX##scratch_source, global uint64* PREFIX##scratch_ranks

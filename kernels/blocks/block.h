@@ -94,7 +94,9 @@ static inline void split_order(int count, ranks threshold, GLOBAL ranks* RESTRIC
 
 // Cuts a part at its middle. The order along the axis is split by position, the other one by comparison.
 static inline int cut_part(int begin, int middle, int end, const block_scratch* s) {
-  const int axis = axis_of(begin, end, s->points, s->by_x, s->by_y);
+  const int low = low_quartile(begin, end), high = high_quartile(begin, end);
+  const int axis = axis_between(s->points[own_rank(s->by_x[low])], s->points[own_rank(s->by_x[high])],
+                                s->points[other_rank(s->by_y[low])], s->points[other_rank(s->by_y[high])]);
   GLOBAL const ranks* const along = axis ? s->by_y : s->by_x;
   GLOBAL ranks* const other = axis ? s->by_x : s->by_y;
   split_order(end - begin, ranks_of(0, own_rank(along[middle])), other + begin, s->spare);

@@ -30,13 +30,13 @@ static inline int part_begin(int count, int depth, int j) { return (int)(((int64
 // The first part that begins at vertex k or behind it.
 static inline int part_from(int count, int depth, int k) { return (int)((((int64)k << depth) + count - 1) / count); }
 
-// 1 if the part is longer in y, by its interquartile ranges.
-static inline int axis_of(int begin, int end, GLOBAL const coordinate2* points, GLOBAL const ranks* by_x,
-                          GLOBAL const ranks* by_y) {
-  const int low = begin + (end - begin) / 4, high = end - 1 - (end - begin) / 4;
-  const coordinate width = rounded_difference(points[own_rank(by_x[high])].x, points[own_rank(by_x[low])].x);
-  const coordinate height = rounded_difference(points[other_rank(by_y[high])].y, points[other_rank(by_y[low])].y);
-  return height > width;
+// The quartiles of a part's points along an axis.
+static inline int low_quartile(int begin, int end) { return begin + (end - begin) / 4; }
+static inline int high_quartile(int begin, int end) { return end - 1 - (end - begin) / 4; }
+
+// Which axis a part is cut across: 1 if it is longer in y, by the points at its quartiles along x and along y.
+static inline int axis_between(coordinate2 left, coordinate2 right, coordinate2 bottom, coordinate2 top) {
+  return rounded_difference(top.y, bottom.y) > rounded_difference(right.x, left.x);
 }
 
 END_SHARED

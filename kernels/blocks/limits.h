@@ -4,6 +4,7 @@
 
 #include "arithmetic/language.h"
 #include "mesh/limits.h"
+#include "operations/limits.h"
 
 BEGIN_SHARED
 
@@ -18,10 +19,14 @@ INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
 INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
 // Rounds certify parts of blocks, at most 2 to this power of each.
 INTEGER_CONSTANT(MOST_FRAME_DEPTH, 3);
+// The most points of a block that a work-group sorts and halves in local memory (blocks/group_halving.h). Each takes
+// four numbers of 16 bits.
+INTEGER_CONSTANT(LOCAL_BYTES_PER_BLOCK_POINT, 8);
+INTEGER_CONSTANT(LOCAL_BLOCK_POINTS, LOCAL_BYTES / LOCAL_BYTES_PER_BLOCK_POINT);
 // Sorts begin with tiles of this many points, a power of two. There each point is compared with all others.
 INTEGER_CONSTANT(SORTED_TILE, 16);
-// Work-items of the largest work-group that a kernel with local memory per work-item is made for.
-INTEGER_CONSTANT(LARGEST_GROUP, 1024);
+// A scan within a team of work-items adds up this many counts in a row.
+INTEGER_CONSTANT(SUMMED_ITEMS, 16);
 // Rounds join the boxes of this many blocks in one step.
 INTEGER_CONSTANT(JOINED_BOXES, 16);
 // A step of rank_hull looks this many times as far ahead as the one before.

@@ -40,17 +40,6 @@ typedef struct {
 } local_arrays;
 ASSERT_SIZE(local_arrays, LOCAL_PART_BYTES);
 
-// The tasks of a work-item: every `step`-th from `first` on, each as item `rank` of `size` that share it.
-typedef struct {
-  int first, step, rank, size;
-} team;
-
-static inline team team_of(int tasks) {
-  const int me = get_local_id(0), lanes = get_local_size(0), size = max(1, lanes / max(1, tasks)), teams = lanes / size;
-  const team t = {me / size < teams ? me / size : tasks, teams, me % size, size};
-  return t;
-}
-
 // A part. Its vertices are numbered from 0 on here; `first` is the place of the first one among all places. own_height:
 // -1 if there is no part.
 typedef struct {

@@ -35,6 +35,17 @@ BEGIN_SHARED
     return before;                                             \
   }
 
+// The tasks of a work-item: every `step`-th from `first` on, each as item `rank` of `size` that share it.
+typedef struct {
+  int first, step, rank, size;
+} team;
+
+static inline team team_of(int tasks) {
+  const int me = get_local_id(0), lanes = get_local_size(0), size = max(1, lanes / max(1, tasks)), teams = lanes / size;
+  const team t = {me / size < teams ? me / size : tasks, teams, me % size, size};
+  return t;
+}
+
 // How many of a tile's elements each work-item takes, if it takes consecutive ones.
 static inline int share_of(int elements) {
   const int group = get_local_size(0);

@@ -5,6 +5,7 @@
 #include "blocks/pipeline.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
+#include "launchers/blocks/halve_large.cl.hpp"
 #include "mesh/limits.h"
 #include "tuning/tuning.hpp"
 
@@ -121,7 +122,8 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   const HalvedBlocks halved{scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uchar>(blocks.points)};
   Arena::Scope scope(scratch);
-  const std::size_t capacity = tuning.large_blocks * tuning.block_points;
+  const std::size_t capacity = std::min(tuning.large_blocks * tuning.block_points,
+                                        tuning.local_bytes / kernel::LOCAL_BYTES_PER_BLOCK_POINT);
   const bool has_large = blocks.largest > capacity;
   const SortedPoints sorted{scratch.allocate<cl_double2>(blocks.points),
                             scratch.allocate<cl_int>(blocks.points),
@@ -134,28 +136,37 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                 : blocks.count;
   if (groups == 0) return halved;
   const std::size_t group = group_for(tuning, blocks, groups);
+  const kernels::blocks_to_halve to_halve{.blocks = blocks.count,
+                                          .are_listed = with_tiny,
+                                          .larger_blocks = larger_blocks,
+                                          .capacity = capacity,
+                                          .largest = blocks.largest,
+                                          .offsets = blocks.offsets,
+                                          .scanned = sorted.scanned};
   runtime.note_elements((std::min(blocks.largest, capacity) + group - 1) / group);
-  runtime.launch(
-      group * groups, group,
-      kernels::halve_blocks{.blocks = blocks.count,
-                            .are_listed = with_tiny,
-                            .larger_blocks = larger_blocks,
-                            .capacity = capacity,
-                            .largest = blocks.largest,
-                            .places = blocks.points,
-                            .offsets = blocks.offsets,
-                            .scanned = sorted.scanned,
-                            .block_points = {.points = blocks.vertices,
-                                             .source = blocks.source,
-                                             .representatives = representatives,
-                                             .solved = rings.solved,
-                                             .distinct_counts = rings.device_distinct},
-                            .block_of_place = halved.block_of_place,
-                            .axes = halved.axes,
-                            .block_scratch = {.scratch_points = sorted.points,
-                                              .scratch_source = sorted.source,
-                                              .scratch_ranks = scratch.allocate<cl_ulong>(3 * blocks.points)},
-                            .scratch_lows = scratch.allocate<cl_int>(blocks.points)});
+  runtime.launch(group * groups, group,
+                 kernels::halve_blocks{.blocks_to_halve = to_halve,
+                                       .places = blocks.points,
+                                       .block_points = {.points = blocks.vertices,
+                                                        .source = blocks.source,
+                                                        .representatives = representatives,
+                                                        .solved = rings.solved,
+                                                        .distinct_counts = rings.device_distinct},
+                                       .block_of_place = halved.block_of_place,
+                                       .axes = halved.axes,
+                                       .scratch_points = sorted.points,
+                                       .scratch_source = sorted.source});
+  if (has_large) {
+    runtime.launch(group * groups, group,
+                   kernels::halve_large_blocks{.blocks_to_halve = to_halve,
+                                               .points = blocks.vertices,
+                                               .source = blocks.source,
+                                               .distinct_counts = rings.device_distinct,
+                                               .axes = halved.axes,
+                                               .distinct_points = sorted.points,
+                                               .distinct_source = sorted.source,
+                                               .scratch = scratch.allocate<cl_int>(4 * blocks.points)});
+  }
   return halved;
 }
 

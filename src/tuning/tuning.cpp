@@ -22,7 +22,7 @@ namespace {
 using host::DeviceError;
 
 constexpr std::size_t kSmallRegion = kernel::DEFAULT_SMALL_REGION;
-constexpr std::size_t kLargestGroup = kernel::LARGEST_GROUP;
+constexpr std::size_t kLargestGroup = 1024;  // of work-items
 constexpr std::size_t kLargestValue = std::size_t{1} << 30;
 // From this rate of fp32 over that of fp64 on, fixed point takes less time on a GPU, by the model
 // (bench/predictions/predict.py).
@@ -638,6 +638,7 @@ host::Settings settings_for(const boost::compute::device& device, const std::str
   host::fit(tuning, limits);
   fit_tiles(tuning);
   if (limits.local_memory < kernel::LOCAL_PART_BYTES) tuning.local_vertices = 0;
+  if (limits.local_memory < tuning.local_bytes) tuning.blocks_in_parallel = 0;
   if (given.empty() && host::shares_host_memory(device)) tuning.staging_bytes = 0;
   if (!host::has_fp64(device)) {
     kind.capabilities.fixed_point = true;

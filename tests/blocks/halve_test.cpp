@@ -12,7 +12,7 @@
 #include "blocks/codes.h"
 #include "blocks/halving.h"
 #include "blocks/limits.h"
-#include "launchers/blocks/halve.cl.hpp"
+#include "launchers/blocks/halve_large.cl.hpp"
 #include "tests/blocks/support.hpp"
 
 namespace flaunay::blocks {
@@ -199,6 +199,27 @@ TEST(Halve, SizesAboutTilesAndGroups) {
       points.add(make_fixture("uniform", size, size));
       points.add(coarse(size, 10, 10, random));
     }
+    check_halve(runtime, points);
+  });
+}
+
+/// Blocks that just fit local memory or do not, and points that keys of 32 bits do not tell apart.
+TEST(Halve, SizesAboutLocalMemory) {
+  with_groups(100000, [](Runtime& runtime) {
+    BlockPoints points;
+    FixtureRandom random(36);
+    const std::size_t most = tuning_of(runtime).local_bytes / kernel::LOCAL_BYTES_PER_BLOCK_POINT;
+    for (const std::size_t size : {most - 1, most, most + 1}) {
+      points.add(make_fixture("uniform", size, size));
+      points.add(coarse(size, 100, 30, random));
+    }
+    points.add(Coordinates(2 * (most + 1), 0.5));
+    Coordinates far{0, 0};
+    for (int i = 0; i < 500; ++i) {
+      for (const double at : {0x1p20, -0x1p20})
+        far.push_back(at + 0x1p-20 * static_cast<double>(random.integer(0, 300)));
+    }
+    points.add(far);
     check_halve(runtime, points);
   });
 }
