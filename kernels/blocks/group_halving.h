@@ -138,7 +138,9 @@ WITH_BARRIERS number_list sort_group(points_to_sort* s, group_memory memory) {
   number_list order = list_of(memory, 2), merged = list_of(memory, 3);
   for (int i = me; i < s->count; i += lanes) order[place_in_tile(i, s)] = i;
   barrier(HALVES_FENCE);
-  for (int width = SORTED_TILE; width < s->count; width *= 2) {
+  // Loops with barriers that may run zero times take PoCL longer to compile.
+  int width = SORTED_TILE;
+  do {
     for (int i = me * SORTED_TILE; i < s->count; i += lanes * SORTED_TILE) {
       merge_runs(i, i + SORTED_TILE, width, order, merged, s);
     }
@@ -146,7 +148,8 @@ WITH_BARRIERS number_list sort_group(points_to_sort* s, group_memory memory) {
     const number_list sorted = merged;
     merged = order;
     order = sorted;
-  }
+    width *= 2;
+  } while (width < s->count);
   return order;
 }
 
@@ -215,7 +218,8 @@ static inline int axis_of_part(int begin, int end, const block_orders* s) {
 WITH_BARRIERS void cut_parts(int count, int depth, const block_orders* s) {
   const int parts = 1 << depth;
   const team own = team_of(parts);
-  for (int first = 0; first < parts; first += own.step) {
+  int first = 0;
+  do {
     const int number = first + own.first, has_part = number < parts;
     const int begin = has_part ? part_begin(count, depth, number) : 0;
     const int middle = has_part ? part_begin(count, depth + 1, 2 * number + 1) : 0;
@@ -239,7 +243,8 @@ WITH_BARRIERS void cut_parts(int count, int depth, const block_orders* s) {
     barrier(HALVES_FENCE);
     for (int i = share.low; i < share.high; ++i) order[i] = s->spare[i];
     barrier(HALVES_FENCE);
-  }
+    first += own.step;
+  } while (first < parts);
 }
 
 // Halves a block's distinct points, which are in the order of x, and writes them in the order of the leaves.
