@@ -1,4 +1,4 @@
-/** flaunay: exact two-dimensional Delaunay triangulation. */
+/** Exact Delaunay triangulations, meshes and maps, in WebAssembly. */
 import type {
   ConstraintsOptions, Crossings, Interpolation, PolygonsOptions, TriangulationArrays, TriangulationOptions,
 } from './declarations.js';

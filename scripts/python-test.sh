@@ -64,8 +64,9 @@ check_types >build/types.log 2>&1 &
 types_checked=$!
 trap 'kill "$types_checked" 2>/dev/null || true' EXIT
 
-# The programs in the guide and the tutorials.
-WORK=build/snippets PYTHON="$python" tests/snippets.sh python docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md docs/weighted.md docs/tutorials/*.md
+# The programs in the first pages, the guide and the tutorials.
+WORK=build/snippets PYTHON="$python" tests/snippets.sh python README.md python/pypi.md docs/embedding.md docs/python.md docs/sphere.md docs/periodic.md \
+  docs/weighted.md docs/tutorials/*.md
 
 "$python" -m pytest --quiet --doctest-modules --pyargs flaunay python/tests "$@"
 if ! wait "$types_checked"; then

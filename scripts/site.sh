@@ -17,8 +17,9 @@ fi
 
 # The headers' reference, without the pages, which the site has itself.
 version="$(sed -n 's/^ *VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt | head -n 1)"
+description="$(sed -n 's/^ *DESCRIPTION "\(.*\)"$/\1/p' CMakeLists.txt)"
 sed -e "s|@PROJECT_SOURCE_DIR@|$PWD|g; s|@PROJECT_VERSION@|$version|; s|@DOCUMENTATION_FOLDER@|$PWD/$work/cpp|" \
-  -e 's|@PROJECT_DESCRIPTION@|Exact two-dimensional Delaunay triangulation|' docs/Doxyfile.in >"$work/Doxyfile"
+  -e "s|@PROJECT_DESCRIPTION@|$description|" docs/Doxyfile.in >"$work/Doxyfile"
 cat >>"$work/Doxyfile" <<END
 INPUT                  = $PWD/src/include/flaunay
 USE_MDFILE_AS_MAINPAGE =

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks the Markdown pages of the source tree: that links lead to files and headings that exist, that no two headings
 of a page are equal, that files named in code spans exist, and that lines have at most 120 columns, except in tables, in
-code, and on pages that programs write; and that there are not more words than are read.
+code, and on pages that programs write; that pages which are shown alone link to no file; and that there are not more
+words than are read.
 
     pages.py SOURCE
 """
@@ -11,9 +12,11 @@ import re
 import sys
 
 COLUMNS = 120
-PATTERNS = ("*.md", "docs/*.md", "javascript/*.md", "docs/tutorials/*.md", "site/*.md", "bench/results/*.md", "tests/data/*.md")
+PATTERNS = ("*.md", "docs/*.md", "javascript/*.md", "python/*.md", "docs/tutorials/*.md", "site/*.md", "bench/results/*.md", "tests/data/*.md")
 # So many words at most, code and tables included: tutorials, which are read one by one, apart from the rest.
 WORDS = {("*.md", "docs/*.md"): 49_500, ("docs/tutorials/*.md",): 4_000}
+# npm and PyPI show these alone: no link to another file leads anywhere there.
+SHOWN_ALONE = ("javascript/README.md", "python/pypi.md")
 WRITTEN_BY_PROGRAMS = "bench/results"
 FOLDERS = ("bench", "cmake", "docs", "examples", "host", "javascript", "kernels", "python", "scripts", "site", "src", "tests")
 # A code span with a folder of the source tree, such as `src/call/parts.hpp`. Placeholders and patterns are no paths.
@@ -74,6 +77,8 @@ def problems(source, page, files):
             if re.match(r"\w+:", link):
                 continue
             name, _, fragment = link.partition("#")
+            if name and page.relative_to(source).as_posix() in SHOWN_ALONE:
+                yield number, f"a link to another file, which is not there: {link}"
             target = page.parent / name if name else page
             if not target.exists():
                 yield number, f"no file {link}"

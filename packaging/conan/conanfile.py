@@ -12,7 +12,7 @@ from conan.tools.files import copy
 class Flaunay(ConanFile):
     name = "flaunay"
     license = "MIT"
-    description = "Exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU"
+    description = "Exact Delaunay triangulations, meshes and maps, on any CPU at once and on any OpenCL GPU"
     topics = ("geometry", "delaunay", "triangulation", "voronoi", "opencl")
     package_type = "library"
     settings = "os", "arch", "compiler", "build_type"

@@ -1,4 +1,4 @@
-"""Exact Delaunay triangulations, meshes and maps in the plane, on any CPU at once and on any OpenCL GPU.
+"""Exact Delaunay triangulations, meshes and maps, on any CPU at once and on any OpenCL GPU.
 
 Triangulations
     ``Delaunay`` has the attributes of SciPy's class, and with ``incremental=True`` points come and go, as in

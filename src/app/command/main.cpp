@@ -21,7 +21,7 @@ using namespace flaunay::cli;
 int fail(int code, const std::string& message) { return report_error("flaunay", code, message); }
 
 int run(std::vector<std::string> arguments) {
-  CLI::App app("Exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU.", "flaunay");
+  CLI::App app(FLAUNAY_DESCRIPTION ".", "flaunay");
   app.set_version_flag("--version", std::string("flaunay ") + flaunay::version());
   app.footer("The environment variable FLAUNAY_DEVICE chooses the device if --device is not given.");
   // Paths may begin with a slash on Windows, too.

@@ -276,9 +276,7 @@ int report(const Ranks& ranks, int code, const std::string& message) {
 }
 
 int run(Ranks& ranks, int argc, char** argv) {
-  CLI::App app(
-      "Exact two-dimensional Delaunay triangulation over the ranks of MPI: mpirun -n 8 flaunay-mpi ...",
-      kProgram);
+  CLI::App app("Exact Delaunay triangulations over the ranks of MPI: mpirun -n 8 flaunay-mpi ...", kProgram);
   app.set_version_flag("--version", fmt::format("{} {}", kProgram, version()));
   app.require_subcommand(0, 1);
   Request request;

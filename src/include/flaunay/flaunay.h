@@ -1,5 +1,5 @@
 /// \file
-/// flaunay: exact Delaunay triangulations, meshes and maps, on any CPU and any OpenCL GPU. This is the
+/// Exact Delaunay triangulations, meshes and maps, on any CPU at once and on any OpenCL GPU. This is the
 /// interface for C and for languages that call C; it compiles as C99, C11 and C++. The interface for C++ is
 /// flaunay.hpp.
 ///

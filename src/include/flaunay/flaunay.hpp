@@ -1,4 +1,4 @@
-// flaunay: exact Delaunay triangulations, meshes and maps in the plane, on any CPU and any OpenCL GPU.
+// Exact Delaunay triangulations, meshes and maps, on any CPU at once and on any OpenCL GPU.
 //
 // Programs contain the layout of the structs and classes here, so no version changes one without a new name
 // of the shared library: libflaunay.so.0.1 is that of all 0.1.x. With another name, programs must be compiled
@@ -18,7 +18,7 @@
 #include "flaunay/opencl.h"
 #include "flaunay/version.h"
 
-/// Exact Delaunay triangulations, meshes and maps in the plane. Functions that fail throw Error.
+/// The library's interface for C++. Functions that fail throw Error.
 namespace flaunay {
 
 namespace research {
