@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes all files of a release that one machine can make, in build/release-files, with SHA256SUMS and a bill of
-# materials. The same commit gives the same bytes. It needs to be root where something is missing.
+# Makes all files of a release that one machine can make, in build/release-files: Debian's packages, the source
+# distribution, the wheels, the npm tarball and the site, with a bill of materials and SHA256SUMS. The same commit gives
+# the same bytes. It needs to be root where something is missing. What to do before and after: docs/packages.md.
 #   scripts/release.sh
 # The wheel for macOS cannot be tested here: .github/workflows/platforms.yml is there for that. The recipes for conda,
 # Conan and vcpkg, in packaging, build the source.
@@ -31,6 +32,11 @@ cp build/wheels/* "$files"
 
 scripts/javascript.sh
 cp build/javascript/flaunay-"$version".tgz "$files"
+
+# With the module of the package above on its first page.
+scripts/site.sh --build
+tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --directory=build/site/html \
+  --transform="s|^\.|flaunay-$version-site|" . | gzip --no-name --best >"$files/flaunay-$version-site.tar.gz"
 
 cd "$files"
 python=../wheel-tools/bin/python

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the bill of materials of a release, in CycloneDX's JSON: what is compiled into its files, besides flaunay, in
-the versions that this system's headers and the compiler name.
+"""Writes the bill of materials of a release, in CycloneDX's JSON: what is in its files, besides flaunay, in the versions
+that this system's headers, the compiler and the built site name.
 
     sbom.py VERSION COMMIT ZIGLANG FILES...    ZIGLANG: the folder of PyPI's package; FILES: those of the release
 """
@@ -17,6 +17,11 @@ import uuid
 
 version, commit, ziglang = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
 files = sorted(pathlib.Path(name) for name in sys.argv[4:])
+source = pathlib.Path(__file__).resolve().parent.parent
+
+
+def found(path, pattern):
+    return re.search(pattern, (source / path).read_text(encoding="utf-8", errors="replace")).group(1)
 
 
 def number(header, macro):
@@ -49,6 +54,8 @@ mingw = ziglang / "lib/libc/include/any-windows-any/_mingw_mac.h"
 mingw = ".".join(str(number(mingw, f"__MINGW64_VERSION_{part}")) for part in ("MAJOR", "MINOR", "BUGFIX"))
 zig = subprocess.check_output([ziglang / "zig", "version"], text=True).strip()
 everywhere = "in every library"
+site = "on pages of the site"
+vendored = "site/vendor/README.md"
 wheels = "in the libraries of wheels"
 llvm = "Apache-2.0 WITH LLVM-exception"
 components = [
@@ -61,6 +68,10 @@ components = [
     component("libc++abi", libcxx, llvm, wheels),
     component("libunwind", libcxx, llvm, wheels),
     component("mingw-w64", mingw, "ZPL-2.1", "in the library of the wheel for Windows"),
+    component("delaunator", found(vendored, r"\[delaunator\]\S* ([\d.]+)"), "ISC", site),
+    component("robust-predicates", found(vendored, r"\[robust-predicates\]\S* ([\d.]+)"), "Unlicense", site),
+    component("mkdocs-material", found("site/requirements.txt", r"mkdocs-material==([\d.]+)"), "MIT", site),
+    component("jquery", found("build/site/cpp/jquery.js", r"jQuery v([\d.]+)"), "MIT", site),
     component("zig compiler-rt", zig, "MIT", wheels, f"pkg:pypi/ziglang@{zig}"),
 ]
 root = f"flaunay@{version}"

@@ -39,7 +39,7 @@ if [[ ! -e $environment/made ]]; then
   # CMake and Ninja are installed where the system has none that are new enough. One version of the compiler, so that
   # wheels have the same bytes everywhere.
   "$environment/bin/python" -m pip --disable-pip-version-check install --quiet --upgrade \
-    build cmake ninja pip 'scikit-build-core>=0.10' wheel ziglang==0.17.1
+    build cmake ninja pip 'scikit-build-core>=0.11' wheel ziglang==0.17.1
   touch "$environment/made"
 fi
 export PATH="$PWD/$environment/bin:$PATH"

@@ -725,7 +725,7 @@ TEST_F(CommandTriangulateTest, EveryFileOfTheTestDataIsTriangulatedExactly) {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(flaunay::test_data())) {
     const std::string input = entry.path().string();
-    if (entry.path().extension() != ".xy" && entry.path().extension() != ".node") continue;
+    if (entry.path().extension() != ".xy" && entry.path().extension() != ".las") continue;
     SCOPED_TRACE(input);
     ++count;
     run_well({"triangulate", input, "--triangles", path("t.npy"), "--neighbors", path("n.npy")});

@@ -17,6 +17,8 @@ major, minor, patch = version.split(".")
 interface = f"0.{minor}" if major == "0" else major
 # A text in which the only group is the version, or a part of it.
 PLACES = [
+    ("CHANGELOG.md", r"\n## \[([^\]]*)\]", version),
+    ("CITATION.cff", r"\nversion: (.*)\n", version),
     ("packaging/conda/recipe.yaml", r'version: "([^"]*)"', version),
     ("packaging/debian/changelog", r"flaunay \(([^)-]*)-\d+\)", version),
     ("packaging/debian/control", r"Package: libflaunay([0-9.]+)", interface),
@@ -30,7 +32,7 @@ PLACES = [
 ]
 # Files that say in this sentence what flaunay is, in one line or more, at the beginning or as a description.
 DESCRIBED = (
-    "README.md", "packaging/conan/conanfile.py", "packaging/conda/recipe.yaml", "packaging/debian/control",
+    "CITATION.cff", "README.md", "packaging/conan/conanfile.py", "packaging/conda/recipe.yaml", "packaging/debian/control",
     "packaging/vcpkg/ports/flaunay/vcpkg.json", "pyproject.toml", "python/flaunay/__init__.py", "python/pypi.md",
     "site/index.md", "site/mkdocs.yml", "src/include/flaunay/flaunay.h", "src/include/flaunay/flaunay.hpp",
 )

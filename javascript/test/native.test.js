@@ -15,7 +15,7 @@ const command = process.env.FLAUNAY_COMMAND;
 const folder = mkdtempSync(join(tmpdir(), 'flaunay-'));
 process.on('exit', () => rmSync(folder, {recursive: true}));
 const FILES = [
-  'greenland.node', 'issue13.xy', 'issue43.xy', 'issue44.xy', 'robustness1.xy', 'robustness2.xy', 'robustness3.xy',
+  'airports.txt', 'issue13.xy', 'issue43.xy', 'issue44.xy', 'robustness1.xy', 'robustness2.xy', 'robustness3.xy',
   'robustness4.xy', 'ukraine.xy',
 ];
 const DISTRIBUTIONS = [

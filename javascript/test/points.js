@@ -4,13 +4,11 @@ import {readFileSync} from 'node:fs';
 /** The folder of files. */
 export const DATA = new URL('../../tests/data/', import.meta.url);
 
-/** Points of a file of text, .xy or .node: x0, y0, x1, y1, ... */
+/** Points of a file of text: x0, y0, x1, y1, ... */
 export function readPoints(name) {
   const text = readFileSync(new URL(name, DATA), 'utf8').replaceAll(/#.*/g, '');
   const rows = text.split('\n').filter((line) => line.trim() !== '').map((line) => line.trim().split(/\s+/).map(Number));
-  // A .node has a header, and begins each row with a number.
-  const places = name.endsWith('.node') ? rows.slice(1).map((row) => row.slice(1)) : rows;
-  return places.flatMap(([x, y]) => [x, y]);
+  return rows.flatMap(([x, y]) => [x, y]);
 }
 
 /** Random numbers from a seed, the same everywhere (mulberry32). */

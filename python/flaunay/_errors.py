@@ -36,4 +36,4 @@ class DeviceError(Error):
 
 
 class InternalError(Error):
-    """A broken invariant of flaunay itself; please report it."""
+    """A broken invariant of flaunay itself; please report it, as CONTRIBUTING.md says."""

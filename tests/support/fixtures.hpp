@@ -306,7 +306,7 @@ inline constexpr auto instance_name = [](const auto& info) {
 inline const std::vector<std::string>& data_files() {
   static const std::vector<std::string> all = {"issue13.xy",     "issue43.xy",     "issue44.xy",
                                                "robustness1.xy", "robustness2.xy", "robustness3.xy",
-                                               "robustness4.xy", "ukraine.xy",     "greenland.node"};
+                                               "robustness4.xy", "ukraine.xy",     "garden.las"};
   return all;
 }
 

@@ -44,7 +44,7 @@ extern "C" {
 /// The result of a call. Those before FLAUNAY_ERROR_MEMORY are also the exit codes of the command.
 typedef enum flaunay_status {
   FLAUNAY_SUCCESS = 0,
-  FLAUNAY_ERROR_INTERNAL = 1,  ///< a broken invariant of flaunay itself; please report it
+  FLAUNAY_ERROR_INTERNAL = 1,  ///< a broken invariant of flaunay itself: please report it (CONTRIBUTING.md)
   FLAUNAY_ERROR_USAGE = 2,     ///< the request makes no sense
   FLAUNAY_ERROR_INPUT = 3,     ///< bad points: not finite, out of range, too many
   FLAUNAY_ERROR_DEVICE = 4,    ///< no device, device too small, an OpenCL call failed

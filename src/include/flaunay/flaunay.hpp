@@ -30,7 +30,7 @@ enum class ErrorKind {
   usage,     ///< the request makes no sense (exit code 2)
   input,     ///< bad points: not finite, out of range, too many, unreadable (exit code 3)
   device,    ///< no device, device too small, or an OpenCL call failed (exit code 4)
-  internal,  ///< a broken invariant of flaunay itself, which is a bug; please report it
+  internal,  ///< a broken invariant of flaunay itself: please report it (CONTRIBUTING.md)
 };
 
 /// The one exception type of the library.
