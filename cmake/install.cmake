@@ -8,6 +8,13 @@ install(TARGETS flaunay EXPORT flaunay-targets FILE_SET HEADERS INCLUDES DESTINA
 if(TARGET flaunay_cli)
   install(TARGETS flaunay_cli)
 endif()
+if(TARGET flaunay_printed)
+  set(PRINTED ${PROJECT_BINARY_DIR}/printed)
+  install(FILES ${PRINTED}/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME flaunay OPTIONAL)
+  install(FILES ${PRINTED}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _flaunay OPTIONAL)
+  install(FILES ${PRINTED}/fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME flaunay.fish OPTIONAL)
+  install(FILES ${PRINTED}/man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME flaunay.1 OPTIONAL)
+endif()
 # The component mpi, with targets of its own, so that others need no MPI.
 if(TARGET flaunay_mpi)
   install(TARGETS flaunay_mpi EXPORT flaunay-mpi-targets FILE_SET HEADERS INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

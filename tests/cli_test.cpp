@@ -133,6 +133,80 @@ TEST_F(CommandUsageTest, VersionAndHelpSucceed) {
   EXPECT_NE(run_well({"triangulate", "--help"}, kNoPlatform).out.find("--neighbors"), std::string::npos);
 }
 
+TEST_F(CommandUsageTest, TypingErrorsAreAnsweredByWhatWasMeant) {
+  const auto suggested = [this](const std::string& meant, const Arguments& arguments) {
+    expect_error(kUsage, {"did you mean " + meant + ", not"}, arguments);
+  };
+  suggested("triangulate", {"triangluate", "points.npy"});
+  suggested("--version", {"--verison"});
+  suggested("--triangles", {"triangulate", "points.npy", "--triangels", "t.npy"});
+  suggested("--neighbors", {"triangulate", "points.npy", "--neighbours=n.npy"});
+  // What else is missing does not hide it.
+  suggested("--resolution", {"terrain", "scan.las", "--resolutoin", "1", "-o", "dem.npy"});
+  for (const Arguments& arguments :
+       {Arguments{"frobnicate"}, Arguments{"triangulate", "points.npy", "--frobnicate"}}) {
+    EXPECT_EQ(run(arguments, kNoPlatform).err.find("did you mean"), std::string::npos);
+  }
+}
+
+TEST_F(CommandUsageTest, ExamplesOfTheHelpRun) {
+  fs::copy(data("garden.las"), path("scan.las"));
+  fs::create_directory(path("tiles"));
+  fs::copy(data("garden.las"), path("tiles/scan.las"));
+  for (const char* const name :
+       {"generate", "triangulate", "verify", "partition", "assemble", "terrain", "devices"}) {
+    std::istringstream help(run_well({name, "--help"}, kNoPlatform).out);
+    std::string line;
+    while (std::getline(help, line) && line != "Examples:") {
+    }
+    int count = 0;
+    for (; std::getline(help, line) && line.starts_with("  flaunay "); ++count) {
+      // Fewer points, and no device; GeoTIFF is not in every build.
+      if (const std::size_t at = line.find("1000000"); at != line.npos) line.replace(at, 7, "1000");
+      if (const std::size_t at = line.find("dem.tif"); at != line.npos) line.replace(at, 7, "dem.npy");
+      if (line.find("--test") != line.npos) continue;
+      const Outcome outcome =
+          run_script("flaunay() { \"$FLAUNAY\" \"$@\"; }; " + line, {{"FLAUNAY_DEVICE", "host"}});
+      EXPECT_EQ(outcome.exit_code, kSuccess) << line << "\n" << outcome.err;
+    }
+    EXPECT_GE(count, 1) << name;
+  }
+}
+
+TEST_F(CommandUsageTest, CompletionForShellsAndTheManualPageNameAllOptions) {
+  const std::string bash = run_well({"--print", "bash"}, kNoPlatform).out;
+  write("flaunay.bash", bash);
+  const auto completed = [this](const std::string& words) {
+    const std::string script = "source flaunay.bash; COMP_WORDS=(flaunay " + words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _flaunay; echo \"${COMPREPLY[@]}\"";
+    return run_script("bash -c '" + script + "'").out;
+  };
+  EXPECT_EQ(completed("tri"), "triangulate\n");
+  EXPECT_EQ(completed("triangulate points.npy --tri"), "--triangles --triangle-attributes\n");
+  EXPECT_EQ(completed("triangulate points.npy --cut i"), "iqr\n");
+  EXPECT_EQ(completed("generate kuzmin"), "\n");  // then the shell completes names of files
+
+  const std::string zsh = run_well({"--print", "zsh"}, kNoPlatform).out;
+  const std::string fish = run_well({"--print", "fish"}, kNoPlatform).out;
+  const std::string manual = run_well({"--print", "man"}, kNoPlatform).out;
+  for (const char* const name : {"triangulate", "verify", "terrain"}) {
+    std::istringstream help(run_well({name, "--help"}, kNoPlatform).out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(help, line);) {
+      if (!line.starts_with("  --")) continue;
+      ++count;
+      const std::string option = line.substr(4, line.find(' ', 4) - 4);
+      expect_parts(bash, {" --" + option});
+      expect_parts(zsh, {" --" + option});
+      expect_parts(fish, {std::string("from ") + name + "' -l " + option});
+      std::string in_manual;
+      for (const char c : "--" + option) in_manual += c == '-' ? std::string("\\-") : std::string(1, c);
+      expect_parts(manual, {in_manual});
+    }
+    EXPECT_GE(count, 15U) << name;
+  }
+}
+
 TEST_F(CommandUsageTest, TriangulateHelpListsTheModes) {
   const std::string help = run_well({"triangulate", "--help"}, kNoPlatform).out;
   for (const research::ModeInfo& info : research::list_modes()) {
@@ -732,6 +806,33 @@ TEST_F(CommandTriangulateTest, EveryFileOfTheTestDataIsTriangulatedExactly) {
     run_well({"verify", input, path("t.npy"), "--neighbors", path("n.npy")}, kNoPlatform);
   }
   EXPECT_GE(count, 9u);
+}
+
+TEST_F(CommandTriangulateTest, MeshesGoThroughPipes) {
+  const std::string input = data("ukraine.xy");
+  run_well({"triangulate", input, "-o", path("mesh.off"), "--quiet"});
+  const Outcome piped = run({"triangulate", "-", "-o", "-"}, {}, contents(input));
+  EXPECT_EQ(piped.exit_code, kSuccess);
+  EXPECT_EQ(piped.out, contents(path("mesh.off")));
+  expect_parts(piped.err, {"874 points"});
+  EXPECT_EQ(run_well({"triangulate", input, "-o", "-", "--quiet"}).out, piped.out);
+  EXPECT_EQ(
+      run_well({"triangulate", data("airports.txt"), "--sphere", "-o", "-", "--quiet"}).out.substr(0, 3),
+      "OFF");
+}
+
+TEST_F(CommandTriangulateTest, SaysThatNothingIsWritten) {
+  const std::string input = data("ukraine.xy");
+  const auto says = [&](const Arguments& options) {
+    return run_well(joined({"triangulate", input}, options)).out.find("nothing was written") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(says({}));
+  EXPECT_FALSE(says({"--quiet"}));
+  EXPECT_FALSE(says({"--profile"}));
+  EXPECT_FALSE(says({"--hull", path("h.npy")}));
+  EXPECT_FALSE(says({"--stats", path("s.json")}));
+  EXPECT_FALSE(says({"--period", "99999,99999", "--offsets", path("o.npy")}));
 }
 
 TEST_F(CommandTriangulateTest, EveryMeshFormat) {

@@ -82,6 +82,10 @@ case "$1" in
     "$CMAKE" --install "$BUILD" --prefix "$prefix.first"
     mv "$prefix.first" "$prefix"
     [[ -x $prefix/bin/flaunay ]] || fail 'the command is not installed'
+    for file in bash-completion/completions/flaunay fish/vendor_completions.d/flaunay.fish man/man1/flaunay.1 \
+      zsh/site-functions/_flaunay; do
+      [[ -s $prefix/share/$file ]] || fail "share/$file is not installed"
+    done
     if grep -rIlF -e "$SOURCE" -e "$BUILD" -e "$prefix" "$prefix"; then
       fail 'these name the folder of the source, of the build or of the installation'
     fi

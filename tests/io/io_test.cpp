@@ -564,11 +564,12 @@ TEST_F(IoTest, AnnouncedFilesAreGoneUnlessTheyAreWritten) {
 }
 
 TEST_F(IoTest, WrongOutputEndingsAreUsageErrors) {
-  for (const char* name : {"a.stl", "a", "-", "a.node"}) {
+  for (const char* name : {"a.stl", "a", "a.node"}) {
     expect_error(ErrorKind::usage, std::string(name) + ": ",
                  {".npy, .geojson, .ele, .off, .obj, .ply, .msh, .vtu, .svg"}, [&] { mesh_files(name); });
     expect_error(ErrorKind::usage, std::string(name) + ": ", {".svg"}, [&] { write_mesh(name, {}, {}); });
   }
+  EXPECT_EQ(mesh_files("-"), std::vector<std::string>{"-"});  // .off on standard output
   expect_error(ErrorKind::usage, "a.npy: ", {"'.npy'", "expected .json"},
                [] { check_ending("a.npy", ".json"); });
 }

@@ -129,7 +129,8 @@ void add_assemble(CLI::App& app, Action& action) {
   add_threads(command, request->threads, "Threads for --solve; default: one per core")->needs(solve);
   add_quiet(command, request->quiet);
   command->footer(
-      "A region's solution is any Delaunay triangulation of the points of region-00000.node, up to their "
+      examples({"flaunay assemble points.npy regions --solve --triangles t.npy"}) +
+      "\nA region's solution is any Delaunay triangulation of the points of region-00000.node, up to their "
       "convex hull, in a file beside it: region-00000.npy (int32, 3 positions per row), region-00000.ele or "
       "region-00000.1.ele (the format of Triangle).");
   command->callback([request, &action] { action = [request] { return assemble(*request); }; });

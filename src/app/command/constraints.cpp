@@ -353,6 +353,7 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                    "GeoJSON: what is in several polygons belongs to the first one, or is an error",
                    all_of<Overlaps>())
       ->default_str("first");
+  end_group(command, "Segments and polygons");
 #define ADD(member, option, asks, unit, text) \
   add_member(command, option, request.refinement.member, unit, text);
   FLAUNAY_REFINEMENT_OPTIONS(ADD)
@@ -366,10 +367,12 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                   io::endings_for(io::Use::read_triangles)));
   add_path(command, "--mesh-areas", request.areas,
            "With --mesh: the largest area within each of its triangles, in an .area file of Triangle");
+  end_group(command, "Refinement");
   for_each_file([&](const auto& array, std::size_t k) { add_array(command, array, request.arrays[k]); });
   add_path(command, "--points", request.points,
            fmt::format("The points of the map and those that were added, to which indices refer: {}",
                        io::endings_for(io::Use::write_points)));
+  end_group(command, "Outputs with constraints");
 }
 
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request) {

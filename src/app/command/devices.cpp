@@ -82,6 +82,7 @@ void add_devices(CLI::App& app, Action& action) {
   add_path(command, "--record", request->record,
            "Of --test, a file for the results, as JSON; what has passed according to it is not run again")
       ->needs(asks);
+  command->footer(examples({"flaunay devices", "flaunay devices --test --device '#0' --only sets"}));
   command->callback([&action, request, is_test] {
     action = [request, is_test] { return *is_test ? test(*request) : devices(); };
   });

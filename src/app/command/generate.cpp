@@ -17,7 +17,6 @@
 #include "files/disk_space.hpp"
 #include "files/file.hpp"
 #include "flaunay/flaunay.hpp"
-#include "host/system/process.hpp"
 
 namespace flaunay::cli {
 
@@ -31,7 +30,6 @@ struct GenerateRequest {
 };
 
 int generate(const GenerateRequest& request) {
-  if (request.output == "-") system::end_on_closed_pipe();
   OutputFiles outputs;
   outputs.add_points(request.output);
   io::check_disk_space({{request.output, io::least_bytes(request.output, request.count)}});
@@ -76,7 +74,9 @@ void add_generate(CLI::App& app, Action& action) {
           "-o,--output", request->output,
           fmt::format("Points: {}, or - for text on standard output", io::endings_for(io::Use::write_points)))
       ->required();
-  command->footer(distribution_table());
+  command->footer(
+      examples({"flaunay generate kuzmin 1000000 --seed 1 -o points.npy", "flaunay generate grid 100 -o -"}) +
+      "\n" + distribution_table());
   command->callback([request, &action] { action = [request] { return generate(*request); }; });
 }
 

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "app/command/commands.hpp"
+#include "app/command/output.hpp"
+#include "app/command/printed.hpp"
 #include "files/temporary.hpp"
 #include "flaunay/flaunay.hpp"
 #include "host/system/process.hpp"
@@ -23,6 +25,9 @@ int fail(int code, const std::string& message) { return report_error("flaunay", 
 int run(std::vector<std::string> arguments) {
   CLI::App app(FLAUNAY_DESCRIPTION ".", "flaunay");
   app.set_version_flag("--version", std::string("flaunay ") + flaunay::version());
+  std::string kind;
+  app.add_option("--print", kind, "Print completion for a shell, or the manual page, and do nothing else")
+      ->check(CLI::IsMember(printable_kinds()));
   app.footer("The environment variable FLAUNAY_DEVICE chooses the device if --device is not given.");
   // Paths may begin with a slash on Windows, too.
   app.allow_windows_style_options(false);
@@ -43,7 +48,13 @@ int run(std::vector<std::string> arguments) {
     app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(kUsage, fmt::format("{} (see flaunay --help)", error.what()));
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    return fail(kUsage, fmt::format("{}{} (see flaunay {}--help)", error.what(), suggestion(app),
+                                    chosen.empty() ? "" : chosen.front()->get_name() + " "));
+  }
+  if (!kind.empty()) {
+    print(printed(app, kind));
+    return kSuccess;
   }
   if (!action) {
     return fail(

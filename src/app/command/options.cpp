@@ -39,6 +39,17 @@ CLI::Option* add_path(CLI::App* command, const std::string& option, std::string&
   return command->add_option(option, path, description)->check(not_empty);
 }
 
+void end_group(CLI::App* command, const std::string& heading) {
+  const std::string others = command->get_help_ptr()->get_group();
+  for (CLI::Option* const option : command->get_options()) {
+    if (option->get_group() == others && option != command->get_help_ptr()) option->group(heading);
+  }
+}
+
+std::string examples(const std::vector<std::string>& lines) {
+  return fmt::format("Examples:\n  {}\n", fmt::join(lines, "\n  "));
+}
+
 void add_cut(CLI::App* command, Cut& cut) {
   add_choice<Cut>(command, "--cut", cut,
                   "How regions are cut: across the longer interquartile range, or in x and y in turn",

@@ -31,6 +31,11 @@ void add_columns(CLI::App* command, io::Columns& columns, const std::string& wha
 CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,
                       const std::string& description);
 
+/// Puts the options that were added since the last call below this heading of the help.
+void end_group(CLI::App* command, const std::string& heading);
+/// Examples for the end of the help, in lines.
+std::string examples(const std::vector<std::string>& lines);
+
 void add_cut(CLI::App* command, Cut& cut);
 /// variants: those that the subcommand supports.
 void add_hull_variant(CLI::App* command, Hull& variant, const std::vector<Hull>& variants,

@@ -10,12 +10,21 @@
 #include "app/files/formats.hpp"
 #include "files/file.hpp"
 #include "flaunay/flaunay.hpp"
+#include "host/system/process.hpp"
 
 namespace flaunay::cli {
 
+namespace {
+
+// Standard output has a file.
+bool has_file = false;
+
+}  // namespace
+
 bool print(const std::string& text) {
   errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+  std::FILE* const stream = has_file ? stderr : stdout;
+  if (std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0)
     return true;
   if (errno == EPIPE || errno == EBADF) return false;
   throw Error(ErrorKind::input, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
@@ -35,8 +44,15 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+void OutputFiles::take_standard_output(const std::string& path) {
+  if (path != "-") return;
+  has_file = true;
+  system::end_on_closed_pipe();
+}
+
 void OutputFiles::add_mesh(const std::string& path, bool with_constraints) {
   if (path.empty()) return;
+  take_standard_output(path);
   for (const std::string& file : io::mesh_files(path, with_constraints)) announce(file);
 }
 
@@ -47,7 +63,7 @@ void OutputFiles::add(const std::string& path, const std::string& ending) {
 }
 
 void OutputFiles::add_points(const std::string& path) {
-  if (path == "-") return;
+  take_standard_output(path);
   io::format_of(path, io::Use::write_points);
   announce(path);
 }

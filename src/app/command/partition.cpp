@@ -101,7 +101,8 @@ void add_partition(CLI::App& app, Action& action) {
                    "How dividing paths are computed; the regions do not depend on it");
   add_device(command, request->device);
   add_quiet(command, request->quiet);
-  command->footer("flaunay assemble joins the solved regions.");
+  command->footer(examples({"flaunay partition points.npy --levels 4 -o regions --picture regions.svg"}) +
+                  "\nflaunay assemble joins the solved regions.");
   command->callback([request, &action] { action = [request] { return partition(*request); }; });
 }
 

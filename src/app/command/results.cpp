@@ -31,7 +31,8 @@ std::vector<std::string> ResultPaths::all() const {
 
 void add_results(CLI::App* command, ResultPaths& paths) {
   add_path(command, "-o,--output", paths.mesh,
-           fmt::format("Mesh: {}; .ele has a .node beside it", io::endings_for(io::Use::write_mesh)));
+           fmt::format("Mesh: {}; .ele has a .node beside it; - is .off on standard output",
+                       io::endings_for(io::Use::write_mesh)));
   add_result_arrays(command, paths);
 }
 

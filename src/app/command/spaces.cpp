@@ -132,7 +132,7 @@ bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   const bool in_chunks = asks_for_chunks(command, command.get_option("--device")->as<std::string>());
   const std::string output = command.get_option("--output")->as<std::string>();
   const std::vector<std::string> in_space = {".npy", ".obj", ".off", ".ply", ".vtu", ".msh", ".geojson"};
-  if (request.kind == SpaceKind::sphere && !output.empty() &&
+  if (request.kind == SpaceKind::sphere && !output.empty() && output != "-" &&
       std::find(in_space.begin(), in_space.end(), io::ending_of(output)) == in_space.end()) {
     throw Error(
         ErrorKind::usage,

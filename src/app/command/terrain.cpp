@@ -326,6 +326,20 @@ void add_terrain(CLI::App& app, Action& action) {
                    "XMIN,YMIN,XMAX,YMAX: what the raster covers at least; default: the box of the points")
       ->delimiter(',')
       ->expected(4);
+  add_named_choice(command, "--pixel-is", request->is_point,
+                   "Whether the edges of pixels or their centres are multiples of the resolution",
+                   NamedChoices<bool>{{"area", false}, {"point", true}})
+      ->default_str("area");
+  command->add_option("--nodata", request->nodata, "What stands for no height in the GeoTIFF")
+      ->capture_default_str();
+  command
+      ->add_option("--contours", request->contours,
+                   "The interval of contours' heights, or several heights, for an output .geojson or .gpkg")
+      ->delimiter(',');
+  end_group(command, "Outputs");
+  add_columns(command, request->columns, "x, y and height");
+  command->add_option("--crs", request->crs,
+                      "The system of the coordinates, such as EPSG:25832, in place of that of the files");
   constexpr int kMostClass = 255;
   command
       ->add_option(
@@ -338,13 +352,10 @@ void add_terrain(CLI::App& app, Action& action) {
   add_named_choice(command, "--duplicates", request->duplicates,
                    "The height of a place that was measured several times", all_of<Duplicates>())
       ->default_str("highest");
+  end_group(command, "Points");
   add_path(command, "--breaklines", request->breaklines,
            "A map of lines that become edges of the triangulation, with heights or else those of the points "
            "around");
-  command
-      ->add_option("--contours", request->contours,
-                   "The interval of contours' heights, or several heights, for an output .geojson or .gpkg")
-      ->delimiter(',');
   add_path(command, "--boundary", request->boundary,
            "A map of polygons, outside of which the raster is empty and there are no contours");
   add_path(command, "--flat", request->flat,
@@ -356,15 +367,7 @@ void add_terrain(CLI::App& app, Action& action) {
                    "Breaklines that cross: an error, or cut where they do, at the height of the first one",
                    all_of<Crossings>())
       ->default_str("error");
-  add_columns(command, request->columns, "x, y and height");
-  command->add_option("--crs", request->crs,
-                      "The system of the coordinates, such as EPSG:25832, in place of that of the files");
-  add_named_choice(command, "--pixel-is", request->is_point,
-                   "Whether the edges of pixels or their centres are multiples of the resolution",
-                   NamedChoices<bool>{{"area", false}, {"point", true}})
-      ->default_str("area");
-  command->add_option("--nodata", request->nodata, "What stands for no height in the GeoTIFF")
-      ->capture_default_str();
+  end_group(command, "Lines and areas");
   add_device(command, request->device);
   add_memory(command, request->memory,
              "Work within so many bytes: 4G, 500M; default: half of what is free. A raster of more than a "
@@ -374,6 +377,10 @@ void add_terrain(CLI::App& app, Action& action) {
            "The folder for 32 bytes per point, in a file without a name; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
   add_quiet(command, request->quiet);
+  end_group(command, "Work");
+  command->footer(
+      examples({"flaunay terrain scan.las -o heights.npy --resolution 1 --classes 2",
+                "flaunay terrain tiles/ -o dem.tif -o contours.geojson --resolution 1 --contours 5"}));
   command->callback([request, &action] {
     check(*request);
     action = [request] { return make_terrain(*request); };

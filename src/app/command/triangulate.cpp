@@ -195,6 +195,17 @@ std::vector<Mode> all_modes() {
   return modes;
 }
 
+constexpr const char* kOutputs = "Outputs";
+
+// Whether no option names a file to be written.
+bool writes_nothing(const CLI::App& command) {
+  const auto names_file = [](const CLI::Option* option) {
+    return option->count() > 0 && (option->get_group().starts_with(kOutputs) ||
+                                   option->check_lname("offsets") || option->check_lname("hidden"));
+  };
+  return command.get_options(names_file).empty();
+}
+
 std::string mode_table() {
   std::vector<std::vector<std::string>> rows;
   for (const research::ModeInfo& info : research::list_modes()) {
@@ -209,7 +220,10 @@ void add_triangulate(CLI::App& app, Action& action) {
   auto request = std::make_shared<TriangulateRequest>();
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
   add_input(command, request->input, request->columns);
+  end_group(command, "Input");
   add_results(command, request->results);
+  add_index(command, request->index);
+  end_group(command, kOutputs);
   add_choice<Mode>(command, "--mode", request->mode,
                    "How to divide and conquer (see below); the triangles do not depend on it", all_modes());
   add_cut(command, request->cut);
@@ -225,23 +239,37 @@ void add_triangulate(CLI::App& app, Action& action) {
                    "Mode partition: number of levels on the device; default: enough for the threads")
       ->check(CLI::Range(1, kMostPartitionLevels));
   add_threads(command, request->threads, "Mode partition: number of host threads; default: one per core");
+  end_group(command, "Algorithm");
   add_device(command, request->device)
       ->description(
           "Device: a part of its name, or #k for the k-th that flaunay devices lists; several with commas "
           "between them, or all: triangulates in chunks, on each of them");
+  end_group(command, "Device");
   add_constraint_options(command, request->constraints);
   add_space_options(command, request->space);
   add_path(command, "--hidden", request->space.hidden, "With --weighted: points without a power cell: .npy");
+  end_group(command, "Torus, sphere and weights");
   add_chunk_options(command, request->chunks);
-  add_index(command, request->index);
+  end_group(command, "More points than memory");
   command->add_flag("--profile", request->profile, "Time every kernel; the times are printed as a table");
   command->add_flag("--count", request->count, "Count operations, for a table and for the statistics (slow)");
   add_quiet(command, request->quiet);
-  command->footer(mode_table());
+  end_group(command, "Reports");
+  command->footer(examples({"flaunay triangulate points.npy --triangles t.npy --neighbors n.npy",
+                            "flaunay triangulate points.npy -o picture.svg",
+                            "flaunay triangulate points.npy --min-angle 30 -o refined.obj",
+                            "flaunay generate grid 100 -o - | flaunay triangulate - -o - | head"}) +
+                  "\n" + mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
     request->is_in_space = asks_for_space(*command, request->space);
-    action = [request] { return triangulate(*request); };
+    const bool is_silent = request->quiet || request->profile || request->count;
+    const bool needs_note = !is_silent && writes_nothing(*command);
+    action = [request, needs_note] {
+      const int code = triangulate(*request);
+      if (needs_note) print("note: nothing was written, for want of an output such as -o picture.svg\n");
+      return code;
+    };
     request->in_chunks = asks_for_chunks(*command, request->device);
     if (request->is_in_space && request->in_chunks) {
       request->chunks.space = space_of(request->space);

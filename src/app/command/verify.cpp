@@ -356,16 +356,20 @@ void add_verify(CLI::App& app, Action& action) {
       ->required();
   add_columns(command, request->columns, "x and y");
   command->add_option("--neighbors", request->neighbors, "Neighbours to check too: .npy");
+  end_group(command, "Input");
   add_space_options(command, *request);
+  end_group(command, "Torus, sphere and weights");
   add_domain_options(command, request->constraints);
   add_path(command, "--constraint-edges", request->constraint_edges,
            "Constraint edges to check too, as triangulate writes them: .npy");
+  end_group(command, "Segments and polygons");
   command->add_option(
       "--min-angle", request->min_angle,
       "Check that no angle is smaller, in degrees, but where the input has such angles: 0 to 34");
   command->add_option("--max-area", request->max_area, "Check that no triangle is larger");
   command->add_flag("--conforming", request->conforming,
                     "Check that no angle opposite to a constraint, or to the border, is obtuse");
+  end_group(command, "Refinement");
   add_memory(command, request->memory_bytes,
              "Check in chunks, within so many bytes: 4G, 500M; K, M, G and T are powers of 1024; needs .npy "
              "triangles. Default: hold everything if it fits");
@@ -373,6 +377,7 @@ void add_verify(CLI::App& app, Action& action) {
       command, "--scratch", request->scratch,
       "Chunks: the folder for about 24 bytes per point, in files without names; default: TMPDIR, or /tmp")
       ->check(CLI::ExistingDirectory);
+  end_group(command, "More points than memory");
   add_quiet(command, request->quiet);
   command->callback([request, command, &action] {
     constrained::quality_bounds(request->min_angle);
@@ -381,8 +386,10 @@ void add_verify(CLI::App& app, Action& action) {
     request->has_constraints = !request->is_in_space() && has_constraints(*command, *request);
     action = [request] { return verify(*request); };
   });
+  end_group(command, "Reports");
   command->footer(
-      "The exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not. With segments, "
+      examples({"flaunay verify points.npy t.npy --neighbors n.npy"}) +
+      "\nThe exit code is 0 if the triangles are a Delaunay triangulation, 1 if they are not. With segments, "
       "they must be "
       "the canonical constrained Delaunay triangulation.");
 }

@@ -13,8 +13,9 @@ constexpr const Format* kFormats[] = {&kNpy, &kNode, &kXy,   &kXyz,     &kTxt,  
 }  // namespace
 
 const Format* find_format(const std::string& path, Use::Test use) {
-  const bool is_stream = path == "-" && (use == Use::read_points || use == Use::write_points);
-  const std::string ending = is_stream ? ".txt" : ending_of(path);
+  std::string ending = ending_of(path);
+  if (path == "-" && (use == Use::read_points || use == Use::write_points)) ending = ".txt";
+  if (path == "-" && (use == Use::write_mesh || use == Use::has_heights)) ending = ".off";
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                   [&](const Format* format) { return format->ending == ending; });
   if (found == std::end(kFormats)) return nullptr;
@@ -25,9 +26,10 @@ const Format* find_format(const std::string& path, Use::Test use) {
 const Format& format_of(const std::string& path, Use::Test use) {
   const Format* const found = find_format(path, use);
   if (found != nullptr) return *found;
-  fail_ending(path, endings_for(use) + (use == Use::read_points    ? ", or \"-\" for standard input"
-                                        : use == Use::write_points ? ", or \"-\" for standard output"
-                                                                   : ""));
+  fail_ending(path, endings_for(use) + (use == Use::read_points ? ", or \"-\" for standard input"
+                                        : use == Use::write_points || use == Use::write_mesh
+                                            ? ", or \"-\" for standard output"
+                                            : ""));
 }
 
 std::string endings_for(Use::Test use) {

@@ -77,7 +77,7 @@ struct Use {
 };
 
 /// The format of a path. Throws Error(usage) that lists the endings if no format with this ending has this
-/// use. "-" is text.
+/// use. "-" is text: of meshes, .off.
 const Format& format_of(const std::string& path, Use::Test use);
 /// The format of a path; null if no format with its ending has this use.
 const Format* find_format(const std::string& path, Use::Test use);
