@@ -1,9 +1,9 @@
-// The points of blocks that are too large for local memory, between the making of blocks and blocks/halve.cl.
+// The points of blocks that are too large for local memory, before and after blocks/halve.cl.
 //
-// Blocks of more than `capacity` points have many equal points as a rule. Launches over all places sort them along x
-// and drop duplicates: name_blocks, sort_large_tiles by counting, merge_large_runs for each width of runs,
-// flag_distinct, a scan of its flags, move_distinct and name_duplicates. halve_large_blocks is one launch with a
-// work-group per block, which cuts in halves the vertices of blocks that have more than `capacity`
+// Blocks of more than `capacity` points have many equal points as a rule. Before, launches over all places sort them
+// along x and drop duplicates: name_blocks, sort_large_tiles by counting, merge_large_runs for each width of runs,
+// flag_distinct, a scan of its flags, move_distinct and name_duplicates. Afterwards halve_large_blocks is one launch
+// with a work-group per block, which cuts in halves the vertices of blocks that have more than `capacity`
 // (blocks/group_halving.h).
 
 #include "blocks/arguments.h"
@@ -31,9 +31,14 @@ static inline points_to_sort points_of(large_place at, global const coordinate2*
   return s;
 }
 
-kernel void name_blocks(int n, int blocks, global const int* restrict offsets, global int* restrict block_of_place) {
+// Names the blocks of places; -1 for blocks of more than `largest` points, which are left alone.
+kernel void name_blocks(int n, int blocks, int largest, global const int* restrict offsets,
+                        global int* restrict block_of_place) {
   const int i = get_global_id(0);
-  if (i < n) block_of_place[i] = i < offsets[blocks] ? segment_of(i, blocks, offsets) : -1;
+  if (i < n) {
+    const int b = i < offsets[blocks] ? segment_of(i, blocks, offsets) : -1;
+    block_of_place[i] = b >= 0 && offsets[b + 1] - offsets[b] <= largest ? b : -1;
+  }
 }
 
 // order: by place of a large block, the point that stands there, counted from the block's first.

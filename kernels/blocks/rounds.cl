@@ -9,8 +9,7 @@
 // (blocks/open_sectors.h) distinguish these from triangles still missing. The outside is emitted per hull edge.
 //
 // Each round, when the blocks are solved:
-// 1. In the first round, if a set has several blocks or frames, box_blocks, per block, and join_boxes, in one launch
-// per
+// 1. In the first round, if a set has several blocks or frames, box_blocks, per block, and join_boxes, in a launch per
 //    factor of 16 blocks, find the box around each set's points. begin_round, per vertex, numbers the vertices, in the
 //    first round with nothing emitted, and per frame finds the rectangle between the cuts.
 // 2. emit_triangles, per pair of edges, emits triangles to their middle vertices' places, one below and one above the

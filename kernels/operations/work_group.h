@@ -1,8 +1,8 @@
 // Functions that the work-items of a group compute together, for kernels that work on tiles: a tile is one
-// work-group's share. Such kernels allow for any size of group up to LARGEST_TILE_GROUP, and for groups behind
-// the last tile, which do nothing. All work-items of a group must call them at the same place. Loops with barriers
-// have a first turn in any case, and no barrier is in a branch, where that is possible: PoCL compiles what follows them
-// once more for each that may be left out. For kernel files alone.
+// work-group's share. Such kernels allow for any size of group, up to LARGEST_TILE_GROUP where they scan, and for
+// groups behind the last tile, which do nothing. All work-items of a group must call them at the same place. Loops with
+// barriers have a first turn in any case, and no barrier is in a branch, where that is possible: PoCL compiles what
+// follows them once more for each that may be left out. For kernel files alone.
 #ifndef FLAUNAY_WORK_GROUP_H
 #define FLAUNAY_WORK_GROUP_H
 

@@ -41,6 +41,7 @@ void drop_duplicates(Workspace& work, const PointBlocks& blocks, const HalvedBlo
   auto order = work.scratch().allocate<cl_int>(blocks.points);
   auto merged = work.scratch().allocate<cl_int>(blocks.points);
   runtime.map(blocks.points, kernels::name_blocks{.blocks = blocks.count,
+                                                  .largest = blocks.largest,
                                                   .offsets = blocks.offsets,
                                                   .block_of_place = halved.block_of_place});
   runtime.map(blocks.points, kernels::sort_large_tiles{.capacity = capacity,

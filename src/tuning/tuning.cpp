@@ -184,7 +184,7 @@ constexpr Row kTable[] = {
      {1},
      {256},
      {4},
-     "Eight points of a block for each work-item; as many groups fit a multiprocessor as it has blocks."},
+     "Eight points of a block for each work-item; six groups fit the local memory of a multiprocessor."},
     {"merge_items",
      &Tuning::merge_items,
      {0},

@@ -224,6 +224,30 @@ TEST(Halve, SizesAboutLocalMemory) {
   });
 }
 
+/// Blocks that are larger than the host has guessed get no vertices, and nothing is written about their
+/// points: the numbers of these are not those of representatives.
+TEST(Halve, BlocksThatAreLargerThanGuessed) {
+  with_groups(50, [](Runtime& runtime) {
+    FixtureRandom random(37);
+    BlockPoints points;
+    for (const std::size_t size : {20, 60, 300, 40}) points.add(coarse(size, 4, 60, random));
+    Call call(runtime);
+    DeviceBlocks on_device(call, points);
+    on_device.blocks.largest = 70;
+    const std::size_t n = points.points();
+    const std::vector<cl_int> before = download(runtime, on_device.representatives, n);
+    halve(call.work, on_device.blocks, on_device.representatives, on_device.rings);
+    const std::vector<cl_int> after = download(runtime, on_device.representatives, n),
+                              distinct = download(runtime, on_device.rings.device_distinct, 4);
+    EXPECT_EQ(distinct[2], 0);
+    for (const std::size_t b : {0u, 1u, 3u}) EXPECT_GT(distinct[b], 0);
+    for (std::size_t i = points.first(2); i < points.first(3); ++i) {
+      const auto own = static_cast<std::size_t>(points.source(i));
+      ASSERT_EQ(after[own], before[own]);
+    }
+  });
+}
+
 /// Blocks of which a work-item does one each, alone or among some that are larger, or large.
 TEST(SmallHalve, TinyBlocks) {
   with_groups(30, [](Runtime& runtime) {

@@ -109,6 +109,7 @@ TEST(Memory, NoCallTakesMoreThanIsSaid) {
     check_bounds(*runtime, 1, 1, least);
     check_bounds(*runtime, 100, 1, least);
     check_bounds(*runtime, 100, 100, least);
+    check_bounds(*runtime, 3000, 1, least);
     check_bounds(*runtime, 5000, 1, least);
     check_bounds(*runtime, 5000, 4, least);
     check_bounds(*runtime, 5000, 3000, least);
