@@ -85,7 +85,8 @@ void solve_sizes(Workspace& work, const Blocks& blocks, std::size_t workers, std
 void solve_one_by_one(Workspace& work, const Blocks& blocks, std::size_t largest,
                       const Buffer<cl_int>& representatives, const Rings& rings, Milestones* milestones) {
   const Tuning& tuning = tuning_of(work.runtime);
-  const std::size_t most = tuning.large_blocks * tuning.block_points, capacity = std::min(largest, most);
+  const std::size_t most = std::max<std::size_t>(1, tuning.large_blocks * tuning.block_points),
+                    capacity = std::min(largest, most);
   const std::size_t in_all = tuning.scratch_per_point * blocks.points;
   const std::size_t affordable = std::max<std::size_t>(1, in_all / capacity);
   const std::size_t workers = std::min({blocks.count, tuning.block_workers, affordable});
