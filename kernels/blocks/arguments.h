@@ -8,9 +8,9 @@
 // Where parts of a height are, at depths from least_depth on below end_depth: how many places there are, where blocks
 // begin, how many vertices they have, the block of each place, and the axes of cuts.
 #define PLACES_OF_PARTS(PREFIX) \
-  int PREFIX##height, int PREFIX##least_depth, int PREFIX##end_depth, int PREFIX##places, global const int* restrict PREFIX##offsets, \
-  global const int* restrict PREFIX##distinct, global const int* restrict PREFIX##block_of_place, \
-  global const uchar* restrict PREFIX##axes
+  int PREFIX##height, int PREFIX##least_depth, int PREFIX##end_depth, int PREFIX##places, \
+  global const int* restrict PREFIX##offsets, global const int* restrict PREFIX##distinct, \
+  global const int* restrict PREFIX##block_of_place, global const uchar* restrict PREFIX##axes
 
 // The triangulations of parts: their vertices, the rings around these, and the ends of parts and of whole blocks. In
 // kernels with barriers, work-items read what others have written.

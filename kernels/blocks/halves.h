@@ -15,14 +15,6 @@
 
 BEGIN_SHARED
 
-static inline halved_blocks blocks_in(int least_depth, int end_depth, int places, GLOBAL const int* offsets,
-                                      GLOBAL const int* distinct, GLOBAL const int* block_of_place,
-                                      GLOBAL const uchar* axes, GLOBAL solved_block* parts,
-                                      GLOBAL solved_block* solved) {
-  const halved_blocks blocks = {least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved};
-  return blocks;
-}
-
 static inline void finish_part(rings* g, const halved_blocks* blocks, block_part part, hull_ends ends) {
   if (part.depth == 0) {
     // The edges of places without vertices are the block's, too.

@@ -17,8 +17,6 @@ INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
 INTEGER_CONSTANT(LOCAL_VERTICES, 512);
 INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
 INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
-// Rounds certify parts of blocks, at most 2 to this power of each.
-INTEGER_CONSTANT(MOST_FRAME_DEPTH, 3);
 // The most points of a block that a work-group sorts and halves in local memory (blocks/group_halving.h). Each takes
 // four numbers of 16 bits.
 INTEGER_CONSTANT(LOCAL_BYTES_PER_BLOCK_POINT, 8);

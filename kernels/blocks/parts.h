@@ -27,6 +27,14 @@ typedef struct {
   GLOBAL solved_block* solved;
 } halved_blocks;
 
+static inline halved_blocks blocks_in(int least_depth, int end_depth, int places, GLOBAL const int* offsets,
+                                      GLOBAL const int* distinct, GLOBAL const int* block_of_place,
+                                      GLOBAL const uchar* axes, RINGS_MEMORY solved_block* parts,
+                                      GLOBAL solved_block* solved) {
+  const halved_blocks blocks = {least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved};
+  return blocks;
+}
+
 static inline int edge_at(int place) { return EDGES_PER_VERTEX * place; }
 
 // Frees the edges of a place without a vertex, in one list with the edges of all such places up to `end`.

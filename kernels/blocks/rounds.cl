@@ -84,8 +84,8 @@ kernel void box_blocks(int n, PLACES_OF_PARTS(), int depth, global solved_block*
                        global const coordinate2* restrict points, global vertex_box* restrict boxes) {
   const int b = get_global_id(0);
   if (b < n) {
-    const halved_blocks blocks = {least_depth,    end_depth, places, offsets, distinct,
-                                  block_of_place, axes,      parts,  solved};
+    const halved_blocks blocks =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     boxes[b] = box_of_frames(&blocks, b, height, depth, 0, 1 << depth, points);
   }
 }
@@ -168,8 +168,8 @@ kernel void begin_round(int n, PLACES_OF_PARTS(), int depth, int blocks, CUT_SET
   if (f < RINGS_NUMBERS) own_numbers[f] = (int)account[f];
   if (f < blocks && is_first) own_numbers[RINGS_NUMBERS + f] = distinct[f];
   if (b < blocks) {
-    const halved_blocks halved = {least_depth,    end_depth, places, offsets, distinct,
-                                  block_of_place, axes,      parts,  solved};
+    const halved_blocks halved =
+        blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, parts, solved);
     const block_part part = part_in_frame(&halved, b, height, depth, j);
     const int s = segment_of(b, sets, set_blocks);
     const int first = set_blocks[s], leaves = set_blocks[s + 1] - first;

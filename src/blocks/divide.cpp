@@ -165,6 +165,7 @@ Rings solve(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& represe
 }
 
 void merge_parts(Workspace& work, const Blocks& blocks, const Rings& rings, PartsOfBlocks& parts) {
+  // Of one-by-one solutions there are none; said so, programs that are always native leave merges out.
   if (!are_in_parallel(work) || parts.depth == 0) return;
   const PointBlocks whole = points_of(blocks, largest_of(blocks));
   merge_halves(work, whole, parts, rings, parts.height + 1, whole.height(), {0, parts.depth});

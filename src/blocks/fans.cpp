@@ -1,5 +1,4 @@
-#include <algorithm>
-
+#include "blocks/parts.hpp"
 #include "blocks/pipeline.hpp"
 #include "launchers/blocks/fans.cl.hpp"
 
@@ -40,10 +39,8 @@ void make_fans(Workspace& work, const Blocks& blocks, const Rings& rings) {
 
 void make_fans_of_blocks(Workspace& work, const Blocks& blocks, const Rings& rings) {
   Arena::Scope scope(work.scratch());
-  const std::size_t pairs = rings.edges.size() / 2, most = tuning_of(work.runtime).halve_group;
-  // Of the blocks' pairs of edges, few for each work-item.
-  std::size_t group = std::min(tuning_of(work.runtime).block_group, most);
-  while (group < most && group * blocks.count < pairs) group = std::min(2 * group, most);
+  const std::size_t pairs = rings.edges.size() / 2,
+                    group = group_for(tuning_of(work.runtime), blocks.count, pairs);
   work.runtime.launch(group * blocks.count, group,
                       kernels::make_fans_of_blocks{.blocks = blocks.count,
                                                    .offsets = blocks.device_offsets,

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "blocks/limits.h"
+#include "blocks/parts.hpp"
 #include "blocks/pipeline.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/halve.cl.hpp"
@@ -16,13 +17,6 @@ namespace {
 
 // Points of a block per work-item; more in the largest groups.
 constexpr std::size_t kPointsPerItem = 4;
-
-std::size_t group_for(const Tuning& tuning, const PointBlocks& blocks, std::size_t groups) {
-  // At least a warp: smaller groups would occupy one, too.
-  std::size_t group = std::min(tuning.block_group, tuning.halve_group);
-  while (group < tuning.halve_group && group * kPointsPerItem * groups < blocks.points) group *= 2;
-  return std::min(group, tuning.halve_group);
-}
 
 // The arrays in which blocks are sorted.
 struct SortedPoints {
@@ -92,21 +86,16 @@ bool are_tiny(const PointBlocks& blocks) {
 
 // Halves tiny blocks. Returns how many others there are at most, and which.
 std::size_t halve_tiny(Workspace& work, const PointBlocks& blocks, const HalvedBlocks& halved,
-                       const Buffer<cl_int>& representatives, const Rings& rings, const SortedPoints& sorted,
+                       const kernels::block_points& block_points, const SortedPoints& sorted,
                        const Buffer<cl_uint>& larger_blocks) {
   host::Runtime& runtime = work.runtime;
-  runtime.map(blocks.count,
-              kernels::halve_tiny_blocks{.places = blocks.points,
-                                         .offsets = blocks.offsets,
-                                         .block_points = {.points = blocks.vertices,
-                                                          .source = blocks.source,
-                                                          .representatives = representatives,
-                                                          .solved = rings.solved,
-                                                          .distinct_counts = rings.device_distinct},
-                                         .block_of_place = halved.block_of_place,
-                                         .axes = halved.axes,
-                                         .scratch_points = sorted.points,
-                                         .scratch_source = sorted.source});
+  runtime.map(blocks.count, kernels::halve_tiny_blocks{.places = blocks.points,
+                                                       .offsets = blocks.offsets,
+                                                       .block_points = block_points,
+                                                       .block_of_place = halved.block_of_place,
+                                                       .axes = halved.axes,
+                                                       .scratch_points = sorted.points,
+                                                       .scratch_source = sorted.source});
   if (blocks.largest <= kernel::TINY_BLOCK) return 0;
   runtime.map(blocks.count, kernels::flag_larger_blocks{.offsets = blocks.offsets, .flags = larger_blocks});
   host::exclusive_scan(runtime, larger_blocks, blocks.count, larger_blocks);
@@ -130,13 +119,17 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
                             scratch.allocate<cl_int>(blocks.points),
                             scratch.allocate<cl_uint>(has_large ? blocks.points + 1 : 1)};
   if (has_large) drop_duplicates(work, blocks, halved, capacity, representatives, sorted);
+  const kernels::block_points block_points{.points = blocks.vertices,
+                                           .source = blocks.source,
+                                           .representatives = representatives,
+                                           .solved = rings.solved,
+                                           .distinct_counts = rings.device_distinct};
   const bool with_tiny = are_tiny(blocks);
   const auto larger_blocks = scratch.allocate<cl_uint>(with_tiny ? blocks.count + 1 : 1);
   const std::size_t groups =
-      with_tiny ? halve_tiny(work, blocks, halved, representatives, rings, sorted, larger_blocks)
-                : blocks.count;
+      with_tiny ? halve_tiny(work, blocks, halved, block_points, sorted, larger_blocks) : blocks.count;
   if (groups == 0) return halved;
-  const std::size_t group = group_for(tuning, blocks, groups);
+  const std::size_t group = group_for(tuning, groups, (blocks.points + kPointsPerItem - 1) / kPointsPerItem);
   const kernels::blocks_to_halve to_halve{.blocks = blocks.count,
                                           .are_listed = with_tiny,
                                           .larger_blocks = larger_blocks,
@@ -148,11 +141,7 @@ HalvedBlocks halve(Workspace& work, const PointBlocks& blocks, const Buffer<cl_i
   runtime.launch(group * groups, group,
                  kernels::halve_blocks{.blocks_to_halve = to_halve,
                                        .places = blocks.points,
-                                       .block_points = {.points = blocks.vertices,
-                                                        .source = blocks.source,
-                                                        .representatives = representatives,
-                                                        .solved = rings.solved,
-                                                        .distinct_counts = rings.device_distinct},
+                                       .block_points = block_points,
                                        .block_of_place = halved.block_of_place,
                                        .axes = halved.axes,
                                        .scratch_points = sorted.points,

@@ -222,6 +222,9 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
   }
 }
 
+// Rounds certify parts of blocks, at most 2 to this power of each.
+constexpr int kMostDepthOfFrames = 3;
+
 std::size_t most_frames(const Workspace& work, std::size_t blocks, std::size_t places) {
   const std::size_t least_points = std::max<std::size_t>(1, tuning_of(work.runtime).local_vertices / 8);
   return std::max(blocks, places / least_points);
@@ -237,7 +240,7 @@ void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<
   own.ends = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
   own.height = blocks.height();
   if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
-    own.depth = std::clamp<int>(own.height - in_local, 0, kernel::MOST_FRAME_DEPTH);
+    own.depth = std::clamp<int>(own.height - in_local, 0, kMostDepthOfFrames);
     while (own.depth > 0 && blocks.count << own.depth > most_frames(work, blocks.count, blocks.points))
       --own.depth;
     if (own.depth > 0) own.height = in_local;

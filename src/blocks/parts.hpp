@@ -1,4 +1,4 @@
-// Launches over the parts of halved blocks, and over merges of blocks, on devices with many lanes
+// Launches over blocks and the parts of halved blocks, and over merges of blocks, on devices with many lanes
 // (kernels/blocks/halves.h).
 #pragma once
 
@@ -14,6 +14,14 @@ namespace flaunay::blocks {
 /// One of this many consecutive work-items of a launch has a merge.
 inline std::size_t spread_of(const Tuning& tuning, std::size_t merges) {
   return std::clamp<std::size_t>(tuning.merge_items / merges, 1, tuning.block_group);
+}
+
+/// The size of groups, one per block, that together have at least this many work-items, as far as the largest
+/// group that halves a block allows. At least a warp: smaller groups would occupy one, too.
+inline std::size_t group_for(const Tuning& tuning, std::size_t groups, std::size_t work_items) {
+  std::size_t group = tuning.block_group;
+  while (group < tuning.halve_group && group * groups < work_items) group *= 2;
+  return std::min(group, tuning.halve_group);
 }
 
 /// Spreads the work-items of these merges over warps.

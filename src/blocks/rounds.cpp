@@ -9,6 +9,7 @@
 #include "blocks/codes.h"
 #include "blocks/limits.h"
 #include "blocks/open_sectors.h"
+#include "blocks/parts.hpp"
 #include "geometry/euler.hpp"
 #include "host/launch/vector_operations.hpp"
 #include "launchers/blocks/rounds.cl.hpp"
@@ -122,14 +123,8 @@ bool may_be_parts(const Workspace& work, const Round& round) {
 }
 
 kernels::places_of_parts places_of_parts(const Round& round) {
-  return {.height = round.parts.height,
-          .least_depth = 0,
-          .end_depth = kernel::MOST_DEPTH,
-          .places = round.blocks.points,
-          .offsets = round.blocks.device_offsets,
-          .distinct = round.rings.device_distinct,
-          .block_of_place = round.parts.halved.block_of_place,
-          .axes = round.parts.halved.axes};
+  return places_of_parts({.points = round.blocks.points, .offsets = round.blocks.device_offsets},
+                         round.parts.halved, round.rings, round.parts.height);
 }
 
 kernels::frames frames_of(const Round& round) {

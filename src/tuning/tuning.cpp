@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <optional>
 #include <vector>
@@ -607,9 +608,8 @@ void fit_tiles(Tuning& tuning) {
   fit(tuning.block_bits, kernel::MOST_BLOCK_BITS);
   fit(tuning.sewing_group, kernel::LARGEST_TILE_GROUP);
   // Parts have LEAF_VERTICES times a power of two.
-  while ((tuning.local_vertices & (tuning.local_vertices - 1)) != 0)
-    tuning.local_vertices &= tuning.local_vertices - 1;
-  tuning.local_vertices = std::min<std::size_t>(tuning.local_vertices, kernel::LOCAL_VERTICES);
+  tuning.local_vertices =
+      std::min<std::size_t>(std::bit_floor(tuning.local_vertices), kernel::LOCAL_VERTICES);
 }
 
 }  // namespace
