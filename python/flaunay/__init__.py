@@ -29,6 +29,10 @@ Device memory, as ``pyopencl.array.Array``
     ``relax_device``, ``periodic_device`` (``DevicePeriodic``), ``spherical_device`` (``DeviceSpherical``),
     ``DeviceRows``. ``devices`` lists the devices.
 
+SciPy's names
+    ``Delaunay``, ``Voronoi``, ``ConvexHull``, ``SphericalVoronoi``, ``LinearNDInterpolator``, ``NearestNDInterpolator``,
+    ``CloughTocher2DInterpolator`` and ``griddata`` take the arguments of SciPy's, in the plane and on the sphere.
+
 Errors
     ``UsageError``, ``InputError``, ``DeviceError`` and ``InternalError`` are kinds of ``Error``.
 
@@ -64,11 +68,15 @@ from flaunay._dynamic import (
 )
 from flaunay._errors import DeviceError, Error, InputError, InternalError, UsageError
 from flaunay._calls import __version__
+from flaunay._hull import ConvexHull
 from flaunay._interpolate import (
+    CloughTocher2DInterpolator,
     CloughTocherInterpolator,
     LinearInterpolator,
+    LinearNDInterpolator,
     NaturalNeighborInterpolator,
     NearestInterpolator,
+    NearestNDInterpolator,
     griddata,
 )
 from flaunay._on_device import DeviceTriangulation, triangulate_device
@@ -97,9 +105,11 @@ __all__ = [
     "Changes",
     "ChunkedTriangulation",
     "ClippedVoronoi",
+    "CloughTocher2DInterpolator",
     "CloughTocherInterpolator",
     "ConstrainedTriangulation",
     "Contours",
+    "ConvexHull",
     "Delaunay",
     "DeviceClippedVoronoi",
     "DeviceError",
@@ -114,9 +124,11 @@ __all__ = [
     "InputError",
     "InternalError",
     "LinearInterpolator",
+    "LinearNDInterpolator",
     "LivingConstraints",
     "NaturalNeighborInterpolator",
     "NearestInterpolator",
+    "NearestNDInterpolator",
     "PeriodicDelaunay",
     "PolygonTriangulation",
     "RefinementReport",
@@ -154,3 +166,10 @@ __all__ = [
     "voronoi_polygons",
     "weighted",
 ]
+
+# Messages, help and pickles name them as users do, wherever they are defined.
+for _name in __all__:
+    _public = globals()[_name]
+    if callable(_public):
+        _public.__module__ = __name__
+del _name, _public

@@ -811,6 +811,51 @@ class NearestInterpolator(_Interpolator):
         return result.reshape(shape + values.shape[1:])
 
 
+class NearestNDInterpolator(NearestInterpolator):
+    """`NearestInterpolator` with the arguments of `scipy.interpolate.NearestNDInterpolator`.
+
+    Parameters
+    ----------
+    x : array_like, shape (npoints, 2), or Delaunay
+        The points.
+    y : array_like, shape (npoints, ...)
+        What the points have, of any type.
+    rescale : bool, optional
+        As of `LinearInterpolator`.
+    tree_options : dict, optional
+        Only None and an empty one are possible: SciPy's tree is not used.
+
+    Raises
+    ------
+    UsageError, InputError, DeviceError
+        As of `NearestInterpolator`, and for other options.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> flaunay.NearestNDInterpolator(x=[[0, 0], [4, 0], [0, 4]], y=[0, 8, 4])(3, 1)
+    array(8.)
+    """
+
+    def __init__(
+        self,
+        x: Points,
+        y: npt.ArrayLike,
+        rescale: bool = False,
+        tree_options: Optional[dict[str, Any]] = None,
+    ) -> None:
+        if tree_options:
+            raise UsageError(
+                "tree_options are for SciPy's tree, which flaunay does not use: leave them out"
+            )
+        super().__init__(x, y, rescale)
+
+
+# By the names that SciPy has for them, whose arguments they take.
+LinearNDInterpolator = LinearInterpolator
+CloughTocher2DInterpolator = CloughTocherInterpolator
+
+
 class NaturalNeighborInterpolator(_Columns):
     """Interpolation between natural neighbours, by the weights of Sibson or of Laplace.
 

@@ -34,10 +34,27 @@ def as_rows(given: ArrayLike) -> Doubles:
 
 
 class SphericalVoronoi:
-    """The Voronoi cells of points on the unit sphere. `SphericalDelaunay.voronoi` has them.
+    """The Voronoi cells of points on a sphere, with the names of SciPy's class.
+
+    `SphericalDelaunay.voronoi` has them for the unit sphere.
+
+    Parameters
+    ----------
+    points : array_like, shape (npoints, 3)
+        Points on the sphere.
+    radius : float
+        The sphere's radius.
+    center : array_like, shape (3,), optional
+        The sphere's centre; None: the origin.
+    threshold : float
+        How far points may be from the sphere, relative to its radius.
 
     Attributes
     ----------
+    points : ndarray of float64, shape (npoints, 3)
+        The points as they were given, or of `SphericalDelaunay.voronoi` the unit vectors.
+    radius, center
+        Of the sphere.
     vertices : ndarray of float64, shape (nsimplex, 3)
         For each simplex the centre of the empty cap whose rim passes through its corners, rounded. Where
         more than three points are cocircular, centres coincide.
@@ -47,23 +64,89 @@ class SphericalVoronoi:
         The vertices of cells, counter-clockwise as seen from outside. Points that another one represents
         have none, nor has a set of one or two points.
     areas : ndarray of float64, shape (npoints,)
-        The areas of cells. Those of a set sum to 4 pi. Rounded by some 1e-15, and if all points are
-        within an angle r, by that divided by the square of r.
+        The areas of cells. Those of a set sum to 4 pi on the unit sphere. Rounded by some 1e-15, and if all
+        points are within an angle r, by that divided by the square of r.
+
+    Raises
+    ------
+    UsageError
+        For a wrong shape, a radius that is not above 0, and points that are not on the sphere.
+    InputError
+        For a point that is not finite.
+
+    Notes
+    -----
+    SciPy raises an exception for points that are equal, and points in a plane through the centre; here the first
+    of equal ones has the cell. O(n log n) work.
+
+    Examples
+    --------
+    >>> import flaunay
+    >>> octahedron = [[2, 0, 0], [0, 2, 0], [-2, 0, 0], [0, -2, 0], [0, 0, 2], [0, 0, -2]]
+    >>> cells = flaunay.SphericalVoronoi(octahedron, radius=2)
+    >>> (cells.calculate_areas() * 6 / 3.141592653589793).round(9).tolist()
+    [16.0, 16.0, 16.0, 16.0, 16.0, 16.0]
     """
+
+    points: Doubles
+    radius: float
+    center: Doubles
 
     def __init__(
         self,
-        vertices: Doubles,
-        cell_offsets: Indices,
-        cells: Indices,
-        areas: Doubles,
-        tri: SphericalDelaunay,
+        points: ArrayLike,
+        radius: float = 1,
+        center: Optional[ArrayLike] = None,
+        threshold: float = 1e-6,
     ) -> None:
-        self.vertices = vertices
-        self.cell_offsets = cell_offsets
-        self.cells = cells
-        self.areas = areas
-        self._tri = tri
+        given = np.array(as_floats(points, "points"), np.float64)
+        middle = np.zeros(3)
+        if center is not None:
+            middle = np.array(as_floats(center, "center"), np.float64)
+        if given.ndim != 2 or given.shape[1] != 3 or middle.shape != (3,):
+            raise UsageError(
+                "points must have the shape (n, 3) and center (3,), "
+                f"not {given.shape} and {middle.shape}"
+            )
+        if not isinstance(radius, (int, float, np.number)) or not 0 < radius < np.inf:
+            raise UsageError(f"radius must be a number above 0, not {radius!r}")
+        away = (given - middle) / radius
+        off = np.flatnonzero(np.abs(np.linalg.norm(away, axis=1) - 1) >= threshold)
+        if len(off):
+            raise UsageError(
+                f"point {off[0]} is not on the sphere of this radius and center; threshold allows more"
+            )
+        tri = SphericalDelaunay(frozen(away), None, None)
+        self._set(tri, frozen(given), radius, frozen(middle))
+
+    def _set(self, tri: SphericalDelaunay, points: Doubles, radius: float, center: Doubles) -> None:
+        arrays = tri._handle.voronoi(tri._triangulator)
+        self.points, self.radius, self.center = points, radius, center
+        self._tri, self._directions = tri, frozen(arrays["vertices"])
+        self.vertices: Doubles = frozen(self._to_sphere(self._directions))
+        self.cell_offsets: Indices = frozen(arrays["cell_offsets"])
+        self.cells: Indices = frozen(arrays["cells"])
+        areas = arrays["areas"]
+        self.areas: Doubles = frozen(areas if radius == 1 else areas * radius**2)
+
+    @classmethod
+    def _of(cls, tri: SphericalDelaunay) -> SphericalVoronoi:
+        cells = cls.__new__(cls)
+        cells._set(tri, tri.xyz, 1, frozen(np.zeros(3)))
+        return cells
+
+    def _to_sphere(self, directions: Doubles) -> Doubles:
+        if self.radius == 1 and not self.center.any():
+            return directions
+        places: Doubles = directions * self.radius + self.center
+        return places
+
+    def calculate_areas(self) -> Doubles:
+        """`areas`, as SciPy's method computes them."""
+        return self.areas
+
+    def sort_vertices_of_regions(self) -> None:
+        """Does nothing: vertices are always in order. SciPy's class has this method."""
 
     def __repr__(self) -> str:
         return summary(self, points=len(self.areas), vertices=len(self.vertices))
@@ -75,7 +158,7 @@ class SphericalVoronoi:
         return [self.cells[first:last].tolist() for first, last in zip(ends, ends[1:])]
 
     def polygon(self, i: int) -> Doubles:
-        """The corners of cell i as unit vectors, counter-clockwise as seen from outside, shape (k, 3), to be drawn.
+        """The corners of cell i, counter-clockwise as seen from outside, shape (k, 3), to be drawn.
 
         Corners that coincide are one. A side of more than 120 degrees has a corner in its middle, too: the cells
         of points on one great circle, such as the equator, are lunes from pole to pole, which two corners could
@@ -96,13 +179,13 @@ class SphericalVoronoi:
         i %= n
         triangles = self.cells[self.cell_offsets[i] : self.cell_offsets[i + 1]]
         if len(triangles) == 0:
-            return self._hemisphere(i)
+            return self._to_sphere(self._hemisphere(i))
         corners, xyz = self._tri.simplices[triangles], self._tri.xyz
         polygon: list[Doubles] = []
         # The side to the next triangle is between the point and the corner before it.
         before = corners[np.arange(len(corners)), (np.argmax(corners == i, axis=1) + 2) % 3]
         for t, following, other in zip(triangles, np.roll(triangles, -1), before):
-            begin, end = self.vertices[t], self.vertices[following]
+            begin, end = self._directions[t], self._directions[following]
             if np.abs(end - begin).max() <= 2.0**-50:
                 continue
             polygon.append(begin)
@@ -110,7 +193,7 @@ class SphericalVoronoi:
                 low, high, start = (i, other, begin) if i < other else (other, i, end)
                 middle = np.cross(start, xyz[high] - xyz[low])
                 polygon.append(middle / np.linalg.norm(middle))
-        return np.array(polygon).reshape(-1, 3)
+        return self._to_sphere(np.array(polygon).reshape(-1, 3))
 
     def _hemisphere(self, i: int) -> Doubles:
         """The polygon of one of two points; empty for others without corners."""
@@ -179,8 +262,7 @@ class SphericalDelaunay(WithLocator):
         >>> len(cells.regions[0])
         4
         """
-        arrays = self._handle.voronoi(self._triangulator)
-        return SphericalVoronoi(**{name: frozen(array) for name, array in arrays.items()}, tri=self)
+        return SphericalVoronoi._of(self)
 
     _as_queries = staticmethod(_as_points)
 
