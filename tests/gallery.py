@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs each program in a folder, which must write a picture that is not blank: gallery.py PROGRAMS PICTURES
 
-Each is called with the path of a picture in the folder PICTURES, of the program's name.
+Each is called in the folder PICTURES without an argument, and writes a picture of its own name there.
 """
 
 import pathlib
@@ -37,7 +37,7 @@ def main(programs, pictures):
         picture = pictures / f"{program.stem}.png"
         picture.unlink(missing_ok=True)
         started = time.monotonic()
-        status = run(program, picture)
+        status = run(program.resolve(), folder=pictures)
         wrong = f"ended with {status}" if status else problem(picture)
         print(f"{program.name}: {wrong or 'ok'}, {time.monotonic() - started:.1f} s", flush=True)
         failed = failed or wrong is not None

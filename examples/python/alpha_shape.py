@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Finds the outline of scattered points with alpha shapes of three radii: alpha_shape.py PICTURE.png"""
+"""Finds the outline of scattered points with alpha shapes of three radii: alpha_shape.py [PICTURE.png]"""
 
 import sys
 
@@ -29,7 +29,7 @@ def points_in_text(text: str, spacing: float) -> npt.NDArray[np.float64]:
     return np.asarray(points[times_inside % 2 == 1])
 
 
-def main(path: str) -> None:
+def main(path: str = "alpha_shape.png") -> None:
     tri = flaunay.Delaunay(points_in_text("a&g", spacing=2.2))
 
     figure, panels = plt.subplots(3, figsize=(6.5, 8.4), layout="constrained")
@@ -46,6 +46,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Triangulates 64 sets of points in one call and draws them all at once: batch.py PICTURE.png
+"""Triangulates 64 sets of points in one call and draws them all at once: batch.py [PICTURE.png]
 
 The sets are spirals as plants grow them, a seed after the other, each turned by an angle that differs from set to set.
 """
@@ -18,7 +18,7 @@ import flaunay
 ROWS, COLUMNS, SEEDS = 8, 8, 220
 
 
-def main(path: str) -> None:
+def main(path: str = "batch.png") -> None:
     # One row of the array for each set, all with the same number of points.
     golden_angle = np.pi * (3 - 5**0.5)
     turn = golden_angle * np.linspace(0.98, 1.02, ROWS * COLUMNS)[:, None]
@@ -57,6 +57,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Gives cells of points the same area by weights, which is optimal transport: equal_areas.py PICTURE.png"""
+"""Gives cells of points the same area by weights, which is optimal transport: equal_areas.py [PICTURE.png]"""
 
 import sys
 
@@ -59,7 +59,7 @@ def draw(axes: Axes, points: Doubles, cells: flaunay.ClippedVoronoi, title: str)
     axes.axis("off")
 
 
-def main(path: str) -> None:
+def main(path: str = "equal_areas.png") -> None:
     random = np.random.default_rng(3)
     angles, radii = random.uniform(0, 2 * np.pi, 400), random.uniform(0, 1, 400)
     points = np.column_stack([np.cos(angles), np.sin(angles)]) * radii[:, None] ** 1.2 * 0.95
@@ -75,4 +75,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

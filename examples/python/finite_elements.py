@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Twists a cracked shaft, with scikit-fem on meshes that are refined where it matters: finite_elements.py PICTURE.png
+"""Twists a cracked shaft, with scikit-fem on meshes that are refined where it matters: finite_elements.py [PICTURE.png]
 
 The stress function u has -laplace(u) = 2 in the cross-section, and is 0 on the border and on both sides of a crack; the
 integral of 2 u is the torsion constant. For a crack from the border to the centre, Timoshenko and Goodier's Theory of
@@ -70,7 +70,7 @@ def errors(mesh: flaunay.ConstrainedTriangulation, u: Doubles) -> Doubles:
     return np.asarray(np.sqrt(mesh.areas * (differences**2).sum(axis=(1, 2))))
 
 
-def main(path: str) -> None:
+def main(path: str = "finite_elements.png") -> None:
     square = flaunay.triangulate([[-2, -2], [2, -2], [2, 2], [-2, 2]], segments=[])
     mesh = cross_section(np.array([0.1, 0.1]), square)
     u, constant = stress_function(mesh)
@@ -105,6 +105,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Birds that fly as their neighbours do, in a triangulation that follows them: flock.py PICTURE.png
+"""Birds that fly as their neighbours do, in a triangulation that follows them: flock.py [PICTURE.png]
 
 Each bird takes the mean direction of the birds that it has an edge to, and some noise. In a step, all birds move by a
 twentieth of their distance. That changes so many triangles that all points are triangulated anew, in about the time of
@@ -22,7 +22,7 @@ STEPS = 60
 FEW = 30
 
 
-def main(path: str) -> None:
+def main(path: str = "flock.png") -> None:
     random = np.random.default_rng(4)
     points = random.random((BIRDS, 2))
     headings = np.exp(2j * np.pi * random.random(BIRDS))
@@ -73,6 +73,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

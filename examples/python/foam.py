@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws a foam in a box that repeats itself, by Lloyd's method: foam.py PICTURE.png"""
+"""Draws a foam in a box that repeats itself, by Lloyd's method: foam.py [PICTURE.png]"""
 
 import sys
 
@@ -15,7 +15,7 @@ import flaunay
 PERIOD = (3.0, 2.0)
 
 
-def main(path: str) -> None:
+def main(path: str = "foam.png") -> None:
     points = np.random.default_rng(5).uniform(0, PERIOD, (500, 2))
     for _ in range(6):
         points = flaunay.periodic(points, PERIOD).cells.centroids
@@ -43,4 +43,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

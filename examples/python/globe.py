@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the globe's airports, each with the land and sea that is nearest to it: globe.py PICTURE.png"""
+"""Draws the globe's airports, each with the land and sea that is nearest to it: globe.py [PICTURE.png]"""
 
 import sys
 from pathlib import Path
@@ -56,7 +56,7 @@ def draw(axes: Axes, tri: flaunay.SphericalDelaunay, longitude: float, latitude:
     axes.axis("off")
 
 
-def main(path: str) -> None:
+def main(path: str = "globe.png") -> None:
     tri = flaunay.spherical(np.loadtxt(AIRPORTS))
     figure, axes = plt.subplots(1, 2, figsize=(10, 5))
     draw(axes[0], tri, 10, 30)
@@ -70,4 +70,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

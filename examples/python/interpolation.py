@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Terrain from scattered heights: linear, Clough-Tocher, natural neighbours: interpolation.py PICTURE.png"""
+"""Terrain from scattered heights: linear, Clough-Tocher, natural neighbours: interpolation.py [PICTURE.png]"""
 
 import sys
 
@@ -40,7 +40,7 @@ def shaded(heights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return colours
 
 
-def main(path: str) -> None:
+def main(path: str = "interpolation.png") -> None:
     truth = terrain()
     height, width = truth.shape
     random = np.random.default_rng(2)
@@ -66,6 +66,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

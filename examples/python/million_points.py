@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws a million points as a map of their density: million_points.py PICTURE.png
+"""Draws a million points as a map of their density: million_points.py [PICTURE.png]
 
 A dot for each would only show where there are any. Here the density at each point is one over the area of the
 triangles around it, and each pixel interpolates it: sharp where there are many points, smooth where there are few.
@@ -42,7 +42,7 @@ def density(tri: flaunay.Delaunay) -> npt.NDArray[np.float64]:
     return np.asarray(3 / around)
 
 
-def main(path: str) -> None:
+def main(path: str = "million_points.png") -> None:
     tri = flaunay.Delaunay(spiral_galaxy(POINTS))
     side = np.linspace(-2.1, 2.1, PIXELS)
     pixels = np.stack(np.meshgrid(side, side), axis=-1)
@@ -59,6 +59,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Triangulates random points and draws triangles, hull and spanning tree: plot.py PICTURE.png"""
+"""Triangulates random points and draws triangles, hull and spanning tree: plot.py [PICTURE.png]"""
 
 import sys
 
@@ -13,7 +13,7 @@ from matplotlib.collections import LineCollection
 import flaunay
 
 
-def main(path: str) -> None:
+def main(path: str = "plot.png") -> None:
     random = np.random.default_rng(7)
     points = np.concatenate([random.normal(size=(250, 2)), random.uniform(-3, 3, size=(80, 2))])
     tri = flaunay.Delaunay(points)
@@ -38,6 +38,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

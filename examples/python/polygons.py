@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills a map with lakes and some letters with triangles, in one call each: polygons.py PICTURE.png"""
+"""Fills a map with lakes and some letters with triangles, in one call each: polygons.py [PICTURE.png]"""
 
 import sys
 
@@ -83,7 +83,7 @@ def draw(axes: Axes, mesh: flaunay.PolygonTriangulation, colours: str) -> None:
     axes.set_axis_off()
 
 
-def main(path: str) -> None:
+def main(path: str = "polygons.png") -> None:
     figure, (above, below) = plt.subplots(
         2, figsize=(6.5, 5.8), layout="constrained", height_ratios=[10, 3.6]
     )
@@ -94,6 +94,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws a photograph with dots of one size, by weighted Voronoi stippling (Secord 2002): stippling.py PICTURE.png
+"""Draws a photograph with dots of one size, by weighted Voronoi stippling (Secord 2002): stippling.py [PICTURE.png]
 
 Lloyd's method with a weight for each pixel: every dot moves to the centre of mass of the pixels that are nearest to it.
 """
@@ -48,7 +48,7 @@ def stipple(
     return dots
 
 
-def main(path: str) -> None:
+def main(path: str = "stippling.png") -> None:
     weights = 0.01 + np.minimum(photograph(), 0.85) ** 3
     height, width = weights.shape
     dots = stipple(weights, np.random.default_rng(5))
@@ -61,6 +61,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

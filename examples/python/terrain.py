@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A map of measured heights with a void: shaded hills and contours: terrain.py PICTURE.png"""
+"""A map of measured heights with a void: shaded hills and contours: terrain.py [PICTURE.png]"""
 
 import sys
 
@@ -33,7 +33,7 @@ def scan() -> npt.NDArray[np.float64]:
     return np.asarray(points[there], np.float64)
 
 
-def main(path: str) -> None:
+def main(path: str = "terrain.png") -> None:
     dem = flaunay.terrain(scan(), resolution=0.5, max_edge=15)
     xmin, ymin, xmax, ymax = dem.bounds
     known = np.nan_to_num(dem.raster, nan=float(np.nanmin(dem.raster)))
@@ -54,6 +54,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])

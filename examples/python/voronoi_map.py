@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A map of Voronoi cells, clipped to a box and coloured by their areas: voronoi_map.py PICTURE.png"""
+"""A map of Voronoi cells, clipped to a box and coloured by their areas: voronoi_map.py [PICTURE.png]"""
 
 import sys
 
@@ -41,7 +41,7 @@ def houses() -> Doubles:
     return np.asarray(points[inside])
 
 
-def main(path: str) -> None:
+def main(path: str = "voronoi_map.png") -> None:
     points = houses()
     cells = flaunay.Voronoi(points).clipped((0, 0, WIDTH, HEIGHT))
 
@@ -64,6 +64,4 @@ def main(path: str) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(f"usage: {sys.argv[0]} PICTURE.png")
-    main(sys.argv[1])
+    main(*sys.argv[1:])
