@@ -39,8 +39,8 @@ if [[ ${1-} == --all || ${1-} == --packages ]]; then
   packages+=(libcgal-dev libqhull-dev libclang-rt-14-dev)
 fi
 if [[ ${1-} == --packages ]]; then
-  packages+=(autopkgtest debhelper debootstrap dpkg-dev libc6-arm64-cross lintian llvm-14 musl
-    qemu-user wine wine64)
+  packages+=(autopkgtest debhelper debootstrap dpkg-dev libc6-arm64-cross libfast-float-dev lintian llvm-14
+    musl qemu-user wine wine64)
 fi
 
 missing=()

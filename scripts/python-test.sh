@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the Python module, installs it in a separate virtual environment (build/python) and runs its tests and the
 # examples in its documentation. Arguments go to pytest. Needs what scripts/install-deps.sh installs.
-# FLAUNAY_PYTHON_LIBRARY: a libflaunay.so to put into the module, in place of compiling one.
+# FLAUNAY_PYTHON_BUILD: a build whose library and command are put into the package, in place of compiling them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -30,9 +30,9 @@ print("numpy==" + numpy.__version__)')
   cp scripts/python-test.sh "$environment/made"
 fi
 settings=()
-if [[ -n ${FLAUNAY_PYTHON_LIBRARY-} ]]; then
+if [[ -n ${FLAUNAY_PYTHON_BUILD-} ]]; then
   # In a folder of its own, whose settings later builds do not find.
-  settings=(--config-settings=cmake.define.FLAUNAY_PYTHON_LIBRARY="$FLAUNAY_PYTHON_LIBRARY"
+  settings=(--config-settings=cmake.define.FLAUNAY_PYTHON_BUILD="$FLAUNAY_PYTHON_BUILD"
     --config-settings=build-dir=build/wheel-of-library)
 fi
 # The wheel is kept for scripts/wheel-test.sh.

@@ -56,18 +56,19 @@ zig = subprocess.check_output([ziglang / "zig", "version"], text=True).strip()
 everywhere = "in every library"
 site = "on pages of the site"
 vendored = "site/vendor/README.md"
-wheels = "in the libraries of wheels"
+wheels = "in wheels"
 llvm = "Apache-2.0 WITH LLVM-exception"
 components = [
     component("fmt", fmt, "MIT", everywhere, f"pkg:github/fmtlib/fmt@{fmt}"),
     component("boost", boost, "BSL-1.0", f"headers of Compute, Multiprecision and Uuid, {everywhere}"),
     component("opencl-headers", debian_version("opencl-headers"), "Apache-2.0", "in every library but that for JavaScript"),
-    component("CLI11", debian_version("libcli11-dev"), "BSD-3-Clause", "in the command of Debian's package"),
-    component("nlohmann_json", debian_version("nlohmann-json3-dev"), "MIT", "in the command of Debian's package"),
+    component("CLI11", debian_version("libcli11-dev"), "BSD-3-Clause", "in the command"),
+    component("nlohmann_json", debian_version("nlohmann-json3-dev"), "MIT", "in the command"),
+    component("fast_float", debian_version("libfast-float-dev"), "Apache-2.0 OR MIT", "in the command of wheels"),
     component("libc++", libcxx, llvm, wheels),
     component("libc++abi", libcxx, llvm, wheels),
     component("libunwind", libcxx, llvm, wheels),
-    component("mingw-w64", mingw, "ZPL-2.1", "in the library of the wheel for Windows"),
+    component("mingw-w64", mingw, "ZPL-2.1", "in the wheel for Windows"),
     component("delaunator", found(vendored, r"\[delaunator\]\S* ([\d.]+)"), "ISC", site),
     component("robust-predicates", found(vendored, r"\[robust-predicates\]\S* ([\d.]+)"), "Unlicense", site),
     component("mkdocs-material", found("site/requirements.txt", r"mkdocs-material==([\d.]+)"), "MIT", site),

@@ -51,11 +51,12 @@ fi
 SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}"
 export SOURCE_DATE_EPOCH
 
-# It needs no other libraries than the system's, and no symbols of glibc that are newer than the target names.
-check_library() {
+# A library or program needs no other libraries than the system's, and no symbols of glibc that are newer than the target
+# names.
+check_needs() {
   local library="$1" glibc="${2##*-gnu.}" needed others newest
-  if [[ $library == *.dylib ]]; then
-    # With its own name.
+  if [[ $2 == *macos* ]]; then
+    # A library with its own name.
     needed="$(llvm-objdump-14 --macho --dylibs-used "$library" | sed -nE 's/^\s+(\S+) \(.*/\1/p')"
   else
     needed="$(objdump --private-headers "$library" | sed -nE 's/^\s*(DLL Name:|NEEDED) +//p')"
@@ -82,20 +83,20 @@ if [[ $what == --sdist ]]; then
 fi
 for target in "${targets[@]}"; do
   build="build/wheel-$target"
+  of_programs=
+  # Otherwise they are static ones, which cannot load OpenCL.
+  if [[ $target == *musl ]]; then of_programs=' -dynamic'; fi
   cmake -S . -B "$build" -G Ninja --toolchain cmake/toolchains/zig.cmake -DFLAUNAY_ZIG="$zig" \
     -DFLAUNAY_ZIG_TARGET="$target" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$PWD/= -w" \
-    -DCMAKE_SHARED_LINKER_FLAGS=-s -DFLAUNAY_PYTHON=ON -DFLAUNAY_TESTS=OFF -DFLAUNAY_BENCH=OFF \
-    -DFLAUNAY_COMMAND=OFF -DFLAUNAY_INSTALL=OFF
-  cmake --build "$build" --target flaunay
-  library="$PWD/$build/src/libflaunay.so"
-  case $target in
-    *windows*) library="${library%so}dll" ;;
-    *macos*) library="${library%so}dylib" ;;
-  esac
-  check_library "$library" "$target"
+    -DCMAKE_SHARED_LINKER_FLAGS=-s -DCMAKE_EXE_LINKER_FLAGS="-s$of_programs" -DFLAUNAY_PYTHON=ON -DFLAUNAY_TESTS=OFF \
+    -DFLAUNAY_BENCH=OFF -DFLAUNAY_INSTALL=OFF
+  cmake --build "$build"
+  for built in "$build"/src/libflaunay.{so,dll,dylib} "$build"/flaunay{,.exe}; do
+    if [[ -e $built ]]; then check_needs "$built" "$target"; fi
+  done
   rm -rf "$build-dist"
   python -m build --wheel --no-isolation --outdir "$build-dist" \
-    "-Ccmake.define.FLAUNAY_PYTHON_LIBRARY=$library" "-Cbuild-dir=$build-package"
+    "-Ccmake.define.FLAUNAY_PYTHON_BUILD=$PWD/$build" "-Cbuild-dir=$build-package"
   wheel tags --remove --platform-tag "${platforms[$target]}" "$build-dist"/*.whl
   mv "$build-dist"/*.whl build/wheels
 done

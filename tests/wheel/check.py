@@ -5,7 +5,11 @@ With an argument, a device of that name triangulates, too.
 
 import multiprocessing
 import os
+import shutil
+import signal
+import subprocess
 import sys
+import sysconfig
 import tempfile
 
 import numpy as np
@@ -15,6 +19,69 @@ import flaunay
 
 def triangles_of(points):
     return flaunay.triangulate(points).triangles
+
+
+def ended(command, *arguments, given=b""):
+    """The exit code of a command, and what it wrote."""
+    done = subprocess.run([*command, *arguments], input=given, stdout=-1, stderr=-1)
+    return done.returncode, done.stdout, done.stderr
+
+
+def ended_by(command, number):
+    """The exit code of a command that waits for its input when it gets a signal, or whose reader ends."""
+    if number == signal.SIGPIPE:
+        arguments = ["generate", "uniform", "100000", "-o", "-"]
+    else:
+        arguments = ["triangulate", "-", "-o", "-"]
+    process = subprocess.Popen([*command, *arguments], stdin=-1, stdout=-1, stderr=-1)
+    if number == signal.SIGPIPE:
+        process.stdout.readline()
+        process.stdout.close()
+    else:
+        # It reads, in the place of Python.
+        process.stdin.write(b"0 0\n" * 100000)
+        process.stdin.flush()
+        process.send_signal(number)
+    code = process.wait()
+    for stream in process.stdin, process.stdout, process.stderr:
+        stream.close()
+    return code
+
+
+def check_command(folder):
+    """pip has installed the command, and ``python -m flaunay`` is the same one."""
+    beside = os.path.join(os.path.dirname(os.path.dirname(flaunay.__file__)), "bin")
+    path = shutil.which("flaunay", path=os.pathsep.join([sysconfig.get_path("scripts"), beside]))
+    assert path, "the wheel has no command"
+    direct, module = [path], [sys.executable, "-m", "flaunay"]
+    code, version, _ = ended(direct, "--version")
+    assert code == 0 and version.split() == [b"flaunay", flaunay.__version__.encode()], version
+    corners = b"0 0 1\n4 0 2\n0 4 3\n"
+    given = os.path.join(folder, "h \u25b3.xyz")
+    with open(given, "wb") as file:
+        file.write(corners)
+    for expected, *arguments in [
+        (0, "--version"),
+        (0, "--help"),
+        (0, "generate", "uniform", "20", "-o", "-"),
+        (2, "generate", "uniform"),
+        (3, "triangulate", os.path.join(folder, "missing \u25b3.txt")),
+    ]:
+        result = ended(direct, *arguments)
+        assert result[0] == expected, result
+        assert ended(module, *arguments) == result
+    # The standard input, too.
+    for command in direct, module:
+        code, report, _ = ended(command, "triangulate", "-", given=b"0 0\n4 0\n0 4\n")
+        assert code == 0 and b"1 triangle" in report, report
+        # What needs GDAL works, or says how Python does it.
+        code, _, message = ended(
+            command, "terrain", given, "--resolution", "1", "-o", os.path.join(folder, "h.tif")
+        )
+        assert code == 0 or code == 2 and b"flaunay.terrain in Python" in message, message
+    if os.name == "posix":
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGPIPE:
+            assert ended_by(module, number) == ended_by(direct, number) == -number, number
 
 
 def main():
@@ -32,6 +99,7 @@ def main():
         assert np.load(name).shape == tri.simplices.shape
         # On Windows, files that are mapped cannot be removed.
         del mesh
+        check_command(folder)
     for method in multiprocessing.get_all_start_methods():
         with multiprocessing.get_context(method).Pool(1) as pool:
             assert np.array_equal(pool.apply(triangles_of, (points,)), tri.simplices)
