@@ -22,6 +22,7 @@ def run(program, *arguments, folder=".", output=None):
     child = os.fork()
     if child != 0:
         return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     if output is not None:
         os.dup2(os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666), sys.stdout.fileno())
     os.chdir(folder)

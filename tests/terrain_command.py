@@ -20,7 +20,11 @@ GEO_KEYS = 34735
 
 def run(*arguments):
     return subprocess.run(
-        [FLAUNAY, "terrain", *map(str, arguments)], capture_output=True, text=True, timeout=300
+        [FLAUNAY, "terrain", *map(str, arguments)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
 
 

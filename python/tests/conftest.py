@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import inspect
 import os
+import signal
 import subprocess
 import sys
 import textwrap
@@ -26,6 +27,9 @@ def is_from(finder, module, found, original=doctest.DocTestFinder._from_module):
 
 
 doctest.DocTestFinder._from_module = is_from
+
+# If a shell starts the tests in the background, they ignore Ctrl-C, and so does all that they start. Some wait for it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def as_set(triangles):
@@ -114,6 +118,7 @@ def run_python(text, *arguments, **environment):
     run = subprocess.run(
         [sys.executable, "-c", textwrap.dedent(text), *arguments],
         env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
         timeout=120,

@@ -469,6 +469,7 @@ def test_threads_share_a_locator(case, context):
 PROGRAM = """
 import gc
 import os
+import signal
 
 import numpy as np
 import pyopencl as cl
@@ -496,6 +497,7 @@ def test_a_forked_child_is_told():
 queue.finish()
 child = os.fork()
 if child == 0:
+    signal.alarm(100)
     told = 0
     for call in (
         lambda: locator.nearest(points),

@@ -50,7 +50,12 @@ def environment(**changes):
 
 def run(command, **changes):
     return subprocess.run(
-        command, env=environment(**changes), capture_output=True, text=True, timeout=120
+        command,
+        env=environment(**changes),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
 
 

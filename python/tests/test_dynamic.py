@@ -289,10 +289,11 @@ def test_it_is_that_of_its_process(points):
     tri = flaunay.Delaunay(points, incremental=True, device="host")
     fork = multiprocessing.get_context("fork")
     answers = fork.Queue()
-    child = fork.Process(target=_use_in_child, args=(tri, answers))
+    child = fork.Process(target=_use_in_child, args=(tri, answers), daemon=True)
     child.start()
     assert "process that was forked" in answers.get(timeout=60)
-    child.join()
+    child.join(60)
+    assert child.exitcode == 0
     tri.add_points([[1.0, 2.0]])
 
 

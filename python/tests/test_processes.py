@@ -58,7 +58,7 @@ def test_a_fork_while_another_thread_is_at_work():
     try:
         for _ in range(5):
             process = multiprocessing.get_context("fork").Process(
-                target=check_and_exit, args=(expected,)
+                target=check_and_exit, args=(expected,), daemon=True
             )
             process.start()
             process.join(60)

@@ -23,7 +23,7 @@ def triangles_of(points):
 
 def ended(command, *arguments, given=b""):
     """The exit code of a command, and what it wrote."""
-    done = subprocess.run([*command, *arguments], input=given, stdout=-1, stderr=-1)
+    done = subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -42,7 +42,10 @@ def ended_by(command, number):
         process.stdin.write(b"0 0\n" * 100000)
         process.stdin.flush()
         process.send_signal(number)
-    code = process.wait()
+    try:
+        code = process.wait(300)
+    finally:
+        process.kill()
     for stream in process.stdin, process.stdout, process.stderr:
         stream.close()
     return code
@@ -85,6 +88,8 @@ def check_command(folder):
 
 
 def main():
+    # If a shell starts this in the background, it ignores Ctrl-C, and so does all that it starts.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     points = np.random.default_rng(1).random((20000, 2))
     tri = flaunay.Delaunay(points)
     assert len(tri.simplices) == 2 * len(points) - 2 - len(tri.hull)
@@ -102,7 +107,7 @@ def main():
         check_command(folder)
     for method in multiprocessing.get_all_start_methods():
         with multiprocessing.get_context(method).Pool(1) as pool:
-            assert np.array_equal(pool.apply(triangles_of, (points,)), tri.simplices)
+            assert np.array_equal(pool.apply_async(triangles_of, (points,)).get(300), tri.simplices)
     try:
         devices = [device["name"] for device in flaunay.devices()]
     except flaunay.DeviceError as error:
