@@ -3,7 +3,10 @@ set(CODE "#include \"kernels/embedded.hpp\"\n\nnamespace flaunay {\nnamespace {\
 set(TABLE "")
 set(INDEX 0)
 foreach(FILE IN LISTS FILES)
-  file(READ ${DIRECTORY}/${FILE} HEX HEX)
+  # Without comments, which are a quarter, but on the same lines, which errors name.
+  file(READ ${DIRECTORY}/${FILE} TEXT)
+  string(REGEX REPLACE "[ \t]*//[^\n]*" "" TEXT "${TEXT}")
+  string(HEX "${TEXT}" HEX)
   string(LENGTH "${HEX}" LENGTH)
   math(EXPR SIZE "${LENGTH} / 2")
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," BYTES "${HEX}")

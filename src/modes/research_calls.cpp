@@ -117,8 +117,10 @@ Partition partition(Triangulator& triangulator, const double* coordinates, std::
     result.statistics.device = self.runtime.name();
     if (n == 0) return result;
     self.begin_call(options.profile);
+#ifndef FLAUNAY_WITHOUT_RESEARCH  // else this is not reached
     flattened::partition(self.runtime, {self.persistent, self.even, self.odd}, coordinates, n, levels,
                          uncounted, result);
+#endif
     self.write_accounts(result.statistics);
     call::add_note(asked, self, "a partition", "computed", result.statistics);
     return result;

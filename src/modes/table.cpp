@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
 #include "blocks/pipeline.hpp"
@@ -63,6 +62,8 @@ research::Triangulation run_blocks(TriangulatorAccess::Implementation& self, con
   result.launches = recording.launches();
   return result;
 }
+
+#ifndef FLAUNAY_WITHOUT_RESEARCH
 
 // Runs the modes that go level by level.
 research::Triangulation run_levels(TriangulatorAccess::Implementation& self, const Request& request,
@@ -146,11 +147,14 @@ research::Triangulation run_dwyer(const double* coordinates, const Request& requ
   return modes::run_on_host(coordinates, request.offsets, request.options, dwyer::run);
 }
 
-const std::array<ModeRow, 6> kModes = {{
+#endif
+
+const ModeRow kModes[] = {
     {{Mode::blocks, "blocks", "blocks of points triangulated one per work-item, and merged (default)", false,
       false, false},
      run_blocks,
      nullptr},
+#ifndef FLAUNAY_WITHOUT_RESEARCH
     {{Mode::flattened, "flattened", "all regions of a level at once, down to single points: no merge", false,
       true, true},
      run_flattened,
@@ -169,17 +173,23 @@ const std::array<ModeRow, 6> kModes = {{
     {{Mode::dwyer, "dwyer", "Dwyer's algorithm on the host, one thread", true, false, true},
      nullptr,
      run_dwyer},
-}};
+#endif
+};
 
 }  // namespace
 
+#ifdef FLAUNAY_WITHOUT_RESEARCH
+const char* const kNoSuchMode = "this library was built without FLAUNAY_RESEARCH, which has it";
+#else
+const char* const kNoSuchMode = "there is none";
 flattened::BlockSolver block_solver() { return {solve_blocks, write_rows}; }
+#endif
 
 const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {
     if (row.info.mode == mode) return row;
   }
-  throw Error(ErrorKind::usage, fmt::format("{} is no Mode", static_cast<int>(mode)));
+  throw Error(ErrorKind::usage, fmt::format("mode {}: {}", static_cast<int>(mode), kNoSuchMode));
 }
 
 }  // namespace call

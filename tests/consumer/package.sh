@@ -131,8 +131,9 @@ case "$1" in
     ;;
 
   subdirectory | whole_subdirectory)
-    # As a part of another project: configured, with some of it compiled; or all of it, which takes minutes.
-    configure "$WORK/subdirectory" -DFLAUNAY_SOURCE="$SOURCE" -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
+    # As a part of another project, without what this does not call: configured, with some of it compiled; or all of it,
+    # which takes minutes.
+    configure "$WORK/subdirectory" -DFLAUNAY_SOURCE="$SOURCE" -DFLAUNAY_RESEARCH=OFF -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
       -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON
     if [[ $1 == subdirectory ]]; then
       exec "$CMAKE" --build "$WORK/subdirectory" --target flaunay_kernels flaunay_system flaunay_format
@@ -160,6 +161,10 @@ case "$1" in
     run_consumers "$WORK/static_find_package"
     with_pkg_config "$WORK/static_pkg_config" "$static" --static
     run_consumers "$WORK/static_pkg_config"
+    library="$(stat -c %s "$(find "$static" -name libflaunay.a)")"
+    for program in $(consumers_of "$WORK/static_find_package") $(consumers_of "$WORK/static_pkg_config"); do
+      (($(stat -c %s "$program") < library / 2)) || fail "$program contains what it does not call"
+    done
     ;;
 
   symbols)
