@@ -13,7 +13,8 @@
 /// Other algorithms for the same triangles, and what they cost, for experiments.
 namespace flaunay::research {
 
-/// The algorithm that computes the triangulation. All modes give the same set of triangles.
+/// The algorithm that computes the triangulation. All modes give the same set of triangles. A library that
+/// was built with FLAUNAY_RESEARCH=OFF has blocks alone, and refuses others and partitions by Error(usage).
 enum class Mode {
   blocks,            ///< the default: each work-item triangulates a block of points, then blocks are merged
   flattened,         ///< the paper's algorithm on the device, all regions of a level at once
