@@ -54,7 +54,7 @@ function(flaunay_add_launchers TARGET DIRECTORY OUTPUT)
       string(REGEX REPLACE "\\.cl$" ".cpp" NATIVE_FILE ${GIVEN_NATIVE_OUTPUT}/${FILE})
       set(NATIVE_ARGUMENT -DNATIVE_OUTPUT=${NATIVE_FILE})
       file(READ ${DIRECTORY}/${FILE} TEXT)
-      # No function that flaunay.js calls counts.
+      # No function that library.js calls counts.
       if(TEXT MATCHES "COUNTERS" AND (FLAUNAY_COMMAND OR NOT EMSCRIPTEN))
         string(REGEX REPLACE "\\.cl$" ".cpp" COUNTING_FILE ${GIVEN_NATIVE_OUTPUT}/counting/${FILE})
         list(APPEND NATIVE_ARGUMENT -DCOUNTING_OUTPUT=${COUNTING_FILE})

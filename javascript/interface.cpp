@@ -1,4 +1,4 @@
-// What flaunay.js needs of flaunay.wasm besides flaunay.h.
+// What library.js needs of flaunay.wasm besides flaunay.h.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// For Node: the module is read and compiled at once.
+// For Node, Deno and Bun: the module is read and compiled at once.
 import {readFileSync} from 'node:fs';
 import {start} from './flaunay.js';
 
@@ -6,3 +6,4 @@ start(new WebAssembly.Module(readFileSync(new URL('flaunay.wasm', import.meta.ur
 
 export * from './flaunay.js';
 export {default} from './flaunay.js';
+export const ready = Promise.resolve();

@@ -1,5 +1,5 @@
 /** What flaunay/points has of flaunay. */
 export {
   ClippedVoronoi, Coordinates, ErrorKind, FlaunayError, MeshOptions, QueryOptions, SetOptions, Triangulation, Voronoi,
-  default, version, wrongEdges,
-} from './flaunay.js';
+  default, ready, version, wrongEdges,
+} from './index.js';

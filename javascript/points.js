@@ -1,6 +1,5 @@
-// As index.js, for points.wasm, whose size is 40 % of it: points, Voronoi diagrams and queries.
-import {init} from './flaunay.js';
+// As index.js, for points.wasm, which is half as large: points, Voronoi diagrams and queries.
+import {init} from './library.js';
 
-await init(new URL('points.wasm', import.meta.url));
-
-export {default, FlaunayError, Triangulation, version, wrongEdges} from './flaunay.js';
+export {default, FlaunayError, Triangulation, version, wrongEdges} from './library.js';
+export const ready = init(new URL('points.wasm', import.meta.url));

@@ -11,3 +11,4 @@ for (const worker of [...PThread.unusedWorkers, ...PThread.runningWorkers]) work
 
 export * from './flaunay.js';
 export {default} from './flaunay.js';
+export const ready = Promise.resolve();

@@ -9,7 +9,7 @@ if (!globalThis.crossOriginIsolated) {
     'usage',
   );
 }
-await startThreads(make);
 
 export * from './flaunay.js';
 export {default} from './flaunay.js';
+export const ready = startThreads(make);

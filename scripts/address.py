@@ -17,7 +17,7 @@ PLACES = {
     "CITATION.cff": ("license: MIT", "repository-code: ADDRESS"),
     "CMakeLists.txt": (r"  DESCRIPTION .*", '  HOMEPAGE_URL "ADDRESS"'),
     "CONTRIBUTING.md": ("## Reporting a fault\n", "Reports go to <ADDRESS>."),
-    "javascript/package.json": (r'  "description": .*', '  "repository": "ADDRESS",'),
+    "javascript/package.json": (r'  "description": .*', '  "repository": { "type": "git", "url": "git+ADDRESS.git" },'),
     "packaging/conan/conanfile.py": (r"    description = .*", '    url = "ADDRESS"'),
     "packaging/conda/recipe.yaml": (r"about:", "  repository: ADDRESS"),
     "packaging/debian/control": (r"Rules-Requires-Root: .*", "Homepage: ADDRESS"),

@@ -1,12 +1,16 @@
 #!/usr/bin/env bash
 # Builds the package for JavaScript, tests it in Node and in headless Chromium, and packs it as
 # build/javascript/flaunay-VERSION.tgz. On Debian 12, as root, it installs Emscripten and what else it needs.
+#   scripts/javascript.sh            without flaunay/threads
+#   scripts/javascript.sh --threads  with it, as it is published: the library is compiled twice
 # FLAUNAY_COMMAND: the native command, whose results must have the same bytes; it is built if not given.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+presets=(javascript)
+if [[ ${1-} == --threads ]]; then presets+=(javascript-threads); fi
 scripts/install-deps.sh
-packages=(chromium emscripten node-typescript)
+packages=(chromium emscripten esbuild node-typescript)
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
 if ! dpkg-query -W -f '' "${packages[@]}" 2>/dev/null; then
@@ -16,29 +20,40 @@ fi
 
 # Emscripten's tool for JavaScript, with threads, needs Debian's acorn.
 export NODE_PATH=/usr/share/nodejs
-for preset in javascript javascript-threads; do
+for preset in "${presets[@]}"; do
   cmake --preset "$preset" >/dev/null
   cmake --build --preset "$preset"
 done
 
 output=build/javascript
 package=$output/package
-rm -rf "$package" "$output/installed" "$output"/*.tgz
-mkdir -p "$package/threads" "$output/installed"
+rm -rf "$package" "$output/installed" "$output"/*.tgz javascript/threads
+mkdir -p "$package" "$output/installed"
 cp javascript/*.{js,md,ts} LICENSE "$package"
 cp "$output"/javascript/{*.wasm,declarations.{js,d.ts}} "$package"
-# Both ways to load it have one module.
-threads=$output-threads/javascript
-cmp "$threads"/{browser,node}.wasm
-cp "$threads"/{browser.{mjs,wasm,worker.js},node.{js,worker.js}} "$package/threads"
-echo '{"type": "commonjs"}' >"$package/threads/package.json"
 version="$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$output/CMakeCache.txt")"
 sed "s/\"version\": \"0.0.0\"/\"version\": \"$version\"/" javascript/package.json >"$package/package.json"
+if ((${#presets[@]} == 2)); then
+  # Both ways to load it have one module.
+  threads=$output-threads/javascript
+  cmp "$threads"/{browser,node}.wasm
+  mkdir "$package/threads"
+  cp "$threads"/{browser.{mjs,wasm,worker.js},node.{js,worker.js}} "$package/threads"
+  echo '{"type": "commonjs"}' >"$package/threads/package.json"
+  cp -r "$package/threads" javascript
+else
+  rm "$package"/threads*.js
+  sed -i '/"\.\/threads"/d' "$package/package.json"
+fi
+node -e "process.stdout.write(require('fs').readFileSync('$package/points.wasm', 'hex'))" >"$package/points.hex"
+esbuild "$package/script.js" --bundle --minify --format=iife --global-name=flaunay --loader:.hex=text --target=es2022 \
+  --log-level=warning --outfile="$package/flaunay.min.js"
+rm "$package"/{points.hex,script.js}
 
 (cd "$package" && npm pack --silent --pack-destination .. >/dev/null)
 
 # Tests import the package by its name, from the folder that they are in.
-cp -r "$package"/{*.wasm,declarations.*,threads} javascript
+cp "$package"/{*.wasm,declarations.*} javascript
 if [[ -z ${FLAUNAY_COMMAND-} ]]; then
   cmake --preset release >/dev/null
   cmake --build --preset release --target flaunay_cli

@@ -30,7 +30,7 @@ scripts/wheel.sh --sdist
 scripts/wheel.sh
 cp build/wheels/* "$files"
 
-scripts/javascript.sh
+scripts/javascript.sh --threads
 cp build/javascript/flaunay-"$version".tgz "$files"
 
 # With the module of the package above on its first page.

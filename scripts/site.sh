@@ -33,7 +33,7 @@ package=build/javascript/package
 rm -rf "$work/module"
 if [[ -f $package/flaunay.wasm ]]; then
   mkdir "$work/module"
-  cp "$package"/{declarations.js,flaunay.js,flaunay.wasm,index.js} "$work/module"
+  cp "$package"/{declarations.js,flaunay.js,flaunay.wasm,index.js,library.js} "$work/module"
 else
   echo 'site.sh: the first page has no triangulation, since scripts/javascript.sh has not made its module' >&2
 fi

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tests what scripts/declare.py writes for JavaScript: the structs against the compiler for WebAssembly, if there is one,
-# and what flaunay.js takes from it, by Node, if that is there.
+# and what library.js takes from it, by Node, if that is there.
 #   declarations.sh PYTHON SOURCE WORK [CLANG]
 set -euo pipefail
 
@@ -16,7 +16,7 @@ if command -v node >/dev/null; then
   node --input-type=module -e "
     import * as declared from '$work/declarations.mjs';
     import {readFileSync} from 'node:fs';
-    for (const [, name] of readFileSync('$source/javascript/flaunay.js', 'utf8').matchAll(/\bc\.(\w+)/g)) {
-      if (!(name in declared)) throw new Error('flaunay.js names ' + name + ', which nothing declares');
+    for (const [, name] of readFileSync('$source/javascript/library.js', 'utf8').matchAll(/\bc\.(\w+)/g)) {
+      if (!(name in declared)) throw new Error('library.js names ' + name + ', which nothing declares');
     }"
 fi

@@ -1,7 +1,8 @@
 // What users write, as scripts/javascript.sh checks it by tsc.
 import Delaunator, {
-  ClippedVoronoi, ConstrainedTriangulation, DynamicTriangulation, FlaunayError, Triangulation, wrongEdges,
+  ClippedVoronoi, ConstrainedTriangulation, DynamicTriangulation, FlaunayError, Triangulation, ready as loaded, wrongEdges,
 } from 'flaunay';
+import {ready as pointsLoaded} from 'flaunay/points';
 import {init} from 'flaunay/flaunay.js';
 
 const drop: Delaunator<Float64Array> = Delaunator.from([[0, 0], [1, 0], [0, 1]]);
@@ -26,6 +27,8 @@ const rows: Int32Array = moving.rows().triangles;
 mesh.interpolate([1], [0, 0], {method: 'cubic'});
 export async function ready(): Promise<string> {
   await init('flaunay.wasm');
+  const both: Promise<void>[] = [loaded, pointsLoaded];
+  await Promise.all(both);
   try {
     polygons.free();
     return `${one} ${many} ${segments.addedPoints} ${rows}`;

@@ -619,6 +619,7 @@ new ResizeObserver(redraw).observe(canvas);
 
 try {
   flaunay = await import('../module/index.js');
+  await flaunay.ready;
   // From the address, such as ?points=10000&distribution=circle.
   const asked = new URLSearchParams(location.search);
   for (const name of ['count', 'distribution']) if (asked.has(name)) control(name).value = asked.get(name);

@@ -32,7 +32,7 @@ namespace flaunay::call {
 void check_on_sphere(const Triangulation& mesh);
 
 /// Answers queries on the sphere, each in a turn. Set s of the triangulation has queries [offsets[s],
-/// offsets[s + 1]).
+/// offsets[s + 1]). Members are virtual so that a linker leaves them out where nothing makes a locator.
 class SphereLocator : public nearest::Tree {
  public:
   SphereLocator(Triangulator& used, const Triangulation& triangulation);
@@ -40,14 +40,15 @@ class SphereLocator : public nearest::Tree {
   SphereLocator(const SphereLocator&) = delete;
   SphereLocator& operator=(const SphereLocator&) = delete;
   void set_coordinates(SphereCoordinates coordinates) override;
-  std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
-  std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
-  std::vector<double> interpolate(const double* values, const double* queries,
-                                  const std::vector<std::size_t>& offsets,
-                                  const InterpolationOptions& options);
-  std::vector<double> gradients(const double* values, std::size_t columns, const GradientOptions& options);
+  virtual std::vector<std::int32_t> locate(const double* queries, const std::vector<std::size_t>& offsets);
+  virtual std::vector<std::int32_t> nearest(const double* queries, const std::vector<std::size_t>& offsets);
+  virtual std::vector<double> interpolate(const double* values, const double* queries,
+                                          const std::vector<std::size_t>& offsets,
+                                          const InterpolationOptions& options);
+  virtual std::vector<double> gradients(const double* values, std::size_t columns,
+                                        const GradientOptions& options);
   /// For one set.
-  NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
+  virtual NaturalWeights natural_weights(const double* queries, std::size_t m, Interpolation method);
   /// For one set.
   Neighbors nearest(const double* queries, std::size_t m, const NeighborOptions& options) override;
 

@@ -1,0 +1,5 @@
+export * from './flaunay.js';
+export {default} from './flaunay.js';
+
+/** Fulfilled when the WebAssembly module is loaded: at once in Node, Deno and Bun. Elsewhere nothing works before. */
+export const ready: Promise<void>;
