@@ -15,6 +15,7 @@ PAGES = {
     "README.md": "guide.md",
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
+    "SECURITY.md": "security.md",
     "bench/results/paper.md": "results/paper.md",
     "javascript/README.md": "javascript-package.md",
     "tests/data/README.md": "data.md",
@@ -25,6 +26,7 @@ PAGES = {
 # Folders that the site has as they are; those in build/ are there once site.sh has made them.
 FOLDERS = {
     "site/live": "live",
+    "site/pictures": "pictures",
     "site/vendor": "vendor",
     "build/site/module": "module",
     "build/site/cpp": "reference/cpp",

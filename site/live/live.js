@@ -16,6 +16,7 @@ let flaunay; // the module
 let coords; // x and y of each point
 let values; // what natural neighbours interpolate: a height for each point, which moves with it
 let segments = []; // two points each
+let polygons = []; // of a file: rings of points, which are filled
 let living; // the triangulation that follows the points
 let rows; // its triangles and their neighbours, in the module's memory
 let view = {scale: 1, x: 0, y: 0}; // pixels = scale * coordinates + (x, y)
@@ -141,11 +142,11 @@ function best(runs, work) {
   return least;
 }
 
-const runs = () => (coords.length > 100_000 ? 1 : 3);
+// Few points more often, since engines compile what has run a while.
+const runs = () => Math.ceil(100_000 / coords.length);
 
-function load(points) {
-  segments = [];
-  coords = points;
+function load(shapes) {
+  ({coords, segments, polygons} = shapes);
   wrong = new Int32Array(0);
   peer = null;
   segmentFrom = -1;
@@ -154,8 +155,10 @@ function load(points) {
   try {
     build();
   } catch (error) {
-    report(error);
-    return;
+    // Segments that cross.
+    report(new Error(`without the segments: ${error.message}`));
+    segments = [];
+    build();
   }
   fit();
   const {width, height} = size();
@@ -235,7 +238,7 @@ function draw() {
   const only = isChanged || what !== 'edges' ? new Set() : trianglesInArea();
   drawing.begin(width, height, only.size > 0 ? area : null);
   if (what === 'colours') drawColours(width, height);
-  else colours.canvas.width = 1;
+  else if (isChanged) fillPolygons(width, height);
   renew();
   if (what === 'voronoi') drawVoronoi();
   else drawEdges(drawing, rows, coords, [...only]);
@@ -346,6 +349,20 @@ function drawColours(width, height) {
   colours.putImageData(image, 0, 0);
 }
 
+function fillPolygons(width, height) {
+  colours.canvas.width = polygons.length > 0 ? width : 1;
+  colours.canvas.height = polygons.length > 0 ? height : 1;
+  for (const [p, rings] of polygons.entries()) {
+    colours.beginPath();
+    for (const ring of rings) {
+      for (const [k, i] of ring.entries()) colours[k === 0 ? 'moveTo' : 'lineTo'](pixelOf(i).x, pixelOf(i).y);
+    }
+    // Hues that differ between any few polygons in a row.
+    colours.fillStyle = `hsl(${137.5 * p} 60% 55% / 50%)`;
+    colours.fill('evenodd');
+  }
+}
+
 function drawPeer() {
   const {width, height} = size();
   peerDrawing.begin(width, height);
@@ -408,7 +425,8 @@ function show() {
   control('ours').innerHTML = `${count.toLocaleString('en')} triangles, ${edgesText(checked < 0 ? null : wrong)}; all
     anew in ${ms(times.all)}`;
   control('peer').innerHTML = peer ? `${(peer.triangles.length / 3).toLocaleString('en')} triangles,
-    ${edgesText(peer.wrong)}; all anew in ${ms(peer.time)}` : 'at work';
+    ${edgesText(peer.wrong)}${segments.length > 0 ? ', without the segments' : ''}; all anew in ${ms(peer.time)}`
+    : 'at work';
 }
 
 function edgesText(edges) {
@@ -570,7 +588,8 @@ canvas.addEventListener('keydown', (event) => {
 
 function generateChosen() {
   drift = null;
-  load(generate(control('distribution').value, Number(control('count').value)));
+  const made = generate(control('distribution').value, Number(control('count').value));
+  load({coords: made, segments: [], polygons: []});
 }
 
 async function read(file) {
@@ -582,6 +601,7 @@ async function read(file) {
 }
 
 control('distribution').append(...distributions.map((name) => new Option(name)));
+control('distribution').value = 'tilted grid';
 for (const name of ['count', 'distribution']) control(name).addEventListener('change', generateChosen);
 for (const one of root.querySelectorAll('[name=view]')) {
   one.addEventListener('change', () => {

@@ -15,6 +15,13 @@ function normal(random) {
   return Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
 }
 
+// The length of a row, so that all rows of a grid are full.
+function rowLength(n) {
+  let length = Math.floor(Math.sqrt(n));
+  while (n % length > 0) length--;
+  return length;
+}
+
 // Each makes point i of n.
 const DISTRIBUTIONS = {
   uniform: (random) => [random(), random()],
@@ -33,11 +40,11 @@ const DISTRIBUTIONS = {
     return [Math.cos(angle), Math.sin(angle)];
   },
   grid(random, i, n) {
-    const side = Math.ceil(Math.sqrt(n));
-    return [i % side, Math.floor(i / side)];
+    const row = rowLength(n);
+    return [i % row, Math.floor(i / row)];
   },
   'tilted grid'(random, i, n) {
-    const side = Math.ceil(Math.sqrt(n)), x = i % side, y = Math.floor(i / side);
+    const row = rowLength(n), x = i % row, y = Math.floor(i / row);
     return [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
   },
   spiral: (random, i) => [Math.sqrt(i) * Math.cos(2.399963 * i), Math.sqrt(i) * Math.sin(2.399963 * i)],
@@ -52,13 +59,49 @@ export function generate(distribution, n, seed = 1) {
   return coords;
 }
 
-function* placesOf(geojson) {
-  const {type} = geojson;
-  if (type === 'FeatureCollection') for (const feature of geojson.features) yield* placesOf(feature);
-  else if (type === 'Feature' && geojson.geometry) yield* placesOf(geojson.geometry);
-  else if (type === 'GeometryCollection') for (const geometry of geojson.geometries) yield* placesOf(geometry);
-  else if (type === 'Point') yield geojson.coordinates;
-  else if (type === 'MultiPoint') yield* geojson.coordinates;
+// Points, each place once, segments between them, and polygons: rings of points, which end with the first once more.
+class Shapes {
+  coords = [];
+  segments = [];
+  polygons = [];
+  #numbers = new Map();
+  #joined = new Set();
+
+  point([x, y]) {
+    const place = `${x},${y}`, count = this.#numbers.size;
+    if (!Number.isFinite(x) || !Number.isFinite(y)) throw new Error(`point ${count} has no two finite numbers`);
+    if (!this.#numbers.has(place)) {
+      this.#numbers.set(place, count);
+      this.coords.push(x, -y); // y goes down on screens
+    }
+    return this.#numbers.get(place);
+  }
+
+  line(places) {
+    const points = places.map((place) => this.point(place));
+    for (let k = 1; k < points.length; k++) {
+      const [a, b] = [Math.min(points[k - 1], points[k]), Math.max(points[k - 1], points[k])];
+      if (a < b && !this.#joined.has(`${a},${b}`)) this.segments.push(a, b);
+      this.#joined.add(`${a},${b}`);
+    }
+    return points;
+  }
+
+  polygon(rings) {
+    this.polygons.push(rings.map((ring) => this.line(ring)));
+  }
+
+  add({type, features, geometry, geometries, coordinates}) {
+    if (type === 'FeatureCollection') for (const feature of features) this.add(feature);
+    else if (type === 'Feature' && geometry) this.add(geometry);
+    else if (type === 'GeometryCollection') for (const part of geometries) this.add(part);
+    else if (type === 'Point') this.point(coordinates);
+    else if (type === 'MultiPoint') for (const place of coordinates) this.point(place);
+    else if (type === 'LineString') this.line(coordinates);
+    else if (type === 'MultiLineString') for (const line of coordinates) this.line(line);
+    else if (type === 'Polygon') this.polygon(coordinates);
+    else if (type === 'MultiPolygon') for (const rings of coordinates) this.polygon(rings);
+  }
 }
 
 function* placesOfLines(text) {
@@ -75,11 +118,12 @@ function* placesOfLines(text) {
   }
 }
 
-/** The points of a file: GeoJSON, or text with two numbers per line. */
+/** The points, segments and polygons of a file: GeoJSON, or text with two numbers per line. */
 export function parse(text) {
-  const places = [...(/^\s*\{/.test(text) ? placesOf(JSON.parse(text)) : placesOfLines(text))];
-  if (places.length < 3) throw new Error(`${places.length} points in the file; at least three make a triangle`);
-  const wrong = places.findIndex(([x, y]) => !Number.isFinite(x) || !Number.isFinite(y));
-  if (wrong >= 0) throw new Error(`point ${wrong} has no two finite numbers`);
-  return Float64Array.from(places.flatMap(([x, y]) => [x, y]));
+  const shapes = new Shapes();
+  if (/^\s*\{/.test(text)) shapes.add(JSON.parse(text));
+  else for (const place of placesOfLines(text)) shapes.point(place);
+  const {coords, segments, polygons} = shapes;
+  if (coords.length < 6) throw new Error(`${coords.length / 2} points in the file; at least three make a triangle`);
+  return {coords: Float64Array.from(coords), segments, polygons};
 }

@@ -33,6 +33,10 @@ template <typename T>
 struct HasFirstAndSecond<T, std::void_t<decltype(double(std::declval<const T&>().first)),
                                         decltype(double(std::declval<const T&>().second))>> : std::true_type {
 };
+template <typename Range, typename = void>
+struct HasData : std::false_type {};
+template <typename Range>
+struct HasData<Range, std::void_t<decltype(std::data(std::declval<const Range&>()))>> : std::true_type {};
 
 /// The x and y of a point: its members or functions x and y, its parts, its first and second, or its [0] and
 /// [1].
@@ -100,15 +104,11 @@ class Points {
   template <typename Range, typename Element>
   static constexpr bool is_in_one_piece() {
     if constexpr (std::is_same_v<Element, double>) {
-      return HasData<Range>::value;
+      return detail::HasData<Range>::value;
     } else {
       return false;
     }
   }
-  template <typename Range, typename = void>
-  struct HasData : std::false_type {};
-  template <typename Range>
-  struct HasData<Range, std::void_t<decltype(std::data(std::declval<const Range&>()))>> : std::true_type {};
 
   std::vector<double> copy_;
   const double* data_ = nullptr;
