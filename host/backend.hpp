@@ -32,8 +32,11 @@ class Kernel {
   virtual void set_argument(cl_uint index, const void* value, std::size_t bytes) = 0;
   /// Whether the kernel takes counters after its first `arguments` arguments.
   virtual bool takes_counters(cl_uint arguments) const = 0;
-  /// The largest size of a work-group: 0 if it needs more local memory than the device has.
+  /// The largest size of a work-group.
   std::size_t largest_group = 1;
+  /// Whether the device has the local memory that it needs, by the driver. Launches do not rely on that, and
+  /// smaller groups would not need less: Mesa's rusticl 22.3 counts this memory twice.
+  bool has_local_memory = true;
 
  private:
   std::string name_;

@@ -160,7 +160,9 @@ class Runtime {
 
   /// The largest work-group size of this kernel; 0 if it needs more local memory than the device has.
   std::size_t largest_group(const KernelName& name) {
-    return is_native() ? 1 : find_kernel(name).largest_group;
+    if (is_native()) return 1;
+    const Kernel& kernel = find_kernel(name);
+    return kernel.has_local_memory ? kernel.largest_group : 0;
   }
 
   /// Copies from the device to the host, and waits for it.

@@ -32,6 +32,8 @@ INSTALL_SECONDS = 120
 TUNINGS = ["", "gpu"]
 # Points of each input.
 POINTS, FEW_POINTS = "300", "64"
+# A block that a work-group halves.
+BLOCK_POINTS = "1000"
 # Two drivers share chunks. There are enough of them for the one that has more to compile.
 CHUNKED_POINTS = 200000
 CHUNK_POINTS = 5000
@@ -181,6 +183,11 @@ class Tester:
         if "rusticl" not in listed.stdout:
             return False
         self.test(RUSTICL.name, "", environment, FEW_POINTS)
+        # Alone, a work-item would need more turns of its loops than it has.
+        points, triangles = self.outputs / "block.npy", self.outputs / "block-triangles.npy"
+        subprocess.run([self.flaunay, "generate", "uniform", BLOCK_POINTS, "-o", points], check=True, capture_output=True)
+        for command in ["triangulate", points, "--quiet", "-o", triangles], ["verify", points, triangles]:
+            self.run(f"{RUSTICL.name}, {command[0]} a block", "", [self.flaunay, *command], environment)
         return True
 
     def on_poor_device(self, limits, tuning):

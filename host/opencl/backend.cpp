@@ -27,7 +27,7 @@ class OpenClKernel : public Kernel {
     query(CL_KERNEL_WORK_GROUP_SIZE, sizeof largest_group, &largest_group);
     query(CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof required, required);
     query(CL_KERNEL_LOCAL_MEM_SIZE, sizeof local_memory, &local_memory);
-    if (local_memory > device.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE)) largest_group = 0;
+    has_local_memory = local_memory <= device.get_info<cl_ulong>(CL_DEVICE_LOCAL_MEM_SIZE);
     requires_group = required[0] != 0;
   }
   void set_argument(cl_uint index, const void* value, std::size_t bytes) override {

@@ -472,11 +472,10 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
-    {"llvmpipe", "gpu,sewing_group=8,off_grid_most=0,large_blocks=0",
+    {"llvmpipe", "gpu,sewing_group=8,off_grid_most=0",
      "Its loops end after 65535 turns, so that work-items must have little to do; it cannot compile "
-     "__builtin_prefetch, may refuse to unmap what it mapped, crashes when larger groups sew, cuts blocks "
-     "wrongly in local memory if a work-item has more than three points, and goes nowhere from a vertex to "
-     "one that is nearer to a query off the grid."},
+     "__builtin_prefetch, may refuse to unmap what it mapped, crashes when larger groups sew, and goes "
+     "nowhere from a vertex to one that is nearer to a query off the grid."},
 };
 
 constexpr std::size_t kPointsOfASmallBlock = 6;
