@@ -367,9 +367,11 @@ class Session:
         return ["--distributions", ",".join(DISTRIBUTIONS), "--modes", self.modes]
 
     def measure_peers(self):
+        """Beside CGAL, if the benchmarks have it, and beside no other."""
         sizes = self.plan["peer_sizes"]
-        self.bench("Times beside others", "peers", "--sizes", ",".join(map(str, sizes)), "--peers", "cgal",
-                   "--peers-most", sizes[0], *self.chosen())
+        about = self.run(os.path.join(self.folder, "flaunay-bench"), "peers", "--help", stdout=subprocess.PIPE, text=True)
+        others = ["--peers", "cgal", "--peers-most", sizes[0]] if "  cgal:" in about.stdout else ["--peers-most", 1]
+        self.bench("Times beside others", "peers", "--sizes", ",".join(map(str, sizes)), *others, *self.chosen())
 
     def measure_modes(self):
         self.bench("Times by number of points", "modes", "--sizes", self.plan["mode_sizes"], *self.chosen())

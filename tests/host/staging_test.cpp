@@ -22,12 +22,11 @@ namespace {
 constexpr std::size_t kChunk = 4096;
 
 std::unique_ptr<Runtime> staged(std::size_t separate_buffers = 2) {
-  auto runtime = std::make_unique<Runtime>(find_device(""), settings_for(find_device("")));
+  const auto device = find_device("");
   auto tuning = std::make_shared<Tuning>(tuning_named("gpu"));
   tuning->staging_bytes = kChunk;
   tuning->separate_buffers = separate_buffers;
-  runtime->set_sizes(std::move(tuning));
-  return runtime;
+  return std::make_unique<Runtime>(device, Settings{std::move(tuning), settings_for(device).capabilities});
 }
 
 std::vector<cl_uchar> numbers(std::size_t count, std::size_t first) {
