@@ -453,8 +453,13 @@ static inline open_list open_list_of(int k, int is_first, global const int* list
   return list;
 }
 
+// Whether a block has several parts: then the one in the middle frame is none of the first frame's.
+static inline int is_in_parts(int block, int depth, global const block_frame* frames) {
+  return depth > 0 && frames[(block << depth) + (1 << (depth - 1))].vertices > 0;
+}
+
 // Counts each vertex that goes on, and its open edges. n places; in the first round, the first ones of each frame are
-// vertices, later all, also in blocks that were left unsolved. No vertex of a set with one block goes on.
+// vertices, later all, also in blocks that were left unsolved. No vertex of a set that is one part goes on.
 kernel void count_open(int n, OPEN_VERTICES(), int sets, global const int* restrict set_blocks, int depth, FRAMES(),
                        global const ring_edge* restrict edges, global const int* restrict vertex_edge,
                        global const int* restrict states, global uint2* restrict counts) {
@@ -464,7 +469,7 @@ kernel void count_open(int n, OPEN_VERTICES(), int sets, global const int* restr
     const int s = segment_of(f >> depth, sets, set_blocks);
     const int is_vertex = !is_first || k - frame_offsets[f] < frames[f].vertices;
     uint2 count = VECTOR(uint2, 0, 0);
-    if (is_vertex && set_blocks[s + 1] - set_blocks[s] > 1) {
+    if (is_vertex && (set_blocks[s + 1] - set_blocks[s] > 1 || is_in_parts(f >> depth, depth, frames))) {
       open_list list = open_list_of(k, is_first, listed, open_offsets, open_edges);
       gather_open(&list, vertex_edge[k], edges, states, vertices);
       if (list.count > 0 || !list.emitted) count = VECTOR(uint2, 1, (uint)list.count);

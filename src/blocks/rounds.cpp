@@ -110,16 +110,17 @@ struct Round {
   std::size_t frame_count() const { return blocks.count << parts.depth; }
 };
 
-// Whether the parts of blocks may stay apart. A set with one block has no later round, so that must be whole.
+// Whether the parts of blocks may stay apart. A set with one block needs no later round if that is whole,
+// which must be so if there is none.
 bool may_be_parts(const Workspace& work, const Round& round) {
   const std::vector<cl_int>& blocks = round.blocks.set_blocks;
   const std::vector<std::size_t>& points = round.open.offsets;
-  bool may = !round.is_merged;
-  for (std::size_t s = 0; may && s < round.blocks.sets; ++s) {
-    may =
-        blocks[s + 1] - blocks[s] > 1 || points[s + 1] - points[s] <= tuning_of(work.runtime).local_vertices;
+  std::size_t alone = 0;  // points of such sets whose block may have parts
+  for (std::size_t s = 0; s < round.blocks.sets; ++s) {
+    const std::size_t own = points[s + 1] - points[s];
+    if (blocks[s + 1] - blocks[s] == 1 && own > tuning_of(work.runtime).local_vertices) alone += own;
   }
-  return may;
+  return !round.is_merged && (alone == 0 || (!round.is_last() && 2 * alone <= points.back()));
 }
 
 kernels::places_of_parts places_of_parts(const Round& round) {

@@ -258,8 +258,8 @@ TEST(Rounds, OfManySetsAreTheSameAsMerges) {
   EXPECT_GE(met.most, 4u);
 }
 
-/// Parts of blocks that are not merged, of several depths; blocks that are merged after all, and sets for
-/// whose only block there is no other way.
+/// Parts of blocks that are not merged, of several depths, also of a set's only block; blocks that are merged
+/// after all, and calls with single blocks alone, for which there is no other way.
 TEST(Rounds, OfPartsAreTheSameAsMerges) {
   if (testing::tests_native()) GTEST_SKIP() << "the host has no local memory";
   MetRounds met;
@@ -277,7 +277,7 @@ TEST(Rounds, OfPartsAreTheSameAsMerges) {
     const Nested sets = sets_of_all_kinds(150, 14);
     compare(sizes, sets.coordinates, sets.offsets, met);
     Nested large;
-    for (const std::size_t n : {400u, 3u, 900u}) large.add(make_fixture("uniform", n, n));
+    for (const std::size_t n : {400u, 3u, 50u, 900u}) large.add(make_fixture("uniform", n, n));
     compare(sizes, large.coordinates, large.offsets, met);
   }
   EXPECT_GE(met.most, 3u);
