@@ -50,11 +50,10 @@ typedef struct {
 // The part of a group: a block of at most this height, or the part of this height of a larger block that begins in a
 // cell.
 static inline local_part local_part_of(const halved_blocks* blocks, int block_count, int group, int height) {
-  block_part part = {group, 0, 0, 0, 0, 0};
+  block_part part;
   if (group < block_count) {
-    part.count = blocks->distinct[group];
-    part.first = blocks->offsets[group];
-    if (part.count == 0 || halving_depth(part.count) > height) part.block = -1;
+    const int count = blocks->distinct[group], is_whole = count > 0 && halving_depth(count) <= height;
+    part = numbered_part(is_whole ? group : -1, blocks->offsets[group], count, 0, 0);
   } else {
     part = part_of_cell(blocks, height, group - block_count);
     if (part.depth == 0) part.block = -1;
@@ -71,9 +70,7 @@ static inline local_part local_part_of(const halved_blocks* blocks, int block_co
 // Part j of this height in it.
 static inline block_part part_within(const local_part* p, int height, int j) {
   const int depth = p->part.depth + p->own_height - height, number = (p->part.number << (p->own_height - height)) + j;
-  const block_part part = {p->part.block, p->part.first, p->part.count,
-                           depth,         number,        part_begin(p->part.count, depth, number)};
-  return part;
+  return numbered_part(p->part.block, p->part.first, p->part.count, depth, number);
 }
 
 static inline void make_local_leaf(rings* g, local local_arrays* own, block_part part) {
@@ -90,11 +87,11 @@ static inline void make_local_leaf(rings* g, local local_arrays* own, block_part
   }
 }
 
-// Merge j of this height. crossings, removals: of the part, by upward walks; by downward walks from places on.
+// Merge j of this height. crossings, removals: of the part, by upward and then by downward walks.
 static inline sewing local_sewing(const local_part* p, local local_arrays* own, const halved_blocks* blocks, int height,
                                   int j, global int2* crossings, global int* removals) {
   const part_halves halves = halves_of_part(blocks, part_within(p, height, j));
-  const int up = CROSSINGS_PER_VERTEX * halves.begin, down = CROSSINGS_PER_VERTEX * (blocks->places + halves.begin);
+  const int up = CROSSINGS_PER_VERTEX * halves.begin, down = CROSSINGS_PER_VERTEX * (p->size + halves.begin);
   const sewing s = {
       {own->merges[j].count, halves.middle, own->walks[2 * j], own->walks[2 * j + 1], crossings + up, crossings + down},
       own->edges,
@@ -155,8 +152,7 @@ static inline int longest_walk(local const seam_walk* walks, int count) {
 WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int height, int is_second,
                                     halved_blocks blocks, filter_bounds bounds, global const coordinate2* points,
                                     global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
-                                    global int2* crossings, global int* removals, global uchar* is_removed,
-                                    global int* states, local local_arrays* own,
+                                    global uchar* is_removed, global int* states, local local_arrays* own,
                                     global volatile uint* account COUNTERS) {
   const int me = get_local_id(0), lanes = get_local_size(0);
   const int is_wanted = group < groups && (!is_second || states[group]);
@@ -165,8 +161,9 @@ WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int 
   // Places, too, are counted from the part's first vertex now.
   blocks.axes += p.first;
   blocks.parts = own->parts;
-  crossings += CROSSINGS_PER_VERTEX * p.first;
-  removals += CROSSINGS_PER_VERTEX * p.first;
+  // The walks' lists are where the part's edges come in the end, which take more room.
+  global int2* const crossings = (global int2*)(edges + edge_at(p.first));
+  global int* const removals = (global int*)(crossings + 2 * CROSSINGS_PER_VERTEX * p.size);
   rings g = rings_on(own->edges, own->points, own->vertex_edge, bounds);
   const int leaves = p.own_height < 0 ? 0 : 1 << p.own_height;
   const int size = leaves > 0 ? p.size : 0;
@@ -190,7 +187,7 @@ WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int 
     const team walkers = team_of(2 * most), sewers = team_of(most);
     for (int w = walkers.first; walkers.rank == 0 && w < 2 * merges; w += walkers.step) {
       const part_halves halves = halves_of_part(&blocks, part_within(&p, h, w / 2));
-      const int is_downward = w & 1, list = CROSSINGS_PER_VERTEX * is_downward * blocks.places;
+      const int is_downward = w & 1, list = CROSSINGS_PER_VERTEX * is_downward * p.size;
       own->walks[w] = walk_of_halves(&g, &blocks, &halves, is_downward, walk_from(NO_VERTEX, NO_VERTEX, 0, 0),
                                      crossings + list, removals + list, own->is_removed + is_downward * LOCAL_PAIRS);
       if (!is_downward) {

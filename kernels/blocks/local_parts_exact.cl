@@ -11,12 +11,11 @@
 #include "predicates/records.h"
 
 kernel void finish_local_parts(int groups, int blocks, PLACES_OF_PARTS(), filter_bounds bounds, RINGS_OF_PARTS(),
-                               global int2* restrict crossings, global int* restrict removals,
                                global uchar* restrict is_removed, global int* restrict states,
                                global volatile uint* account COUNTERS) {
   local local_arrays own;
   const halved_blocks halved =
       blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, 0, solved);
   solve_local_part(get_group_id(0), groups, blocks, height, 1, halved, bounds, points, edges, vertex_edge, parts,
-                   crossings, removals, is_removed, states, &own, account WITH_COUNTERS);
+                   is_removed, states, &own, account WITH_COUNTERS);
 }

@@ -52,19 +52,20 @@ typedef struct {
   int block, first, count, depth, number, begin;
 } block_part;
 
-// The part of this depth that begins at the place or, if it must not, behind it. Its block is given.
-static inline block_part part_behind(const halved_blocks* blocks, int block, int height, int place) {
-  block_part part = {-1, 0, 0, 0, 0, 0};
-  if (block < 0) return part;
-  part.first = blocks->offsets[block];
-  part.count = blocks->distinct[block];
-  part.depth = halving_depth(part.count) - height;
-  if (part.depth < blocks->least_depth || part.depth >= blocks->end_depth || part.count == 0) return part;
-  part.number = part_from(part.count, part.depth, max(0, place - part.first));
-  if (part.number >> part.depth) return part;
-  part.begin = part_begin(part.count, part.depth, part.number);
-  part.block = block;
+static inline block_part numbered_part(int block, int first, int count, int depth, int number) {
+  const block_part part = {block, first, count, depth, number, part_begin(count, depth, number)};
   return part;
+}
+
+static inline block_part no_part(void) { return numbered_part(-1, 0, 0, 0, 0); }
+
+// The part of this height that begins at the place or, if it must not, behind it. Its block is given.
+static inline block_part part_behind(const halved_blocks* blocks, int block, int height, int place) {
+  if (block < 0) return no_part();
+  const int first = blocks->offsets[block], count = blocks->distinct[block], depth = halving_depth(count) - height;
+  if (depth < blocks->least_depth || depth >= blocks->end_depth || count == 0) return no_part();
+  const int number = part_from(count, depth, max(0, place - first));
+  return number >> depth ? no_part() : numbered_part(block, first, count, depth, number);
 }
 
 static inline int vertices_of_part(block_part part) {
@@ -86,12 +87,10 @@ static inline block_part part_of_cell(const halved_blocks* blocks, int height, i
 // or a higher one if the block has more of them, or in the first one the whole block, if it is no higher. block: -1 if
 // the frame is empty.
 static inline block_part part_in_frame(const halved_blocks* blocks, int block, int height, int depth, int j) {
-  block_part part = {-1, blocks->offsets[block], blocks->distinct[block], 0, 0, 0};
-  part.depth = min(depth, max(0, halving_depth(part.count) - height));
-  part.number = j >> (depth - part.depth);
-  if (part.number << (depth - part.depth) == j) part.block = block;
-  part.begin = part_begin(part.count, part.depth, part.number);
-  return part;
+  const int count = blocks->distinct[block], own_depth = min(depth, max(0, halving_depth(count) - height)),
+            number = j >> (depth - own_depth);
+  return numbered_part(number << (depth - own_depth) == j ? block : -1, blocks->offsets[block], count, own_depth,
+                       number);
 }
 
 // The place where frame j begins. Places of a block that are no vertices are behind its last part, in that one's frame.
@@ -113,7 +112,7 @@ typedef struct {
 } part_halves;
 
 static inline part_halves no_halves(void) {
-  const part_halves none = {{-1, 0, 0, 0, 0, 0}, 0, 0, 0, 0, 0, 0};
+  const part_halves none = {no_part(), 0, 0, 0, 0, 0, 0};
   return none;
 }
 

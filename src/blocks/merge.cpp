@@ -50,16 +50,13 @@ int first_height_of_seams(const Tuning& tuning) {
   return height;
 }
 
-void make_lists(Workspace& work, const PointBlocks& blocks, Seams& seams) {
-  const std::size_t room = 2 * kernel::CROSSINGS_PER_VERTEX * blocks.points;
+// are_cleared: the marks, by the launch on local parts.
+void make_lists(Workspace& work, const PointBlocks& blocks, int first_height, bool are_cleared,
+                Seams& seams) {
+  const std::size_t room = 2 * kernel::CROSSINGS_PER_VERTEX * blocks.points,
+                    marks = 2 * kernel::PAIRS_PER_VERTEX * blocks.points;
   seams.crossings = work.scratch().allocate<cl_int2>(room);
   seams.removals = work.scratch().allocate<cl_int>(room);
-}
-
-// are_cleared: the marks, by the launch on local parts.
-void make_walks(Workspace& work, const PointBlocks& blocks, int first_height, bool are_cleared,
-                Seams& seams) {
-  const std::size_t marks = 2 * kernel::PAIRS_PER_VERTEX * blocks.points;
   seams.walks = work.scratch().allocate<kernel::seam_walk>(2 * cells_of(blocks, first_height));
   seams.is_removed = work.scratch().allocate<cl_uchar>(marks);
   if (!are_cleared) work.runtime.fill<cl_uchar>(seams.is_removed, marks, 0);
@@ -153,8 +150,6 @@ void launch_on_local_parts(const Halves& halves, int height) {
                              .places_of_parts = places_of_parts(blocks, halved, rings, height),
                              .bounds = work.bounds,
                              .rings_of_parts = halves.rings_of_parts(),
-                             .crossings = seams.crossings,
-                             .removals = seams.removals,
                              .is_removed = seams.is_removed,
                              .states = states,
                              .account = rings.device_account});
@@ -205,8 +200,9 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
       in_local < 0 ? cells_of(blocks, from) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
   const int first = std::max(from, in_local + 1),
             first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), first);
-  if (in_local >= 0 || first_seams <= to) make_lists(work, blocks, halves.seams);
-  if (first_seams <= to) make_walks(work, blocks, first_seams, in_local >= 0, halves.seams);
+  // When memory is counted, some blocks are as high as any.
+  if (work.runtime.at_most(first_seams <= to, true))
+    make_lists(work, blocks, first_seams, in_local >= 0, halves.seams);
   if (in_local >= 0) {
     launch_on_local_parts<kernels::solve_local_parts>(halves, in_local);
     if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local);
@@ -232,21 +228,23 @@ std::size_t most_frames(const Workspace& work, std::size_t blocks, std::size_t p
 
 void solve_in_parallel(Workspace& work, const PointBlocks& blocks, const Buffer<cl_int>& representatives,
                        const Rings& rings, PartsOfBlocks* parts) {
+  PartsOfBlocks own;
+  if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
+    own.height = in_local;
+    own.depth = std::clamp<int>(blocks.height() - in_local, 0, kMostDepthOfFrames);
+    while (own.depth > 0 && blocks.count << own.depth > most_frames(work, blocks.count, blocks.points))
+      --own.depth;
+  }
   std::optional<Arena::Scope> scope;
-  if (parts == nullptr) scope.emplace(work.scratch());
-  PartsOfBlocks own{.halved = halve(work, blocks, representatives, rings)};
+  // When memory is counted, there are parts wherever they may be.
+  const bool are_kept = work.runtime.at_most(own.depth > 0, parts != nullptr);
+  if (!are_kept) scope.emplace(work.scratch());
+  own.halved = halve(work, blocks, representatives, rings);
   if (work.weights != nullptr)
     return work.weights->solver->merge_halves(work, blocks, own.halved, representatives, rings);
   own.ends = work.scratch().allocate<kernel::solved_block>(cells_of(blocks, 0));
-  own.height = blocks.height();
-  if (const int in_local = height_in_local_memory(work, blocks); parts != nullptr && in_local >= 0) {
-    own.depth = std::clamp<int>(own.height - in_local, 0, kMostDepthOfFrames);
-    while (own.depth > 0 && blocks.count << own.depth > most_frames(work, blocks.count, blocks.points))
-      --own.depth;
-    if (own.depth > 0) own.height = in_local;
-  }
   merge_halves(work, blocks, own, rings, 0, blocks.height() - own.depth, {own.depth});
-  if (parts != nullptr) *parts = own;
+  if (are_kept) *parts = own;
 }
 
 void merge_trees(Workspace& work, const Blocks& blocks, std::size_t first, std::size_t end,

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "blocks/limits.h"
 #include "host/launch/vector_operations.hpp"
 #include "operations/limits.h"
 #include "points/limits.h"
@@ -29,6 +31,16 @@ TEST(SmallTuning, IsNamedByTheEnvironment) {
     const ScopedEnvironment wrong("FLAUNAY_TUNING", name);
     const std::string message = message_of([&] { settings_for(device); }, CL_SUCCESS);
     EXPECT_TRUE(contains(message, std::string("'") + name + "'")) << message;
+  }
+}
+
+// Kernels halve parts that local memory holds down to leaves.
+TEST(SmallTuning, PartsHaveAPowerOfTwoOfVertices) {
+  const auto device = find_device("");
+  const bool has_room = limits_of(device).local_memory >= kernel::LOCAL_PART_BYTES;
+  for (const auto& [given, vertices] : {std::pair{"511", 256u}, {"300", 256u}, {"1000", 512u}, {"0", 0u}}) {
+    const Settings settings = settings_for(device, std::string("gpu,local_vertices=") + given);
+    EXPECT_EQ(settings.sizes->tuning().local_vertices, has_room ? vertices : 0u) << given;
   }
 }
 
