@@ -1956,6 +1956,16 @@ TEST_F(CommandConstraintsTest, RingsMayHaveAnyDirection) {
   }
 }
 
+// As flaunay.polygons in Python does (test_polygons.py).
+TEST_F(CommandConstraintsTest, WhatPolygonsGoAroundTwiceIsNotInThem) {
+  const std::string twice = write("twice.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [6, 0],
+      [6, 6], [1, 6], [1, 1], [5, 1], [5, 5], [0, 5], [0, 0]]]})");
+  const Arguments split = {"--crossings", "split"};
+  EXPECT_DOUBLE_EQ(area(twice, split), 19);
+  EXPECT_DOUBLE_EQ(area(twice, joined(split, {"--fill", "even-odd"})), 19);
+  EXPECT_DOUBLE_EQ(area(twice, joined(split, {"--fill", "winding"})), 35);
+}
+
 TEST_F(CommandConstraintsTest, LinesAndPointsBesidePolygonsAreInTheirMesh) {
   const double meadow_and_orchard = area(data("parcels.geojson"));
   EXPECT_GT(meadow_and_orchard, 6000);

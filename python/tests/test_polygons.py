@@ -190,6 +190,13 @@ def test_what_is_outside_can_be_kept():
     assert flaunay.polygons(rings, outside="hull", fill_rule="nesting").areas.sum() == 36
 
 
+# As the command's default (cli_test.cpp).
+def test_what_polygons_go_around_twice_is_not_in_them():
+    twice = [(0, 0), (6, 0), (6, 6), (1, 6), (1, 1), (5, 1), (5, 5), (0, 5)]
+    assert flaunay.polygons([[twice]], crossings="split").areas.sum() == 19
+    assert flaunay.polygons([[twice]], crossings="split", map=True).areas.sum() == 19
+
+
 def test_letters_are_filled_by_winding():
     overlapping = [[[0, 0], [4, 0], [4, 2], [0, 2]], [[2, 1], [6, 1], [6, 3], [2, 3]]]
     split = {"crossings": "split"}

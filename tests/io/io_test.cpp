@@ -230,17 +230,17 @@ TEST_F(IoTest, TextMayHaveHeightsAndNamedColumns) {
   EXPECT_EQ(points.coordinates, (Values{1, 2, 4, 5}));
   EXPECT_EQ(points.heights, (Values{3, -6.5}));
   const std::string table = write("b.csv", "name;z;lat;lon\nNew York, NY;3,5;2;1\n");
-  EXPECT_EQ(read_points(table, {"lon", "lat", "z"}).coordinates, (Values{1, 2}));
-  EXPECT_EQ(read_points(table, {"3", "lat", "1"}).heights, Values{3.5});
-  EXPECT_TRUE(read_points(table, {"3", "2"}).heights.empty());
-  EXPECT_EQ(read_points(write("c.txt", "7 1 2 8\n"), {"1", "2"}).coordinates, (Values{1, 2}));
+  EXPECT_EQ(read_points(table, {{"lon", "lat", "z"}}).coordinates, (Values{1, 2}));
+  EXPECT_EQ(read_points(table, {{"3", "lat", "1"}}).heights, Values{3.5});
+  EXPECT_TRUE(read_points(table, {{"3", "2"}}).heights.empty());
+  EXPECT_EQ(read_points(write("c.txt", "7 1 2 8\n"), {{"1", "2"}}).coordinates, (Values{1, 2}));
   const auto expect_bad_columns = [&](const Columns& columns, const std::vector<std::string>& parts) {
     expect_error(ErrorKind::input, table + ": line 2", parts, [&] { read_points(table, columns); });
   };
-  expect_bad_columns({"lon", "latitude"}, {"no column 'latitude'", "name, z, lat, lon"});
-  expect_bad_columns({"lon", "4"}, {"no column '4'"});
-  expect_bad_columns({"lon", "3"}, {"twice"});
-  expect_bad_columns({"name", "lat"}, {"'New York, NY'"});
+  expect_bad_columns({{"lon", "latitude"}}, {"no column 'latitude'", "name, z, lat, lon"});
+  expect_bad_columns({{"lon", "4"}}, {"no column '4'"});
+  expect_bad_columns({{"lon", "3"}}, {"twice"});
+  expect_bad_columns({{"name", "lat"}}, {"'New York, NY'"});
   expect_bad_points("d.csv", "1,2,3\n4,5\n", {"line 2", "three numbers", "found 2"});
   expect_bad_points("e.csv", "1,2,3,4\n", {"line 1", "found 4", "--columns"});
   for (const char* header : {"id,x,y", "lat,lon,z", ",X,Y", "northing,easting,height"})
@@ -248,7 +248,7 @@ TEST_F(IoTest, TextMayHaveHeightsAndNamedColumns) {
   expect_bad_points("g.csv", "x,y,name\n1,2,house\n", {"line 2, column 5", "a height of point 0", "'house'"});
   write("h.bin", std::string(16, '\0'));
   expect_error(ErrorKind::usage, path("h.bin"), {"--columns"}, [&] {
-    read_points(path("h.bin"), {"0", "1"});
+    read_points(path("h.bin"), {{"0", "1"}});
   });
 }
 

@@ -186,7 +186,7 @@ TEST_F(MapTest, GeoJsonHasHeightsPropertiesAndASystem) {
       {"name": "urn:ogc:def:crs:EPSG::25832"}}, "features": [)" +
                               feature(both, R"({"b": [1, {"c": null}], "a": "\u00e4\""})") + "," +
                               feature(polygon, "null") + "," + feature(polygon, R"({"d": 2})") + "]}");
-  EXPECT_EQ(map.crs, "EPSG:25832");
+  EXPECT_EQ(map.points.crs, "EPSG:25832");
   const std::string first = "\"a\":\"\xc3\xa4\\\"\",\"b\":[1,{\"c\":null}]";
   EXPECT_EQ(map.properties, (std::vector<std::string>{first, first, "", "\"d\":2"}));
   ASSERT_EQ(map.points.heights.size(), 12U);

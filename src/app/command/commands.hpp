@@ -15,6 +15,7 @@ void add_triangulate(CLI::App& app, Action& action);
 void add_partition(CLI::App& app, Action& action);
 void add_assemble(CLI::App& app, Action& action);
 void add_generate(CLI::App& app, Action& action);
+void add_voronoi(CLI::App& app, Action& action);
 void add_terrain(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_devices(CLI::App& app, Action& action);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -17,9 +18,12 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
+#include "app/files/layers.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
 #include "app/files/text.hpp"
+#include "files/file.hpp"
 
 namespace flaunay::cli {
 namespace {
@@ -91,14 +95,48 @@ std::vector<double> holes_of(const ConstraintRequest& request) {
   return holes;
 }
 
+/// Appends the points of another map, and its segments, which bound nothing.
+void add_edges(const std::string& input, const std::string& path, const io::Map& edges, io::Map& map) {
+  if (io::are_different_crs(edges.points.crs, map.points.crs)) {
+    io::fail(path, "has the coordinate system {}, but {} has {}: reproject one of them", edges.points.crs,
+             io::shown_path(input), map.points.crs);
+  }
+  const auto first = static_cast<std::int32_t>(map.points.size());
+  const auto append = [](std::vector<double>& to, const std::vector<double>& more, std::size_t n,
+                         std::size_t all) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    to.resize(n, kUnknown);
+    to.insert(to.end(), more.begin(), more.end());
+    to.resize(all, kUnknown);
+  };
+  std::vector<double>& coordinates = map.points.coordinates;
+  coordinates.insert(coordinates.end(), edges.points.coordinates.begin(), edges.points.coordinates.end());
+  const std::size_t n = static_cast<std::size_t>(first), all = map.points.size();
+  if (!map.points.heights.empty() || !edges.points.heights.empty())
+    append(map.points.heights, edges.points.heights, n, all);
+  for (const std::int32_t end : all_segments(edges)) map.lines.push_back(first + end);
+  if (!map.points.markers.empty()) map.points.markers.resize(all);
+  map.has_others = true;
+  map.has_height_field = map.has_height_field || edges.has_height_field;
+  map.notes.insert(map.notes.end(), edges.notes.begin(), edges.notes.end());
+}
+
 io::Map read_input(const std::string& input, const io::Columns& columns, const ConstraintRequest& request,
                    bool with_heights) {
   io::check_columns(input, columns);
-  if (io::is_map(input)) return io::read_map(input);
   io::Map map;
-  map.points = io::read_points(input, columns, with_heights);
-  map.has_others = true;
-  if (!request.segments.empty()) map.segments = io::read_segments(request.segments, map.points.size());
+  if (io::is_map(input)) {
+    map = io::read_map(input, columns);
+  } else {
+    map.points = io::read_points(input, columns, with_heights);
+    map.has_others = true;
+  }
+  if (request.segments.empty()) return map;
+  if (io::is_map(request.segments)) {
+    add_edges(input, request.segments, io::read_map(request.segments, {{}, columns.heights, {}}), map);
+  } else {
+    map.segments = io::read_segments(request.segments, map.points.size());
+  }
   return map;
 }
 
@@ -111,7 +149,7 @@ void choose_for(const io::Map& map, const std::string& input, ConstraintRequest&
                       : io::ending_of(input) == ".poly" ? Outside::hull
                                                         : Outside::keep;
   }
-  if (!request.chose_fill) request.fill = has_polygons ? FillRule::winding : FillRule::nesting;
+  if (!request.chose_fill) request.fill = has_polygons ? FillRule::even_odd : FillRule::nesting;
 }
 
 /// Whether there is a file for an array that is asked for in this way.
@@ -283,7 +321,8 @@ std::string empty_note(const ConstrainedTriangulation& mesh, const ConstraintReq
 std::string properties_note(const Task& task, const io::Map& map, const ConstrainedTriangulation& mesh) {
   const auto is_empty = [](const std::string& properties) { return properties.empty(); };
   const bool has_some = !std::all_of(map.properties.begin(), map.properties.end(), is_empty);
-  if (!has_some || !mesh.polygons.empty() || io::ending_of(task.results.mesh) != ".geojson") return "";
+  const bool can_have_some = io::find_format(task.results.mesh, io::Use::write_features) != nullptr;
+  if (!has_some || !mesh.polygons.empty() || !can_have_some) return "";
   return "note: triangles have no properties of polygons: these are known of files of polygons alone, "
          "without "
          "--hole and --fill nesting\n";
@@ -325,15 +364,17 @@ void write_results(const Task& task, const ConstraintRequest& request, const io:
 
 void add_domain_options(CLI::App* command, ConstraintRequest& request) {
   add_path(command, "--constraints", request.segments,
-           fmt::format("Segments that become edges: {}, 2 point indices per row; maps have their own",
-                       io::endings_for(io::Use::read_segments)));
+           fmt::format(
+               "Segments that become edges: {}, 2 point indices per row; or lines and rings of a map, such "
+               "as breaklines, whose points come behind the others",
+               io::endings_for(io::Use::read_segments)));
   add_named_choice(command, "--outside", request.outside,
                    "Triangles: keep all, up to the hull; hull: without those outside; holes: nor those in "
-                   "holes. Default: keep, for .poly hull, for polygons in GeoJSON holes",
+                   "holes. Default: keep, for .poly hull, for polygons of maps holes",
                    all_of<Outside>());
   add_named_choice(command, "--fill", request.fill,
-                   "How it is decided what is outside and what is a hole. Default: nesting, for polygons in "
-                   "GeoJSON winding",
+                   "How it is decided what is outside and what is a hole. Default: nesting, for polygons of "
+                   "maps even-odd",
                    all_of<FillRule>());
   command
       ->add_option("--hole", request.holes,
@@ -348,9 +389,9 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
                    "Segments that cross: an error, or split where they do, which adds points",
                    all_of<Crossings>())
       ->default_str("error");
-  command->add_flag("--separate", request.separate, "GeoJSON: triangulate each polygon on its own");
+  command->add_flag("--separate", request.separate, "Polygons of a map: triangulate each on its own");
   add_named_choice(command, "--overlaps", request.overlaps,
-                   "GeoJSON: what is in several polygons belongs to the first one, or is an error",
+                   "Polygons of a map: what is in several belongs to the first one, or is an error",
                    all_of<Overlaps>())
       ->default_str("first");
   end_group(command, "Segments and polygons");
@@ -376,9 +417,10 @@ void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
 }
 
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request) {
-  if (io::is_map(input)) {
-    refuse(command, "--constraints", fmt::format("{} has segments of its own", input));
-  } else {
+  if (io::is_map(input) && !io::is_map(request.segments)) {
+    refuse(command, "--constraints",
+           fmt::format("{} has segments of its own, beside which there can be those of a map", input));
+  } else if (!io::is_map(input) && !io::is_map(request.segments)) {
     io::check_segments_ending(request.segments);
   }
   holes_of(request);
@@ -421,7 +463,8 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   }
   const bool has_segments = is_map || !request.segments.empty() || !request.mesh.empty();
   if (!has_segments) {
-    const char* const reason = "needs segments: --constraints, or a .poly or .geojson file as input";
+    const char* const reason =
+        "needs segments: --constraints, or a map (.poly, .geojson, .gpkg ...) as input";
     refuse_all(command, kChoices, reason);
     if (!is_refined) {
       refuse_all(command, file_options(), reason);
@@ -432,7 +475,8 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
   if (is_map || !request.segments.empty()) check_domain_options(command, input, request);
   const char* const needing = has_segments ? "constraints need" : "refinement needs";
   if (io::ending_of(input) == ".poly" || !is_map) {
-    refuse_all(command, {"--separate", "--overlaps", "--polygons"}, "needs polygons, from a .geojson file");
+    refuse_all(command, {"--separate", "--overlaps", "--polygons"},
+               "needs polygons, from .geojson or a layer");
   }
   if (request.separate) {
     refuse(command, "--hole", "does not say of which polygon, as it needs with --separate");
@@ -449,10 +493,9 @@ bool has_constraints(const CLI::App& command, const std::string& input, Constrai
 
 int triangulate_with_constraints(const Task& task, const ConstraintRequest& asked) {
   ConstraintRequest request = asked;
-  std::vector<std::string> inputs = io::is_map(task.input)
-                                        ? io::files_of_map(task.input)
-                                        : std::vector<std::string>{task.input, request.segments};
-  inputs.insert(inputs.end(), {request.mesh, request.areas});
+  std::vector<std::string> inputs =
+      io::is_map(task.input) ? io::files_of_map(task.input) : std::vector<std::string>{task.input};
+  inputs.insert(inputs.end(), {io::without_layer(request.segments), request.mesh, request.areas});
   OutputFiles outputs(std::move(inputs));
   announce(outputs, task.results, true);
   announce_constraints(outputs, request);
@@ -464,6 +507,11 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
   progress.update("reading");
   io::Map map = read_domain(task.input, task.columns, request, !task.results.mesh.empty());
   check_carried(map, task.input, request);
+  if (!task.columns.heights.empty() && !map.has_height_field) {
+    io::fail(task.input, "has no field {}, of --height; its fields are {}",
+             fmt::join(task.columns.heights, " or "), fmt::join(map.field_names, ", "));
+  }
+  if (!task.crs.empty()) map.points.crs = io::crs_text(task.crs, "--crs");
   const auto triangulate = are_polygons(map, task, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 

@@ -38,6 +38,7 @@ int run(std::vector<std::string> arguments) {
   add_partition(app, action);
   add_assemble(app, action);
   add_generate(app, action);
+  add_voronoi(app, action);
   add_terrain(app, action);
   add_verify(app, action);
   add_devices(app, action);
@@ -57,9 +58,9 @@ int run(std::vector<std::string> arguments) {
     return kSuccess;
   }
   if (!action) {
-    return fail(
-        kUsage,
-        "a subcommand is required: triangulate, partition, assemble, generate, terrain, verify or devices");
+    return fail(kUsage,
+                "a subcommand is required: triangulate, partition, assemble, generate, voronoi, terrain, "
+                "verify or devices");
   }
   return action();
 }

@@ -6,13 +6,14 @@
 #include <limits>
 
 #include "app/files/formats.hpp"
+#include "files/file.hpp"
 
 namespace flaunay::cli {
 
 void add_columns(CLI::App* command, io::Columns& columns, const std::string& what) {
   command
       ->add_option(
-          "--columns", columns,
+          "--columns", columns.names,
           fmt::format("Of text, the columns with {}: names of the header, or numbers from 0; default: the "
                       "first ones",
                       what))
@@ -22,11 +23,45 @@ void add_columns(CLI::App* command, io::Columns& columns, const std::string& wha
       ->type_name("X,Y[,Z]");
 }
 
+CLI::Option* add_heights(CLI::App* command, io::Columns& columns) {
+  return command
+      ->add_option(
+          "--height", columns.heights,
+          "Of layers and GeoJSON, the field that has the height, in place of that of positions; of several, "
+          "the first one that a layer has")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("FIELD");
+}
+
+void add_fields(CLI::App* command, io::Columns& columns, const std::string& text) {
+  command->add_option("--fields", columns.fields, text)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("FIELD");
+}
+
+void check_fields(const CLI::App& command, const std::string& input, const std::string& edges) {
+  if (io::has_fields(input)) return;
+  const std::string reason =
+      fmt::format("{} has no fields; layers and GeoJSON have some", io::shown_path(input));
+  refuse(command, "--fields", reason);
+  if (!io::has_fields(edges)) refuse(command, "--height", reason);
+}
+
+CLI::Option* add_crs(CLI::App* command, std::string& crs) {
+  return command->add_option(
+      "--crs", crs, "The system of the coordinates, such as EPSG:25832, in place of that of the files");
+}
+
 void add_input(CLI::App* command, std::string& path, io::Columns& columns) {
   command
-      ->add_option("input", path,
-                   fmt::format("Points: {}, or - for text from standard input; of these, {} are maps",
-                               io::endings_for(io::Use::read_points), io::endings_for(io::Use::read_map)))
+      ->add_option(
+          "input", path,
+          fmt::format(
+              "Points: {}, or - for text from standard input; of these, {} are maps. Of files with several "
+              "layers, one: FILE.gpkg:LAYER",
+              io::endings_for(io::Use::read_points), io::endings_for(io::Use::read_map)))
       ->required();
   add_columns(command, columns, "x, y and perhaps a height");
 }

@@ -26,6 +26,16 @@ void add_input(CLI::App* command, std::string& path, io::Columns& columns);
 /// --columns: which columns of text are read.
 void add_columns(CLI::App* command, io::Columns& columns, const std::string& what);
 
+/// --height: the field of layers that has heights.
+CLI::Option* add_heights(CLI::App* command, io::Columns& columns);
+/// --fields: the fields of points that are kept.
+void add_fields(CLI::App* command, io::Columns& columns, const std::string& text);
+/// Throws Error(usage) for --fields of an input without fields, and for --height if the edges have none
+/// either.
+void check_fields(const CLI::App& command, const std::string& input, const std::string& edges = "");
+/// --crs: the system of the coordinates.
+CLI::Option* add_crs(CLI::App* command, std::string& crs);
+
 /// An option that takes a path. An empty path, as from an unset shell variable, is an error and does not mean
 /// "none".
 CLI::Option* add_path(CLI::App* command, const std::string& option, std::string& path,

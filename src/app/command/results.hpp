@@ -52,6 +52,7 @@ void add_array(CLI::App* command, const Array& array, std::string& path) {
 struct Task {
   std::string input;
   io::Columns columns;
+  std::string crs;  ///< of the points, in place of what the input says; empty: that
   ResultPaths results;
   std::string device;
   std::string index = "auto";  ///< "auto", "32" or "64"

@@ -13,6 +13,8 @@
 #include "app/command/errors.hpp"
 #include "app/command/progress.hpp"
 #include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
+#include "app/files/layers.hpp"
 #include "app/files/scan.hpp"
 #include "flaunay/sphere.hpp"
 
@@ -20,8 +22,9 @@ namespace flaunay::cli {
 namespace {
 
 // In every space, and besides in some.
-const std::vector<std::string> kCommon = {"--output", "--triangles", "--neighbors", "--duplicates", "--stats",
-                                          "--device", "--index",     "--columns",   "--quiet"};
+const std::vector<std::string> kCommon = {"--output", "--triangles", "--neighbors", "--duplicates",
+                                          "--stats",  "--device",    "--index",     "--columns",
+                                          "--crs",    "--quiet"};
 const std::vector<std::string> kChunks = {"--memory", "--chunk-points", "--scratch"};
 const std::vector<std::string> kPlanar = {"--halfedges", "--hull", "--areas"};
 
@@ -148,7 +151,7 @@ bool asks_for_space(const CLI::App& command, const SpaceRequest& request) {
   return true;
 }
 
-WeightedPoints read_points(const std::string& path, const io::Columns& columns, bool is_weighted) {
+WeightedPoints read_weighted_points(const std::string& path, const io::Columns& columns, bool is_weighted) {
   if (!is_weighted) return {io::read_points(path, columns), {}};
   io::Scan file({path}, {}, "", columns, "weight");
   file.survey([](double) {});
@@ -162,7 +165,7 @@ WeightedPoints read_points(const std::string& path, const io::Columns& columns, 
 }
 
 int triangulate_in_space(const Task& task, const SpaceRequest& request, const std::string& places) {
-  OutputFiles outputs({task.input});
+  OutputFiles outputs({io::without_layer(task.input)});
   announce(outputs, task.results);
   outputs.add(request.offsets, ".npy");
   outputs.add(request.hidden, ".npy");
@@ -173,8 +176,9 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  WeightedPoints read = read_points(task.input, task.columns, request.is_weighted);
+  WeightedPoints read = read_weighted_points(task.input, task.columns, request.is_weighted);
   io::Points& points = read.points;
+  if (!task.crs.empty()) points.crs = io::crs_text(task.crs, "--crs");
   const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(task.index, n, task.results);

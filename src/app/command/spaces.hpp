@@ -42,7 +42,7 @@ struct WeightedPoints {
   std::vector<double> weights;
 };
 /// Reads points, and their weights if they have some. Throws Error(input) that names the place.
-WeightedPoints read_points(const std::string& path, const io::Columns& columns, bool is_weighted);
+WeightedPoints read_weighted_points(const std::string& path, const io::Columns& columns, bool is_weighted);
 
 /// Reads, triangulates and writes. places: the file for places, if there is one. Returns the exit code.
 int triangulate_in_space(const Task& task, const SpaceRequest& request, const std::string& places);

@@ -23,7 +23,9 @@
 #include "app/command/terrain_boundary.hpp"
 #include "app/command/terrain_files.hpp"
 #include "app/command/terrain_mesh.hpp"
+#include "app/files/formats.hpp"
 #include "app/files/geotiff.hpp"
+#include "app/files/layers.hpp"
 #include "app/files/map.hpp"
 #include "app/files/scan.hpp"
 #include "files/file.hpp"
@@ -53,6 +55,7 @@ struct TerrainRequest {
   RasterOptions raster;
   bool is_point = false;
   double nodata = -9999;
+  Shading shading;
   std::string device, scratch;
   std::uint64_t memory = 0;
   bool quiet = false;
@@ -132,9 +135,9 @@ void check_place(const char* option, const std::string& path, const io::Map& map
   const auto fail_place = [&](const std::string& reason) {
     throw Error(ErrorKind::input, io::printable(fmt::format("{}: {}: {}", option, path, reason)));
   };
-  if (io::are_different_crs(map.crs, crs)) {
+  if (io::are_different_crs(map.points.crs, crs)) {
     fail_place(fmt::format("has the coordinate system {}, but the points have {}: reproject one of them",
-                           map.crs, crs));
+                           map.points.crs, crs));
   }
   io::Box box = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (std::size_t i = 0; i < map.points.coordinates.size(); ++i) {
@@ -172,20 +175,26 @@ std::vector<double> contour_heights(const std::vector<double>& given, const Rang
 }
 
 // Errors in the request and in the outputs are found before the points are read.
-int make_terrain(const TerrainRequest& request) {
+int make_terrain(TerrainRequest request) {
   const std::vector<std::string> scans = io::scan_files(request.inputs);
   std::vector<std::string> inputs = scans;
   for (const std::string& map : {request.boundary, request.breaklines, request.flat}) {
     if (!map.empty()) inputs.push_back(map);
   }
+  for (std::string& input : inputs) input = io::without_layer(input);
   const TerrainFiles files(request.outputs);
   if (!files.lines.empty() && request.contours.empty())
     fail_usage(fmt::format("{}: needs --contours, the interval of heights", files.lines.front()));
+  if (files.pictures.empty() && (request.shading.has_colors || request.shading.vertical_factor != 1))
+    fail_usage("--colors and --vertical-factor: need an output .png");
   if (files.lines.empty() && !request.contours.empty())
-    fail_usage("--contours: needs an output .geojson or .gpkg");
+    fail_usage("--contours: needs an output .geojson, .gpkg, .shp or .fgb");
   OutputFiles outputs(inputs);
-  for (const std::string& path : request.outputs) outputs.announce(path);
-  HardEdges edges(request.breaklines, request.flat, request.crossings);
+  for (const std::string& path : request.outputs) {
+    const bool is_mesh = io::find_format(path, io::Use::write_mesh) != nullptr;
+    for (const std::string& file : is_mesh ? io::mesh_files(path) : std::vector{path}) outputs.announce(file);
+  }
+  HardEdges edges(request.breaklines, request.flat, request.columns, request.crossings);
   const bool in_memory = !edges.has_heights() || !request.flat.empty() || !files.meshes.empty();
   if (in_memory && request.memory != 0) {
     fail_usage(
@@ -203,7 +212,12 @@ int make_terrain(const TerrainRequest& request) {
   Stopwatch stopwatch;
   progress.update("reading");
   io::Scan scan(scans, choice_of(request), request.scratch, request.columns);
+  if (!request.columns.heights.empty() && !scan.has_height_field() && !edges.has_height_field()) {
+    throw Error(ErrorKind::input, fmt::format("no layer has a field {}, of --height",
+                                              fmt::join(request.columns.heights, " or ")));
+  }
   const std::string crs = common_crs(request, scan);
+  request.shading.is_geographic = !crs.empty() && io::is_geographic(crs);
   std::optional<io::Box> bounds;
   if (!request.bounds.empty()) {
     bounds.emplace();
@@ -276,9 +290,10 @@ int make_terrain(const TerrainRequest& request) {
   }
 
   progress.update("writing");
-  for (const std::string& path : files.lines) write_contours(outputs, path, contours, heights, crs);
+  for (const std::string& path : files.lines) io::write_lines(outputs, path, contours, heights, crs);
   for (const std::string& path : files.arrays) write_array(outputs, path, grid, pixels.data());
-  for (const std::string& path : files.pictures) write_picture(outputs, path, grid, pixels.data());
+  for (const std::string& path : files.pictures)
+    write_picture(outputs, path, grid, pixels.data(), request.shading);
   write_rasters(outputs, files.rasters, grid, request.nodata, crs, pixels.data());
   outputs.commit();
   progress.finish();
@@ -309,16 +324,16 @@ void add_terrain(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("terrain", "Make a raster of measured heights, such as those of a laser scan");
   command
-      ->add_option(
-          "inputs", request->inputs,
-          "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), or folders of these")
+      ->add_option("inputs", request->inputs,
+                   "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), points or "
+                   "lines of .gpkg, .shp, .fgb and .geojson, or folders of these")
       ->required();
   command
-      ->add_option(
-          "-o,--output", request->outputs,
-          "The raster: .tif (cloud-optimised GeoTIFF of float32), .npy (float64) or .png (shaded "
-          "hills); contours: .geojson or .gpkg; the triangles: .obj, .ply, .off, .msh or .vtu; several "
-          "outputs are all written or none")
+      ->add_option("-o,--output", request->outputs,
+                   "The raster: .tif (cloud-optimised GeoTIFF of float32), .npy (float64) or .png (shaded "
+                   "hills); contours: .geojson, .gpkg, .shp or .fgb; the triangles: .obj, .ply, .off, .msh "
+                   "or .vtu; several "
+                   "outputs are all written or none")
       ->required();
   command->add_option("--resolution", request->resolution, "The size of a pixel")->required();
   command
@@ -333,13 +348,19 @@ void add_terrain(CLI::App& app, Action& action) {
   command->add_option("--nodata", request->nodata, "What stands for no height in the GeoTIFF")
       ->capture_default_str();
   command
+      ->add_option(
+          "--vertical-factor", request->shading.vertical_factor,
+          "Of a .png, by what heights are multiplied; longitudes and latitudes count in metres anyhow")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--colors", request->shading.has_colors, "Of a .png, colours by height, green to white");
+  command
       ->add_option("--contours", request->contours,
-                   "The interval of contours' heights, or several heights, for an output .geojson or .gpkg")
+                   "The interval of contours' heights, or several heights, for an output of contours")
       ->delimiter(',');
   end_group(command, "Outputs");
   add_columns(command, request->columns, "x, y and height");
-  command->add_option("--crs", request->crs,
-                      "The system of the coordinates, such as EPSG:25832, in place of that of the files");
+  add_heights(command, request->columns);
+  add_crs(command, request->crs);
   constexpr int kMostClass = 255;
   command
       ->add_option(

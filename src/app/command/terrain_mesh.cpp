@@ -125,19 +125,20 @@ void merge_heights(TerrainMesh& terrain, std::size_t fixed, Duplicates duplicate
 
 }  // namespace
 
-HardEdges::HardEdges(const std::string& breaklines, const std::string& flat, Crossings at_crossings)
+HardEdges::HardEdges(const std::string& breaklines, const std::string& flat, const io::Columns& columns,
+                     Crossings at_crossings)
     : path(breaklines.empty() ? flat
            : flat.empty()     ? breaklines
                               : breaklines + " and " + flat),
       crossings(at_crossings) {
   if (!breaklines.empty()) {
-    lines = io::read_map(breaklines);
+    lines = io::read_map(breaklines, columns);
     segments = lines.segments;
     segments.insert(segments.end(), lines.lines.begin(), lines.lines.end());
     if (segments.empty()) io::fail(breaklines, "has neither lines nor polygons");
   }
   if (!flat.empty()) {
-    lakes = io::read_map(flat);
+    lakes = io::read_map(flat, columns);
     if (lakes.polygon_count() == 0 || lakes.has_others) io::fail(flat, "must have polygons and nothing else");
   }
 }

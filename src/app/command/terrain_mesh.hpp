@@ -16,10 +16,12 @@ namespace flaunay::cli {
 /// Maps whose lines and rings become edges.
 struct HardEdges {
   /// Reads the files; empty: none. Throws Error(input) if one has no lines, or flat not only polygons.
-  HardEdges(const std::string& breaklines, const std::string& flat, Crossings at_crossings);
+  HardEdges(const std::string& breaklines, const std::string& flat, const io::Columns& columns,
+            Crossings at_crossings);
 
   /// Whether all points of breaklines have heights.
   bool has_heights() const;
+  bool has_height_field() const { return lines.has_height_field || lakes.has_height_field; }
   Breaklines view() const;
 
   /// With Crossings::split: cuts lines with heights where they cross, each at the height of the first one.

@@ -18,6 +18,7 @@
 #include "app/command/results.hpp"
 #include "app/command/spaces.hpp"
 #include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
 #include "flaunay/research.hpp"
@@ -150,7 +151,8 @@ int triangulate(const TriangulateRequest& request) {
   facts.opening_seconds = stopwatch.restart();
 
   progress.update("reading");
-  const io::Points points = io::read_points(request.input, request.columns, !request.results.mesh.empty());
+  io::Points points = io::read_points(request.input, request.columns, !request.results.mesh.empty());
+  if (!request.crs.empty()) points.crs = io::crs_text(request.crs, "--crs");
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(request.index, points.size(), request.results);
 
@@ -189,6 +191,18 @@ int triangulate(const TriangulateRequest& request) {
   return kSuccess;
 }
 
+// Refuses what no output of the mesh can have.
+void check_mesh(const CLI::App& command, const std::string& mesh) {
+  if (io::find_format(mesh, io::Use::write_layer) == nullptr) {
+    refuse(command, "--fields",
+           fmt::format("needs a layer to write: -o {}", io::endings_for(io::Use::write_layer)));
+  }
+  if (io::find_format(mesh, io::Use::write_features) == nullptr) {
+    refuse(command, "--crs",
+           fmt::format("needs an output that has one: -o {}", io::endings_for(io::Use::write_features)));
+  }
+}
+
 std::vector<Mode> all_modes() {
   std::vector<Mode> modes;
   for (const research::ModeInfo& info : research::list_modes()) modes.push_back(info.mode);
@@ -220,8 +234,12 @@ void add_triangulate(CLI::App& app, Action& action) {
   auto request = std::make_shared<TriangulateRequest>();
   CLI::App* command = app.add_subcommand("triangulate", "Triangulate the points of a file");
   add_input(command, request->input, request->columns);
+  add_heights(command, request->columns);
+  add_crs(command, request->crs);
   end_group(command, "Input");
   add_results(command, request->results);
+  add_fields(command, request->columns,
+             "Fields of points, from a layer or GeoJSON, whose means triangles have in a layer");
   add_index(command, request->index);
   end_group(command, kOutputs);
   add_choice<Mode>(command, "--mode", request->mode,
@@ -262,6 +280,8 @@ void add_triangulate(CLI::App& app, Action& action) {
                   "\n" + mode_table());
   command->callback([request, command, &action] {
     check_combination(*command, *request);
+    check_fields(*command, request->input, request->constraints.segments);
+    check_mesh(*command, request->results.mesh);
     request->is_in_space = asks_for_space(*command, request->space);
     const bool is_silent = request->quiet || request->profile || request->count;
     const bool needs_note = !is_silent && writes_nothing(*command);

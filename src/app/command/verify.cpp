@@ -235,7 +235,7 @@ std::string problem_without_triangles(const Triangulation& mesh) {
 }
 
 std::string problem_in_space(const VerifyRequest& request, std::size_t& n, Progress& progress) {
-  const WeightedPoints read = read_points(request.points, request.columns, request.is_weighted);
+  const WeightedPoints read = read_weighted_points(request.points, request.columns, request.is_weighted);
   const Space space = space_of(request).with_weights(request.is_weighted ? read.weights.data() : nullptr);
   n = read.points.size();
   // Of no points, but in the space as it is rounded.
@@ -327,7 +327,7 @@ void refuse_chunks(const CLI::App& command) {
 bool has_constraints(const CLI::App& command, VerifyRequest& request) {
   if (!io::is_map(request.points) && request.constraints.segments.empty()) {
     refuse_all(command, {"--outside", "--fill", "--hole", "--constraint-edges"},
-               "needs segments: --constraints, or a .poly or .geojson file with the points");
+               "needs segments: --constraints, or a map (.poly, .geojson, .gpkg ...) with the points");
     if (request.is_refined()) refuse_chunks(command);
     return false;
   }

@@ -20,7 +20,7 @@ std::string lower(std::string_view name) {
 class ColumnText : public PointText {
  public:
   ColumnText(const std::string& path, const Columns& columns, std::string_view third)
-      : lines_(shown_path(path), Lines::Separator::any), columns_(columns), third_(third) {}
+      : lines_(shown_path(path), Lines::Separator::any), columns_(columns.names), third_(third) {}
 
   void parse(std::string_view text, std::vector<double>& coordinates, std::vector<double>* heights) override {
     lines_.go_on(text);
@@ -125,7 +125,7 @@ class ColumnText : public PointText {
   }
 
   Lines lines_;
-  Columns columns_;
+  std::vector<std::string> columns_;
   std::string third_;
   std::vector<std::string> names_;  // of the header
   std::vector<int> axes_;           // of each column up to the last one that is read: 0 to 2, or -1

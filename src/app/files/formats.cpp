@@ -2,18 +2,21 @@
 
 #include <algorithm>
 
+#include "app/files/layers.hpp"
+
 namespace flaunay::io {
 namespace {
 
 /// In the order of messages.
-constexpr const Format* kFormats[] = {&kNpy, &kNode, &kXy,   &kXyz,     &kTxt,  &kCsv, &kBin,
-                                      &kLas, &kLaz,  &kPoly, &kGeoJson, &kJson, &kEle, &kOff,
-                                      &kObj, &kPly,  &kMsh,  &kVtu,     &kSvg};
+constexpr const Format* kFormats[] = {&kNpy, &kNode, &kXy,      &kXyz,  &kTxt, &kCsv, &kBin,    &kLas,
+                                      &kLaz, &kPoly, &kGeoJson, &kJson, &kEle, &kOff, &kObj,    &kPly,
+                                      &kMsh, &kVtu,  &kSvg,     &kGpkg, &kShp, &kFgb, &kParquet};
 
 }  // namespace
 
 const Format* find_format(const std::string& path, Use::Test use) {
-  std::string ending = ending_of(path);
+  const bool is_read = use == Use::read_points || use == Use::read_map;
+  std::string ending = ending_of(is_read ? without_layer(path) : path);
   if (path == "-" && (use == Use::read_points || use == Use::write_points)) ending = ".txt";
   if (path == "-" && (use == Use::write_mesh || use == Use::has_heights)) ending = ".off";
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
@@ -44,13 +47,52 @@ std::string path_beside(const std::string& path, std::string_view ending) {
   return path.substr(0, path.size() - ending_of(path).size()).append(ending);
 }
 
+void Map::add_line(std::size_t first) {
+  for (std::size_t i = first + 1; i < points.size(); ++i)
+    lines.insert(lines.end(), {static_cast<std::int32_t>(i - 1), static_cast<std::int32_t>(i)});
+  has_others = true;
+}
+
+bool Map::add_ring(std::size_t first) {
+  std::vector<double>& coordinates = points.coordinates;
+  std::size_t end = points.size();
+  const bool is_closed = end - first > 1 && coordinates[2 * first] == coordinates[2 * end - 2] &&
+                         coordinates[2 * first + 1] == coordinates[2 * end - 1];
+  if (is_closed) {
+    coordinates.resize(2 * --end);
+    points.heights.resize(std::min(points.heights.size(), end));
+  }
+  for (std::size_t i = first; i < end; ++i) {
+    const std::size_t next = i + 1 < end ? i + 1 : first;
+    segments.insert(segments.end(), {static_cast<std::int32_t>(i), static_cast<std::int32_t>(next)});
+  }
+  ring_offsets.push_back(segments.size() / 2);
+  return is_closed;
+}
+
 bool is_map(const std::string& path) { return find_format(path, Use::read_map) != nullptr; }
 
-Map read_map(const std::string& path) { return format_of(path, Use::read_map).map(path); }
+Map read_map(const std::string& path, const Columns& columns) {
+  return format_of(path, Use::read_map).map(path, columns);
+}
+
+bool has_fields(const std::string& path) {
+  const Format* const format = find_format(path, Use::read_map);
+  return format != nullptr && (Use::write_layer(*format) || format->map == kGeoJson.map);
+}
+
+std::string without_layer(const std::string& path) {
+  for (std::size_t colon = path.find(':'); colon != std::string::npos; colon = path.find(':', colon + 1)) {
+    const std::string file = path.substr(0, colon), ending = ending_of(file);
+    const auto is_it = [&](const Format* each) { return Use::write_layer(*each) && each->ending == ending; };
+    if (std::any_of(std::begin(kFormats), std::end(kFormats), is_it)) return file;
+  }
+  return path;
+}
 
 std::vector<std::string> files_of_map(const std::string& path) {
   const Format& format = format_of(path, Use::read_map);
-  if (format.beside.ending.empty()) return {path};
+  if (format.beside.ending.empty()) return {without_layer(path)};
   return {path, path_beside(path, format.beside.ending)};
 }
 

@@ -2,6 +2,7 @@
 // file that reads and writes it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -27,7 +28,7 @@ struct Format {
   /// Finds the records. Throws Error(input) that names the file if it has another format or is incomplete.
   PointRecords (*records)(const std::string& path, InputFile& file) = nullptr;
   std::unique_ptr<PointText> (*text)(const std::string& path, const Columns& columns) = nullptr;
-  Map (*map)(const std::string& path) = nullptr;
+  Map (*map)(const std::string& path, const Columns& columns) = nullptr;
   /// Throws an error that says why files of this format are not read.
   void (*refuse)(const std::string& path) = nullptr;
 
@@ -44,6 +45,9 @@ struct Format {
 
   using WriteMesh = void (*)(OutputFile& file, const MeshContents& contents);
   WriteMesh write_mesh = nullptr;
+  /// In place of write_mesh: writes a layer of features, and its sidecars.
+  void (*write_layer)(Outputs& outputs, const std::string& path, const MeshContents& contents) = nullptr;
+  std::array<std::string_view, 4> sidecars = {};
   bool has_labels = false;  ///< whether write_mesh writes regions and depths
   bool is_spatial = false;  ///< whether it writes heights
   /// A file beside this one that is read or written, too, and one only with constraints.
@@ -54,7 +58,7 @@ struct Format {
 };
 
 extern const Format kNpy, kNode, kXy, kXyz, kTxt, kCsv, kBin, kLas, kLaz, kPoly, kGeoJson, kJson, kEle, kOff,
-    kObj, kPly, kMsh, kVtu, kSvg;
+    kObj, kPly, kMsh, kVtu, kSvg, kGpkg, kShp, kFgb, kParquet;
 
 /// Format::text of the formats that have columns.
 std::unique_ptr<PointText> column_text_of_points(const std::string& path, const Columns& columns);
@@ -70,9 +74,12 @@ struct Use {
   static bool read_segments(const Format& format) { return format.segments != nullptr; }
   static bool read_triangles(const Format& format) { return format.triangles != nullptr; }
   static bool write_points(const Format& format) { return format.write_points != nullptr; }
-  static bool write_mesh(const Format& format) { return format.write_mesh != nullptr; }
-  /// Whether it is written for a terrain. .geojson is for contours there.
-  static bool write_surface(const Format& format) { return has_heights(format) && !read_map(format); }
+  static bool write_mesh(const Format& format) { return format.write_mesh != nullptr || write_layer(format); }
+  static bool write_layer(const Format& format) { return format.write_layer != nullptr; }
+  /// Features with fields: layers and GeoJSON.
+  static bool write_features(const Format& format) { return write_mesh(format) && read_map(format); }
+  /// Whether it is written for a terrain. Maps are for contours there.
+  static bool write_surface(const Format& format) { return has_heights(format) && !write_features(format); }
   static bool has_heights(const Format& format) { return write_mesh(format) && format.is_spatial; }
 };
 

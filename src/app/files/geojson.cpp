@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
 #include "app/files/globe.hpp"
+#include "app/files/layers.hpp"
 #include "files/file.hpp"
 
 namespace flaunay::io {
@@ -178,9 +180,10 @@ class GeoJsonReader {
     };
     const Json& name = member_of(member_of(member_of(document, "crs"), "properties"), "name");
     if (!name.is_string()) return;
-    map_.crs = name.get<std::string>();
+    map_.points.crs = name.get<std::string>();
     constexpr std::string_view kEpsg = "urn:ogc:def:crs:EPSG:";
-    if (map_.crs.rfind(kEpsg, 0) == 0) map_.crs = "EPSG:" + map_.crs.substr(map_.crs.rfind(':') + 1);
+    if (map_.points.crs.rfind(kEpsg, 0) == 0)
+      map_.points.crs = "EPSG:" + map_.points.crs.substr(map_.points.crs.rfind(':') + 1);
   }
 
   void read_geometry(const Json& type, const Json& object, const Place& at) {
@@ -228,9 +231,9 @@ class GeoJsonReader {
   }
 
   void read_line(const Json& value, const Place& at) {
-    const std::size_t first = read_positions(value, at), end = map_.points.size();
-    if (end - first == 1) fail_at(at, "has one position; expected at least 2");
-    for (std::size_t i = first; i + 1 < end; ++i) add_segment(map_.lines, i, i + 1);
+    const std::size_t first = read_positions(value, at);
+    if (map_.points.size() - first == 1) fail_at(at, "has one position; expected at least 2");
+    map_.add_line(first);
   }
 
   /// Reads the rings of a polygon: first its border, then its holes.
@@ -240,30 +243,13 @@ class GeoJsonReader {
   }
 
   void read_ring(const Json& value, const Place& at) {
-    std::vector<double>& coordinates = map_.points.coordinates;
     const std::size_t first = read_positions(value, at);
-    std::size_t end = map_.points.size();
-    const bool is_closed = end - first > 1 && coordinates[2 * first] == coordinates[2 * end - 2] &&
-                           coordinates[2 * first + 1] == coordinates[2 * end - 1];
-    if (is_closed) {
-      coordinates.resize(2 * --end);
-      map_.points.heights.resize(end);
-    } else {
-      ++unclosed_;
-    }
-    if (end - first < 3) {
+    const bool is_closed = map_.add_ring(first);
+    if (!is_closed) ++unclosed_;
+    if (map_.points.size() - first < 3) {
       fail_at(at, "is a ring of {} positions{}; expected at least 4, the last one equal to the first",
               value.size(), is_closed || value.empty() ? "" : " that is not closed");
     }
-    for (std::size_t i = first; i < end; ++i) {
-      add_segment(map_.segments, i, i + 1 < end ? i + 1 : first);
-    }
-    map_.ring_offsets.push_back(map_.segments.size() / 2);
-  }
-
-  static void add_segment(std::vector<std::int32_t>& segments, std::size_t from, std::size_t to) {
-    segments.push_back(static_cast<std::int32_t>(from));
-    segments.push_back(static_cast<std::int32_t>(to));
   }
 
   static constexpr std::size_t kDeepest = 100;
@@ -273,7 +259,23 @@ class GeoJsonReader {
   std::size_t unclosed_ = 0;  // rings
 };
 
-Map read_geojson(const std::string& path) { return GeoJsonReader(path).read(); }
+/// Whether coordinates may be longitudes and latitudes.
+bool are_degrees(const Points& points) {
+  constexpr double kMost[] = {360, 90};
+  for (std::size_t i = 0; i < points.coordinates.size(); ++i) {
+    if (std::fabs(points.coordinates[i]) > kMost[i % 2]) return false;
+  }
+  return points.size() > 0;
+}
+
+Map read_geojson(const std::string& path, const Columns& columns) {
+  const bool has_fields = !columns.heights.empty() || !columns.fields.empty();
+  Map map = has_fields ? read_layer(path, columns) : GeoJsonReader(path).read();
+  std::string& crs = map.points.crs;
+  // As RFC 7946 has it, unless coordinates are none. GDAL does not say whether the file names a system.
+  if (crs.empty() || (has_fields && crs == "EPSG:4326")) crs = are_degrees(map.points) ? kDegrees : "";
+  return map;
+}
 
 /// The rest of the feature of a triangle on the globe.
 void print_on_globe(OutputFile& file, const MeshContents& contents, std::size_t t) {
@@ -310,7 +312,7 @@ void write_geojson(OutputFile& file, const MeshContents& contents) {
   };
   const std::string triangle = name_of("triangle"), region = name_of("region"), depth = name_of("depth"),
                     polygon = name_of("polygon");
-  file.print("{{\"type\":\"FeatureCollection\",\"features\":[");
+  file.print("{{\"type\":\"FeatureCollection\",{}\"features\":[", geojson_crs(contents.points.crs));
   for (std::size_t t = 0; t < contents.triangle_count(); ++t) {
     file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{{}{}", t == 0 ? "" : ",", triangle, t);
     if (contents.has_labels()) {

@@ -5,22 +5,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
-
-#include "flaunay/terrain.hpp"
 
 namespace flaunay::io {
 
-/// Throws Error(usage) that says so if this build cannot write the file.
+/// Throws Error(usage) that says so if this build cannot read or write the file, and Error(input) if GDAL has
+/// no driver for this layer.
 void require_gdal(const std::string& path);
 
-/// A system of coordinates as GDAL reads it (EPSG:n, WKT, ...), as WKT; without GDAL, the text itself. what:
-/// where it comes from, for messages. Throws Error(input).
+/// Longitude and latitude, as a file of GeoJSON has them that names no system.
+constexpr const char* kDegrees = "OGC:CRS84";
+
+/// A system of coordinates as GDAL reads it (EPSG:n, WKT, ...), as "EPSG:n" or WKT; without GDAL, the text
+/// itself. what: where it comes from, for messages. Throws Error(input).
 std::string crs_text(const std::string& crs, const std::string& what);
 /// Whether both are one system; without GDAL, whether they are one text.
 bool is_same_crs(const std::string& a, const std::string& b);
 /// Whether coordinates are surely of two systems, heights aside: false if one of the texts says nothing.
 bool are_different_crs(const std::string& a, const std::string& b);
+/// Whether coordinates are longitudes and latitudes; without GDAL, of EPSG:4326.
+bool is_geographic(const std::string& crs);
 /// The number of EPSG; 0 if it has none or is not known.
 int epsg_code(const std::string& crs);
 
@@ -37,10 +40,8 @@ struct GeoRaster {
 /// messages. Throws Error(input).
 void write_geotiff(const std::string& path, const std::string& name, const GeoRaster& raster);
 
-/// The bytes of a .png file. bands: grey and then alpha, row by row. name: for messages, as of the next one.
-std::string png_of(const std::string& name, const std::uint8_t* bands, std::size_t rows, std::size_t columns);
-/// The bytes of a .gpkg file of contour lines. heights: the heights of contours.
-std::string geopackage_of(const std::string& name, const Contours& contours,
-                          const std::vector<double>& heights, const std::string& crs);
+/// The bytes of a .png file. bands: grey or colours and then alpha, row by row. name: for messages.
+std::string png_of(const std::string& name, const std::uint8_t* bands, int count, std::size_t rows,
+                   std::size_t columns);
 
 }  // namespace flaunay::io

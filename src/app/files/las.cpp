@@ -121,6 +121,7 @@ PointRecords las_points(const std::string& path, InputFile& file) {
   return {header.size,
           header.begin,
           header.record_bytes,
+          header.crs,
           [header](const char* records, std::size_t count, double* coordinates) {
             header.decode<2>(records, count, coordinates);
           },

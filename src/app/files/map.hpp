@@ -31,17 +31,22 @@ struct Map {
   /// Part q has rings [part_offsets[q], part_offsets[q + 1]), its border and then its holes, and polygon p
   /// has rings [polygon_offsets[p], polygon_offsets[p + 1]).
   std::vector<std::size_t> ring_offsets = {0}, part_offsets = {0}, polygon_offsets = {0};
-  /// Per polygon of GeoJSON the properties of its feature: the members of a JSON object without its braces,
-  /// or empty.
+  /// Per polygon of GeoJSON or a layer the properties of its feature: the members of a JSON object without
+  /// its braces, or empty.
   std::vector<std::string> properties = {};
-  std::string crs = {};            ///< of GeoJSON that names one: "EPSG:n", or else the name
-  bool has_others = false;         ///< lines or points besides polygons
-  std::vector<std::string> notes;  ///< a sentence for each thing that was left out or mended
+  bool has_others = false;                    ///< lines or points besides polygons
+  bool has_height_field = false;              ///< heights are those of a field that was asked for
+  std::vector<std::string> field_names = {};  ///< of a layer
+  std::vector<std::string> notes;             ///< a sentence for each thing that was left out or mended
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
+  /// Joins the points from the first one on to a line.
+  void add_line(std::size_t first);
+  /// Joins them to a ring. If the last one closes it, it is left out. Returns whether it does.
+  bool add_ring(std::size_t first);
 };
 
-/// Whether the ending of path is that of a map: .poly, .geojson or .json.
+/// Whether the ending of path is that of a map: .poly, .geojson, .json, or that of a layer.
 bool is_map(const std::string& path);
 
 /// Reads a map from path, by its ending (any case):
@@ -49,9 +54,12 @@ bool is_map(const std::string& path);
 ///                    vertices, the vertices of the .node file beside it
 ///   .geojson .json   GeoJSON (RFC 7946): any object; the third coordinate is a height, later ones are
 ///                    ignored, and rings that are not closed are read as closed
+///   .gpkg .shp .fgb .parquet   a layer, see read_layer
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.
-Map read_map(const std::string& path);
+Map read_map(const std::string& path, const Columns& columns = {});
+/// Whether maps with the path's ending have fields: layers and GeoJSON.
+bool has_fields(const std::string& path);
 
 /// The files that read_map may read: path, and the .node file beside a .poly file.
 std::vector<std::string> files_of_map(const std::string& path);

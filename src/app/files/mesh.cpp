@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
 #include "app/files/node.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
@@ -485,6 +486,7 @@ bool MeshContents::has_labels() const {
 
 void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& contents) {
   const Format& format = format_of(path, Use::write_mesh);
+  if (format.write_layer != nullptr) return format.write_layer(outputs, path, contents);
   format.write_mesh(outputs.open(path), contents);
   const auto write_beside = [&](const Format::Beside& beside) {
     if (beside.write != nullptr) beside.write(outputs.open(path_beside(path, beside.ending)), contents);
@@ -495,7 +497,11 @@ void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& c
 
 std::vector<std::string> mesh_files(const std::string& path, bool with_constraints) {
   const Format& format = format_of(path, Use::write_mesh);
+  if (format.write_layer != nullptr) require_gdal(path);
   std::vector<std::string> files = {path};
+  for (const std::string_view ending : format.sidecars) {
+    if (!ending.empty()) files.push_back(path_beside(path, ending));
+  }
   const auto add = [&](const Format::Beside& beside) {
     if (beside.write != nullptr) files.push_back(path_beside(path, beside.ending));
   };

@@ -32,9 +32,9 @@ struct MeshContents {
 
 /// Writes the mesh by path's ending: .ele (with .node beside it, Triangle's format, 0-based), .off, .ply
 /// (binary little-endian), .vtu, .obj, .msh (Gmsh 2.2), .npy (int32, m x 3), .geojson (a polygon per
-/// triangle), .svg (a picture). Points that splitting added follow the input's points. Heights, which must be
-/// known for all points, are in .off, .ply, .vtu, .obj, .msh and .geojson. Constraints are written as far as
-/// the format can have them:
+/// triangle), .svg (a picture), and layers of a polygon per triangle: .gpkg, .shp, .fgb, .parquet. Points
+/// that splitting added follow the input's points. Heights, which must be known for all points, are in .off,
+/// .ply, .vtu, .obj, .msh and .geojson. Constraints are written as far as the format can have them:
 ///   .ele             attribute, region and depth as attributes, and beside it a .poly with the constraint
 ///                    edges, whose markers are their segments' markers or, if these have none, the numbers of
 ///                    their segments, from 1, and with the holes and regions

@@ -77,7 +77,7 @@ class TextFile : public PointSource {
 /// Points that were read at once.
 class ReadPoints : public PointSource {
  public:
-  explicit ReadPoints(const std::string& path) : points_(read_points(path)) {}
+  ReadPoints(const std::string& path, const Columns& columns) : points_(read_points(path, columns)) {}
 
   std::uint64_t size() const override { return points_.size(); }
   void read(std::uint64_t first, std::size_t count, double* coordinates) override {
@@ -94,7 +94,7 @@ std::unique_ptr<PointSource> open_point_stream(const std::string& path, const st
                                                const Columns& columns) {
   const Format& format = format_of(path, Use::read_points);
   check_columns(path, columns);
-  if (format.map != nullptr) return std::make_unique<ReadPoints>(path);
+  if (format.map != nullptr) return std::make_unique<ReadPoints>(path, columns);
   if (format.text != nullptr) return std::make_unique<TextFile>(path, format, columns, scratch);
   return std::make_unique<RecordFile>(path, format);
 }

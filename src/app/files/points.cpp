@@ -36,6 +36,7 @@ Points read_records(const std::string& path, const Format& format, bool with_hei
   file.first(1);  // throws if the file cannot be read
   const PointRecords records = format.records(path, file);
   Points points;
+  points.crs = records.crs;
   points.coordinates.reserve(2 * records.size);
   system::prefer_huge_pages(points.coordinates.data(), 2 * records.size * sizeof(double));
   points.coordinates.resize(2 * records.size);
@@ -108,7 +109,7 @@ void PointRecords::for_pieces(const InputFile& file, std::uint64_t first, std::s
 }
 
 void check_columns(const std::string& path, const Columns& columns) {
-  if (columns.empty() || format_of(path, Use::read_points).text == column_text_of_points) return;
+  if (columns.names.empty() || format_of(path, Use::read_points).text == column_text_of_points) return;
   throw Error(ErrorKind::usage,
               printable(fmt::format("{}: has no columns; --columns goes with text (.csv, .txt, .xy, .xyz)",
                                     shown_path(path))));
@@ -117,7 +118,7 @@ void check_columns(const std::string& path, const Columns& columns) {
 Points read_points(const std::string& path, const Columns& columns, bool with_heights) {
   const Format& format = format_of(path, Use::read_points);
   check_columns(path, columns);
-  if (format.map != nullptr) return format.map(path).points;
+  if (format.map != nullptr) return format.map(path, columns).points;
   return format.text != nullptr ? read_text(path, format, columns) : read_records(path, format, with_heights);
 }
 

@@ -14,12 +14,21 @@
 
 namespace flaunay::io {
 
+/// A number per point that a layer has besides coordinates; NaN where it has none.
+struct PointField {
+  std::string name;
+  std::vector<double> values;
+};
+
 /// Points as read: x0 y0 x1 y1 ...
 struct Points {
   std::vector<double> coordinates;
   std::vector<std::int32_t> markers = {};  ///< of the vertices of .poly files that have some
   std::vector<double> heights = {};        ///< of points in space: NaN for one that has none; empty: all 0
   std::uint64_t withheld = 0;              ///< how many are marked as not to be used, as in .las files
+  std::string crs =
+      {};  ///< the system of the coordinates: "EPSG:n", WKT, or a name; empty if the file has none
+  std::vector<PointField> fields = {};  ///< those that were asked for, of points in the file
   std::size_t size() const { return coordinates.size() / 2; }
 };
 
@@ -28,6 +37,7 @@ struct PointRecords {
   std::uint64_t size = 0;   ///< how many
   std::uint64_t begin = 0;  ///< of the first one, in bytes
   std::size_t bytes = 2 * sizeof(double);
+  std::string crs = {};  ///< as of Points
   using Decode = std::function<void(const char* records, std::size_t count, double* numbers)>;
   Decode decode = nullptr;          ///< to coordinates; empty if they are x and y as doubles
   Decode decode_heights = nullptr;  ///< empty without heights
@@ -54,9 +64,16 @@ class PointText {
   virtual void finish() {}
 };
 
-/// Which columns of a text have x, y and, if there are three, a further number: names of the header, or
-/// numbers from 0. Empty: the first columns.
-using Columns = std::vector<std::string>;
+/// What is read of a file that has more.
+struct Columns {
+  /// Which columns of a text have x, y and, if there are three, a further number: names of the header, or
+  /// numbers from 0. Empty: the first columns.
+  std::vector<std::string> names = {};
+  /// Fields of layers and GeoJSON that have heights, of which the first one that is there counts; of what has
+  /// none of them, heights are those of positions.
+  std::vector<std::string> heights = {};
+  std::vector<std::string> fields = {};  ///< of layers and GeoJSON, that points keep
+};
 
 /// The columns of a text of numbers. third: what a further number is ("a height"), if each line must have
 /// one; otherwise lines may have two or three numbers.

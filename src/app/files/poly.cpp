@@ -154,7 +154,7 @@ class PolyReader {
   long long base_ = 0, vertices_ = 0;
 };
 
-Map read_poly_map(const std::string& path) { return read_poly(path, nullptr); }
+Map read_poly_map(const std::string& path, const Columns&) { return read_poly(path, nullptr); }
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 
 #include "app/files/las.hpp"
 #include "app/files/line_pieces.hpp"
+#include "app/files/map.hpp"
 #include "app/files/npy.hpp"
 #include "files/file.hpp"
 #include "files/scratch.hpp"
@@ -24,7 +25,7 @@ constexpr std::size_t kPiece = std::size_t{1} << 15;
 // Chosen points are counted by blocks of this many records, so that any chosen point can be found.
 constexpr std::size_t kCountedBlock = std::size_t{1} << 12;
 
-constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz or .csv";
+constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz, .csv, .geojson, .gpkg, .shp, .fgb or .parquet";
 
 bool is_text(const std::string& ending) { return ending == ".txt" || ending == ".xyz" || ending == ".csv"; }
 
@@ -69,6 +70,8 @@ class Scan::Part {
       record_bytes_ = records.bytes;
       begin_ = records.begin;
       decode_ = records.decode;
+    } else if (has_fields(path_) && third == "height") {
+      read_places(scratch, columns);
     } else if (ending_ == ".laz") {
       fail(path_,
            "is compressed (LAZ), which this command does not read: decompress it first, for example with "
@@ -86,7 +89,8 @@ class Scan::Part {
   const Box& box() const { return box_; }
   double lowest() const { return lowest_; }
   double highest() const { return highest_; }
-  std::string crs() const { return las_ ? las_->crs : ""; }
+  std::string crs() const { return las_ ? las_->crs : crs_; }
+  bool has_height_field() const { return has_height_field_; }
   std::uint64_t records() const { return size_; }
   const LeftOut& left_out() const { return left_out_; }
   void close() { file_.reset(); }
@@ -155,6 +159,31 @@ class Scan::Part {
       size_ += triples.size() / 3;
     }
     record_bytes_ = kTriple;
+  }
+
+  // The positions of points and lines.
+  void read_places(const std::string& scratch, const Columns& columns) {
+    const Map map = read_map(path_, columns);
+    if (map.polygon_count() > 0) {
+      fail(path_,
+           "has polygons; expected points or lines with heights; --flat and --boundary are for polygons");
+    }
+    std::vector<double> triples;
+    for (std::size_t i = 0; i < map.points.size(); ++i) {
+      const double* const at = &map.points.coordinates[2 * i];
+      const double height = map.points.heights.empty() ? std::nan("") : map.points.heights[i];
+      if (std::isnan(height)) {
+        fail(path_, "position {}, ({}, {}), has no height; --height says which field has it", i, at[0],
+             at[1]);
+      }
+      triples.insert(triples.end(), {at[0], at[1], height});
+    }
+    scratch_ = std::make_unique<ScratchFile>(scratch);
+    scratch_->append(triples.data(), triples.size() * sizeof(double));
+    size_ = map.points.size();
+    record_bytes_ = kTriple;
+    crs_ = map.points.crs;
+    has_height_field_ = map.has_height_field;
   }
 
   // Appends the chosen points among some records.
@@ -228,7 +257,8 @@ class Scan::Part {
     widen(box_, box);
   }
 
-  std::string path_, ending_;
+  std::string path_, ending_, crs_;
+  bool has_height_field_ = false;
   std::optional<LasHeader> las_;
   std::unique_ptr<ScratchFile> scratch_;  // of text
   std::function<void(const char*, std::size_t, double*)> decode_;
@@ -257,6 +287,10 @@ Box Scan::announced_box() const {
   Box box = nothing();
   for (const auto& part : parts_) widen(box, part->box());
   return box;
+}
+
+bool Scan::has_height_field() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->has_height_field(); });
 }
 
 LeftOut Scan::left_out() const {

@@ -34,8 +34,9 @@ struct LeftOut {
 /// Least x and y, largest x and y.
 using Box = std::array<double, 4>;
 
-/// The points of files one after another: .las, .npy (n x 3, float64 or float32), and .txt, .xyz and .csv (x,
-/// y and z, without later columns, or the named columns). Files are opened as they are read, one at a time.
+/// The points of files one after another: .las, .npy (n x 3, float64 or float32), .txt, .xyz and .csv (x,
+/// y and z, without later columns, or the named columns), and points and lines of maps. Files are opened as
+/// they are read, one at a time.
 class Scan : public ValuedPoints {
  public:
   /// Opens each file and checks it as far as that needs no pass over binary files. Text is read at once, to a
@@ -60,6 +61,8 @@ class Scan : public ValuedPoints {
   /// is done.
   Box survey(const std::function<void(double done)>& progress);
 
+  /// Whether heights of a layer are those of a field that was asked for.
+  bool has_height_field() const;
   /// After survey.
   LeftOut left_out() const;
   /// The lowest and the highest value, after survey.

@@ -1,0 +1,203 @@
+// Meshes and contours as layers of features.
+#include "app/files/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/files/formats.hpp"
+#include "app/files/geotiff.hpp"
+
+namespace flaunay::io {
+namespace {
+
+using Value = Layer::Value;
+
+void print_value(OutputFile& file, const Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    file.print("{}", *integer);
+  } else if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number)) {
+    file.print("{}", *number);
+  } else if (const auto* text = std::get_if<std::string>(&value)) {
+    file.print("{}", nlohmann::json(*text).dump());
+  } else {
+    file.print("null");
+  }
+}
+
+void write_geojson_layer(OutputFile& file, const Layer& layer) {
+  file.print("{{\"type\":\"FeatureCollection\",{}\"features\":[", geojson_crs(layer.crs));
+  std::vector<double> positions;
+  for (std::size_t k = 0; k < layer.size; ++k) {
+    file.print("{}\n{{\"type\":\"Feature\",\"properties\":{{", k == 0 ? "" : ",");
+    for (std::size_t f = 0; f < layer.fields.size(); ++f) {
+      file.print("{}{}:", f == 0 ? "" : ",", nlohmann::json(layer.fields[f].name).dump());
+      print_value(file, layer.fields[f].value(k));
+    }
+    file.print("}},\"geometry\":{{\"type\":\"{}\",\"coordinates\":[",
+               layer.is_polygons ? "Polygon" : "LineString");
+    if (layer.is_polygons) file.print("[");
+    positions.clear();
+    layer.append(k, positions);
+    for (std::size_t p = 0; p < positions.size(); p += 3)
+      file.print("{}[{},{}]", p == 0 ? "" : ",", positions[p], positions[p + 1]);
+    file.print("{}]}}}}", layer.is_polygons ? "]" : "");
+  }
+  file.print("\n]}}\n");
+}
+
+// The mean of known values at the corners of a triangle.
+Value mean(const MeshContents& contents, std::size_t triangle, const std::vector<double>& values) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto corner = static_cast<std::size_t>(contents.corners(triangle)[k]);
+    if (corner >= values.size() || std::isnan(values[corner])) continue;
+    sum += values[corner];
+    ++count;
+  }
+  if (count == 0) return {};
+  return sum / count;
+}
+
+// The properties of polygons, by name, in their order.
+std::vector<Layer::Field> properties_of(const MeshContents& contents) {
+  using Ordered = nlohmann::ordered_json;
+  const std::vector<std::int32_t>& polygons = contents.constraints().polygons;
+  if (polygons.empty() || contents.map == nullptr) return {};
+  std::vector<std::pair<std::string, std::vector<Ordered>>> columns;
+  const std::vector<std::string>& properties = contents.map->properties;
+  for (std::size_t p = 0; p < properties.size(); ++p) {
+    Ordered object = Ordered::parse("{" + properties[p] + "}");
+    for (auto& [name, value] : object.items()) {
+      const auto is_it = [&name = name](const auto& column) { return column.first == name; };
+      auto column = std::find_if(columns.begin(), columns.end(), is_it);
+      if (column == columns.end())
+        column = columns.insert(column, {name, std::vector<Ordered>(properties.size())});
+      column->second[p] = std::move(value);
+    }
+  }
+  std::vector<Layer::Field> fields;
+  for (auto& [name, values] : columns) {
+    const auto all = [&values = values](auto is) {
+      return std::all_of(values.begin(), values.end(),
+                         [is](const Ordered& v) { return v.is_null() || is(v); });
+    };
+    const Value type = all([](const Ordered& v) { return v.is_number_integer(); }) ? Value(std::int64_t{0})
+                       : all([](const Ordered& v) { return v.is_number(); })       ? Value(0.0)
+                                                                                   : Value(std::string());
+    fields.push_back({name, type, [&polygons, values = values, type](std::size_t t) -> Value {
+                        if (polygons[t] < 0) return {};
+                        const Ordered& value = values[static_cast<std::size_t>(polygons[t])];
+                        if (value.is_null()) return {};
+                        if (std::holds_alternative<std::int64_t>(type)) return value.get<std::int64_t>();
+                        if (std::holds_alternative<double>(type)) return value.get<double>();
+                        return value.is_string() ? value.get<std::string>() : value.dump();
+                      }});
+  }
+  return fields;
+}
+
+// Fields of triangles: points, means, and what constraints say. Ours have longer names if others have theirs.
+std::vector<Layer::Field> fields_of(const MeshContents& contents) {
+  std::vector<Layer::Field> given = properties_of(contents), fields;
+  for (const PointField& field : contents.points.fields) {
+    const auto is_it = [&](const Layer::Field& other) { return other.name == field.name; };
+    if (std::any_of(given.begin(), given.end(), is_it)) continue;  // polygons have it as it is
+    given.push_back({field.name, 0.0, [&](std::size_t t) { return mean(contents, t, field.values); }});
+  }
+  const auto add = [&](const std::string& name, const Value& type, std::function<Value(std::size_t)> value) {
+    const auto is_it = [&](const Layer::Field& field) { return field.name == name; };
+    const bool is_taken = std::any_of(given.begin(), given.end(), is_it);
+    fields.push_back({is_taken ? "flaunay_" + name : name, type, std::move(value)});
+  };
+  const auto add_labels = [&](const char* name, const std::vector<std::int32_t>& labels) {
+    if (labels.empty()) return;
+    add(name, std::int64_t{0}, [&labels](std::size_t t) { return std::int64_t{labels[t]}; });
+  };
+  constexpr const char* kCorners[] = {"point_a", "point_b", "point_c"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    add(kCorners[k], std::int64_t{0},
+        [&contents, k](std::size_t t) { return std::int64_t{contents.corners(t)[k]}; });
+  }
+  if (!contents.points.heights.empty())
+    add("z", 0.0, [&contents](std::size_t t) { return mean(contents, t, contents.points.heights); });
+  const ConstrainedTriangulation& constraints = contents.constraints();
+  if (!constraints.constraint_edges.empty()) {
+    add_labels("region", constraints.regions);
+    add_labels("depth", constraints.depths);
+  }
+  add_labels("polygon", constraints.polygons);
+  std::move(given.begin(), given.end(), std::back_inserter(fields));
+  return fields;
+}
+
+void write_triangles(Outputs& outputs, const std::string& path, const MeshContents& contents) {
+  Layer layer;
+  layer.name = "triangles";
+  layer.is_polygons = true;
+  layer.has_heights = !contents.points.heights.empty();
+  layer.crs = contents.points.crs;
+  layer.size = contents.triangle_count();
+  layer.append = [&contents](std::size_t t, std::vector<double>& positions) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto corner = static_cast<std::size_t>(contents.corners(t)[k % 3]);
+      const double* const at = &contents.points.coordinates[2 * corner];
+      positions.insert(positions.end(), {at[0], at[1], contents.height(corner)});
+    }
+  };
+  layer.fields = fields_of(contents);
+  write_gdal_layer(outputs, path, layer);
+}
+
+constexpr Format layer_format(std::string_view ending) {
+  return {.ending = ending,
+          .map = read_layer,
+          .write_layer = write_triangles,
+          .has_labels = true,
+          .is_spatial = true};
+}
+
+constexpr Format shapefile() {
+  Format format = layer_format(".shp");
+  format.sidecars = {".shx", ".dbf", ".prj", ".cpg"};
+  return format;
+}
+
+}  // namespace
+
+const Format kGpkg = layer_format(".gpkg");
+const Format kShp = shapefile();
+const Format kFgb = layer_format(".fgb");
+const Format kParquet = layer_format(".parquet");
+
+void write_layer(Outputs& outputs, const std::string& path, const Layer& layer) {
+  if (ending_of(path) == ".geojson") return write_geojson_layer(outputs.open(path), layer);
+  write_gdal_layer(outputs, path, layer);
+}
+
+void write_lines(Outputs& outputs, const std::string& path, const Contours& contours,
+                 const std::vector<double>& heights, const std::string& crs) {
+  Layer layer;
+  layer.name = "contours";
+  layer.crs = crs;
+  layer.size = contours.heights.size();
+  layer.append = [&contours](std::size_t line, std::vector<double>& positions) {
+    for (std::size_t p = contours.offsets[line]; p < contours.offsets[line + 1]; ++p)
+      positions.insert(positions.end(), {contours.coordinates[2 * p], contours.coordinates[2 * p + 1], 0.0});
+  };
+  layer.fields = {{"height", 0.0, [&](std::size_t line) {
+                     return heights[static_cast<std::size_t>(contours.heights[line])];
+                   }}};
+  write_layer(outputs, path, layer);
+}
+
+std::string geojson_crs(const std::string& crs) {
+  const int code = crs.empty() || crs == kDegrees ? 0 : epsg_code(crs);
+  if (code == 0) return "";
+  return fmt::format(
+      "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"urn:ogc:def:crs:EPSG::{}\"}}}},", code);
+}
+
+}  // namespace flaunay::io

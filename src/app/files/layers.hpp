@@ -1,0 +1,58 @@
+// Layers of features in the formats of geographic information systems, by GDAL: layers_gdal.cpp if the CMake
+// option FLAUNAY_GDAL is on, otherwise geotiff_none.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "app/files/map.hpp"
+#include "files/output.hpp"
+#include "flaunay/terrain.hpp"
+
+namespace flaunay::io {
+
+/// Lines, or polygons of one ring each, to be written.
+struct Layer {
+  using Value = std::variant<std::monostate, std::int64_t, double, std::string>;
+  struct Field {
+    std::string name;
+    Value type;  ///< a value of the type that all have
+    /// That of a feature, by its number; nothing, and numbers that are not finite, are null.
+    std::function<Value(std::size_t feature)> value;
+  };
+
+  std::string name;
+  bool is_polygons = false, has_heights = false;
+  std::string crs;  ///< empty: none
+  std::size_t size = 0;
+  /// Appends x, y and height of each position of a feature. Rings end where they begin.
+  std::function<void(std::size_t feature, std::vector<double>& positions)> append;
+  std::vector<Field> fields;
+};
+
+/// Writes a layer by path's ending, .geojson (without heights) or one of GDAL's formats, and the files beside
+/// path that the latter have. Throws Error(input).
+void write_layer(Outputs& outputs, const std::string& path, const Layer& layer);
+void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& layer);
+/// Contours with their heights.
+void write_lines(Outputs& outputs, const std::string& path, const Contours& contours,
+                 const std::vector<double>& heights, const std::string& crs);
+
+/// Reads a layer: its points, lines and polygons, the fields that are asked for, and the properties of
+/// polygons. path: of the file, with a colon and the layer's name behind it if there are several. Throws
+/// Error(input) that names the file, the layer and the feature.
+Map read_layer(const std::string& path, const Columns& columns);
+
+/// The path without the name of a layer: a.gpkg of a.gpkg:lakes.
+std::string without_layer(const std::string& path);
+
+/// The member "crs" of GeoJSON as GDAL writes it, with a comma; empty unless the system has a number of EPSG.
+/// Without it, RFC 7946 says that coordinates are longitude and latitude.
+std::string geojson_crs(const std::string& crs);
+
+}  // namespace flaunay::io
