@@ -20,6 +20,7 @@ PLACES = {
     "javascript/package.json": (r'  "description": .*', '  "repository": { "type": "git", "url": "git+ADDRESS.git" },'),
     "packaging/conan/conanfile.py": (r"    description = .*", '    url = "ADDRESS"'),
     "packaging/conda/recipe.yaml": (r"about:", "  repository: ADDRESS"),
+    "packaging/qgis/flaunay/metadata.txt": ("category=Analysis", "repository=ADDRESS"),
     "packaging/debian/control": (r"Rules-Requires-Root: .*", "Homepage: ADDRESS"),
     "packaging/vcpkg/ports/flaunay/vcpkg.json": (r'  "description": .*', '  "homepage": "ADDRESS",'),
     "pyproject.toml": (r'license = "MIT"', 'urls = { Source = "ADDRESS" }'),

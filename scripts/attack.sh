@@ -54,7 +54,7 @@ benchmarks() {
 }
 
 nightly() {
-  build release all nightly && ctest --preset release --label-regex nightly
+  cmake --preset release -DFLAUNAY_GDAL=ON && build release all nightly && ctest --preset release --label-regex nightly
 }
 
 readers() {

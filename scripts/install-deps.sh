@@ -35,8 +35,8 @@ case "${1-}" in
     ;;
 esac
 if [[ ${1-} == --all || ${1-} == --packages ]]; then
-  # other triangulators, to compare with; libFuzzer, for the readers of files
-  packages+=(libcgal-dev libqhull-dev libclang-rt-14-dev)
+  # other triangulators, to compare with; libFuzzer, for the readers of files; QGIS, for its provider
+  packages+=(libcgal-dev libqhull-dev libclang-rt-14-dev python3-qgis qgis-providers)
 fi
 if [[ ${1-} == --packages ]]; then
   packages+=(autopkgtest debhelper debootstrap dpkg-dev libc6-arm64-cross libfast-float-dev lintian llvm-14

@@ -23,6 +23,7 @@ PLACES = [
     ("packaging/debian/changelog", r"flaunay \(([^)-]*)-\d+\)", version),
     ("packaging/debian/control", r"Package: libflaunay([0-9.]+)", interface),
     ("packaging/debian/control", r"Depends: libflaunay([0-9.]+) ", interface),
+    ("packaging/qgis/flaunay/metadata.txt", r"\nversion=(.*)\n", version),
     ("packaging/vcpkg/ports/flaunay/vcpkg.json", r'"version": "([^"]*)"', version),
     ("docs/packages.md", r"`libflaunay([0-9.]+)`", interface),
     ("src/include/flaunay/version.h", r"FLAUNAY_VERSION_MAJOR (\d+)\n", major),
