@@ -292,6 +292,31 @@ def shading(folder):
     fails(2, "--colors", arguments=("terrain", folder / "p.npy", "--resolution", 1, "-o", folder / "a.npy", "--colors"))
 
 
+def columns(folder):
+    """Columns of wider arrays."""
+    points = np.random.default_rng(6).random((500, 2))
+    for kind in np.float64, np.float32:
+        wide = np.column_stack([np.arange(500), points[:, 1], np.zeros((500, 2)), points[:, 0]]).astype(kind)
+        np.save(folder / "wide.npy", wide)
+        np.save(folder / "plain.npy", np.ascontiguousarray(wide[:, [4, 1]]))
+        made = []
+        for input in (("plain.npy",), ("wide.npy", "--columns", "4,1"), ("wide.npy", "--columns", "4,1", "--memory", "1G")):
+            works("triangulate", folder / input[0], *input[1:], "--triangles", folder / "t.npy", *ON_HOST)
+            made.append(sorted(map(tuple, np.load(folder / "t.npy"))))
+        assert made[0] == made[1] == made[2]
+        works("triangulate", folder / "wide.npy", "--columns", "4,1,0", "-o", folder / "w.obj", *ON_HOST)
+        assert np.array_equal(vertices(folder / "w.obj").astype(kind), wide[:, [4, 1, 0]])
+    grid = ("--resolution", 0.1, *ON_HOST)
+    works("terrain", folder / "wide.npy", "--columns", "4,1,0", *grid, "-o", folder / "a.npy")
+    np.save(folder / "plain.npy", np.ascontiguousarray(wide[:, [4, 1, 0]]))
+    works("terrain", folder / "plain.npy", *grid, "-o", folder / "b.npy")
+    assert (folder / "a.npy").read_bytes() == (folder / "b.npy").read_bytes()
+    to = (folder / "wide.npy", "-o", folder / "t.off", "--columns")
+    fails(3, "wide.npy", "no column", arguments=("triangulate", *to, "0,5"))
+    fails(3, "no column 'x'", arguments=("triangulate", *to, "x,1"))
+    fails(3, "needs 3 columns", arguments=("terrain", folder / "wide.npy", *grid, "-o", folder / "a.npy", "--columns", "0,1"))
+
+
 def cells_of(path):
     return json.loads(path.read_text())["features"]
 
@@ -323,6 +348,7 @@ def voronoi(folder):
 
 
 def main(folder):
+    columns(folder)
     voronoi(folder)
     if not HAS_GDAL:
         for arguments in (

@@ -14,9 +14,10 @@ void add_columns(CLI::App* command, io::Columns& columns, const std::string& wha
   command
       ->add_option(
           "--columns", columns.names,
-          fmt::format("Of text, the columns with {}: names of the header, or numbers from 0; default: the "
-                      "first ones",
-                      what))
+          fmt::format(
+              "Of text and .npy, the columns with {}: names of a header, or numbers from 0; default: the "
+              "first ones",
+              what))
       ->delimiter(',')
       ->expected(2, 3)
       ->allow_extra_args(false)

@@ -137,7 +137,7 @@ int triangulate(const TriangulateRequest& request) {
   if (request.has_constraints) return triangulate_with_constraints(request, request.constraints);
   OutputFiles outputs({request.input});
   announce(outputs, request.results);
-  const std::uint64_t about = io::estimate_points(request.input);
+  const std::uint64_t about = io::estimate_points(request.input, request.columns);
 
   RunFacts facts = facts_of(request);
   Progress progress(!request.quiet);

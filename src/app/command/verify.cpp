@@ -81,7 +81,8 @@ std::uint64_t memory_for_chunks(const VerifyRequest& request) {
   constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;  // rows that always fit
   const std::uint64_t rows = size_of_file(request.triangles) / kRowBytesOfFile;
   if (rows < kSmall) return 0;
-  const std::uint64_t needed = kPointBytes * io::estimate_points(request.points) + kRowBytes * rows;
+  const std::uint64_t needed =
+      kPointBytes * io::estimate_points(request.points, request.columns) + kRowBytes * rows;
   const std::uint64_t left = host::memory_left().bytes;
   return needed > left ? left / 2 : 0;
 }

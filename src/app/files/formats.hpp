@@ -26,7 +26,7 @@ struct Format {
   // Points are read in one of three ways: as records of a binary file, as text in pieces, or with a whole
   // map.
   /// Finds the records. Throws Error(input) that names the file if it has another format or is incomplete.
-  PointRecords (*records)(const std::string& path, InputFile& file) = nullptr;
+  PointRecords (*records)(const std::string& path, InputFile& file, const Columns& columns) = nullptr;
   std::unique_ptr<PointText> (*text)(const std::string& path, const Columns& columns) = nullptr;
   Map (*map)(const std::string& path, const Columns& columns) = nullptr;
   /// Throws an error that says why files of this format are not read.

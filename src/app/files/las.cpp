@@ -116,7 +116,7 @@ std::string find_crs(const InputFile& file, std::string_view header, std::uint64
   return code != 0 ? fmt::format("EPSG:{}", code) : "";
 }
 
-PointRecords las_points(const std::string& path, InputFile& file) {
+PointRecords las_points(const std::string& path, InputFile& file, const Columns&) {
   const LasHeader header = read_las_header(path, file);
   return {header.size,
           header.begin,

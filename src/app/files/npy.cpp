@@ -1,6 +1,7 @@
 #include "app/files/npy.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -145,7 +146,7 @@ Header read_header(const std::string& path, InputFile& file) {
 /// The arrays that a reader accepts: shape (rows, columns) with one of these dtypes.
 struct Layout {
   const char* rows_name;
-  std::size_t columns;
+  std::size_t columns;  ///< 0: any number
   std::vector<std::string> dtypes;
 };
 
@@ -170,14 +171,14 @@ std::size_t check_header(const std::string& path, const Header& header, const La
   if (std::find(layout.dtypes.begin(), layout.dtypes.end(), header.descr) == layout.dtypes.end()) {
     fail(path, "has dtype '{}'; expected {}", header.descr, dtypes_text(layout));
   }
-  if (header.shape.size() != 2 || header.shape[1] != layout.columns) {
+  if (header.shape.size() != 2 || (layout.columns != 0 && header.shape[1] != layout.columns)) {
     fail(path, "has shape {}; expected ({}, {})", shape_text(header.shape), layout.rows_name, layout.columns);
   }
   if (header.fortran_order) {
     fail(path, "is in Fortran order; expected C order (numpy converts: numpy.ascontiguousarray(array))");
   }
-  const std::size_t row_bytes = layout.columns * static_cast<std::size_t>(header.descr[2] - '0');
-  if (header.shape[0] > std::numeric_limits<std::size_t>::max() / row_bytes) {
+  const std::size_t row_bytes = header.shape[1] * static_cast<std::size_t>(header.descr[2] - '0');
+  if (row_bytes > 0 && header.shape[0] > std::numeric_limits<std::size_t>::max() / row_bytes) {
     fail(path, "has shape {}, more than any memory holds", shape_text(header.shape));
   }
   return header.shape[0] * row_bytes;
@@ -193,6 +194,7 @@ class Array {
 
   const std::string& dtype() const { return header_.descr; }
   std::size_t rows() const { return header_.shape[0]; }
+  std::size_t columns() const { return header_.shape[1]; }
   std::size_t data_begin() const { return header_.data_begin; }
 
   /// Checks the size of the file.
@@ -285,8 +287,49 @@ class NpyRows : public RowSource {
   std::uint64_t begin_ = 0;  // of the first row, in bytes
 };
 
+/// Copies these columns of rows of `all` columns.
+template <typename Value>
+PointRecords::Decode decode_columns(const std::vector<std::size_t>& columns, std::size_t all) {
+  return [columns, all](const char* from, std::size_t count, double* to) {
+    for (std::size_t i = 0; i < count; ++i, from += all * sizeof(Value)) {
+      for (const std::size_t column : columns) {
+        Value value;
+        std::memcpy(&value, from + column * sizeof value, sizeof value);
+        *to++ = value;
+      }
+    }
+  };
+}
+
+/// Points of which the user has said in which columns they are. least: how many must be named.
+PointRecords npy_columns(const std::string& path, InputFile& file, const Columns& chosen, std::size_t least) {
+  const Array array(path, file, {"n", 0, {"<f8", "<f4"}});
+  array.check_size();
+  std::vector<std::size_t> columns;
+  for (const std::string& name : chosen.names) {
+    const char* const end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data(), end, columns.emplace_back());
+    if (error != std::errc() || stop != end || columns.back() >= array.columns())
+      fail(path, "has no column '{}', but {}, numbered from 0", name, array.columns());
+  }
+  if (columns.size() < least) fail(path, "needs {} columns, but --columns has {}", least, columns.size());
+  const bool is_wide = array.dtype() == "<f8";
+  const auto decode = [&](std::size_t first, std::size_t last) {
+    const std::vector<std::size_t> some(columns.begin() + static_cast<std::ptrdiff_t>(first),
+                                        columns.begin() + static_cast<std::ptrdiff_t>(last));
+    return is_wide ? decode_columns<double>(some, array.columns())
+                   : decode_columns<float>(some, array.columns());
+  };
+  PointRecords records{array.rows(), array.data_begin(),
+                       array.columns() * (is_wide ? sizeof(double) : sizeof(float))};
+  records.decode = decode(0, least);
+  if (columns.size() > least) records.decode_heights = decode(least, columns.size());
+  return records;
+}
+
 template <std::size_t columns>
-PointRecords npy_points(const std::string& path, InputFile& file) {
+PointRecords npy_points(const std::string& path, InputFile& file, const Columns& chosen) {
+  if (!chosen.names.empty()) return npy_columns(path, file, chosen, columns);
   const Layout layout = {"n", columns, {"<f8", "<f4"}};
   const Array array(path, file, layout);
   array.check_size();
@@ -330,7 +373,9 @@ void write_npy_mesh(OutputFile& file, const MeshContents& contents) {
 
 }  // namespace
 
-PointRecords npy_triples(const std::string& path, InputFile& file) { return npy_points<3>(path, file); }
+PointRecords npy_triples(const std::string& path, InputFile& file, const Columns& columns) {
+  return npy_points<3>(path, file, columns);
+}
 
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path) { return std::make_unique<NpyRows>(path); }
 

@@ -27,8 +27,9 @@ class RowSource {
 /// checked.
 std::unique_ptr<RowSource> open_npy_rows(const std::string& path);
 
-/// Finds the rows of an n x 3 array of float64 or float32. decode, if there is one, gives 3 doubles per row.
-PointRecords npy_triples(const std::string& path, InputFile& file);
+/// Finds the rows of an n x 3 array of float64 or float32, or three columns of a wider one. decode, if there
+/// is one, gives 3 doubles per row.
+PointRecords npy_triples(const std::string& path, InputFile& file, const Columns& columns);
 
 /// Reads an array of m x 3 indices, int32 or int64.
 std::vector<std::int32_t> read_npy_triangles(const std::string& path);

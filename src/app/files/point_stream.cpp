@@ -20,12 +20,13 @@ constexpr std::size_t kPair = 2 * sizeof(double);
 /// The points of a binary file.
 class RecordFile : public PointSource {
  public:
-  RecordFile(const std::string& path, const Format& format) : file_(path, format.content) {
+  RecordFile(const std::string& path, const Format& format, const Columns& columns)
+      : file_(path, format.content) {
     file_.first(1);  // throws if the file cannot be read
     if (file_.size() < 0) {
       fail(path, "is no regular file; expected one, because points in chunks are not read in order");
     }
-    records_ = format.records(path, file_);
+    records_ = format.records(path, file_, columns);
   }
 
   std::uint64_t size() const override { return records_.size; }
@@ -96,17 +97,17 @@ std::unique_ptr<PointSource> open_point_stream(const std::string& path, const st
   check_columns(path, columns);
   if (format.map != nullptr) return std::make_unique<ReadPoints>(path, columns);
   if (format.text != nullptr) return std::make_unique<TextFile>(path, format, columns, scratch);
-  return std::make_unique<RecordFile>(path, format);
+  return std::make_unique<RecordFile>(path, format, columns);
 }
 
-std::uint64_t estimate_points(const std::string& path) {
+std::uint64_t estimate_points(const std::string& path, const Columns& columns) {
   constexpr std::size_t kBeginning = std::size_t{1} << 16;
   const Format& format = format_of(path, Use::read_points);
   if (format.map != nullptr) return 0;
   // A pipe is not opened, since it can be read only once.
   const std::optional<system::FileStatus> status = path == "-" ? std::nullopt : system::status_of(path);
   if (path == "-" || (status && status->kind != system::FileKind::regular)) return 0;
-  if (format.records != nullptr) return RecordFile(path, format).size();
+  if (format.records != nullptr) return RecordFile(path, format, columns).size();
   InputFile file(path, format.content);
   const std::string_view beginning = file.first(kBeginning);
   const auto lines = std::count(beginning.begin(), beginning.end(), '\n') + 1;

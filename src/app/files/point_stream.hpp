@@ -20,6 +20,6 @@ std::unique_ptr<PointSource> open_point_stream(const std::string& path, const st
 /// About how many points read_points would read: exact but for text, where the beginning of the file tells
 /// how long lines are. 0: not known, because the file is a pipe or a map. Throws Error(input) for a file that
 /// cannot be opened, and for a binary file the errors of open_point_stream.
-std::uint64_t estimate_points(const std::string& path);
+std::uint64_t estimate_points(const std::string& path, const Columns& columns = {});
 
 }  // namespace flaunay::io

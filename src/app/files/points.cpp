@@ -31,10 +31,11 @@ Points read_text(const std::string& path, const Format& format, const Columns& c
   return points;
 }
 
-Points read_records(const std::string& path, const Format& format, bool with_heights) {
+Points read_records(const std::string& path, const Format& format, const Columns& columns,
+                    bool with_heights) {
   InputFile file(path, format.content);
   file.first(1);  // throws if the file cannot be read
-  const PointRecords records = format.records(path, file);
+  const PointRecords records = format.records(path, file, columns);
   Points points;
   points.crs = records.crs;
   points.coordinates.reserve(2 * records.size);
@@ -57,7 +58,7 @@ Points read_records(const std::string& path, const Format& format, bool with_hei
 
 // ---- pairs of doubles ----
 
-PointRecords binary_points(const std::string& path, InputFile& file) {
+PointRecords binary_points(const std::string& path, InputFile& file, const Columns&) {
   constexpr std::uint64_t kPair = 2 * sizeof(double);
   file.load_pipe();
   const auto bytes = static_cast<std::uint64_t>(file.size());
@@ -109,17 +110,21 @@ void PointRecords::for_pieces(const InputFile& file, std::uint64_t first, std::s
 }
 
 void check_columns(const std::string& path, const Columns& columns) {
-  if (columns.names.empty() || format_of(path, Use::read_points).text == column_text_of_points) return;
-  throw Error(ErrorKind::usage,
-              printable(fmt::format("{}: has no columns; --columns goes with text (.csv, .txt, .xy, .xyz)",
-                                    shown_path(path))));
+  if (columns.names.empty()) return;
+  const Format& format = format_of(path, Use::read_points);
+  if (format.text == column_text_of_points || &format == &kNpy) return;
+  throw Error(
+      ErrorKind::usage,
+      printable(fmt::format("{}: has no columns; --columns goes with .npy and text (.csv, .txt, .xy, .xyz)",
+                            shown_path(path))));
 }
 
 Points read_points(const std::string& path, const Columns& columns, bool with_heights) {
   const Format& format = format_of(path, Use::read_points);
   check_columns(path, columns);
   if (format.map != nullptr) return format.map(path, columns).points;
-  return format.text != nullptr ? read_text(path, format, columns) : read_records(path, format, with_heights);
+  return format.text != nullptr ? read_text(path, format, columns)
+                                : read_records(path, format, columns, with_heights);
 }
 
 PointWriter::PointWriter(Outputs& outputs, const std::string& path, std::uint64_t n, bool has_markers)

@@ -65,7 +65,7 @@ class Scan::Part {
     } else if (ending_ == ".npy") {
       InputFile file(path_, "a NumPy array of shape (n, 3)");
       file.first(1);
-      const PointRecords records = npy_triples(path_, file);
+      const PointRecords records = npy_triples(path_, file, columns);
       size_ = records.size;
       record_bytes_ = records.bytes;
       begin_ = records.begin;
