@@ -30,8 +30,9 @@ struct LaunchesRequest : Request {
 // "work_items_of_most_work" refers to the launches that do this share of the work.
 constexpr double kMostWork = 0.9;
 
-// Kernels whose steps are not steps of merges: they walk along hulls, or their work-items share a merge.
-const std::set<std::string> kNoMergeSteps = {"mark_outside", "write_hulls", "sew_seams"};
+// Kernels whose steps are not steps of merges: they walk along hulls, compare vertices, or share a merge.
+const std::set<std::string> kNoMergeSteps = {"mark_outside", "write_hulls", "sew_seams", "wrap_stars",
+                                             "join_stars"};
 // Kernels that merge the parts of blocks, not the blocks.
 const std::set<std::string> kSolveBlocks = {"solve_blocks", "solve_local_parts", "finish_local_parts",
                                             "merge_parts",  "finish_parts",      "walk_seams",

@@ -17,6 +17,15 @@ INTEGER_CONSTANT(CROSSINGS_PER_VERTEX, 2);
 INTEGER_CONSTANT(LOCAL_VERTICES, 512);
 INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
 INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
+// The most vertices of a unit whose stars work-groups find (blocks/stars.cl), LEAF_VERTICES times a power of two; the
+// most edges of a star, and the bits of their number; how many stars a work-group joins; and from how many vertices, by
+// number, one learns what is near, and the most that are.
+INTEGER_CONSTANT(STAR_VERTICES, 2048);
+INTEGER_CONSTANT(MOST_STAR, 32);
+INTEGER_CONSTANT(STAR_SIZE_BITS, 8);
+INTEGER_CONSTANT(STARS_JOINED, 8);
+INTEGER_CONSTANT(NEAR_TILE, 16);
+INTEGER_CONSTANT(MOST_NEAR, 256);
 // The most points of a block that a work-group sorts and halves in local memory (blocks/group_halving.h). Each takes
 // four numbers of 16 bits.
 INTEGER_CONSTANT(LOCAL_BYTES_PER_BLOCK_POINT, 8);

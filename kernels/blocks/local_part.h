@@ -40,33 +40,6 @@ typedef struct {
 } local_arrays;
 ASSERT_SIZE(local_arrays, LOCAL_PART_BYTES);
 
-// A part. Its vertices are numbered from 0 on here; `first` is the place of the first one among all places. own_height:
-// -1 if there is no part.
-typedef struct {
-  block_part part;
-  int first, size, own_height;
-} local_part;
-
-// The part of a group: a block of at most this height, or the part of this height of a larger block that begins in a
-// cell.
-static inline local_part local_part_of(const halved_blocks* blocks, int block_count, int group, int height) {
-  block_part part;
-  if (group < block_count) {
-    const int count = blocks->distinct[group], is_whole = count > 0 && halving_depth(count) <= height;
-    part = numbered_part(is_whole ? group : -1, blocks->offsets[group], count, 0, 0);
-  } else {
-    part = part_of_cell(blocks, height, group - block_count);
-    if (part.depth == 0) part.block = -1;
-  }
-  local_part p = {part, part.first + part.begin, 0, -1};
-  if (part.block >= 0) {
-    p.size = vertices_of_part(part);
-    p.own_height = halving_depth(part.count) - part.depth;
-    p.part.first = -part.begin;
-  }
-  return p;
-}
-
 // Part j of this height in it.
 static inline block_part part_within(const local_part* p, int height, int j) {
   const int depth = p->part.depth + p->own_height - height, number = (p->part.number << (p->own_height - height)) + j;
@@ -146,17 +119,20 @@ static inline int longest_walk(local const seam_walk* walks, int count) {
 #define ADD_LONGEST_WALK(chain, walks, count)
 #endif
 
-// A part that stops is left, with 1 as the state of its group. With is_second, only these are triangulated. is_removed:
+// A part that stops is left, with 1 as the state of its group. are_left: only parts with this state are triangulated;
+// is_second: those at which the first launch has stopped. is_removed:
 // of walks along the seams of larger parts, to be cleared; null if there are none. There may be groups behind the last
 // one, which do nothing.
-WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int height, int is_second,
+WITH_BARRIERS void solve_local_part(int group, int groups, int block_count, int height, int are_left, int is_second,
                                     halved_blocks blocks, filter_bounds bounds, global const coordinate2* points,
                                     global ring_edge* edges, global int* vertex_edge, global solved_block* parts,
                                     global uchar* is_removed, global int* states, local local_arrays* own,
                                     global volatile uint* account COUNTERS) {
   const int me = get_local_id(0), lanes = get_local_size(0);
-  const int is_wanted = group < groups && (!is_second || states[group]);
   local_part p = local_part_of(&blocks, block_count, min(group, groups - 1), height);
+  // Whether stars have done it (blocks/stars.cl).
+  if (p.own_height >= 0 && blocks.block_of_place[p.first] < 0) p.own_height = -1;
+  const int is_wanted = group < groups && (p.own_height < 0 ? !is_second : !are_left || states[group]);
   if (!is_wanted) p.own_height = -1;
   // Places, too, are counted from the part's first vertex now.
   blocks.axes += p.first;

@@ -83,6 +83,33 @@ static inline block_part part_of_cell(const halved_blocks* blocks, int height, i
   return part;
 }
 
+// A part that a group does. Its vertices are numbered from 0 on here; `first` is the place of the first one among all
+// places. own_height: -1 if there is no part.
+typedef struct {
+  block_part part;
+  int first, size, own_height;
+} local_part;
+
+// The part of a group: a block of at most this height, or the part of this height of a larger block that begins in a
+// cell.
+static inline local_part local_part_of(const halved_blocks* blocks, int block_count, int group, int height) {
+  block_part part;
+  if (group < block_count) {
+    const int count = blocks->distinct[group], is_whole = count > 0 && halving_depth(count) <= height;
+    part = numbered_part(is_whole ? group : -1, blocks->offsets[group], count, 0, 0);
+  } else {
+    part = part_of_cell(blocks, height, group - block_count);
+    if (part.depth == 0) part.block = -1;
+  }
+  local_part p = {part, part.first + part.begin, 0, -1};
+  if (part.block >= 0) {
+    p.size = vertices_of_part(part);
+    p.own_height = halving_depth(part.count) - part.depth;
+    p.part.first = -part.begin;
+  }
+  return p;
+}
+
 // The part of a block in its frame j of 2^depth: in each the part of this height that comes there in the order of cuts,
 // or a higher one if the block has more of them, or in the first one the whole block, if it is no higher. block: -1 if
 // the frame is empty.

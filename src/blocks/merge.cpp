@@ -11,8 +11,10 @@
 #include "launchers/blocks/merge.cl.hpp"
 #include "launchers/blocks/merge_exact.cl.hpp"
 #include "launchers/blocks/seams.cl.hpp"
+#include "launchers/blocks/stars.cl.hpp"
 #include "mesh/limits.h"
 #include "mesh/records.h"
+#include "operations/limits.h"
 #include "tuning/tuning.hpp"
 
 namespace flaunay::blocks {
@@ -134,8 +136,9 @@ std::size_t local_groups(const PointBlocks& blocks, int height) {
 }
 
 // kernels::solve_local_parts or kernels::finish_local_parts.
+// are_left: whether states tell which parts are to be triangulated.
 template <typename Kernel>
-void launch_on_local_parts(const Halves& halves, int height) {
+void launch_on_local_parts(const Halves& halves, int height, bool are_left) {
   const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
   const Tuning& tuning = tuning_of(work.runtime);
   const std::size_t groups = local_groups(blocks, height);
@@ -147,12 +150,71 @@ void launch_on_local_parts(const Halves& halves, int height) {
   work.runtime.launch(group * groups, group,
                       Kernel{.groups = groups,
                              .blocks = blocks.count,
+                             .are_left = are_left,
                              .places_of_parts = places_of_parts(blocks, halved, rings, height),
                              .bounds = work.bounds,
                              .rings_of_parts = halves.rings_of_parts(),
                              .is_removed = seams.is_removed,
                              .states = states,
                              .account = rings.device_account});
+}
+
+// Units whose vertices' stars are found: parts of the height of local memory, or whole blocks. Launches have
+// groups for the largest possible one each.
+struct StarUnits {
+  int height;
+  bool are_blocks;
+  std::size_t count, most;
+
+  StarUnits(const PointBlocks& blocks, int height_of_units, bool are_whole)
+      : height(height_of_units),
+        are_blocks(are_whole),
+        count(are_whole ? blocks.count : local_groups(blocks, height)),
+        most(static_cast<std::size_t>(kernel::LEAF_VERTICES) << height) {}
+
+  // Few points, none of them in a larger unit, and few groups for no vertex.
+  bool suit(const Tuning& tuning, std::size_t points) const {
+    constexpr std::size_t kMostGroupsPerPoint = 8;
+    return points <= tuning.star_points && most <= kernel::STAR_VERTICES &&
+           count * most <= kMostGroupsPerPoint * points;
+  }
+};
+
+void solve_by_stars(const Halves& halves, const StarUnits& units) {
+  const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
+  host::Runtime& runtime = work.runtime;
+  const Tuning& tuning = tuning_of(runtime);
+  Arena::Scope scope(work.scratch());
+  const std::size_t room = std::min(blocks.points, tuning.star_points);
+  const auto stars = work.scratch().allocate<cl_int>(kernel::MOST_STAR * room);
+  const auto star_sizes = work.scratch().allocate<cl_int>(room);
+  const auto places = places_of_parts(blocks, halved, rings, units.height);
+  const std::size_t largest = std::min<std::size_t>(tuning.halve_group, kernel::LARGEST_TILE_GROUP);
+  // A work-item compares a few vertices; then the group's comparisons take as many steps.
+  std::size_t group = std::min(tuning.block_group, largest);
+  while (2 * group <= largest && 8 * group < units.most) group *= 2;
+  runtime.launch(group * units.count * units.most, group,
+                 kernels::wrap_stars{.groups = units.count,
+                                     .most = units.most,
+                                     .blocks = blocks.count,
+                                     .places_of_parts = places,
+                                     .bounds = work.bounds,
+                                     .points = blocks.vertices,
+                                     .stars = stars,
+                                     .star_sizes = star_sizes,
+                                     .account = rings.device_account});
+  const std::size_t shares = (units.most + kernel::STARS_JOINED - 1) / kernel::STARS_JOINED;
+  runtime.launch(largest * units.count * shares, largest,
+                 kernels::join_stars{.groups = units.count,
+                                     .shares = shares,
+                                     .are_blocks = units.are_blocks,
+                                     .blocks = blocks.count,
+                                     .places_of_parts = places,
+                                     .rings_of_parts = halves.rings_of_parts(),
+                                     .stars = stars,
+                                     .star_sizes = star_sizes,
+                                     .places_left = halved.block_of_place,
+                                     .states = states});
 }
 
 // kernels::merge_trees or kernels::finish_trees.
@@ -195,17 +257,23 @@ void merge_halves(Workspace& work, const PointBlocks& blocks, const PartsOfBlock
                   int from, int to, Depths depths) {
   Arena::Scope scope(work.scratch());
   Halves halves{work, blocks, parts.halved, rings, parts.ends, depths};
+  const Tuning& tuning = tuning_of(work.runtime);
   const int in_local = from == 0 ? height_in_local_memory(work, blocks) : -1;
   halves.states = work.scratch().allocate<cl_int>(
       in_local < 0 ? cells_of(blocks, from) : std::max(cells_of(blocks, 0), local_groups(blocks, in_local)));
   const int first = std::max(from, in_local + 1),
-            first_seams = std::max(first_height_of_seams(tuning_of(work.runtime)), first);
+            first_seams = std::max(first_height_of_seams(tuning), first);
+  // Of blocks with parts that stay apart, these.
+  const bool are_parts = depths.least > 0;
+  const StarUnits units(blocks, are_parts ? std::max(in_local, 0) : blocks.height(), !are_parts);
+  const bool have_stars = from == 0 && units.suit(tuning, blocks.points), are_left = have_stars && are_parts;
+  if (work.runtime.at_most(have_stars, from == 0 && tuning.star_points > 0)) solve_by_stars(halves, units);
   // When memory is counted, some blocks are as high as any.
   if (work.runtime.at_most(first_seams <= to, true))
-    make_lists(work, blocks, first_seams, in_local >= 0, halves.seams);
+    make_lists(work, blocks, first_seams, in_local >= 0 && !are_left, halves.seams);
   if (in_local >= 0) {
-    launch_on_local_parts<kernels::solve_local_parts>(halves, in_local);
-    if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local);
+    launch_on_local_parts<kernels::solve_local_parts>(halves, in_local, are_left);
+    if (walks_may_stop(work)) launch_on_local_parts<kernels::finish_local_parts>(halves, in_local, true);
   }
   for (int height = first; height < first_seams && height <= to; ++height) {
     launch_on_parts<kernels::merge_parts>(halves, height);

@@ -96,8 +96,8 @@ struct PointBlocks {
 /// Triangulates blocks of any points, as divide does before it merges them, on devices with many lanes: the
 /// halves of all blocks at once. rings: with all its arrays, of the sizes that divide gives them; the account
 /// is added to. Edges may be numbered otherwise than by divide on other devices, but are the same. Does not
-/// wait. Makes up to 5 launches, 2 or 3 per height of parts that local memory does not hold, and some more if
-/// blocks may have more points than local memory has room for, or if most are tiny.
+/// wait. Makes up to 5 launches, 2 more for few points, 2 or 3 per height of parts that local memory does not
+/// hold, and some more if blocks may have more points than local memory has room for, or if most are tiny.
 /// parts: as of solve.
 void solve_in_parallel(points::Workspace& work, const PointBlocks& blocks,
                        const host::Buffer<cl_int>& representatives, const points::Rings& rings,

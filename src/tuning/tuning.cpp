@@ -209,6 +209,14 @@ constexpr Row kTable[] = {
      "What 48 KB of local memory hold. There a step takes a third of the time, as predicted, not measured, "
      "and "
      "all heights take one launch."},
+    {"star_points",
+     &Tuning::star_points,
+     {0},
+     {16384},
+     {0},
+     "Each vertex is compared with all of its part, some eight times: of more points, that takes longer than "
+     "merges, "
+     "which wait for each other."},
     {"seam_points",
      &Tuning::seam_points,
      {16},
@@ -472,7 +480,7 @@ struct NamedDevice {
 constexpr NamedDevice kNamedDevices[] = {
     {"Oclgrind", "gpu:32",
      "A simulated work-item takes as long if it is idle as if it works; a warp shows all races."},
-    {"llvmpipe", "gpu,sewing_group=8,off_grid_most=0",
+    {"llvmpipe", "gpu,star_points=0,sewing_group=8,off_grid_most=0",
      "Its loops end after 65535 turns, so that work-items must have little to do; it cannot compile "
      "__builtin_prefetch, may refuse to unmap what it mapped, crashes when larger groups sew, and goes "
      "nowhere from a vertex to one that is nearer to a query off the grid."},

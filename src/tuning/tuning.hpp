@@ -29,6 +29,8 @@ struct Tuning : host::Sizes {
   /// Work-groups triangulate parts of blocks with at most this many vertices in local memory, at most
   /// kernel::LOCAL_VERTICES; 0: none.
   std::size_t local_vertices = 0;
+  /// Of at most this many points, work-groups find the star of each vertex, instead of merges.
+  std::size_t star_points = 0;
   /// Halves of blocks with at least this many points together are merged from both ends of their seam.
   std::size_t seam_points = 1;
   /// The least number of work-items launched per leaf. One of them works.

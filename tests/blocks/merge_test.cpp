@@ -124,21 +124,24 @@ void check_merge_as_tuned(Runtime& runtime, const BlockPoints& points, Bounds bo
   }
 }
 
-void set_local_vertices(Runtime& runtime, std::size_t vertices) {
+void set_local_vertices(Runtime& runtime, std::size_t vertices, std::size_t star_points = 0) {
   Tuning tuning = tuning_of(runtime);
   tuning.local_vertices = vertices;
+  tuning.star_points = star_points;
   tuning.merge_items = vertices > 0 ? 1 << 20 : 500;  // so that small blocks are there, too
   runtime.set_sizes(std::make_shared<Tuning>(tuning));
 }
 
-/// In global memory, and from parts in local memory on, small and large ones. PoCL takes ten seconds to
-/// compile these for a size of groups, so they have few.
+/// In global memory, and from parts in local memory on, small and large ones; and what stars leave. PoCL
+/// takes ten seconds to compile these for a size of groups, so they have few.
 void check_merge(Runtime& runtime, const BlockPoints& points, Bounds bounds, Met& met) {
   const std::size_t group = tuning_of(runtime).halve_group;
-  for (const std::size_t vertices : {0, 16, kernel::LOCAL_VERTICES}) {
-    if (vertices > 0 && group != 2 && group != 256) continue;
-    SCOPED_TRACE("vertices in local memory: " + std::to_string(vertices));
-    set_local_vertices(runtime, vertices);
+  for (const auto& [vertices, star_points] :
+       {std::pair{0, 0}, {16, 0}, {static_cast<int>(kernel::LOCAL_VERTICES), 0}, {16, 1 << 20}}) {
+    if (vertices > 0 && group != 2 && (group != 256 || star_points > 0)) continue;
+    SCOPED_TRACE("vertices in local memory: " + std::to_string(vertices) +
+                 (star_points > 0 ? ", after stars" : ""));
+    set_local_vertices(runtime, vertices, star_points);
     check_merge_as_tuned(runtime, points, bounds, met);
   }
 }

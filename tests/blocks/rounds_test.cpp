@@ -81,7 +81,7 @@ void expect_same(const Triangulation& found, const Triangulation& expected) {
 /// What rounds depend on. tile_group: 0 for cuts at medians.
 struct RoundSizes {
   std::size_t block_points, round_points, merge_from_percent = 100, tile_group = 0, samples = 4,
-                                          local_vertices = 0;
+                                          local_vertices = 0, star_points = 0;
 };
 
 /// Calls check with these sizes.
@@ -98,6 +98,7 @@ void with_sizes(const RoundSizes& sizes, const Check& check) {
     tuning.blocks_in_parallel = 1;
     tuning.tile_group = sizes.tile_group;
     tuning.local_vertices = sizes.local_vertices;
+    tuning.star_points = sizes.star_points;
   }
   runtime.set_sizes(std::make_shared<Tuning>(tuning));
   check(runtime);
@@ -124,6 +125,12 @@ void compare(const RoundSizes& sizes, const Coordinates& coordinates, const Offs
   EXPECT_EQ(expected.statistics.rounds, 0u);
   EXPECT_EQ(expected.statistics.round_points, 0u);
   expect_same(found, expected);
+  if (sizes.local_vertices > 0) {
+    RoundSizes by_stars = sizes;
+    by_stars.star_points = offsets.back();
+    with_sizes(by_stars,
+               [&](Runtime& runtime) { expect_same(run_blocks(runtime, coordinates, offsets), expected); });
+  }
   EXPECT_GE(found.statistics.rounds, 1u);
   EXPECT_GE(found.statistics.round_points, offsets.back());
   EXPECT_LE(found.statistics.merged_points, offsets.back());
@@ -390,6 +397,7 @@ TEST(Rounds, OfManyLanesHaveTheBytesOfTheHost) {
     tuning.blocks_in_parallel = 1;
     tuning.round_points = 500;
     tuning.local_vertices = vertices;
+    tuning.star_points = group == 1 || group == 32 ? 1 << 20 : 0;
     tuning.merge_items = 1 << 20;
     tuning.tile_group = tuning.halve_group = tuning.block_group = tuning.sewing_group = group;
     runtime.set_sizes(std::make_shared<Tuning>(tuning));
@@ -415,10 +423,15 @@ TEST(Rounds, WalksThatDoNotMeetAreAnError) {
     Tuning tuning = tuning_of(*runtime);
     tuning.block_points = block_points;
     tuning.round_points = round_points;
+    tuning.star_points = 0;
     runtime->set_sizes(std::make_shared<Tuning>(tuning));
     testing::expect_error(ErrorKind::internal, {"walks along a seam"}, [&] {
       run_blocks(*runtime, points, {0, 900});
     });
+    // Stars leave nothing to walks.
+    tuning.star_points = 900;
+    runtime->set_sizes(std::make_shared<Tuning>(tuning));
+    EXPECT_NO_THROW(run_blocks(*runtime, points, {0, 900}));
   }
 }
 

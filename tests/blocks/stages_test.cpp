@@ -295,7 +295,7 @@ TEST(Kernels, AllAreLaunched) {
   std::vector<std::string> tunings{"odd"};
   if (!testing::tests_native()) {
     files.insert(files.end(), {"blocks/halve", "blocks/halve_large", "blocks/merge", "blocks/merge_exact",
-                               "blocks/seams", "points/distribute_tiles", "points/gaps"});
+                               "blocks/seams", "blocks/stars", "points/distribute_tiles", "points/gaps"});
     tunings.insert(tunings.end(), {"small lanes", "tiles"});
   }
   for (const std::string& tuning : tunings) {
@@ -327,7 +327,7 @@ TEST(Kernels, AllAreLaunched) {
       ++kernels;
     }
   }
-  EXPECT_EQ(kernels, testing::tests_native() ? 42u : 73u);
+  EXPECT_EQ(kernels, testing::tests_native() ? 42u : 75u);
 }
 
 }  // namespace

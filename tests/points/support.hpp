@@ -81,6 +81,7 @@ inline std::unique_ptr<Runtime> make_runtime(const std::string& name) {
     tuning.halve_group = is_small ? 4 : 64;
     tuning.block_group = is_small ? 2 : 32;
     tuning.merge_items = is_small ? 30 : 1000;
+    tuning.star_points = is_small ? 150 : 0;
     tuning.seam_points = is_small ? 4 : 32;
     tuning.sewing_group = is_small ? 2 : 16;
     if (is_small) tuning.block_points = 13;
