@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Optional, TypedDict, Union
 import numpy as np
 import numpy.typing as npt
 
-from flaunay import _calls
 from flaunay._arrays import ArrayLike, Fixed, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._graphs import minimum_spanning_forest
 from flaunay._optional import optional
 from flaunay._plot import AlphaShapeArtists, draw_alpha_shape
+from flaunay._rings import are_outer, order_of_parts, rings_of
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -142,55 +142,16 @@ class AlphaShape(Fixed):
         return following
 
     @cached_property
-    def _cycles(self) -> tuple[list[Indices], npt.NDArray[np.intp]]:
-        """The rings, and a triangle of each."""
-        following = self._following().tolist()
-        starts = self.edges[:, 0].tolist()
-        triangles = self._boundary[0]
-        done = bytearray(len(starts))
-        rings: list[Indices] = []
-        members: list[int] = []
-        for first in range(len(starts)):
-            if done[first]:
-                continue
-            path: list[int] = []
-            place: dict[int, int] = {}
-            edge = first
-            while True:
-                start = starts[edge]
-                # A point that is met again closes a ring, so that no ring touches itself.
-                if start in place:
-                    ring = np.array(path[place[start] :], np.int32)
-                    del path[place[start] :]
-                    for point in ring.tolist():
-                        del place[point]
-                    rings.append(np.roll(ring, -int(np.argmin(ring))))
-                    members.append(triangles[first])
-                if done[edge]:
-                    break
-                done[edge] = 1
-                place[start] = len(path)
-                path.append(start)
-                edge = following[edge]
+    def _cycles(self) -> tuple[list[Indices], npt.NDArray[np.intp], Mask]:
+        """The rings, a triangle of each, and which are outer ones."""
+        starts = self.edges[:, 0]
+        numbers = np.unique(starts, return_inverse=True)[1]
+        members, offsets = rings_of(self._following(), numbers)
+        corners = starts[members]
+        outer = are_outer(self.delaunay.points, corners, offsets)
+        rings = [np.roll(ring, -int(np.argmin(ring))) for ring in np.split(corners, offsets[1:-1])[: len(outer)]]
         order = sorted(range(len(rings)), key=lambda k: int(rings[k][0]))
-        return [rings[k] for k in order], np.array(members, np.intp)[order]
-
-    @cached_property
-    def _is_outer(self) -> Mask:
-        """Which rings turn counter-clockwise, exactly: the turns at their lexicographically smallest points."""
-        rings, _ = self._cycles
-        if not rings:
-            return np.empty(0, np.bool_)
-        points = self.delaunay.points.astype(np.float64)
-        sizes = np.array([len(ring) for ring in rings])
-        members = np.concatenate(rings)
-        ring_of = np.repeat(np.arange(len(rings)), sizes)
-        order = np.lexsort((points[members, 1], points[members, 0], ring_of))
-        starts = np.cumsum(sizes) - sizes
-        smallest = order[starts]
-        turns = [members[starts + (smallest - starts + step) % sizes] for step in (-1, 0, 1)]
-        outer: Mask = _calls.turns(points, np.stack(turns, axis=1)) > 0
-        return outer
+        return [rings[k] for k in order], self._boundary[0][members[offsets[order]]], outer[order]
 
     def rings(self) -> list[Indices]:
         """The boundary as closed rings of points.
@@ -251,17 +212,12 @@ class AlphaShape(Fixed):
         >>> [[ring.tolist() for ring in part] for part in flaunay.alpha_shape(points, 1).polygons()]
         [[[0, 1, 2]], [[3, 5, 4]]]
         """
-        rings, triangles = self._cycles
+        rings, triangles, outer = self._cycles
         if not rings:
             return []
-        component = self._components[triangles]
-        # Within a component, which begins where its outer ring does, outer rings first.
-        order = np.lexsort((np.arange(len(rings)), ~self._is_outer, component))
-        parts = np.split(order, np.flatnonzero(np.diff(component[order])) + 1)
-        return [
-            [rings[k] for k in part.tolist()]
-            for part in sorted(parts, key=lambda part: int(part[0]))
-        ]
+        order = order_of_parts(outer, self._components[triangles])
+        parts = np.split(order, np.flatnonzero(outer[order])[1:])
+        return [[rings[k] for k in part.tolist()] for part in parts]
 
     def to_shapely(self) -> shapely.MultiPolygon:
         """The triangles of the shape as one geometry of Shapely.

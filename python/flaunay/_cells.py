@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import Frozen, as_floats, as_points, frozen, geometries_of, summary
+from flaunay._arrays import Frozen, as_floats, as_integers, frozen, geometries_of, summary
 from flaunay._delaunay import Delaunay
+from flaunay._dissolve import Dissolved
 from flaunay._errors import InputError, UsageError
 from flaunay._optional import optional
 
@@ -162,21 +163,58 @@ def _with_corner(error: InputError, count: int, is_turned: bool) -> InputError:
     return InputError(text, error.code, error.call)
 
 
+def _box_around(*given: _Doubles) -> _Doubles:
+    """The smallest box around places; those that are not finite do not count."""
+    places = np.concatenate(given)
+    places = places[np.isfinite(places).all(axis=1)]
+    if len(places) == 0:
+        raise UsageError("there are no points to take the bounds of: give bounds")
+    return np.concatenate([places.min(axis=0), places.max(axis=0)])
+
+
+def _places_of(extent: Any) -> _Doubles:
+    """The corners of a box, or the places of geometries or of an array."""
+    geometries = geometries_of(extent, "extend_to")
+    if geometries is not None:
+        given = optional("shapely", "voronoi_polygons").get_coordinates(geometries)
+    else:
+        given = np.asarray(as_floats(extent, "extend_to"), np.float64)
+    if given.shape == (4,):
+        given = given.reshape(2, 2)
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise UsageError(
+            "extend_to must be (xmin, ymin, xmax, ymax), places of shape (m, 2) or geometries, "
+            f"not of shape {given.shape}"
+        )
+    return np.asarray(given, np.float64)
+
+
 def voronoi_polygons(
-    points: npt.ArrayLike, bounds: Any, as_shapely: bool = False, device: Optional[str] = None
+    points: npt.ArrayLike,
+    bounds: Any = None,
+    as_shapely: bool = False,
+    device: Optional[str] = None,
+    *,
+    groups: Optional[npt.ArrayLike] = None,
+    extend_to: Any = None,
 ) -> Any:
-    """The Voronoi cell of each point as a polygon, clipped to a box or a convex polygon.
+    """The Voronoi cell of each point, or those of each group of points together, clipped to a box or a convex polygon.
 
     Parameters
     ----------
     points : array_like, shape (npoints, 2)
         As of `Delaunay`.
-    bounds : array_like or shapely.Polygon
-        As of `Voronoi.clipped`.
+    bounds : array_like or shapely.Polygon, optional
+        As of `Voronoi.clipped`. By default the smallest box around the points and `extend_to`.
     as_shapely : bool, default False
         Whether to make polygons of shapely.
     device : str, optional
         As of `triangulate`.
+    groups : array_like of int, shape (npoints,), optional
+        The group of each point, such as the building that a point is of.
+    extend_to : array_like, shapely geometry or GeoSeries, optional
+        What the box by default has to contain, too: another box ``(xmin, ymin, xmax, ymax)``, places of shape (m, 2),
+        or geometries, such as one that the polygons are to be cut by.
 
     Returns
     -------
@@ -185,6 +223,22 @@ def voronoi_polygons(
         equals an earlier one or whose cell does not meet the bounds. Or, with as_shapely, an array of
         shapely polygons, which ``geopandas.GeoSeries`` takes as it is.
 
+        With `groups`, one per group in increasing order, as ``numpy.unique(groups)`` has them: a list of parts, each a
+        list of rings, the outer one counter-clockwise first, then its holes clockwise; with as_shapely a Polygon or
+        a MultiPolygon, empty for a group without cells. Edges that cells of a group share have gone, exactly.
+
+    Raises
+    ------
+    UsageError, InputError
+        As of `Delaunay` and `Voronoi.clipped`; UsageError for groups that are not integers, or not one per point,
+        and for both `bounds` and `extend_to`.
+    ImportError
+        With as_shapely without Shapely 2; without SciPy, if a group has several parts and a hole.
+
+    Notes
+    -----
+    O(n log n) work. Groups take some twice as long as their cells.
+
     Examples
     --------
     >>> import flaunay
@@ -192,6 +246,25 @@ def voronoi_polygons(
     ...     print(polygon.tolist())
     [[2.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0]]
     [[2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0]]
+    >>> points = [[1, 1], [3, 1], [1, 3], [3, 3]]
+    >>> corner, rest = flaunay.voronoi_polygons(points, (0, 0, 4, 4), groups=[2, 2, -1, 2])
+    >>> [ring.tolist() for part in rest for ring in part]
+    [[[0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0], [2.0, 2.0]]]
     """
-    cells = clip(Delaunay(points, device=device), bounds)
-    return cells.to_shapely() if as_shapely else cells.polygons()
+    if bounds is not None and extend_to is not None:
+        raise UsageError("give bounds or extend_to: bounds are not extended")
+    tri = Delaunay(points, device=device)
+    of_group = None
+    if groups is not None:
+        given = as_integers(groups, "groups")
+        if given.shape != (tri.npoints,):
+            raise UsageError(f"groups must have the shape ({tri.npoints},), one per point, not {given.shape}")
+        names, of_group = np.unique(given, return_inverse=True)
+    if bounds is None:
+        others = [] if extend_to is None else [_places_of(extend_to)]
+        bounds = _box_around(np.asarray(tri.points, np.float64), *others)
+    cells = clip(tri, bounds)
+    if of_group is None:
+        return cells.to_shapely() if as_shapely else cells.polygons()
+    made = Dissolved(cells.vertices, cells.offsets, of_group.astype(np.int32), len(names))
+    return made.to_shapely() if as_shapely else made.polygons()

@@ -262,3 +262,100 @@ def test_rounded_pieces_and_cells_on_a_torus_are_valid(random):
     torus = flaunay.periodic(random.random((500, 2)), (1, 1)).cells
     _, counts = np.unique(torus.vertices % 1, axis=0, return_counts=True)
     assert (counts == 3).all() and len(counts) == 1000
+
+
+def rings_of(groups):
+    return [ring for parts in groups for rings in parts for ring in rings]
+
+
+def signed_area(ring):
+    x, y = (ring - ring[0]).T
+    return (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2
+
+
+def test_groups_are_the_unions_of_their_cells(random):
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    for points in [*degenerate_sets(random), random.random((800, 2))]:
+        low, high = points.min(axis=0), points.max(axis=0)
+        low, high = low - np.ptp(points) / 10, high + np.ptp(points) / 10
+        bounds = (*low, *high)
+        for count in 1, 30:
+            owners = random.integers(-2, count, len(points)) * 7
+            cells = flaunay.voronoi_polygons(points, bounds, as_shapely=True)
+            made = flaunay.voronoi_polygons(points, bounds, as_shapely=True, groups=owners)
+            names = np.unique(owners)
+            assert len(made) == len(names)
+            assert shapely.is_valid(made).all()
+            scale = np.prod(high - low)
+            for name, polygon in zip(names, made):
+                own = cells[owners == name]
+                union = shapely.coverage_union_all(own)
+                if not union.is_valid:
+                    union = shapely.union_all(own)
+                assert polygon.area == pytest.approx(shapely.area(own).sum(), abs=1e-9 * scale)
+                assert shapely.get_num_geometries(polygon) == shapely.get_num_geometries(union)
+                holes = [shapely.get_num_interior_rings(shapely.get_parts(g)).sum() for g in (polygon, union)]
+                assert holes[0] == holes[1]
+                assert set(map(tuple, shapely.get_coordinates(polygon))) == set(
+                    map(tuple, shapely.get_coordinates(union))
+                )
+            lists = flaunay.voronoi_polygons(points, bounds, groups=owners)
+            for polygon, parts in zip(made, lists):
+                areas = [[signed_area(ring) for ring in part] for part in parts]
+                assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas)
+                assert sum(map(sum, areas)) == pytest.approx(polygon.area, abs=1e-9 * scale)
+
+
+def test_groups_that_touch_themselves():
+    """Squares of a board, and a ring whose hole touches its border."""
+    board = grid(3, 3)
+    bounds = (-0.5, -0.5, 2.5, 2.5)
+    black, white = flaunay.voronoi_polygons(board, bounds, groups=[0, 1, 0, 1, 0, 1, 0, 1, 0])
+    assert [len(part) for part in black] == [1] * 5 and [len(part) for part in white] == [1] * 4
+    assert all(len(ring) == 4 for ring in rings_of([black, white]))
+    ring, hole = flaunay.voronoi_polygons(board, bounds, groups=[0, 0, 1, 0, 1, 0, 0, 0, 0])
+    (rings,) = ring
+    assert [signed_area(one) for one in rings] == [8.0, -1.0]
+    assert [signed_area(one) for one in rings_of([hole])] == [1.0, 1.0]
+
+
+def test_which_groups_there_are(random):
+    points = random.random((20, 2))
+    points[5] = points[4]
+    owners = np.full(20, 3)
+    owners[5], owners[0] = -9, 8
+    lists = flaunay.voronoi_polygons(points, groups=owners)
+    assert lists[0] == [] and len(lists) == 3
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    assert flaunay.voronoi_polygons(points, groups=owners, as_shapely=True)[0].is_empty
+    for wrong in np.zeros(19, int), np.zeros((20, 1), int), np.zeros(20):
+        with pytest.raises(flaunay.UsageError, match="groups"):
+            flaunay.voronoi_polygons(points, groups=wrong)
+    assert flaunay.voronoi_polygons(np.empty((0, 2)), (0, 0, 1, 1), groups=np.empty(0, int)) == []
+    none = flaunay.voronoi_polygons(np.empty((0, 2)), (0, 0, 1, 1), True, groups=np.empty(0, int))
+    assert len(none) == 0
+
+
+@pytest.mark.parametrize("kind", ["box", "array", "geometry", "none"])
+def test_what_bounds_are_extended_to(random, kind):
+    points = random.random((30, 2))
+    expected = np.array([points.min(axis=0), points.max(axis=0)])
+    extent = None
+    if kind != "none":
+        expected = np.array([expected[0], [2, 3]])
+        extent = (1, 1, 2, 3) if kind == "box" else np.array([[1, 3], [2, 1]])
+    if kind == "geometry":
+        extent = pytest.importorskip("shapely", minversion="2.0").LineString([[1, 3], [2, 1]])
+    corners = np.concatenate(flaunay.voronoi_polygons(points, extend_to=extent))
+    assert (np.array([corners.min(axis=0), corners.max(axis=0)]) == expected).all()
+
+
+def test_bounds_that_cannot_be_extended():
+    for given, words in [
+        (dict(extend_to=[1, 2, 3]), "extend_to"),
+        (dict(bounds=(0, 0, 1, 1), extend_to=(0, 0, 2, 2)), "extend_to"),
+    ]:
+        with pytest.raises(flaunay.UsageError, match=words):
+            flaunay.voronoi_polygons([[0, 0], [1, 1]], **given)
+    with pytest.raises(flaunay.UsageError, match="give bounds"):
+        flaunay.voronoi_polygons(np.empty((0, 2)))
