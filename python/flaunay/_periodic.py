@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,8 @@ from flaunay._arrays import ArrayLike, as_floats, as_offsets, as_points, frozen,
 from flaunay._cells import ClippedVoronoi
 from flaunay._device_arrays import DeviceCall, Offsets, queue_for
 from flaunay._errors import UsageError
-from flaunay._surfaces import DeviceSurface, Doubles, Indices, WithLocator, as_weights, made_on_device
+from flaunay._surface_edges import WithEdges
+from flaunay._surfaces import DeviceSurface, Doubles, Indices, as_weights, made_on_device
 
 if TYPE_CHECKING:
     import pyopencl
@@ -30,7 +31,7 @@ def _as_queries(given: ArrayLike) -> Doubles:
     return queries
 
 
-class PeriodicDelaunay(WithLocator):
+class PeriodicDelaunay(WithEdges):
     """Delaunay triangulations of points on a torus or a cylinder, or with weights regular ones. `periodic` makes them.
 
     Attributes
@@ -65,7 +66,7 @@ class PeriodicDelaunay(WithLocator):
     """
 
     hidden: Indices
-    _names = WithLocator._names | {"hidden": "hidden"}
+    _names = WithEdges._names | {"hidden": "hidden"}
 
     def __init__(
         self,
@@ -121,9 +122,112 @@ class PeriodicDelaunay(WithLocator):
         >>> ((a * d - b * c) / 2).sum().round(12).item()
         1.0
         """
+        return frozen(self.places[self.simplices] + self.corner_offsets @ self._vectors)
+
+    @property
+    def _vectors(self) -> Doubles:
+        """The vectors by which the plane repeats itself; 0 where it does not."""
         across, up, shear = [*self.period, 0.0][:3]
-        vectors = np.where(np.isfinite([across, up]), [[across, 0], [shear, up]], 0)
-        return frozen(self.places[self.simplices] + self.corner_offsets @ vectors)
+        vectors: Doubles = np.array([[across, 0.0], [shear, up]])
+        vectors[:, ~np.isfinite([across, up])] = 0.0
+        return vectors
+
+    def _along(self, triangle: Any, first: Any, second: Any) -> npt.NDArray[np.int64]:
+        """From a corner of each triangle to another one: their points, and the periods between them."""
+        corners = first, second
+        points = [self.simplices[triangle, corner] for corner in corners]
+        periods = [self.corner_offsets[triangle, corner].astype(np.int64) for corner in corners]
+        return np.column_stack([*points, periods[1] - periods[0]])
+
+    def _between(self, triangle: Any, first: Any, second: Any) -> Doubles:
+        """The vectors from corners of triangles to others."""
+        along = self._along(triangle, first, second)
+        vectors: Doubles = (
+            self.places[along[:, 1]] - self.places[along[:, 0]] + along[:, 2:] @ self._vectors
+        )
+        return vectors
+
+    def _centres_from(self, triangle: Any, corner: Any) -> Doubles:
+        """The centres of the circles of triangles, from a corner; with weights, the points of equal power."""
+        others = (corner + 1) % 3, (corner + 2) % 3
+        b, c = (self._between(triangle, corner, other) for other in others)
+        squares = [(side * side).sum(axis=1) for side in (b, c)]
+        if self.weights is not None:
+            at, *beyond = (self.weights[self.simplices[triangle, k]] for k in (corner, *others))
+            squares = [square + at - weight for square, weight in zip(squares, beyond)]
+        twice = 2 * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+        x = c[:, 1] * squares[0] - b[:, 1] * squares[1]
+        y = b[:, 0] * squares[1] - c[:, 0] * squares[0]
+        centres: Doubles = np.stack([x, y], axis=1) / twice[:, None]
+        return centres
+
+    @cached_property
+    def edge_vectors(self) -> Doubles:
+        """From the first point of each of `edges` to the image of the second that is at its end, shape (e, 2).
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> tri = flaunay.periodic([[0.25, 0.5], [0.75, 0.5]], (1, 1))
+        >>> tri.edge_vectors[(tri.edges == [0, 1]).all(axis=1) & (tri.ridge_lengths > 0)].tolist()
+        [[-0.5, 0.0], [0.5, 0.0]]
+        """
+        return frozen(self._between(self._sides[0], *self._ends))
+
+    def _lengths_of_edges(self) -> Doubles:
+        lengths: Doubles = np.hypot(*self.edge_vectors.T)
+        return lengths
+
+    def _lengths_of_ridges(self) -> Doubles:
+        triangle, corner = self._sides
+        beyond = self.neighbors[triangle, corner]
+        first, second = (corner + 1) % 3, (corner + 2) % 3
+        along = self._along(triangle, first, second)
+        # The end of the same side in the triangle beyond. Few points have triangles with several common sides.
+        end = np.zeros_like(corner)
+        for k in range(3):
+            ends = (k + 2) % 3, (k + 1) % 3
+            found = (self._along(beyond, *ends) == along).all(axis=1) & (self.neighbors[beyond, k] == triangle)
+            end[found] = ends[0]
+        ridges = self._centres_from(beyond, end) - self._centres_from(triangle, first)
+        return np.where(beyond < 0, np.inf, np.hypot(*ridges.T))
+
+    def _areas(self) -> Doubles:
+        triangle = np.arange(self.nsimplex)
+        b, c = (self._between(triangle, 0, k) for k in (1, 2))
+        return (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]) / 2
+
+    def neighborhoods(self) -> tuple[Indices, Indices, Doubles, Doubles]:
+        """What each point sees around it, as models of foams and vertex models need it.
+
+        Returns
+        -------
+        indptr : ndarray of int32, shape (npoints + 1,)
+            Point i has the rows ``indptr[i]`` to ``indptr[i + 1]`` of the others, counter-clockwise.
+        indices : ndarray of int32, shape (2 e,)
+            Its neighbors; with few points some several times, and itself.
+        vectors : ndarray of float64, shape (2 e, 2)
+            From the point to the image of its neighbor, also across the border.
+        ridge_lengths : ndarray of float64, shape (2 e,)
+            As `ridge_lengths`.
+
+        Examples
+        --------
+        >>> import flaunay, numpy as np
+        >>> tri = flaunay.periodic(np.random.default_rng(1).random((100, 2)), (1, 1))
+        >>> indptr, indices, vectors, ridges = tri.neighborhoods()
+        >>> float(np.diff(indptr).mean())
+        6.0
+        >>> areas = np.add.reduceat(ridges * np.hypot(*vectors.T), indptr[:-1]) / 4
+        >>> bool(np.allclose(areas, tri.cells.areas))
+        True
+        """
+        ends = np.concatenate([self.edges, self.edges[:, ::-1]])
+        vectors = np.concatenate([self.edge_vectors, 0.0 - self.edge_vectors])
+        order = np.lexsort((np.arctan2(vectors[:, 1], vectors[:, 0]), ends[:, 0]))
+        indptr = np.zeros(self.npoints + 1, np.int32)
+        np.cumsum(np.bincount(ends[:, 0], minlength=self.npoints), out=indptr[1:])
+        return indptr, ends[order, 1], vectors[order], np.tile(self.ridge_lengths, 2)[order]
 
     _as_queries = staticmethod(_as_queries)
 

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from flaunay import _calls
 from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, hint_for, summary
 from flaunay._errors import UsageError
-from flaunay._surfaces import Doubles, Indices, WithLocator
+from flaunay._surface_edges import WithEdges, angles_between
+from flaunay._surfaces import Doubles, Indices
 
 
 def _as_points(given: ArrayLike, name: str = "xi") -> Doubles:
@@ -212,7 +213,7 @@ class SphericalVoronoi:
         return circle if i == low else circle[::-1].copy()
 
 
-class SphericalDelaunay(WithLocator):
+class SphericalDelaunay(WithEdges):
     """Delaunay triangulations of points on the unit sphere: their convex hulls. `spherical` makes them.
 
     Attributes
@@ -263,6 +264,22 @@ class SphericalDelaunay(WithLocator):
         4
         """
         return SphericalVoronoi._of(self)
+
+    def _lengths_of_edges(self) -> Doubles:
+        first, second = self.xyz[self.edges].transpose(1, 0, 2)
+        return angles_between(first, second)
+
+    def _lengths_of_ridges(self) -> Doubles:
+        first, second = self.voronoi.vertices[self.edge_simplices].transpose(1, 0, 2)
+        return angles_between(first, second)
+
+    def _areas(self) -> Doubles:
+        a, b, c = self.xyz[self.simplices].transpose(1, 0, 2)
+        # Van Oosterom and Strackee (1983). Differences of near points are exact.
+        volume = (a * np.cross(b - a, c - a)).sum(axis=1)
+        cosines = sum((p * q).sum(axis=1) for p, q in ((a, b), (b, c), (c, a)))
+        halves: Doubles = np.arctan2(volume, 1 + cosines)
+        return 2.0 * halves
 
     _as_queries = staticmethod(_as_points)
 

@@ -269,3 +269,39 @@ def test_clough_tocher(random, period):
             tri.interpolate(values, queries, method, gradients=slopes)
     with pytest.raises(flaunay.UsageError, match="tol"):
         tri.gradients(values, tol=0)
+
+
+@pytest.mark.parametrize("period", [(1, 1), (2, 3), (1, 1, 0.3)])
+@pytest.mark.parametrize("n", [1, 2, 5, 300])
+@pytest.mark.parametrize("is_weighted", [False, True])
+def test_neighborhoods_are_the_sides_of_cells(random, period, n, is_weighted):
+    points = random.random((n, 2)) * 5
+    weights = random.random(n) / (20 * n) if is_weighted else None
+    tri = flaunay.periodic(points, period, weights=weights)
+    assert len(tri.edges) == 3 * tri.nsimplex // 2
+    assert (np.diff(tri.edges, axis=1) >= 0).all()
+    assert tri.areas.sum() == pytest.approx(period[0] * period[1]) and (tri.areas > 0).all()
+    first, second = tri.places[tri.edges].transpose(1, 0, 2)
+    # An image of the other point: whole numbers of periods away.
+    across, up, shear = [*tri.period, 0][:3]
+    count = np.linalg.solve([[across, shear], [0, up]], (tri.edge_vectors - (second - first)).T)
+    assert count == pytest.approx(count.round(), abs=1e-12)
+    assert tri.edge_lengths == pytest.approx(np.linalg.norm(tri.edge_vectors, axis=1))
+    indptr, indices, vectors, ridges = tri.neighborhoods()
+    for i, cell in enumerate(tri.cells.polygons()):
+        mine = slice(indptr[i], indptr[i + 1])
+        lengths = np.linalg.norm(np.roll(cell, -1, axis=0) - cell, axis=1)
+        assert sorted(ridges[mine][ridges[mine] > 1e-12]) == pytest.approx(sorted(lengths))
+        angles = np.arctan2(*vectors[mine].T[::-1])
+        assert (np.diff(angles) >= 0).all()
+        # A cell's sides are its border.
+        assert (vectors[mine] / np.hypot(*vectors[mine].T)[:, None]).T @ ridges[mine] == pytest.approx(0, abs=1e-12)
+    assert np.bincount(indices, minlength=n) == pytest.approx(np.diff(indptr))
+
+
+def test_edges_of_a_cylinder(random):
+    tri = flaunay.periodic(random.random((50, 2)), (1, None))
+    at_ends = tri.edge_simplices[:, 0] < 0
+    assert at_ends.sum() == (tri.neighbors < 0).sum() == 2
+    assert (np.isinf(tri.ridge_lengths) == at_ends).all()
+    assert flaunay.periodic([[0.5, 0.5]], (1, None)).edges.shape == (0, 2)

@@ -232,3 +232,45 @@ def test_several_nearest_points(n):
     assert tri.nearest(queries, k=1)[:, 0].tolist() == tri.nearest(queries).tolist()
     near = tri.nearest(queries, k=n, distance_upper_bound=1)
     assert (near >= 0).sum() == (expected <= 1).sum()
+
+
+def angle(a, b):
+    return np.arccos(np.clip((a * b).sum(axis=-1), -1, 1))
+
+
+@pytest.mark.parametrize("n", [4, 5, 400])
+def test_edges_and_areas(random, n):
+    tri = flaunay.spherical(random.normal(size=(n, 3)))
+    assert len(tri.edges) == 3 * n - 6
+    expected = {tuple(sorted(row[[k, k - 1]].tolist())) for row in tri.simplices for k in range(3)}
+    assert list(map(tuple, tri.edges.tolist())) == sorted(expected)
+    a, b = tri.xyz[tri.edges].transpose(1, 0, 2)
+    assert tri.edge_lengths == pytest.approx(angle(a, b), abs=1e-7)
+    for (t, u), edge in zip(tri.edge_simplices, tri.edges):
+        assert set(edge) == set(tri.simplices[t]) & set(tri.simplices[u])
+    # The sides of cells, of which those that coincide have no length.
+    sides = np.zeros(n)
+    for i, region in enumerate(tri.voronoi.regions):
+        at = tri.voronoi.vertices[region]
+        sides[i] = angle(at, np.roll(at, 1, axis=0)).sum()
+    assert np.bincount(tri.edges.ravel(), np.repeat(tri.ridge_lengths, 2)) == pytest.approx(sides, abs=1e-6)
+    # Girard: the sum of the angles is that of a flat triangle, and the area.
+    corners = tri.xyz[tri.simplices]
+    total = -np.pi
+    for k in range(3):
+        p, q, r = (corners[:, (k + j) % 3] for j in range(3))
+        total = total + angle(*(v / np.linalg.norm(v, axis=1)[:, None] for v in (np.cross(p, q), np.cross(p, r))))
+    assert np.abs(tri.areas) == pytest.approx(total, abs=1e-7)
+    within = np.abs(tri.areas.sum()) < 1
+    assert tri.areas.sum() == pytest.approx(0 if within else 4 * np.pi)
+
+
+def test_triangles_that_close_the_hull_from_behind(random):
+    tri = flaunay.spherical(random.random((30, 2)) * 10)
+    assert tri.areas.sum() == pytest.approx(0, abs=1e-15) and (tri.areas < 0).any()
+    hull = tri.areas[tri.areas > 0].sum()
+    assert 0 < hull < np.radians(10) ** 2
+    # A ten-millionth of a degree: small triangles have small errors.
+    small = flaunay.spherical([[0, 0], [1e-7, 0], [0, 1e-7]])
+    assert np.abs(small.areas) == pytest.approx(np.radians(1e-7) ** 2 / 2, rel=1e-6)
+    assert sorted(small.edge_lengths)[:2] == pytest.approx([np.radians(1e-7)] * 2, rel=1e-6)
