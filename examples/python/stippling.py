@@ -39,13 +39,7 @@ def stipple(
     mass = weights.ravel()
     dots: npt.NDArray[np.float64] = pixels[random.choice(len(pixels), DOTS, p=mass / mass.sum())]
     dots = dots + random.uniform(-0.5, 0.5, dots.shape)
-    for _ in range(ROUNDS):
-        nearest = flaunay.Delaunay(dots).nearest(pixels)
-        total = np.bincount(nearest, mass, minlength=DOTS)
-        moments = [np.bincount(nearest, mass * pixels[:, k], minlength=DOTS) for k in range(2)]
-        has_mass = total > 0
-        dots[has_mass] = (np.array(moments)[:, has_mass] / total[has_mass]).T
-    return dots
+    return flaunay.relax(dots, (0, 0, width, height), ROUNDS, density=weights)
 
 
 def main(path: str = "stippling.png") -> None:

@@ -13,7 +13,7 @@ from flaunay._cells import clip
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._optional import optional
-from flaunay._polygons import polygons
+from flaunay._polygons import PolygonTriangulation, polygons
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
@@ -100,13 +100,18 @@ def _boxes_that_meet(triangles: Doubles, least: Doubles, most: Doubles) -> list[
     return result
 
 
-def pieces(tri: Delaunay, region: Any) -> VoronoiPieces:
-    """As `Voronoi.pieces` says, of the cells of a triangulation's points."""
+def mesh_of(region: Any) -> PolygonTriangulation:
+    """The triangles of polygons, of which there must be some."""
     mesh = polygons(region, map=True)
+    if not (mesh.polygon_of >= 0).any():
+        raise UsageError("the polygons have no area")
+    return mesh
+
+
+def pieces(tri: Delaunay, mesh: PolygonTriangulation) -> VoronoiPieces:
+    """As `Voronoi.pieces` says, of the cells of a triangulation's points, in the polygons of a mesh."""
     triangles = mesh.triangles[mesh.polygon_of >= 0]
     n = tri.npoints
-    if len(triangles) == 0:
-        raise UsageError("the polygons have no area")
     if n == 0:
         nothing = np.empty((0, 2))
         return VoronoiPieces(

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from typing import Any, Optional
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
-from flaunay._arrays import ArrayLike, as_count, as_points
-from flaunay._cells import corners_of
+from flaunay._arrays import ArrayLike, as_count, as_floats, as_points
+from flaunay._cells import ClippedVoronoi, clip, corners_of
+from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
 from flaunay._periodic import as_lengths
+from flaunay._pieces import VoronoiPieces, mesh_of, pieces
+from flaunay._polygons import PolygonTriangulation
 from flaunay._sphere import as_rows
 from flaunay._surfaces import Doubles, as_weights
 
@@ -35,6 +38,115 @@ def parts_of(given: Any) -> Iterator[int]:
         part = min(2 * part if is_quick else part, iterations)
 
 
+# Seven places in a triangle, as shares of its corners, and their weights: exact for polynomials of degree 5 (Radon, 1948).
+_ROOT = 15.0**0.5
+_NEAR, _FAR = (6 - _ROOT) / 21, (6 + _ROOT) / 21
+_SHARES = np.array(
+    [[1 / 3] * 3, *(np.roll([1 - 2 * s, s, s], k) for s in (_NEAR, _FAR) for k in range(3))]
+)
+_WEIGHTS = np.repeat([9 / 40, (155 - _ROOT) / 1200, (155 + _ROOT) / 1200], [1, 3, 3])
+
+
+def _mass_of(given: Any, shape: tuple[int, ...]) -> Doubles:
+    """Densities, checked."""
+    mass = np.asarray(as_floats(given, "density"), np.float64)
+    if mass.shape != shape:
+        raise UsageError(f"density must return one number per place, of the shape {shape}, not {mass.shape}")
+    if not ((mass >= 0) & (mass < np.inf)).all():
+        raise UsageError("densities must be finite and not negative")
+    return mass
+
+
+def _of_function(density: Callable[[Doubles], Any], cells: Union[ClippedVoronoi, VoronoiPieces], n: int) -> Doubles:
+    """The centroids of cells by a density that is a function, NaN for those without mass."""
+    owners = cells.owners if isinstance(cells, VoronoiPieces) else np.arange(n)
+    sizes = np.maximum(np.diff(cells.offsets) - 2, 0)
+    # Triangles from the first corner of each piece.
+    first = np.repeat(cells.offsets[:-1], sizes)
+    second = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes) + first + 1
+    corners = cells.vertices[np.stack([first, second, second + 1], axis=1)]
+    (ax, ay), (bx, by) = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0)
+    places = (_SHARES @ corners).reshape(-1, 2)
+    mass = _mass_of(density(places), (len(places),)) * np.repeat((ax * by - ay * bx) / 2, 7) * np.tile(_WEIGHTS, len(corners))
+    return _centroids(np.repeat(np.repeat(owners, sizes), 7), mass, places, n)
+
+
+def _centroids(owners: npt.NDArray[Any], mass: Doubles, places: Doubles, n: int) -> Doubles:
+    total, x, y = (np.bincount(owners, mass * by, minlength=n) for by in (1.0, places[:, 0], places[:, 1]))
+    with np.errstate(invalid="ignore"):
+        return np.stack([x, y], axis=1) / total[:, None]
+
+
+class _Pixels:
+    """A raster over a box, of which those pixels count whose centres are in polygons."""
+
+    def __init__(self, given: ArrayLike, mesh: PolygonTriangulation) -> None:
+        density = as_floats(given, "density")
+        if density.ndim != 2 or density.size == 0:
+            raise UsageError(f"density must be a function or a raster of rows and columns, not of shape {density.shape}")
+        mass = _mass_of(density, density.shape)
+        corners = mesh.points[mesh.triangles]
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        (rows, columns), (dx, dy) = density.shape, (high - low) / density.shape[::-1]
+        x, y = low[0] + dx * (np.arange(columns) + 0.5), high[1] - dy * (np.arange(rows) + 0.5)
+        self.places: Doubles = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        counts = mass.ravel() > 0
+        counts[counts] = _are_inside(self.places[counts], mesh)
+        self.places, self.mass = self.places[counts], mass.ravel()[counts]
+
+    def centroids(self, tri: Delaunay) -> Doubles:
+        return _centroids(tri.nearest(self.places), self.mass, self.places, tri.npoints)
+
+
+def _are_inside(places: Doubles, mesh: PolygonTriangulation) -> npt.NDArray[np.bool_]:
+    triangles = mesh.find_simplex(places)
+    inside: npt.NDArray[np.bool_] = (triangles >= 0) & (mesh.polygon_of[triangles] >= 0)
+    return inside
+
+
+def _nearest_on(polygon: Doubles, place: Doubles) -> Doubles:
+    """The place on a polygon's border that is nearest to one."""
+    along = np.roll(polygon, -1, axis=0) - polygon
+    share = ((place - polygon) * along).sum(axis=1) / (along * along).sum(axis=1)
+    on = polygon + along * np.clip(share, 0, 1)[:, None]
+    nearest: Doubles = on[np.argmin(((on - place) ** 2).sum(axis=1))]
+    return nearest
+
+
+def _relax_in_polygons(
+    points: Doubles,
+    region: Any,
+    bounds: Any,
+    density: Any,
+    iterations: int,
+    device: Optional[str],
+) -> Doubles:
+    """Lloyd's method with a density or in any polygons."""
+    corners = None if bounds is None else corners_of(bounds)
+    mesh = mesh_of([[corners]] if corners is not None else region)
+    pixels = None if density is None or callable(density) else _Pixels(density, mesh)
+    for _ in range(as_count(iterations, "iterations")):
+        tri = Delaunay(points, device=device)
+        if pixels is not None:
+            moved = pixels.centroids(tri)
+        else:
+            cells = clip(tri, corners) if corners is not None else pieces(tri, mesh)
+            moved = cells.centroids if density is None else _of_function(density, cells, len(points))
+        stays = np.isnan(moved).any(axis=1)
+        moved = np.where(stays[:, None], points, moved)
+        if corners is None:
+            # A centroid may lie in a hole, or beyond a bay.
+            outside = np.flatnonzero(~stays)
+            outside = outside[~_are_inside(moved[outside], mesh)]
+            if len(outside):
+                cells = pieces(tri, mesh)
+                for i in outside.tolist():
+                    ends = np.array([_nearest_on(piece, moved[i]) for piece in cells.polygons(i)])
+                    moved[i] = ends[np.argmin(((ends - moved[i]) ** 2).sum(axis=1))]
+        points = moved
+    return points
+
+
 def relax(
     points: npt.ArrayLike,
     bounds: Any = None,
@@ -44,8 +156,10 @@ def relax(
     period: Optional[Sequence[Optional[float]]] = None,
     weights: Optional[ArrayLike] = None,
     sphere: bool = False,
+    region: Any = None,
+    density: Union[None, Callable[[Doubles], npt.ArrayLike], npt.ArrayLike] = None,
 ) -> Doubles:
-    """Points spread evenly by Lloyd's method: each moves to the centroid of its Voronoi cell.
+    """Points spread evenly, or by a density, by Lloyd's method: each moves to the centroid of its Voronoi cell.
 
     Parameters
     ----------
@@ -64,6 +178,15 @@ def relax(
     sphere : bool, default False
         Whether the points lie on the sphere. They move to the direction of their cell's centroid in space (Du,
         Gunzburger and Ju, 2003), computed exactly but for rounding.
+    region : shapely.Polygon or MultiPolygon, GeoSeries, GeoJSON, or list of polygons, optional
+        In place of bounds, any polygons, with holes, as `Voronoi.pieces` takes them. A point whose centroid is not in
+        them moves to the nearest place of its cell.
+    density : callable or array_like, shape (rows, columns), optional
+        Within bounds or a region: how many points there shall be, not negative. A function of places, float64, shape
+        (m, 2), which returns m numbers, integrated by seven places in each triangle of a cell; or a raster over the
+        box of the bounds or the region, the first row with the largest y, whose pixels' centres are counted by their
+        nearest points (Secord, 2002), so that cells should have several. The density of points approaches its
+        square root.
 
     Returns
     -------
@@ -75,10 +198,15 @@ def relax(
     Raises
     ------
     UsageError
-        Unless one of bounds, period and sphere is given; for a cylinder, where cells have no end; and as of
-        `periodic`, `spherical` and `weighted`.
+        Unless one of bounds, region, period and sphere is given; for a cylinder, where cells have no end; for a
+        density with other spaces, weights with it or with a region, densities that are negative or not finite; and as
+        of `periodic`, `spherical`, `weighted` and `polygons`.
     InputError, DeviceError
         As of these.
+
+    Notes
+    -----
+    O(n log n) work per iteration, and for a region a call for each of its triangles.
 
     Examples
     --------
@@ -93,9 +221,21 @@ def relax(
     array([[ -22.5,    0. ],
            [  90. ,    0. ],
            [-157.5,    0. ]])
+    >>> frame = [[[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [3, 1], [3, 3], [1, 3]]]
+    >>> flaunay.relax([[0.5, 2], [3, 2]], region=[frame], iterations=20).round(2)
+    array([[0.83, 2.  ],
+           [3.17, 2.  ]])
+    >>> flaunay.relax([[1, 1], [3, 1]], (0, 0, 4, 2), 20, density=lambda at: at[:, 0]).round(2)
+    array([[1.65, 1.  ],
+           [3.3 , 1.  ]])
     """
-    if (bounds is not None) + (period is not None) + bool(sphere) != 1:
-        raise UsageError("give one of bounds, period and sphere: the plane, a torus or the sphere")
+    if (bounds is not None) + (region is not None) + (period is not None) + bool(sphere) != 1:
+        raise UsageError("give one of bounds, region, period and sphere: the plane, a torus or the sphere")
+    if region is not None or density is not None:
+        if weights is not None or period is not None or sphere:
+            raise UsageError("regions and densities are for points in the plane without weights")
+        given = np.array(as_points(points), np.float64)
+        return _relax_in_polygons(given, region, bounds, density, iterations, device)
     relaxed = as_rows(points) if sphere else np.asarray(as_points(points), np.float64)
     own = None if weights is None else as_weights(weights, len(relaxed))
     if sphere:

@@ -12,7 +12,7 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, Frozen, frozen, summary
 from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
-from flaunay._pieces import VoronoiPieces, pieces
+from flaunay._pieces import VoronoiPieces, mesh_of, pieces
 from flaunay._plot import Bounds, draw_voronoi
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ class Voronoi(Frozen):
         >>> cells.areas
         array([6., 6.])
         """
-        return pieces(self.delaunay, region)
+        return pieces(self.delaunay, mesh_of(region))
 
     def plot(
         self,

@@ -122,8 +122,8 @@ def test_relaxation_in_all_spaces(points):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({}, "one of bounds, period and sphere"),
-        ({"bounds": BOX, "period": (1, 1)}, "one of bounds, period and sphere"),
+        ({}, "one of bounds, region, period and sphere"),
+        ({"bounds": BOX, "period": (1, 1)}, "one of bounds, region, period and sphere"),
         ({"period": (1, None)}, "no end"),
         ({"sphere": True, "weights": np.ones(4)}, "no weights"),
         ({"period": (1, 1), "weights": np.ones(3)}, "weights must have"),
@@ -132,6 +132,81 @@ def test_relaxation_in_all_spaces(points):
 def test_spaces_without_relaxation(given, message):
     with pytest.raises(flaunay.UsageError, match=message):
         flaunay.relax([[0, 0], [1, 0], [1, 1], [0, 1]], **given)
+
+
+def test_relaxation_by_a_density(points):
+    triangle = [[0, 0], [1, 0], [0.3, 1]]
+    for bounds in BOX, triangle:
+        even = flaunay.relax(points, bounds, 4)
+        for density in (lambda at: np.full(len(at), 3), lambda at: [1] * len(at)):
+            assert flaunay.relax(points, bounds, 4, density=density) == pytest.approx(even, abs=1e-12)
+    # The centroids where a density of x ^ 3 y has its masses are rational numbers: degree 5 is exact.
+    (moved,) = flaunay.relax([[0.5, 0.5]], (0, 0, 1, 2), density=lambda at: at[:, 0] ** 3 * at[:, 1])
+    assert moved == pytest.approx([4 / 5, 4 / 3], abs=1e-14)
+    (moved,) = flaunay.relax([[9, 9]], (0, 0, 1, 2), density=lambda at: (at[:, 0] < 0.5) * 1.0)
+    assert moved[0] < 0.5
+    for density in (lambda at: np.zeros(len(at))), np.zeros((3, 4)):
+        assert (flaunay.relax(points, BOX, density=density) == points).all()
+
+
+def test_relaxation_by_a_raster(random):
+    rows, columns = np.arange(90), np.arange(120)
+    density = (rows[::-1, None] + 1.0) * np.ones(len(columns))
+    bounds, points = (0, 0, 12, 9), random.random((40, 2)) * [12, 9]
+    by_raster = flaunay.relax(points, bounds, 3, density=density)
+    by_function = flaunay.relax(points, bounds, 3, density=lambda at: at[:, 1] + 0.05)
+    assert np.abs(by_raster - by_function).max() < 0.1
+    # Only pixels within the region.
+    frame = [[[0, 0], [12, 0], [12, 9], [0, 9]], [[1, 1], [11, 1], [11, 8], [1, 8]]]
+    in_frame = flaunay.relax(points, region=[frame])
+    assert np.abs(flaunay.relax(points, region=[frame], density=np.ones((450, 600))) - in_frame).max() < 0.05
+    diagonal = np.eye(90, 120)[::-1]
+    assert flaunay.relax([[6, 1]], (0, 0, 12, 9), density=diagonal) == pytest.approx(np.array([[4.5, 4.5]]))
+
+
+def test_relaxation_in_any_polygons(random):
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    frame = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 3, 3)
+    region = shapely.MultiPolygon([frame, shapely.Polygon([(5, 0), (9, 0), (9, 4), (8.8, 0.5)])])
+    points = random.random((200, 2)) * [9, 4]
+    points = points[shapely.covers(region, shapely.points(points))]
+    once = flaunay.relax(points, region=region)
+    cells = [part & region for part in flaunay.voronoi_polygons(points, region.bounds, as_shapely=True)]
+    for place, cell, before in zip(once, cells, points):
+        centroid = shapely.Point(before) if cell.is_empty else cell.centroid
+        if not cell.is_empty and not shapely.covers(cell, centroid):
+            # The nearest place of the cell.
+            assert cell.distance(shapely.Point(place)) < 1e-12
+            assert centroid.distance(shapely.Point(place)) == pytest.approx(centroid.distance(cell))
+        else:
+            assert place == pytest.approx([centroid.x, centroid.y])
+    relaxed = flaunay.relax(points, region=region, iterations=10)
+    assert shapely.distance(region, shapely.points(relaxed)).max() < 1e-12
+    areas = flaunay.Voronoi(relaxed).pieces(region).areas
+    assert areas.std() < 0.6 * flaunay.Voronoi(points).pieces(region).areas.std()
+    # One point in the middle of a frame.
+    (moved,) = flaunay.relax([[2, 2]], region=frame)
+    assert frame.distance(shapely.Point(moved)) < 1e-12
+    alike = flaunay.relax(points, region=region, density=lambda at: np.ones(len(at)))
+    assert alike == pytest.approx(once, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "given, message",
+    [
+        (dict(bounds=BOX, region=[[[[0, 0], [1, 0], [0, 1]]]]), "one of bounds"),
+        (dict(bounds=BOX, density=[[1]], weights=[0, 0]), "without weights"),
+        (dict(period=(1, 1), density=[[1]]), "without weights"),
+        (dict(bounds=BOX, density=[1]), "a function or a raster"),
+        (dict(bounds=BOX, density=[[-1]]), "not negative"),
+        (dict(bounds=BOX, density=lambda at: np.ones((len(at), 2))), "one number per place"),
+        (dict(bounds=BOX, density=lambda at: at[:, 0] * np.nan), "finite"),
+        (dict(region=[]), "no area"),
+    ],
+)
+def test_densities_and_regions_that_are_none(given, message):
+    with pytest.raises(flaunay.UsageError, match=message):
+        flaunay.relax([[0, 0], [1, 1]], **given)
 
 
 def interrupted(call, seconds):
