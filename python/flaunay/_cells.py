@@ -225,7 +225,8 @@ def voronoi_polygons(
 
         With `groups`, one per group in increasing order, as ``numpy.unique(groups)`` has them: a list of parts, each a
         list of rings, the outer one counter-clockwise first, then its holes clockwise; with as_shapely a Polygon or
-        a MultiPolygon, empty for a group without cells. Edges that cells of a group share have gone, exactly.
+        a MultiPolygon, empty for a group without cells. Edges that cells of a group share have gone, exactly, and
+        with them the corners on the bounds.
 
     Raises
     ------
@@ -249,7 +250,7 @@ def voronoi_polygons(
     >>> points = [[1, 1], [3, 1], [1, 3], [3, 3]]
     >>> corner, rest = flaunay.voronoi_polygons(points, (0, 0, 4, 4), groups=[2, 2, -1, 2])
     >>> [ring.tolist() for part in rest for ring in part]
-    [[[0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0], [2.0, 2.0]]]
+    [[[0.0, 2.0], [0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 4.0], [2.0, 2.0]]]
     """
     if bounds is not None and extend_to is not None:
         raise UsageError("give bounds or extend_to: bounds are not extended")
@@ -266,5 +267,5 @@ def voronoi_polygons(
     cells = clip(tri, bounds)
     if of_group is None:
         return cells.to_shapely() if as_shapely else cells.polygons()
-    made = Dissolved(cells.vertices, cells.offsets, of_group.astype(np.int32), len(names))
+    made = Dissolved(cells.vertices, cells.offsets, of_group.astype(np.int32), len(names), cells.bounds)
     return made.to_shapely() if as_shapely else made.polygons()

@@ -53,7 +53,9 @@ class Dissolved:
     the outer one counter-clockwise first, then holes clockwise; the parts from `group_offsets` on those of a group.
     """
 
-    def __init__(self, vertices: Doubles, offsets: npt.NDArray[Any], groups: Places, count: int) -> None:
+    def __init__(
+        self, vertices: Doubles, offsets: npt.NDArray[Any], groups: Places, count: int, bounds: Doubles
+    ) -> None:
         """Dissolves convex cells, as ClippedVoronoi has them, whose groups have numbers below count."""
         sizes = np.diff(offsets)
         n, has_cell = len(vertices), sizes > 0
@@ -89,17 +91,28 @@ class Dissolved:
             turning = turning[twin[after[turning]] >= 0]
         rank = np.empty(n, np.int32)
         rank[kept] = np.arange(len(kept))
-        places = np.arange(len(kept))
+        tails = corners[kept]
 
         def are_places(a: Places, b: Places) -> npt.NDArray[np.bool_]:
-            first, second = kept[a], kept[b]
-            same: npt.NDArray[np.bool_] = (corners[first] == corners[second]) & (group[first] == group[second])
+            same: npt.NDArray[np.bool_] = tails[a] == tails[b]
             return same
 
-        again, first = _pairs(of_corner[kept] ^ of_group[kept], are_places)
+        places = np.arange(len(kept), dtype=np.int64)
+        again, first = _pairs(of_corner[kept], are_places)
         places[again] = first
+        met = np.bincount(places, minlength=len(kept))[places]
+        # A group that touches itself has two edges of three or more. Rings of others need no common numbers.
+        crowded = np.flatnonzero(met >= 3)
+        _, first, number = np.unique(
+            places[crowded] * count + group[kept[crowded]], return_index=True, return_inverse=True
+        )
+        places = np.arange(len(kept))
+        places[crowded] = crowded[first][number]
         members, ring_offsets = rings_of(rank[after], places)
-        edges = kept[members]
+        # Where two cells of a group meet at the bounds, there is no corner.
+        is_corner = (met > 1) | np.isin(tails, (bounds + 0.0).view(np.complex128))
+        ring_offsets = np.concatenate([[0], np.cumsum(is_corner[members])])[ring_offsets]
+        edges = kept[members[is_corner[members]]]
         outer = are_outer(vertices, edges, ring_offsets)
         begins = edges[ring_offsets[:-1]]
         of_ring = group[begins]
