@@ -15,6 +15,8 @@ Places = npt.NDArray[Any]
 _Hashes = npt.NDArray[np.uint64]
 
 _ODD = np.uint64(0x9E3779B97F4A7C15)
+# Corners of cells.
+_AT_ONCE = 1 << 16
 
 
 def _mixed(hashes: _Hashes) -> _Hashes:
@@ -46,6 +48,48 @@ def _pairs(hashes: _Hashes, are_same: Callable[[Places, Places], npt.NDArray[np.
     return np.concatenate(firsts), np.concatenate(seconds)
 
 
+def _hashes_of(corners: npt.NDArray[np.complex128]) -> _Hashes:
+    bits = corners.view(np.uint64).reshape(-1, 2)
+    return _mixed(_mixed(bits[:, 0] * _ODD) + bits[:, 1])
+
+
+def _border_of(
+    corners: npt.NDArray[np.complex128], sizes: Places, cell: Places, group: Places
+) -> tuple[Places, Places, Places, Places]:
+    """The edges at the borders of groups of cells, by the corners at which they begin; the next one of each; and the
+    cells on the two sides of every other edge.
+
+    sizes: the numbers of corners of cells with any, in order. cell, group: those of each corner.
+    """
+    n = len(corners)
+    # An edge begins at each corner. Its twin is the same edge the other way round.
+    following = np.arange(1, n + 1, dtype=np.int32)
+    ends = np.cumsum(sizes)
+    following[ends - 1] = ends - sizes
+    heads = corners[following]
+
+    def are_twins(a: Places, b: Places) -> npt.NDArray[np.bool_]:
+        twins: npt.NDArray[np.bool_] = (group[a] == group[b]) & (corners[a] == heads[b]) & (heads[a] == corners[b])
+        return twins
+
+    hashes = _hashes_of(corners)
+    hashes += hashes[following]
+    a, b = _pairs(_mixed(hashes) ^ _mixed(group.astype(np.uint64) * _ODD), are_twins)
+    twin = np.full(n, -1, np.int32)
+    twin[a], twin[b] = b, a
+    kept = np.flatnonzero(twin < 0)
+    # The next edge at the border is found by turning around the edge's end, through cells of the group. So where
+    # a group touches itself in a point, each part goes on with its own edges.
+    after = following[kept]
+    turning = np.flatnonzero(twin[after] >= 0)
+    while len(turning):
+        after[turning] = following[twin[after[turning]]]
+        turning = turning[twin[after[turning]] >= 0]
+    rank = np.empty(n, np.int32)
+    rank[kept] = np.arange(len(kept))
+    return kept, rank[after], cell[a], cell[b]
+
+
 class Dissolved:
     """The polygons of groups of cells.
 
@@ -57,66 +101,55 @@ class Dissolved:
         self, vertices: Doubles, offsets: npt.NDArray[Any], groups: Places, count: int, bounds: Doubles
     ) -> None:
         """Dissolves convex cells, as ClippedVoronoi has them, whose groups have numbers below count."""
-        sizes = np.diff(offsets)
-        n, has_cell = len(vertices), sizes > 0
-        cell = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
-        group = groups[cell]
+        # Cells in the order of their groups.
+        order = np.argsort(groups, kind="stable")
+        sizes, begins, groups = np.diff(offsets)[order], offsets[:-1][order], groups[order]
         # Without a negative zero.
-        corners = (vertices + 0.0).view(np.complex128)[:, 0]
-        bits = corners.view(np.uint64).reshape(-1, 2)
-        of_corner = _mixed(_mixed(bits[:, 0] * _ODD) + bits[:, 1])
-        of_group = _mixed(group.astype(np.uint64) * _ODD)
-        # An edge begins at each corner. Its twin is the same edge the other way round.
-        following = np.arange(1, n + 1, dtype=np.int32)
-        following[offsets[1:][has_cell] - 1] = offsets[:-1][has_cell]
-
-        def are_twins(a: Places, b: Places) -> npt.NDArray[np.bool_]:
-            twins: npt.NDArray[np.bool_] = (
-                (group[a] == group[b])
-                & (corners[a] == corners[following[b]])
-                & (corners[following[a]] == corners[b])
-            )
-            return twins
-
-        a, b = _pairs(_mixed(of_corner + of_corner[following]) ^ of_group, are_twins)
-        twin = np.full(n, -1, np.int32)
-        twin[a], twin[b] = b, a
-        kept = np.flatnonzero(twin < 0)
-        # The next edge at the border is found by turning around the edge's end, through cells of the group. So where
-        # a group touches itself in a point, each part goes on with its own edges.
-        after = following[kept]
-        turning = np.flatnonzero(twin[after] >= 0)
-        while len(turning):
-            after[turning] = following[twin[after[turning]]]
-            turning = turning[twin[after[turning]] >= 0]
-        rank = np.empty(n, np.int32)
-        rank[kept] = np.arange(len(kept))
-        tails = corners[kept]
+        all_corners = (vertices + 0.0).view(np.complex128)[:, 0]
+        first_cells = np.searchsorted(groups, np.arange(count + 1))
+        first_corners = np.concatenate([[0], np.cumsum(sizes)])[first_cells]
+        # Some groups at a time, which stay in the processor's cache.
+        cuts = np.unique(np.searchsorted(first_corners, np.arange(0, len(vertices), _AT_ONCE)))
+        borders: list[tuple[Places, ...]] = []
+        edge_count = 0
+        for first, last in zip(first_cells[cuts], first_cells[np.append(cuts[1:], count)]):
+            some, number = sizes[first:last], np.arange(first, last, dtype=np.int32)
+            ends = np.cumsum(some)
+            at = np.repeat(begins[first:last] - (ends - some), some) + np.arange(ends[-1] if len(ends) else 0)
+            cell = np.repeat(number, some)
+            kept, after, left, right = _border_of(all_corners[at], some[some > 0], cell, groups[cell])
+            borders.append((at[kept], cell[kept], after + edge_count, left, right))
+            edge_count += len(kept)
+        kept, cell, after, left, right = (
+            np.concatenate(parts) for parts in zip((np.empty(0, np.int32),) * 5, *borders)
+        )
+        group, tails = groups[cell], all_corners[kept]
 
         def are_places(a: Places, b: Places) -> npt.NDArray[np.bool_]:
             same: npt.NDArray[np.bool_] = tails[a] == tails[b]
             return same
 
         places = np.arange(len(kept), dtype=np.int64)
-        again, first = _pairs(of_corner[kept], are_places)
+        again, first = _pairs(_hashes_of(tails), are_places)
         places[again] = first
         met = np.bincount(places, minlength=len(kept))[places]
         # A group that touches itself has two edges of three or more. Rings of others need no common numbers.
         crowded = np.flatnonzero(met >= 3)
         _, first, number = np.unique(
-            places[crowded] * count + group[kept[crowded]], return_index=True, return_inverse=True
+            places[crowded] * count + group[crowded], return_index=True, return_inverse=True
         )
         places = np.arange(len(kept))
         places[crowded] = crowded[first][number]
-        members, ring_offsets = rings_of(rank[after], places)
+        members, ring_offsets = rings_of(after, places)
         # Where two cells of a group meet at the bounds, there is no corner.
         is_corner = (met > 1) | np.isin(tails, (bounds + 0.0).view(np.complex128))
         ring_offsets = np.concatenate([[0], np.cumsum(is_corner[members])])[ring_offsets]
-        edges = kept[members[is_corner[members]]]
+        members = members[is_corner[members]]
+        edges = kept[members]
         outer = are_outer(vertices, edges, ring_offsets)
-        begins = edges[ring_offsets[:-1]]
-        of_ring = group[begins]
-        order = order_of_parts(outer, self._components(outer, of_ring, cell[begins], cell[a], cell[b], count))
+        begin = members[ring_offsets[:-1]]
+        of_ring = group[begin]
+        order = order_of_parts(outer, self._components(outer, of_ring, cell[begin], left, right, count))
         order = order[np.argsort(of_ring[order], kind="stable")]
         lengths = np.diff(ring_offsets)[order]
         self.ring_offsets: Places = np.concatenate([[0], np.cumsum(lengths)])

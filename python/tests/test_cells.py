@@ -438,3 +438,17 @@ def test_bounds_that_cannot_be_extended():
             flaunay.voronoi_polygons([[0, 0], [1, 1]], **given)
     with pytest.raises(flaunay.UsageError, match="give bounds"):
         flaunay.voronoi_polygons(np.empty((0, 2)))
+
+
+def test_groups_at_once_do_not_matter(random, monkeypatch):
+    from flaunay import _dissolve
+
+    points, owners = random.random((900, 2)), random.integers(0, 40, 900)
+    owners[:300] = 7
+    expected = flaunay.voronoi_polygons(points, groups=owners)
+    monkeypatch.setattr(_dissolve, "_AT_ONCE", 100)
+    made = flaunay.voronoi_polygons(points, groups=owners)
+    assert len(made) == len(expected) == 40
+    for one, other in zip(rings_of(made), rings_of(expected)):
+        assert np.array_equal(one, other)
+    assert [list(map(len, parts)) for parts in made] == [list(map(len, parts)) for parts in expected]
