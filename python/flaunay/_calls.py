@@ -501,8 +501,7 @@ class _Refinement:
     def _write_areas(self, places: int, count: int, areas: int) -> None:
         assert self._function is not None
         there: _Doubles = np.ndarray((count, 2), _FLOAT64, _Memory.from_address(places))
-        given = there.copy()
-        found = np.asarray(self._function(given), _FLOAT64)
+        found = np.asarray(self._function(there.copy()), _FLOAT64)
         if found.shape not in ((count,), ()):
             raise UsageError(
                 f"areas_at must return areas of the shape ({count},), not {found.shape}"
@@ -510,7 +509,7 @@ class _Refinement:
         if not (found >= 0).all():
             first = int(np.flatnonzero(~(found >= 0))[0])
             raise UsageError(
-                f"areas_at has returned {found.ravel()[first]} at {given[first].tolist()}; "
+                f"areas_at has returned {found.ravel()[first]} at {there[first].tolist()}; "
                 "areas are positive, or 0 for any"
             )
         np.ndarray((count,), _FLOAT64, _Memory.from_address(areas))[...] = found

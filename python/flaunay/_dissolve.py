@@ -180,10 +180,12 @@ class Dissolved:
 
     def polygons(self) -> list[list[list[Doubles]]]:
         """For each group its parts, each a list of rings."""
-        rings = np.split(self.vertices, self.ring_offsets[1:-1])
-        ends, bounds = self.part_offsets.tolist(), self.group_offsets.tolist()
-        parts = [rings[first:last] for first, last in zip(ends, ends[1:])]
-        return [parts[first:last] for first, last in zip(bounds, bounds[1:])]
+        made: Any = self.vertices
+        for offsets in self.ring_offsets, self.part_offsets, self.group_offsets:
+            ends = offsets.tolist()
+            made = [made[first:last] for first, last in zip(ends, ends[1:])]
+        polygons: list[list[list[Doubles]]] = made
+        return polygons
 
     def to_shapely(self) -> npt.NDArray[np.object_]:
         """A Polygon or MultiPolygon for each group, an empty Polygon for one without cells."""

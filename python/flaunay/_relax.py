@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, as_count, as_floats, as_points
-from flaunay._cells import ClippedVoronoi, clip, corners_of
+from flaunay._cells import ClippedVoronoi, clip, corners_of, ring_of, with_corner
 from flaunay._delaunay import Delaunay
-from flaunay._errors import UsageError
+from flaunay._errors import InputError, UsageError
 from flaunay._periodic import as_lengths
 from flaunay._pieces import VoronoiPieces, mesh_of, pieces
 from flaunay._polygons import PolygonTriangulation
@@ -22,6 +22,9 @@ from flaunay._surfaces import Doubles, as_weights
 
 # The longest time of a call that relaxes points: Ctrl-C takes effect between such calls.
 _SECONDS = 0.1
+
+# What takes polygons that are not convex.
+_REGION = "region= takes any polygons"
 
 
 def parts_of(given: Any) -> Iterator[int]:
@@ -67,7 +70,8 @@ def _of_function(density: Callable[[Doubles], Any], cells: Union[ClippedVoronoi,
     corners = cells.vertices[np.stack([first, second, second + 1], axis=1)]
     (ax, ay), (bx, by) = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0)
     places = (_SHARES @ corners).reshape(-1, 2)
-    mass = _mass_of(density(places), (len(places),)) * np.repeat((ax * by - ay * bx) / 2, 7) * np.tile(_WEIGHTS, len(corners))
+    mass = _mass_of(density(places.copy()), (len(places),)) * np.repeat((ax * by - ay * bx) / 2, 7)
+    mass *= np.tile(_WEIGHTS, len(corners))
     return _centroids(np.repeat(np.repeat(owners, sizes), 7), mass, places, n)
 
 
@@ -104,13 +108,20 @@ def _are_inside(places: Doubles, mesh: PolygonTriangulation) -> npt.NDArray[np.b
     return inside
 
 
-def _nearest_on(polygon: Doubles, place: Doubles) -> Doubles:
-    """The place on a polygon's border that is nearest to one."""
-    along = np.roll(polygon, -1, axis=0) - polygon
-    share = ((place - polygon) * along).sum(axis=1) / (along * along).sum(axis=1)
-    on = polygon + along * np.clip(share, 0, 1)[:, None]
-    nearest: Doubles = on[np.argmin(((on - place) ** 2).sum(axis=1))]
-    return nearest
+def _nearest_in(cells: VoronoiPieces, wanted: npt.NDArray[Any], places: Doubles) -> tuple[npt.NDArray[Any], Doubles]:
+    """Those of the wanted cells that have pieces, and where the border of their pieces is nearest to their places."""
+    begins, ends = cells.offsets[:-1], cells.offsets[1:]
+    owners = np.repeat(cells.owners, ends - begins)
+    following = np.arange(1, len(owners) + 1)
+    following[ends - 1] = begins
+    at = np.flatnonzero(np.isin(owners, wanted))
+    owners, begin = owners[at], cells.vertices[at]
+    along, place = cells.vertices[following[at]] - begin, places[owners]
+    share = ((place - begin) * along).sum(axis=1) / (along * along).sum(axis=1)
+    on = begin + along * np.clip(share, 0, 1)[:, None]
+    order = np.lexsort((((on - place) ** 2).sum(axis=1), owners))
+    found, first = np.unique(owners[order], return_index=True)
+    return found, on[order[first]]
 
 
 def _relax_in_polygons(
@@ -122,27 +133,31 @@ def _relax_in_polygons(
     device: Optional[str],
 ) -> Doubles:
     """Lloyd's method with a density or in any polygons."""
-    corners = None if bounds is None else corners_of(bounds)
-    mesh = mesh_of([[corners]] if corners is not None else region)
+    if bounds is not None:
+        # Errors are those without a density. With a function, each iteration clips the cells of the points.
+        clip(Delaunay(points[:0] if callable(density) else points, device=device), bounds, _REGION)
+        region = [[corners_of(bounds)]]
+    mesh = mesh_of(region)
     pixels = None if density is None or callable(density) else _Pixels(density, mesh)
-    for _ in range(as_count(iterations, "iterations")):
-        tri = Delaunay(points, device=device)
+    count = as_count(iterations, "iterations")
+    for _ in range(count if len(points) else 0):
+        tri, cells = Delaunay(points, device=device), None
         if pixels is not None:
             moved = pixels.centroids(tri)
         else:
-            cells = clip(tri, corners) if corners is not None else pieces(tri, mesh)
+            cells = pieces(tri, mesh) if bounds is None else clip(tri, bounds)
             moved = cells.centroids if density is None else _of_function(density, cells, len(points))
         stays = np.isnan(moved).any(axis=1)
         moved = np.where(stays[:, None], points, moved)
-        if corners is None:
+        if bounds is None:
             # A centroid may lie in a hole, or beyond a bay.
             outside = np.flatnonzero(~stays)
             outside = outside[~_are_inside(moved[outside], mesh)]
             if len(outside):
-                cells = pieces(tri, mesh)
-                for i in outside.tolist():
-                    ends = np.array([_nearest_on(piece, moved[i]) for piece in cells.polygons(i)])
-                    moved[i] = ends[np.argmin(((ends - moved[i]) ** 2).sum(axis=1))]
+                parts = cells if isinstance(cells, VoronoiPieces) else pieces(tri, mesh)
+                found, ends = _nearest_in(parts, outside, moved)
+                moved[outside] = points[outside]
+                moved[found] = ends
         points = moved
     return points
 
@@ -243,8 +258,13 @@ def relax(
     else:
         kind = {"kind": "plane"} if period is None else {"kind": "torus", "period": as_lengths(period)}
     space = _calls.space_of(**kind, weights=own)
-    corners = None if bounds is None else corners_of(bounds)
+    corners, is_turned = (None, False) if bounds is None else ring_of(bounds, _REGION)
     triangulator = _triangulators.of_device(device)
     for part in parts_of(iterations):
-        relaxed = _calls.relax(triangulator, relaxed, space, corners, part)
+        try:
+            relaxed = _calls.relax(triangulator, relaxed, space, corners, part)
+        except InputError as error:
+            if corners is None:
+                raise
+            raise with_corner(error, len(corners), is_turned, _REGION) from None
     return relaxed

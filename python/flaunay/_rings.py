@@ -61,15 +61,16 @@ def rings_of(following: npt.NDArray[Any], places: npt.NDArray[Any]) -> tuple[Pla
     begins = np.concatenate([[0], np.cumsum(lengths)])
     members = np.repeat(first[order] - begins[:-1], lengths) + np.arange(n)
     offsets = begins[ends]
-    met = np.bincount(places, minlength=1)
-    pinched = np.add.reduceat(met[places[members]] > 1, offsets[:-1]) > 0 if n else np.empty(0, np.bool_)
-    if pinched.any():
-        rings: list[Places] = []
-        for ring, is_pinched in zip(np.split(members, offsets[1:-1]), pinched.tolist()):
-            rings += _split(ring, places) if is_pinched else [ring]
-        members = np.concatenate(rings)
-        offsets = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])])
-    return members, offsets
+    # Edges at places that several have, by their rings: only a ring that has two of one place is split.
+    crowded = np.flatnonzero((np.bincount(places, minlength=1) > 1)[places[members]])
+    ring = np.searchsorted(offsets, crowded, side="right") - 1
+    pairs, counts = np.unique(ring * n + places[members[crowded]], return_counts=True)
+    cuts = [offsets]
+    for first, last in zip(*(offsets[np.unique(pairs[counts > 1] // max(n, 1)) + k] for k in (0, 1))):
+        parts = _split(members[first:last], places)
+        members[first:last] = np.concatenate(parts)
+        cuts.append(first + np.cumsum([len(part) for part in parts[:-1]]))
+    return members, np.sort(np.concatenate(cuts))
 
 
 def are_outer(points: FloatArray, corners: npt.NDArray[Any], offsets: Places) -> npt.NDArray[np.bool_]:

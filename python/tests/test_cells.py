@@ -164,6 +164,53 @@ def test_relaxation_by_a_raster(random):
     assert flaunay.relax([[6, 1]], (0, 0, 12, 9), density=diagonal) == pytest.approx(np.array([[4.5, 4.5]]))
 
 
+def test_relaxation_of_cells_without_a_place(random):
+    frame = [[[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [3, 1], [3, 3], [1, 3]]]
+    # The cell of the first one is within the hole.
+    points = [[2, 2], [0, 2], [4, 2], [2, 0], [2, 4]]
+    moved = flaunay.relax(points, region=[frame], density=np.ones((6, 6)))
+    assert moved[0].tolist() == [2, 2] and np.isfinite(moved).all()
+    for space in dict(bounds=(0, 0, 4, 4)), dict(region=[frame]):
+        for density in np.ones((3, 3)), lambda at: np.ones(len(at)):
+            assert flaunay.relax(np.empty((0, 2)), density=density, **space).shape == (0, 2)
+
+
+def test_functions_may_change_their_arguments(points):
+    def density(at):
+        at -= 0.25
+        return np.abs(at).sum(axis=1)
+
+    expected = flaunay.relax(points, BOX, density=lambda at: np.abs(at - 0.25).sum(axis=1))
+    assert (flaunay.relax(points, BOX, density=density) == expected).all()
+
+    def areas_at(at):
+        at *= 0
+        return at[:, 0] + 0.01
+
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    mine, other = (flaunay.refine(square, areas_at=areas) for areas in (areas_at, lambda at: 0.01))
+    assert (mine.points == other.points).all()
+
+
+DENSITIES = [None, np.ones((3, 3)), lambda at: np.ones(len(at))]
+
+
+@pytest.mark.parametrize("density", DENSITIES)
+@pytest.mark.parametrize(
+    "bounds, message",
+    [
+        ([[0, 0], [4, 0], [1, 1], [0, 4]], "turns right at corner 2: it must be convex; region= takes"),
+        ([[0, 0], [0, 4], [1, 1], [4, 0]], "turns left at corner 2: it must be convex; region= takes"),
+        ([[0, 0], [4, 0], [4, 0], [0, 4]], "corner 1 twice"),
+        ((-1e200, -1e200, 1e200, 1e200), "polygon is too large"),
+        ((0, 0, np.inf, 4), "polygon is not finite"),
+    ],
+)
+def test_wrong_bounds_of_relaxation(density, bounds, message):
+    with pytest.raises(flaunay.InputError, match=message):
+        flaunay.relax([[1, 1]], bounds, density=density)
+
+
 def test_relaxation_in_any_polygons(random):
     shapely = pytest.importorskip("shapely", minversion="2.0")
     frame = shapely.box(0, 0, 4, 4) - shapely.box(1, 1, 3, 3)
@@ -436,8 +483,30 @@ def test_bounds_that_cannot_be_extended():
     ]:
         with pytest.raises(flaunay.UsageError, match=words):
             flaunay.voronoi_polygons([[0, 0], [1, 1]], **given)
-    with pytest.raises(flaunay.UsageError, match="give bounds"):
-        flaunay.voronoi_polygons(np.empty((0, 2)))
+    for points, words in [
+        (np.empty((0, 2)), "no points .* give bounds or extend_to"),
+        ([[0, 0]], "on one line: give bounds or extend_to"),
+        ([[0, 0], [0, 1]], "on one line: give bounds or extend_to"),
+    ]:
+        with pytest.raises(flaunay.UsageError, match=words):
+            flaunay.voronoi_polygons(points)
+
+
+def test_what_bounds_cannot_be_extended_to():
+    points = [[0, 0], [1, 1]]
+    for extent, i in ((0, np.inf, 2, 2), 1), ([[0, 0], [1, 1], [np.nan, 2]], 2):
+        with pytest.raises(flaunay.InputError, match=rf"extend_to\[{i}\] is not finite"):
+            flaunay.voronoi_polygons(points, extend_to=extent)
+    for extent in (2, 0, 1, 3), np.empty((0, 2)), 3:
+        with pytest.raises(flaunay.UsageError, match="extend_to must be"):
+            flaunay.voronoi_polygons(points, extend_to=extent)
+    shapely = pytest.importorskip("shapely", minversion="2.0")
+    place = shapely.Point(3, 3)
+    for extent, i in (shapely.Polygon(), 0), ([place, None], 1), ([place, shapely.Point()], 1):
+        with pytest.raises(flaunay.UsageError, match=rf"extend_to\[{i}\] is missing or empty"):
+            flaunay.voronoi_polygons(points, extend_to=extent)
+    with pytest.raises(flaunay.InputError, match=r"extend_to\[1\] is not finite"):
+        flaunay.voronoi_polygons(points, extend_to=[shapely.LineString([(0, 0), (1, 1)]), shapely.Point(3, np.inf)])
 
 
 def test_groups_at_once_do_not_matter(random, monkeypatch):
