@@ -435,6 +435,24 @@ def as_count(given: Any, name: str, least: int = 0) -> int:
     return count
 
 
+def as_number(given: Any, name: str) -> float:
+    """A real number; UsageError for anything else."""
+    try:
+        if not isinstance(given, (str, bytes)):
+            return float(given)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise UsageError(f"{name} must be a number, not {given!r}")
+
+
+def as_distance(given: Any, name: str) -> float:
+    """A real number of 0 or more; UsageError for anything else."""
+    distance = as_number(given, name)
+    if not distance >= 0:
+        raise UsageError(f"{name} must be a number of 0 or more, not {given!r}")
+    return distance
+
+
 def as_offsets(given: npt.ArrayLike, name: str = "offsets") -> npt.NDArray[np.int64]:
     """Offsets of sets; UsageError unless they are a list of integers."""
     array = _as_array(given, name)

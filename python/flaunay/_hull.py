@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Optional
 
 import numpy as np
 import numpy.typing as npt
 
+from flaunay import _calls
 from flaunay._arrays import ArrayLike, FloatArray, Frozen, frozen, summary
 from flaunay._delaunay import Delaunay
 from flaunay._errors import UsageError
@@ -16,20 +16,10 @@ Indices = npt.NDArray[np.int32]
 Doubles = npt.NDArray[np.float64]
 
 
-def _corners(points: Doubles, hull: Indices) -> Indices:
+def _corners(points: FloatArray, hull: Indices) -> Indices:
     """The points of a hull without those on its edges, exactly; of points on one line the two ends."""
-    before, at, after = points[np.roll(hull, 1)], points[hull], points[np.roll(hull, -1)]
-    with np.errstate(over="ignore", invalid="ignore"):
-        first, second = at - before, after - at
-        parts = first[:, 0] * second[:, 1], first[:, 1] * second[:, 0]
-        # Far more than rounding can be, also of numbers near 0.
-        errors = 1e-15 * (abs(parts[0]) + abs(parts[1])) + 1e-300
-        is_corner: npt.NDArray[np.bool_] = abs(parts[0] - parts[1]) > errors
-    for k in np.flatnonzero(~is_corner).tolist():
-        (ax, ay), (bx, by), (cx, cy) = (
-            map(Fraction, point.tolist()) for point in (before[k], at[k], after[k])
-        )
-        is_corner[k] = (bx - ax) * (cy - by) != (by - ay) * (cx - bx)
+    triples = np.stack([np.roll(hull, 1), hull, np.roll(hull, -1)], axis=1)
+    is_corner: npt.NDArray[np.bool_] = _calls.turns(points, triples) != 0
     if not is_corner.any():
         is_corner[[0, -1][: len(hull)]] = True
     return hull[is_corner]
@@ -106,7 +96,7 @@ class ConvexHull(Frozen):
     def _compute(self) -> None:
         self.points: FloatArray = self._tri.points
         points = np.asarray(self.points, np.float64)
-        vertices = _corners(points, self._tri.hull)
+        vertices = _corners(self.points, self._tri.hull)
         edges = np.stack([vertices, np.roll(vertices, -1)], axis=1)
         if len(vertices) == 1:
             edges = edges[:0]

@@ -17,6 +17,7 @@ from flaunay._arrays import (
     FloatArray,
     are_rows,
     as_any,
+    as_distance,
     as_floats,
     as_iterations,
     check_memory,
@@ -111,14 +112,6 @@ class _Scale:
         return scaled
 
 
-def _as_distance(given: Optional[float], name: str) -> Optional[float]:
-    if given is None:
-        return None
-    if not isinstance(given, (int, float, np.number)) or not given >= 0:
-        raise UsageError(f"{name} must be a number of 0 or more, not {given!r}")
-    return float(given)
-
-
 @dataclass(frozen=True)
 class _Beyond:
     """Where there are values beyond the border, and where inside there are none."""
@@ -131,7 +124,8 @@ class _Beyond:
 
     def __post_init__(self) -> None:
         for name in ("tol", "max_edge", "max_distance"):
-            object.__setattr__(self, name, _as_distance(getattr(self, name), name))
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, as_distance(getattr(self, name), name))
         if self.extrapolate not in (None, "nearest", "linear"):
             raise UsageError(
                 f"extrapolate must be 'nearest', 'linear' or None, not {self.extrapolate!r}"
@@ -737,14 +731,15 @@ class NearestInterpolator(_Interpolator):
     Notes
     -----
     The nearest point is found by exact comparisons; of several, it is the first in the order of x, then
-    y. As in SciPy, results of real numbers are float64.
+    y. Results are the values as they were given, integers too; but floats and booleans become float64, as in SciPy,
+    and so do integers if a result is NaN.
 
     Examples
     --------
     >>> import flaunay
     >>> interpolate = flaunay.NearestInterpolator([[0, 0], [4, 0], [0, 4]], [0, 8, 4])
     >>> interpolate([[1, 1], [9, 8]])
-    array([0., 8.])
+    array([0, 8])
     """
 
     # None if the triangulation answers queries.
@@ -759,7 +754,7 @@ class NearestInterpolator(_Interpolator):
         device: Optional[str] = None,
         max_distance: Optional[float] = None,
     ) -> None:
-        self._max_distance = _as_distance(max_distance, "max_distance")
+        self._max_distance = None if max_distance is None else as_distance(max_distance, "max_distance")
         super().__init__(points, rescale, device)
         self.values = values
         if self._point_count == 0:
@@ -782,18 +777,18 @@ class NearestInterpolator(_Interpolator):
 
     def _as_values(self, values: npt.ArrayLike) -> npt.NDArray[Any]:
         array = as_any(values, "values")
-        return array.astype(np.float64, copy=False) if array.dtype.kind in "biuf" else array
+        return array.astype(np.float64, copy=False) if array.dtype.kind in "bf" else array
 
     def __call__(
-        self, *xi: Any, distance_upper_bound: Optional[float] = None
+        self, *xi: Any, distance_upper_bound: Optional[float] = None, workers: Optional[int] = None
     ) -> npt.NDArray[Any]:
         """The values at `xi`: an array of shape (..., 2), or x and y, which broadcast.
 
-        distance_upper_bound: as in SciPy, in place of `max_distance` for this call.
+        distance_upper_bound: as in SciPy, in place of `max_distance` for this call. workers: SciPy's, and ignored.
         """
         most = self._max_distance
         if distance_upper_bound is not None:
-            most = _as_distance(distance_upper_bound, "distance_upper_bound")
+            most = as_distance(distance_upper_bound, "distance_upper_bound")
         queries, shape = self._queries(xi)
         values = self.values
         nearest, queries, are_bad = self._asked(self._nearest, queries)
@@ -803,6 +798,8 @@ class NearestInterpolator(_Interpolator):
             if far.any():
                 are_bad = far if are_bad is None else far | are_bad
         if are_bad is not None:
+            if result.dtype.kind in "iu":
+                result = result.astype(np.float64)
             if result.dtype.kind not in "fc":
                 raise UsageError(
                     f"xi are not finite or too far away, and values of {result.dtype} have no NaN"
@@ -834,7 +831,7 @@ class NearestNDInterpolator(NearestInterpolator):
     --------
     >>> import flaunay
     >>> flaunay.NearestNDInterpolator(x=[[0, 0], [4, 0], [0, 4]], y=[0, 8, 4])(3, 1)
-    array(8.)
+    array(8)
     """
 
     def __init__(

@@ -10,7 +10,7 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from flaunay._arrays import as_count, as_floats, as_int32, as_integers, frozen
+from flaunay._arrays import as_count, as_floats, as_int32, as_integers, as_number, frozen
 from flaunay._declarations import EXCUSE, FLAGS, KEPT_EDGES, Refinement, RefinementOptions
 from flaunay._errors import UsageError
 
@@ -78,13 +78,6 @@ class RefinementReport:
         return RefinementReport(excuses=frozen(_EXCUSES[excuses]), **others)
 
 
-def _number(given: Any, name: str) -> float:
-    try:
-        return float(given)
-    except (TypeError, ValueError):
-        raise UsageError(f"{name} must be a number, not {given!r}") from None
-
-
 def _row(given: Any, name: str, size: int, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     array = np.asarray(as_floats(given, name))
     if array.shape != (size,):
@@ -150,7 +143,7 @@ def as_refinement(given: Refining, segments: int, seeds: int) -> dict[str, Any]:
     for name in FLAGS["Refinement"]:
         wanted[name] = int(bool(wanted.get(name, False)))
     for name in _NUMBERS.intersection(wanted):
-        wanted[name] = _number(wanted[name], name)
+        wanted[name] = as_number(wanted[name], name)
     for name in _COUNTS.intersection(wanted):
         wanted[name] = as_count(wanted[name], name)
     if "seed_areas" in wanted:

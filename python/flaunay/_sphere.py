@@ -10,10 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls
-from flaunay._arrays import ArrayLike, as_floats, as_offsets, frozen, hint_for, summary
-from flaunay._errors import UsageError
+from flaunay._arrays import ArrayLike, as_distance, as_floats, as_number, as_offsets, frozen, hint_for, summary
+from flaunay._errors import InputError, UsageError
 from flaunay._surface_edges import WithEdges, angles_between
 from flaunay._surfaces import Doubles, Indices
+
+# How near to the centre a triangle or an edge counts as having it.
+_ROUNDING = 2.0**-49
 
 
 def _as_points(given: ArrayLike, name: str = "xi") -> Doubles:
@@ -71,9 +74,10 @@ class SphericalVoronoi:
     Raises
     ------
     UsageError
-        For a wrong shape, a radius that is not above 0, and points that are not on the sphere.
+        For a wrong shape, a radius that is not a number above 0, a threshold that is not one of 0 or more, and points
+        that are not on the sphere.
     InputError
-        For a point that is not finite.
+        For a point or a center that is not finite.
 
     Notes
     -----
@@ -96,7 +100,7 @@ class SphericalVoronoi:
     def __init__(
         self,
         points: ArrayLike,
-        radius: float = 1,
+        radius: float = 1.0,
         center: Optional[ArrayLike] = None,
         threshold: float = 1e-6,
     ) -> None:
@@ -109,8 +113,12 @@ class SphericalVoronoi:
                 "points must have the shape (n, 3) and center (3,), "
                 f"not {given.shape} and {middle.shape}"
             )
-        if not isinstance(radius, (int, float, np.number)) or not 0 < radius < np.inf:
+        if not np.isfinite(middle).all():
+            raise InputError(f"center is not finite: {middle.tolist()}")
+        radius = as_number(radius, "radius")
+        if not 0 < radius < np.inf:
             raise UsageError(f"radius must be a number above 0, not {radius!r}")
+        threshold = as_distance(threshold, "threshold")
         away = (given - middle) / radius
         off = np.flatnonzero(np.abs(np.linalg.norm(away, axis=1) - 1) >= threshold)
         if len(off):
@@ -127,13 +135,13 @@ class SphericalVoronoi:
         self.vertices: Doubles = frozen(self._to_sphere(self._directions))
         self.cell_offsets: Indices = frozen(arrays["cell_offsets"])
         self.cells: Indices = frozen(arrays["cells"])
-        areas = arrays["areas"]
-        self.areas: Doubles = frozen(areas if radius == 1 else areas * radius**2)
+        with np.errstate(over="ignore"):
+            self.areas: Doubles = frozen(arrays["areas"] * np.square(radius))
 
     @classmethod
     def _of(cls, tri: SphericalDelaunay) -> SphericalVoronoi:
         cells = cls.__new__(cls)
-        cells._set(tri, tri.xyz, 1, frozen(np.zeros(3)))
+        cells._set(tri, tri.xyz, 1.0, frozen(np.zeros(3)))
         return cells
 
     def _to_sphere(self, directions: Doubles) -> Doubles:
@@ -277,9 +285,20 @@ class SphericalDelaunay(WithEdges):
         a, b, c = self.xyz[self.simplices].transpose(1, 0, 2)
         # Van Oosterom and Strackee (1983). Differences of near points are exact.
         volume = (a * np.cross(b - a, c - a)).sum(axis=1)
-        cosines = sum((p * q).sum(axis=1) for p, q in ((a, b), (b, c), (c, a)))
-        halves: Doubles = np.arctan2(volume, 1 + cosines)
-        return 2.0 * halves
+        below: Doubles = 1 + sum((p * q).sum(axis=1) for p, q in ((a, b), (b, c), (c, a)))
+        # A triangle that has the centre in it is a hemisphere.
+        has_centre = (np.abs(volume) <= _ROUNDING) & (below < 0)
+        areas: Doubles = 2.0 * np.arctan2(np.where(has_centre, np.abs(volume), volume), below)
+        # An edge that has the centre in it is the half circle in the middle between its triangles, outside.
+        sides = np.stack([b + c, c + a, a + b], axis=1)
+        triangle, corner = np.nonzero(np.linalg.norm(sides, axis=2) <= _ROUNDING)
+        start, end, apex = (self.simplices[triangle, (corner + k) % 3] for k in (1, 2, 0))
+        other = self.simplices[self.neighbors[triangle, corner]].sum(axis=1) - start - end
+        axis = self.xyz[end] - self.xyz[start]
+        across = [np.cross(axis, self.xyz[k] - self.xyz[start]) for k in (apex, other)]
+        across = [each / np.linalg.norm(each, axis=1)[:, None] for each in across]
+        areas[triangle] = 2 * np.pi - angles_between(*across)
+        return areas
 
     _as_queries = staticmethod(_as_points)
 

@@ -88,10 +88,11 @@ class WithEdges(WithLocator):
     def areas(self) -> Doubles:
         """The area of each triangle, shape (nsimplex,): on a torus they sum to the box's.
 
-        On the unit sphere, the area between great circles. If all points lie within a hemisphere, triangles close
-        the hull from behind, which are seen clockwise from the centre. Their areas are negative, and all of them sum to
-        0, otherwise to 4 pi. The error relative to a triangle's area is some 1e-15 over the length of its sides, on
-        a torus relative to the period.
+        On the unit sphere, the area between great circles. Areas sum to 4 pi, or to 0 if the centre lies outside of
+        the points' hull: then triangles close the hull from behind, and have negative areas. If the centre lies on the
+        hull but for rounding, it counts as inside: a triangle that contains it has the area of a hemisphere, and an
+        edge between antipodal points is the half circle in the middle between its two triangles. The error relative
+        to a triangle's area is some 1e-15 over the length of its sides, on a torus relative to the period.
 
         Examples
         --------

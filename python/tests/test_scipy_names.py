@@ -3,6 +3,7 @@
 import inspect
 import pickle
 import traceback
+import typing
 
 import numpy as np
 import pytest
@@ -53,8 +54,19 @@ def test_the_nearest_has_the_arguments_of_scipys(random):
     mine, theirs = (interpolate(queries) for interpolate in interpolators)
     np.testing.assert_array_equal(mine, theirs)
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(interpolators[0]))(queries), mine)
+    np.testing.assert_array_equal(interpolators[0](queries, workers=1), mine)
     with pytest.raises(flaunay.UsageError, match="tree_options"):
         flaunay.NearestNDInterpolator(points, values, tree_options={"leafsize": 3})
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.uint64, np.int16])
+def test_integers_of_the_nearest_are_as_given(dtype):
+    values = np.array([1, np.iinfo(dtype).max, 3], dtype)
+    interpolate = flaunay.NearestNDInterpolator([[0, 0], [4, 0], [0, 4]], values)
+    found = interpolate([[9, 0], [0, 9]])
+    assert found.dtype == dtype and found.tolist() == values[1:].tolist()
+    found = interpolate([[np.nan, 0], [0, 9]])
+    assert np.isnan(found[0]) and found[1] == 3
 
 
 @pytest.mark.parametrize("method", ["linear", "nearest", "cubic"])
@@ -111,6 +123,8 @@ def test_hulls_are_exact():
     assert flaunay.ConvexHull(points).vertices.tolist() == [0, 1, 2, 3, 5]
     halves = np.outer([0, 0.5, 1], [0.1, 0.3])
     assert flaunay.ConvexHull([*halves, [9, 0]]).vertices.tolist() == [0, 3, 2]
+    single = np.array([[0, 0], [0.1, 0.3], [0.2, 0.6], [9, 0]], np.float32)
+    assert flaunay.ConvexHull(single).vertices.tolist() == [0, 3, 2]
     for scale in 1e-200, 1e200:
         hull = flaunay.ConvexHull(grid(3) * scale)
         assert hull.vertices.tolist() == [0, 2, 8, 6]
@@ -178,17 +192,36 @@ def test_wrong_spheres():
     ]:
         with pytest.raises(flaunay.UsageError, match=words):
             flaunay.SphericalVoronoi([[0, 0, 1.0], [0, 1, 0]], **options)
-    with pytest.raises(flaunay.InputError, match="finite"):
+    axes = np.eye(3)
+    for options, words in [
+        (dict(radius="a"), "radius must be a number"),
+        (dict(radius=10**400), "radius must be a number"),
+        (dict(radius=np.nan), "radius must be a number above 0"),
+        (dict(threshold=np.nan), "threshold must be a number of 0 or more"),
+        (dict(threshold=None), "threshold must be a number"),
+    ]:
+        with pytest.raises(flaunay.UsageError, match=words):
+            flaunay.SphericalVoronoi(axes, **options)
+    with pytest.raises(flaunay.InputError, match="center is not finite"):
+        flaunay.SphericalVoronoi(axes, center=[np.nan, 0, 0])
+    with pytest.raises(flaunay.InputError, match="point 1 is not finite"):
         flaunay.SphericalVoronoi([[0, 0, 1], [np.nan, 0, 0]])
+    for radius in 1, np.array(1.0):
+        assert type(flaunay.SphericalVoronoi(axes, radius=radius).radius) is float
+    assert type(flaunay.spherical(axes).voronoi.radius) is float
+    assert np.isinf(flaunay.SphericalVoronoi(axes * 1e200, radius=1e200).areas).all()
     assert len(flaunay.SphericalVoronoi([[0, 0, 1.1], [0, 1, 0]], threshold=0.2).points) == 2
 
 
 def test_public_names():
     for name in flaunay.__all__:
         public = getattr(flaunay, name)
-        if inspect.isclass(public) or inspect.isfunction(public):
-            assert public.__module__ == "flaunay", name
-    assert b"flaunay._" not in pickle.dumps((flaunay.Delaunay, flaunay.triangulate))
+        if inspect.isclass(public):
+            if issubclass(public, flaunay.Error):
+                assert public.__module__ == "flaunay", name
+            else:
+                assert f"class {public.__name__}" in inspect.getsource(public)
+    assert typing.get_type_hints(flaunay.SphericalVoronoi)["radius"] is float
     try:
         flaunay.Delaunay([[np.nan, 0]])
     except flaunay.InputError as error:

@@ -274,3 +274,39 @@ def test_triangles_that_close_the_hull_from_behind(random):
     small = flaunay.spherical([[0, 0], [1e-7, 0], [0, 1e-7]])
     assert np.abs(small.areas) == pytest.approx(np.radians(1e-7) ** 2 / 2, rel=1e-6)
     assert sorted(small.edge_lengths)[:2] == pytest.approx([np.radians(1e-7)] * 2, rel=1e-6)
+
+
+def test_areas_with_the_centre_on_the_hull():
+    longitudes, latitudes = np.meshgrid(np.arange(0, 360, 10.0), np.arange(0, 90, 10.0))
+    north = flaunay.spherical(np.column_stack([longitudes.ravel(), latitudes.ravel()]))
+    assert north.areas.sum() == pytest.approx(4 * np.pi)
+    assert (north.areas > -1e-12).all()
+    for equator, expected in [
+        ([0, 90, 180, 270], [1, 1, 1, 1]),
+        ([0, 72, 144, 216, 288], [0, 0, 0, 0, 2, 2]),
+        ([0, 120, 240], [2, 2]),
+        ([0, 100, 180], [2, 2]),
+        ([0, 60, 100], [0, 0]),
+    ]:
+        areas = flaunay.spherical([[longitude, 0] for longitude in equator]).areas
+        assert sorted(areas / np.pi) == pytest.approx(expected, abs=1e-12)
+    # Two edges on a diameter, whose triangles are a right angle apart outside.
+    wedge = flaunay.spherical([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    assert sorted(wedge.areas / np.pi) == pytest.approx([0.5, 0.5, 1.5, 1.5])
+
+
+def test_areas_of_points_with_small_coordinates(random):
+    axis = np.arange(-1, 2)
+    cube = np.stack(np.meshgrid(axis, axis, axis), axis=-1).reshape(-1, 3)
+    cube = cube[cube.any(axis=1)]
+    directions = np.stack(np.meshgrid(*3 * [np.arange(-5, 6)]), axis=-1).reshape(-1, 3)
+    sums = set()
+    for _ in range(400):
+        points = random.choice(cube, random.integers(3, 9))
+        tri = flaunay.spherical(points)
+        # The centre is outside if all points lie on one side of a plane through it.
+        outside = (points @ directions.T > 0).all(axis=0).any()
+        expected = 0 if outside or tri.nsimplex == 0 else 4 * np.pi
+        assert tri.areas.sum() == pytest.approx(expected, abs=1e-12)
+        sums.add(expected)
+    assert len(sums) == 2
