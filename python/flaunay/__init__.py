@@ -167,7 +167,9 @@ __all__ = [
     "weighted",
 ]
 
-# Messages name exceptions as users do.
-for _kind in (Error, *Error.__subclasses__()):
-    _kind.__module__ = __name__
-del _kind
+# Messages, help and pickles name them as users do, wherever they are defined.
+for _name in __all__:
+    _public = globals()[_name]
+    if callable(_public):
+        _public.__module__ = __name__
+del _name, _public

@@ -3,7 +3,6 @@
 import inspect
 import pickle
 import traceback
-import typing
 
 import numpy as np
 import pytest
@@ -217,11 +216,7 @@ def test_public_names():
     for name in flaunay.__all__:
         public = getattr(flaunay, name)
         if inspect.isclass(public):
-            if issubclass(public, flaunay.Error):
-                assert public.__module__ == "flaunay", name
-            else:
-                assert f"class {public.__name__}" in inspect.getsource(public)
-    assert typing.get_type_hints(flaunay.SphericalVoronoi)["radius"] is float
+            assert public.__module__ == "flaunay", name
     try:
         flaunay.Delaunay([[np.nan, 0]])
     except flaunay.InputError as error:
