@@ -210,6 +210,125 @@ def breaklines(folder):
     fails(2, "--constraints", "map", arguments=("triangulate", SAMPLES, "--constraints", indices, *to))
 
 
+def geojson(path, geometries, crs=None, **properties):
+    """properties: for each name the values of the features; ... for one that has it not."""
+    document = {"type": "FeatureCollection", "features": []}
+    if crs:
+        document["crs"] = {"type": "name", "properties": {"name": crs}}
+    for k, (kind, coordinates) in enumerate(geometries):
+        own = {name: values[k] for name, values in properties.items() if values[k] is not ...}
+        geometry = {"type": kind, "coordinates": coordinates}
+        document["features"].append({"type": "Feature", "properties": own, "geometry": geometry})
+    path.write_text(json.dumps(document))
+    return path
+
+
+CORNERS = [(0, 0), (8, 0), (9, 9), (0, 7)]
+
+
+def fields_of_geojson(folder):
+    """Numbers of properties are read without GDAL."""
+    points = [("Point", at) for at in CORNERS]
+    path = geojson(folder / "f.geojson", points, h=[1, 2.5, ..., None], area=[3, 4, 5, 6], t=["a", 1, 1, 1])
+    out = folder / "f.obj"
+    said = works("triangulate", path, "--height", "nowhere,h", "-o", out, *ON_HOST)
+    assert "note: " in said and "2 of 4 positions have no height" in said, said
+    assert vertices(out)[:2, 2].tolist() == [1, 2.5]
+    cells = folder / "f-cells.geojson"
+    works("voronoi", path, "--height", "h", "--fields", "area", "-o", cells, *ON_HOST)
+    found = sorted((cell["properties"] for cell in cells_of(cells)), key=lambda cell: cell["point"])
+    assert [cell["area"] for cell in found] == [3, 4, 5, 6] and [cell["z"] for cell in found] == [1, 2.5, None, None]
+    assert all(cell["flaunay_area"] > 0 for cell in found)
+    fails(3, "f.geojson", "features[0].properties.t", "number", arguments=("voronoi", path, "--fields", "t", "-o", cells))
+    fails(3, "no field 'no'", "area, h, t", arguments=("voronoi", path, "--fields", "no", "-o", cells))
+    for command in ("voronoi", "triangulate"):
+        fails(3, "no field no, of --height", "area, h, t", arguments=(command, path, "--height", "no", "-o", cells))
+    # Heights of lines have a field of their own.
+    line = geojson(folder / "line.geojson", [("LineString", [(1, 1), (7, 1)])], area=[99], e=[50])
+    heights = ("--height", "area", "--constraints", line)
+    for option, height in (((), 99), (("--line-height", "e"), 50)):
+        works("triangulate", path, *heights, *option, "-o", out, *ON_HOST)
+        assert vertices(out)[:, 2].tolist() == [3, 4, 5, 6, height, height]
+    fails(3, "line.geojson", "no field h", arguments=("triangulate", path, *heights, "--line-height", "h", "-o", out))
+    lines = ("--height", "no", "--constraints", line, "--line-height", "e")
+    fails(3, "f.geojson", "no field no", arguments=("triangulate", path, *lines, "-o", out))
+    grid = ("--resolution", 1, "--height", "area", "-o", folder / "f.npy", *ON_HOST)
+    works("terrain", path, *grid, "--breaklines", line, "--line-height", "e")
+    assert np.nanmax(np.load(folder / "f.npy")) > 40
+    for weighted in ("a.gpkg", path):
+        done = run("triangulate", weighted, "--weighted", "-o", out)
+        assert done.returncode == 2 and "expected .las, .npy, .txt, .xyz, .csv\n" in done.stderr, done.stderr
+
+
+def systems(folder):
+    """Coordinates of two systems are not mixed, and files only name systems."""
+    near = [(9, 49), (9.5, 49), (9.2, 49.4)]
+    metres = [(500000, 5500000), (500100, 5500000), (500040, 5500090)]
+    degrees = geojson(folder / "degrees.geojson", [("LineString", near[:2])])
+    crs84 = "urn:ogc:def:crs:OGC:1.3:CRS84"
+    qgis = geojson(folder / "qgis.geojson", [("Point", at) for at in near], crs84)
+    utm = geojson(folder / "utm.geojson", [("Point", at) for at in metres], "urn:ogc:def:crs:EPSG::25832")
+    wgs = geojson(folder / "wgs.geojson", [("LineString", near[:2])], "EPSG:4326")
+    to = ("-o", folder / "systems.off", *ON_HOST)
+    for lines in (degrees, wgs):
+        fails(3, lines, "EPSG:25832", "--crs", arguments=("triangulate", utm, "--constraints", lines, *to))
+        works("triangulate", qgis, "--constraints", lines, *to)
+        works("triangulate", utm, "--constraints", lines, "--crs", "EPSG:25832", *to)
+    if not HAS_GDAL:
+        return
+    out = folder / "systems.gpkg"
+    works("triangulate", qgis, "-o", out, *ON_HOST)
+    assert rows_of(out, "select srs_id from gpkg_contents") == [(4326,)]
+    local = folder / "local.prj"
+    local.write_text('PROJCS["mine",GEOGCS["x",DATUM["d",SPHEROID["s",6378137,298.25]],PRIMEM["Greenwich",0],'
+                     'UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'
+                     'PARAMETER["central_meridian",9.1],UNIT["metre",1]]')
+    for name in ("EPSG:99999999", "http://127.0.0.1:9/crs", str(local), "+proj=utm +zone=32"):
+        odd = geojson(folder / "odd.geojson", [("Point", at) for at in near], name)
+        works("triangulate", odd, *to)
+        for arguments in (("triangulate", odd, "-o", out), ("voronoi", odd, "-o", out)):
+            fails(3, "odd.geojson", name, "--crs", arguments=arguments)
+        works("triangulate", odd, "-o", out, "--crs", "EPSG:4326", *ON_HOST)
+    said = works("triangulate", utm, "-o", folder / "mine.geojson", "--crs", local, *ON_HOST)
+    assert "note: " in said and "mine.geojson has no coordinate system" in said, said
+    # Layers without one.
+    for number in (-1, 0):
+        none = package(folder / "none.gpkg", {"p": ("", [(wkb(POINT, at),) for at in metres])}, number)
+        works("triangulate", none, "--constraints", wgs, "-o", folder / "none.geojson", *ON_HOST)
+        assert "crs" not in json.loads((folder / "none.geojson").read_text())
+
+
+def kept(folder):
+    """What is written keeps what was read, or notes that it does not."""
+    square = [[(0, 0), (9, 0), (9, 9), (0, 0)]]
+    names = {"name": ["Ки\u0457в \u0141"], "very_long_name_a": [1], "very_long_name_b": [2]}
+    path = geojson(folder / "text.geojson", [("Polygon", square)], **names)
+    for ending in ("qix", "sbn", "sbx"):
+        (folder / f"text.{ending}").write_bytes(b"old")
+    said = works("triangulate", path, "-o", folder / "text.shp", *ON_HOST)
+    assert said.count("note: ") == 2 and "very_long_name_b" in said and ".gpkg" in said, said
+    assert (folder / "text.cpg").read_text().strip() == "UTF-8"
+    assert names["name"][0].encode() in (folder / "text.dbf").read_bytes()
+    assert not [ending for ending in ("qix", "sbn", "sbx") if (folder / f"text.{ending}").exists()]
+    # A GeoPackage with layers of others is not lost.
+    project = package(folder / "project.gpkg", {"wells": ("", [(wkb(POINT, (1, 2)),)])})
+    for arguments in (
+        ("triangulate", path, "-o", project),
+        ("voronoi", path, "-o", project),
+        ("terrain", SAMPLES, *HEIGHT, "--resolution", 1, "--contours", 4, "-o", project),
+    ):
+        fails(3, "project.gpkg", "wells", "lost", arguments=arguments)
+    # Nor are features or heights.
+    cut = folder / "cut.fgb"
+    for size in (35315, 30000):
+        cut.write_bytes(SAMPLES.read_bytes()[:size])
+        fails(3, "cut.fgb", arguments=("triangulate", cut, "-o", folder / "cut.off"))
+    none = package(folder / "null.gpkg", {"p": (", h real", [(wkb(POINT, at), None) for at in CORNERS])})
+    for command in ("triangulate", "voronoi"):
+        to = ("-o", folder / "null.geojson")
+        fails(3, "null.gpkg", "no value in the field h", arguments=(command, none, "--height", "h", *to))
+
+
 def wrong_files(folder):
     to = ("-o", folder / "out.gpkg")
     text = folder / "text.gpkg"
@@ -350,11 +469,12 @@ def voronoi(folder):
 def main(folder):
     columns(folder)
     voronoi(folder)
+    fields_of_geojson(folder)
+    systems(folder)
     if not HAS_GDAL:
         for arguments in (
             (SAMPLES, "-o", folder / "t.off"),
             (DATA / "ukraine.xy", "-o", folder / "t.gpkg"),
-            (DATA / "africa.geojson", "--height", "name", "-o", folder / "t.off"),
         ):
             fails(2, "FLAUNAY_GDAL", arguments=("triangulate", *arguments))
         return
@@ -365,6 +485,7 @@ def main(folder):
     kinds_of_geometry(folder)
     breaklines(folder)
     wrong_files(folder)
+    kept(folder)
     terrain(folder)
     shading(folder)
     assert not [path.name for path in folder.iterdir() if "partial" in path.name]

@@ -188,7 +188,9 @@ void Outputs::commit() {
     throw Error(error.kind(), fmt::format("{}; {}", error.what(), take_back()));
   }
   for (const Placed& placed : placed_) system::remove_file(placed.old);
-  *this = Outputs();
+  Outputs none;
+  none.notes = std::move(notes);
+  *this = std::move(none);
 }
 
 void Outputs::place(const OutputFile& file) {

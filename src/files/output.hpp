@@ -101,6 +101,8 @@ class Outputs {
   /// An old file, or a link to one, that commit removes. No output of this run may have the path.
   void remove(const std::string& path) { removed_.push_back(path); }
 
+  std::vector<std::string> notes;  ///< a sentence for each thing that files do not keep
+
   /// Writes and closes the files that were opened, so that there may be more than the system keeps open.
   void close();
   /// Writes all files to the disk. The targets are still untouched.

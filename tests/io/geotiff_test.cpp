@@ -47,10 +47,12 @@ TEST_F(GeoTiffTest, HasPixelsPlaceAndSystem) {
 }
 
 TEST_F(GeoTiffTest, SystemsAreCompared) {
-  EXPECT_TRUE(is_same_crs("EPSG:25832", crs_text("EPSG:25832", "a")));
+  EXPECT_TRUE(is_same_crs("EPSG:25832", crs_text("EPSG:25832")));
   EXPECT_FALSE(is_same_crs("EPSG:25832", "EPSG:25833"));
-  EXPECT_EQ(epsg_code(crs_text("EPSG:25832", "a")), 25832);
-  EXPECT_THROW(crs_text("nonsense", "a"), Error);
+  EXPECT_EQ(epsg_code(crs_text("EPSG:25832")), 25832);
+  EXPECT_THROW(crs_text("nonsense"), Error);
+  EXPECT_NO_THROW(check_crs(crs_text("+proj=utm +zone=32"), "a"));
+  EXPECT_THROW(check_crs("+proj=utm +zone=32", "a"), Error);
 }
 
 TEST_F(GeoTiffTest, WhatCannotBeWrittenIsAnError) {

@@ -111,13 +111,10 @@ class Algorithm(QgsProcessingAlgorithm):
     def options(self, parameters, context, feedback, **maps):
         """The points, options that all algorithms have, and those of maps by their parameters."""
         found = [self.source(self.INPUT, parameters, context, feedback)]
-        heights = self.parameterAsFields(parameters, "HEIGHT", context)
-        heights += self.parameterAsFields(parameters, "LINE_HEIGHT", context)
-        if heights:
-            found += ["--height", ",".join(heights)]
-        fields = self.parameterAsFields(parameters, "FIELDS", context)
-        if fields:
-            found += ["--fields", ",".join(fields)]
+        for option, name in (("height", "HEIGHT"), ("line-height", "LINE_HEIGHT"), ("fields", "FIELDS")):
+            fields = self.parameterAsFields(parameters, name, context)
+            if fields:
+                found += [f"--{option}", ",".join(fields)]
         for option, name in maps.items():
             path = self.source(name, parameters, context, feedback)
             if path:

@@ -18,7 +18,6 @@
 #include "app/command/progress.hpp"
 #include "app/command/report.hpp"
 #include "app/files/formats.hpp"
-#include "app/files/geotiff.hpp"
 #include "app/files/layers.hpp"
 #include "app/files/map.hpp"
 #include "app/files/mesh.hpp"
@@ -96,11 +95,7 @@ std::vector<double> holes_of(const ConstraintRequest& request) {
 }
 
 /// Appends the points of another map, and its segments, which bound nothing.
-void add_edges(const std::string& input, const std::string& path, const io::Map& edges, io::Map& map) {
-  if (io::are_different_crs(edges.points.crs, map.points.crs)) {
-    io::fail(path, "has the coordinate system {}, but {} has {}: reproject one of them", edges.points.crs,
-             io::shown_path(input), map.points.crs);
-  }
+void add_edges(const io::Map& edges, io::Map& map) {
   const auto first = static_cast<std::int32_t>(map.points.size());
   const auto append = [](std::vector<double>& to, const std::vector<double>& more, std::size_t n,
                          std::size_t all) {
@@ -122,7 +117,7 @@ void add_edges(const std::string& input, const std::string& path, const io::Map&
 }
 
 io::Map read_input(const std::string& input, const io::Columns& columns, const ConstraintRequest& request,
-                   bool with_heights) {
+                   bool with_heights, bool checks_crs) {
   io::check_columns(input, columns);
   io::Map map;
   if (io::is_map(input)) {
@@ -133,7 +128,10 @@ io::Map read_input(const std::string& input, const io::Columns& columns, const C
   }
   if (request.segments.empty()) return map;
   if (io::is_map(request.segments)) {
-    add_edges(input, request.segments, io::read_map(request.segments, {{}, columns.heights, {}}), map);
+    if (!request.line_heights.empty()) map.check_height_field(input, columns.heights);
+    const io::Map edges = io::read_lines(request.segments, columns, request.line_heights);
+    if (checks_crs) io::check_same_crs(request.segments, edges.points.crs, input, map.points.crs);
+    add_edges(edges, map);
   } else {
     map.segments = io::read_segments(request.segments, map.points.size());
   }
@@ -385,6 +383,7 @@ void add_domain_options(CLI::App* command, ConstraintRequest& request) {
 
 void add_constraint_options(CLI::App* command, ConstraintRequest& request) {
   add_domain_options(command, request);
+  add_line_heights(command, request.line_heights, "--constraints");
   add_named_choice(command, "--crossings", request.crossings,
                    "Segments that cross: an error, or split where they do, which adds points",
                    all_of<Crossings>())
@@ -429,8 +428,8 @@ void check_domain_options(const CLI::App& command, const std::string& input, Con
 }
 
 io::Map read_domain(const std::string& input, const io::Columns& columns, ConstraintRequest& request,
-                    bool with_heights) {
-  io::Map map = read_input(input, columns, request, with_heights);
+                    bool with_heights, bool checks_crs) {
+  io::Map map = read_input(input, columns, request, with_heights, checks_crs);
   choose_for(map, input, request);
   const std::vector<double> further_holes = holes_of(request);
   map.holes.insert(map.holes.end(), further_holes.begin(), further_holes.end());
@@ -505,13 +504,10 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
   Progress progress(!task.quiet);
   Stopwatch stopwatch;
   progress.update("reading");
-  io::Map map = read_domain(task.input, task.columns, request, !task.results.mesh.empty());
+  io::Map map = read_domain(task.input, task.columns, request, !task.results.mesh.empty(), task.crs.empty());
   check_carried(map, task.input, request);
-  if (!task.columns.heights.empty() && !map.has_height_field) {
-    io::fail(task.input, "has no field {}, of --height; its fields are {}",
-             fmt::join(task.columns.heights, " or "), fmt::join(map.field_names, ", "));
-  }
-  if (!task.crs.empty()) map.points.crs = io::crs_text(task.crs, "--crs");
+  map.check_height_field(task.input, task.columns.heights);
+  io::choose_crs(task.crs, task.input, task.results.mesh, map.points.crs);
   const auto triangulate = are_polygons(map, task, request) ? triangulate_polygons : triangulate_segments;
   facts.reading_seconds = stopwatch.restart();
 
@@ -537,11 +533,10 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
 
   if (!task.quiet) {
     std::string text = task.profile ? kernel_table(mesh.statistics) : "";
-    for (const std::string& note : map.notes) text += "note: " + note + "\n";
-    text += withheld_note(task.input, map.points) + heights_note(task.input, task.results.mesh, map.points) +
-            properties_note(task, map, mesh);
+    text += notes_text(map.notes) + withheld_note(task.input, map.points) +
+            heights_note(task.input, task.results.mesh, map.points) + properties_note(task, map, mesh);
     print(text + empty_note(mesh, request) + refinement_note(mesh, map.points.coordinates) +
-          host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
+          host_note(facts.compiling_note) + host_note(mesh.statistics.note) + notes_text(outputs.notes) +
           summary(mesh.statistics, facts));
   }
   return kSuccess;

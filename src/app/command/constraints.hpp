@@ -12,7 +12,8 @@
 namespace flaunay::cli {
 
 struct ConstraintRequest {
-  std::string segments;  ///< a file; empty if the input has the segments
+  std::string segments;                   ///< a file; empty if the input has the segments
+  std::vector<std::string> line_heights;  ///< its fields with heights; empty: those of the input
   Crossings crossings = Crossings::error;
   Outside outside = Outside::keep;
   FillRule fill = FillRule::nesting;
@@ -38,9 +39,9 @@ void add_domain_options(CLI::App* command, ConstraintRequest& request);
 void check_domain_options(const CLI::App& command, const std::string& input, ConstraintRequest& request);
 
 /// Reads points, segments and holes, and decides what is outside unless the user has. with_heights: as of
-/// read_points.
+/// read_points. checks_crs: whether points and segments must have one system.
 io::Map read_domain(const std::string& input, const io::Columns& columns, ConstraintRequest& request,
-                    bool with_heights = false);
+                    bool with_heights = false, bool checks_crs = false);
 /// The map's segments, and after them its lines.
 std::vector<std::int32_t> all_segments(const io::Map& map);
 /// The rings of the map's polygons, unless it has neither polygons nor lines, or the rule is nesting.

@@ -35,6 +35,14 @@ CLI::Option* add_heights(CLI::App* command, io::Columns& columns) {
       ->type_name("FIELD");
 }
 
+void add_line_heights(CLI::App* command, std::vector<std::string>& fields, const std::string& of) {
+  command->add_option("--line-height", fields, fmt::format("Of {}, in place of --height", of))
+      ->needs(of)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("FIELD");
+}
+
 void add_fields(CLI::App* command, io::Columns& columns, const std::string& text) {
   command->add_option("--fields", columns.fields, text)
       ->delimiter(',')

@@ -28,6 +28,8 @@ void add_columns(CLI::App* command, io::Columns& columns, const std::string& wha
 
 /// --height: the field of layers that has heights.
 CLI::Option* add_heights(CLI::App* command, io::Columns& columns);
+/// --line-height, of the map of another option.
+void add_line_heights(CLI::App* command, std::vector<std::string>& fields, const std::string& of);
 /// --fields: the fields of points that are kept.
 void add_fields(CLI::App* command, io::Columns& columns, const std::string& text);
 /// Throws Error(usage) for --fields of an input without fields, and for --height if the edges have none

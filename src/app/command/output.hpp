@@ -12,6 +12,8 @@ namespace flaunay::cli {
 /// false if nobody can read it, because standard output or the pipe is closed, which is not an error; throws
 /// Error(input) for any other failure, such as a full disk.
 bool print(const std::string& text);
+/// A line for each note.
+std::string notes_text(const std::vector<std::string>& notes);
 
 /// Rows as lines, in columns that are as wide as their widest entries; the last one is not filled up.
 std::string aligned(const std::vector<std::vector<std::string>>& rows);

@@ -13,7 +13,6 @@
 #include "app/command/errors.hpp"
 #include "app/command/progress.hpp"
 #include "app/files/formats.hpp"
-#include "app/files/geotiff.hpp"
 #include "app/files/layers.hpp"
 #include "app/files/scan.hpp"
 #include "flaunay/sphere.hpp"
@@ -178,7 +177,7 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
   progress.update("reading");
   WeightedPoints read = read_weighted_points(task.input, task.columns, request.is_weighted);
   io::Points& points = read.points;
-  if (!task.crs.empty()) points.crs = io::crs_text(task.crs, "--crs");
+  io::choose_crs(task.crs, task.input, task.results.mesh, points.crs);
   const std::size_t n = points.size();
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(task.index, n, task.results);
@@ -216,7 +215,8 @@ int triangulate_in_space(const Task& task, const SpaceRequest& request, const st
   const bool is_planar = mesh.space.kind == SpaceKind::plane;
   print(host_note(facts.compiling_note) + host_note(mesh.statistics.note) +
         (request.is_weighted ? fmt::format("hidden points: {}\n", mesh.hidden.size()) : "") +
-        (is_planar ? degenerate_note(mesh.statistics) : "") + summary(mesh.statistics, facts));
+        (is_planar ? degenerate_note(mesh.statistics) : "") + notes_text(outputs.notes) +
+        summary(mesh.statistics, facts));
   return kSuccess;
 }
 

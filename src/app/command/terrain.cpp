@@ -49,6 +49,7 @@ struct TerrainRequest {
   Returns returns = Returns::all;
   Duplicates duplicates = Duplicates::highest;
   std::string breaklines, boundary, flat, crs;
+  std::vector<std::string> line_heights;  // fields of breaklines
   Crossings crossings = Crossings::error;
   io::Columns columns;
   std::vector<double> contours;
@@ -115,7 +116,7 @@ std::string left_out_text(const io::LeftOut& left_out) {
 
 // The system of all points: what the user says, or else what the files have.
 std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
-  if (!request.crs.empty()) return io::crs_text(request.crs, "--crs");
+  if (!request.crs.empty()) return io::crs_text(request.crs);
   const std::vector<io::Scan::System> systems = scan.systems();
   for (const io::Scan::System& system : systems) {
     if (io::is_same_crs(system.crs, systems.front().crs)) continue;
@@ -125,20 +126,19 @@ std::string common_crs(const TerrainRequest& request, const io::Scan& scan) {
                                   "them, or say by --crs what both have",
                                   systems.front().path, system.path, systems.front().crs, system.crs)));
   }
-  return systems.empty() ? "" : systems.front().crs;
+  if (systems.empty()) return "";
+  std::string crs = systems.front().crs;
+  for (const std::string& output : request.outputs) io::choose_crs("", systems.front().path, output, crs);
+  return crs;
 }
 
-// Throws Error(input) if a map lies where no points are, or names another system of coordinates.
+// Throws Error(input) if a map lies where no points are, or names another system of coordinates, unless the
+// user says which one all have.
 void check_place(const char* option, const std::string& path, const io::Map& map, const io::Box& points,
-                 const std::string& crs) {
+                 const std::string& crs, bool is_asked) {
   if (path.empty() || map.points.size() == 0) return;
-  const auto fail_place = [&](const std::string& reason) {
-    throw Error(ErrorKind::input, io::printable(fmt::format("{}: {}: {}", option, path, reason)));
-  };
-  if (io::are_different_crs(map.points.crs, crs)) {
-    fail_place(fmt::format("has the coordinate system {}, but the points have {}: reproject one of them",
-                           map.points.crs, crs));
-  }
+  const std::string name = fmt::format("{}: {}", option, path);
+  if (!is_asked) io::check_same_crs(name, map.points.crs, "the points", crs);
   io::Box box = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (std::size_t i = 0; i < map.points.coordinates.size(); ++i) {
     const double value = map.points.coordinates[i];
@@ -146,10 +146,10 @@ void check_place(const char* option, const std::string& path, const io::Map& map
     box[i % 2 + 2] = std::max(box[i % 2 + 2], value);
   }
   if (box[0] <= points[2] && points[0] <= box[2] && box[1] <= points[3] && points[1] <= box[3]) return;
-  fail_place(
-      fmt::format("reaches from ({}, {}) to ({}, {}), but the points from ({}, {}) to ({}, {}): both must "
-                  "have the same coordinate system",
-                  box[0], box[1], box[2], box[3], points[0], points[1], points[2], points[3]));
+  io::fail(name,
+           "reaches from ({}, {}) to ({}, {}), but the points from ({}, {}) to ({}, {}): both must have the "
+           "same coordinate system",
+           box[0], box[1], box[2], box[3], points[0], points[1], points[2], points[3]);
 }
 
 using Range = std::array<double, 2>;
@@ -194,7 +194,7 @@ int make_terrain(TerrainRequest request) {
     const bool is_mesh = io::find_format(path, io::Use::write_mesh) != nullptr;
     for (const std::string& file : is_mesh ? io::mesh_files(path) : std::vector{path}) outputs.announce(file);
   }
-  HardEdges edges(request.breaklines, request.flat, request.columns, request.crossings);
+  HardEdges edges(request.breaklines, request.flat, request.columns, request.line_heights, request.crossings);
   const bool in_memory = !edges.has_heights() || !request.flat.empty() || !files.meshes.empty();
   if (in_memory && request.memory != 0) {
     fail_usage(
@@ -212,12 +212,12 @@ int make_terrain(TerrainRequest request) {
   Stopwatch stopwatch;
   progress.update("reading");
   io::Scan scan(scans, choice_of(request), request.scratch, request.columns);
-  if (!request.columns.heights.empty() && !scan.has_height_field() && !edges.has_height_field()) {
+  if (!request.columns.heights.empty() && !scan.has_height_field() && !edges.has_height_field) {
     throw Error(ErrorKind::input, fmt::format("no layer has a field {}, of --height",
                                               fmt::join(request.columns.heights, " or ")));
   }
   const std::string crs = common_crs(request, scan);
-  request.shading.is_geographic = !crs.empty() && io::is_geographic(crs);
+  request.shading.is_geographic = !files.pictures.empty() && !crs.empty() && io::is_geographic(crs);
   std::optional<io::Box> bounds;
   if (!request.bounds.empty()) {
     bounds.emplace();
@@ -246,9 +246,10 @@ int make_terrain(TerrainRequest request) {
                                 : fmt::format(" of the classes {}", fmt::join(request.classes, ", ")),
                             left_out));
   }
-  check_place("--breaklines", request.breaklines, edges.lines, box, crs);
-  check_place("--flat", request.flat, edges.lakes, box, crs);
-  check_place("--boundary", request.boundary, area, box, crs);
+  const bool is_asked = !request.crs.empty();
+  check_place("--breaklines", request.breaklines, edges.lines, box, crs, is_asked);
+  check_place("--flat", request.flat, edges.lakes, box, crs, is_asked);
+  check_place("--boundary", request.boundary, area, box, crs, is_asked);
   const PixelGrid grid = grid_over(bounds ? *bounds : box);
   const std::uint64_t memory = request.memory != 0 ? request.memory : host::memory_left().bytes / 2;
   Pixels pixels(grid.count(), memory, request.scratch);
@@ -298,7 +299,10 @@ int make_terrain(TerrainRequest request) {
   outputs.commit();
   progress.finish();
   if (!request.quiet) {
-    print(fmt::format("{} points{}, {} x {} pixels, {:.3g} s\n", scan.size(), left_out, grid.pixels.columns,
+    std::string notes;
+    for (const io::Map* map : {&edges.lines, &edges.lakes, &area}) notes += notes_text(map->notes);
+    print(notes + notes_text(outputs.notes) +
+          fmt::format("{} points{}, {} x {} pixels, {:.3g} s\n", scan.size(), left_out, grid.pixels.columns,
                       grid.pixels.rows, stopwatch.seconds()));
   }
   return kSuccess;
@@ -325,8 +329,8 @@ void add_terrain(CLI::App& app, Action& action) {
       app.add_subcommand("terrain", "Make a raster of measured heights, such as those of a laser scan");
   command
       ->add_option("inputs", request->inputs,
-                   "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), points or "
-                   "lines of .gpkg, .shp, .fgb and .geojson, or folders of these")
+                   "Points: .las, .npy of shape (n, 3), text with x, y and z (.txt, .xyz, .csv), folders "
+                   "of these; points or lines of .gpkg, .shp, .fgb and .geojson")
       ->required();
   command
       ->add_option("-o,--output", request->outputs,
@@ -377,6 +381,7 @@ void add_terrain(CLI::App& app, Action& action) {
   add_path(command, "--breaklines", request->breaklines,
            "A map of lines that become edges of the triangulation, with heights or else those of the points "
            "around");
+  add_line_heights(command, request->line_heights, "--breaklines");
   add_path(command, "--boundary", request->boundary,
            "A map of polygons, outside of which the raster is empty and there are no contours");
   add_path(command, "--flat", request->flat,

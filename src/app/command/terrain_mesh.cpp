@@ -126,19 +126,21 @@ void merge_heights(TerrainMesh& terrain, std::size_t fixed, Duplicates duplicate
 }  // namespace
 
 HardEdges::HardEdges(const std::string& breaklines, const std::string& flat, const io::Columns& columns,
-                     Crossings at_crossings)
+                     const std::vector<std::string>& line_heights, Crossings at_crossings)
     : path(breaklines.empty() ? flat
            : flat.empty()     ? breaklines
                               : breaklines + " and " + flat),
       crossings(at_crossings) {
   if (!breaklines.empty()) {
-    lines = io::read_map(breaklines, columns);
+    lines = io::read_lines(breaklines, columns, line_heights);
     segments = lines.segments;
     segments.insert(segments.end(), lines.lines.begin(), lines.lines.end());
     if (segments.empty()) io::fail(breaklines, "has neither lines nor polygons");
+    has_height_field = line_heights.empty() && lines.has_height_field;
   }
   if (!flat.empty()) {
     lakes = io::read_map(flat, columns);
+    has_height_field = has_height_field || lakes.has_height_field;
     if (lakes.polygon_count() == 0 || lakes.has_others) io::fail(flat, "must have polygons and nothing else");
   }
 }

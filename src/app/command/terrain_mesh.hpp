@@ -15,13 +15,13 @@ namespace flaunay::cli {
 
 /// Maps whose lines and rings become edges.
 struct HardEdges {
-  /// Reads the files; empty: none. Throws Error(input) if one has no lines, or flat not only polygons.
+  /// Reads the files; empty: none. line_heights: the fields of breaklines with heights; empty: those of
+  /// columns. Throws Error(input) if one has no lines, or flat not only polygons.
   HardEdges(const std::string& breaklines, const std::string& flat, const io::Columns& columns,
-            Crossings at_crossings);
+            const std::vector<std::string>& line_heights, Crossings at_crossings);
 
   /// Whether all points of breaklines have heights.
   bool has_heights() const;
-  bool has_height_field() const { return lines.has_height_field || lakes.has_height_field; }
   Breaklines view() const;
 
   /// With Crossings::split: cuts lines with heights where they cross, each at the height of the first one.
@@ -31,6 +31,7 @@ struct HardEdges {
   std::vector<std::int32_t> segments;  ///< of the lines
   std::string path;                    ///< for messages
   Crossings crossings;
+  bool has_height_field = false;  ///< of --height
 };
 
 struct TerrainMesh {

@@ -18,7 +18,7 @@
 #include "app/command/results.hpp"
 #include "app/command/spaces.hpp"
 #include "app/files/formats.hpp"
-#include "app/files/geotiff.hpp"
+#include "app/files/layers.hpp"
 #include "app/files/point_stream.hpp"
 #include "app/files/points.hpp"
 #include "flaunay/research.hpp"
@@ -152,7 +152,7 @@ int triangulate(const TriangulateRequest& request) {
 
   progress.update("reading");
   io::Points points = io::read_points(request.input, request.columns, !request.results.mesh.empty());
-  if (!request.crs.empty()) points.crs = io::crs_text(request.crs, "--crs");
+  io::choose_crs(request.crs, request.input, request.results.mesh, points.crs);
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(request.index, points.size(), request.results);
 
@@ -186,7 +186,7 @@ int triangulate(const TriangulateRequest& request) {
     print((request.profile ? kernel_table(mesh.statistics) : "") + (request.count ? work_table(mesh) : "") +
           degenerate_note(mesh.statistics) + withheld_note(request.input, points) +
           heights_note(request.input, request.results.mesh, points) + host_note(facts.compiling_note) +
-          host_note(mesh.statistics.note) + summary(mesh.statistics, facts));
+          host_note(mesh.statistics.note) + notes_text(outputs.notes) + summary(mesh.statistics, facts));
   }
   return kSuccess;
 }
@@ -197,7 +197,8 @@ void check_mesh(const CLI::App& command, const std::string& mesh) {
     refuse(command, "--fields",
            fmt::format("needs a layer to write: -o {}", io::endings_for(io::Use::write_layer)));
   }
-  if (io::find_format(mesh, io::Use::write_features) == nullptr) {
+  // With two maps, it says that they have one.
+  if (command.count("--constraints") == 0 && io::find_format(mesh, io::Use::write_features) == nullptr) {
     refuse(command, "--crs",
            fmt::format("needs an output that has one: -o {}", io::endings_for(io::Use::write_features)));
   }

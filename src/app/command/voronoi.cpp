@@ -14,7 +14,6 @@
 #include "app/command/output.hpp"
 #include "app/command/progress.hpp"
 #include "app/files/formats.hpp"
-#include "app/files/geotiff.hpp"
 #include "app/files/layers.hpp"
 #include "app/files/points.hpp"
 #include "flaunay/flaunay.hpp"
@@ -59,15 +58,16 @@ io::Layer layer_of(const io::Points& points, const ClippedVoronoi& cells,
       positions.insert(positions.end(), {cells.vertices[2 * v], cells.vertices[2 * v + 1], 0.0});
     }
   };
-  layer.fields.push_back({"point", std::int64_t{0}, [&](std::size_t cell) -> io::Layer::Value {
-                            return static_cast<std::int64_t>(owners[cell]);
-                          }});
-  const auto add = [&](const std::string& name, const std::vector<double>& values) {
-    layer.fields.push_back({name, 0.0, [&](std::size_t cell) { return values[owners[cell]]; }});
+  const auto field_of = [&](const std::string& name, const std::vector<double>& values) {
+    return io::Layer::Field{name, 0.0, [&](std::size_t cell) { return values[owners[cell]]; }};
   };
-  add("area", cells.areas);
-  if (!points.heights.empty()) add("z", points.heights);
-  for (const io::PointField& field : points.fields) add(field.name, field.values);
+  std::vector<io::Layer::Field> given;
+  for (const io::PointField& field : points.fields) given.push_back(field_of(field.name, field.values));
+  layer.fields = {{io::own_name("point", given), std::int64_t{0},
+                   [&](std::size_t cell) { return static_cast<std::int64_t>(owners[cell]); }},
+                  field_of(io::own_name("area", given), cells.areas)};
+  if (!points.heights.empty()) layer.fields.push_back(field_of(io::own_name("z", given), points.heights));
+  layer.fields.insert(layer.fields.end(), given.begin(), given.end());
   return layer;
 }
 
@@ -82,7 +82,7 @@ int voronoi(const VoronoiRequest& request) {
   progress.update("reading");
   io::Points points = io::read_points(request.input, request.columns, true);
   if (points.size() == 0) throw Error(ErrorKind::input, fmt::format("{}: has no points", request.input));
-  if (!request.crs.empty()) points.crs = io::crs_text(request.crs, "--crs");
+  io::choose_crs(request.crs, request.input, request.output, points.crs);
   const std::vector<double> box = request.bounds.empty() ? box_around(points) : request.bounds;
   const double corners[] = {box[0], box[1], box[2], box[1], box[2], box[3], box[0], box[3]};
   progress.update_slow("preparing the device", kCompiling);
@@ -100,7 +100,8 @@ int voronoi(const VoronoiRequest& request) {
   outputs.commit();
   progress.finish();
   if (!request.quiet)
-    print(fmt::format("{} points, {} cells, {:.3g} s\n", points.size(), owners.size(), stopwatch.seconds()));
+    print(notes_text(outputs.notes) +
+          fmt::format("{} points, {} cells, {:.3g} s\n", points.size(), owners.size(), stopwatch.seconds()));
   return kSuccess;
 }
 

@@ -1,6 +1,7 @@
 #include "app/files/formats.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/files/layers.hpp"
 
@@ -70,10 +71,33 @@ bool Map::add_ring(std::size_t first) {
   return is_closed;
 }
 
+void Map::complete_heights(const std::string& path) {
+  std::vector<double>& heights = points.heights;
+  const auto unknown = std::count_if(heights.begin(), heights.end(), [](double z) { return std::isnan(z); });
+  const bool has_none = unknown == static_cast<std::ptrdiff_t>(heights.size());
+  if (unknown > 0 && !has_none && has_height_field)
+    notes.push_back(fmt::format("{}: {} of {} positions have no height", path, unknown, heights.size()));
+  if (has_none) heights = {};
+}
+
+void Map::check_height_field(const std::string& path, const std::vector<std::string>& fields) const {
+  if (fields.empty()) return;
+  const std::string names = fmt::format("{}", fmt::join(fields, " or "));
+  if (!has_height_field)
+    fail(path, "has no field {}, of --height; its fields are {}", names, fmt::join(field_names, ", "));
+  if (points.heights.empty()) fail(path, "has no value in the field {}, of --height", names);
+}
+
 bool is_map(const std::string& path) { return find_format(path, Use::read_map) != nullptr; }
 
 Map read_map(const std::string& path, const Columns& columns) {
   return format_of(path, Use::read_map).map(path, columns);
+}
+
+Map read_lines(const std::string& path, const Columns& columns, const std::vector<std::string>& heights) {
+  Map map = read_map(path, {{}, heights.empty() ? columns.heights : heights, {}});
+  map.check_height_field(path, heights);
+  return map;
 }
 
 bool has_fields(const std::string& path) {

@@ -47,7 +47,7 @@ struct Format {
   WriteMesh write_mesh = nullptr;
   /// In place of write_mesh: writes a layer of features, and its sidecars.
   void (*write_layer)(Outputs& outputs, const std::string& path, const MeshContents& contents) = nullptr;
-  std::array<std::string_view, 4> sidecars = {};
+  std::array<std::string_view, 9> sidecars = {};
   bool has_labels = false;  ///< whether write_mesh writes regions and depths
   bool is_spatial = false;  ///< whether it writes heights
   /// A file beside this one that is read or written, too, and one only with constraints.

@@ -14,17 +14,15 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace flaunay::io {
 
 #define FLAUNAY_GDAL_FUNCTIONS(X) \
-  X(CPLErrorReset)                \
-  X(CPLGetLastErrorMsg)           \
-  X(CPLGetLastErrorType)          \
+  X(CPLGetErrorHandlerUserData)   \
   X(CPLPopErrorHandler)           \
   X(CPLPrintPointer)              \
-  X(CPLPushErrorHandler)          \
-  X(CPLQuietErrorHandler)         \
+  X(CPLPushErrorHandlerEx)        \
   X(CSLDestroy)                   \
   X(CSLSetNameValue)              \
   X(GDALAddBand)                  \
@@ -79,6 +77,7 @@ namespace flaunay::io {
   X(OGR_G_SetPoints)              \
   X(OGR_L_CreateFeature)          \
   X(OGR_L_CreateField)            \
+  X(OGR_L_GetFeatureCount)        \
   X(OGR_L_GetGeomType)            \
   X(OGR_L_GetLayerDefn)           \
   X(OGR_L_GetName)                \
@@ -88,6 +87,8 @@ namespace flaunay::io {
   X(OSRExportToWkt)               \
   X(OSRGetAuthorityCode)          \
   X(OSRGetAuthorityName)          \
+  X(OSRGetName)                   \
+  X(OSRImportFromWkt)             \
   X(OSRIsGeographic)              \
   X(OSRIsSame)                    \
   X(OSRNewSpatialReference)       \
@@ -108,21 +109,31 @@ struct Gdal {
 /// Throws Error(usage) if the library cannot be opened.
 const Gdal& gdal();
 
-/// Turns GDAL's messages into messages of errors.
+/// Keeps GDAL's messages, for errors and notes.
 class Quiet {
  public:
-  Quiet() {
-    gdal().CPLPushErrorHandler(gdal().CPLQuietErrorHandler);
-    gdal().CPLErrorReset();
-  }
+  Quiet() { gdal().CPLPushErrorHandlerEx(keep, this); }
   Quiet(const Quiet&) = delete;
   Quiet& operator=(const Quiet&) = delete;
   ~Quiet() { gdal().CPLPopErrorHandler(); }
 
-  std::string reason() const {
-    const std::string message = gdal().CPLGetLastErrorMsg();
-    return message.empty() ? "GDAL does not say why" : message;
+  void forget() { failure_.clear(); }
+  bool has_failed() const { return !failure_.empty(); }
+  /// The first failure.
+  std::string reason() const { return has_failed() ? failure_ : "GDAL does not say why"; }
+  /// The first ones.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  static void CPL_STDCALL keep(CPLErr kind, CPLErrorNum, const char* message) {
+    constexpr std::size_t kMost = 10;
+    auto& self = *static_cast<Quiet*>(gdal().CPLGetErrorHandlerUserData());
+    if (kind == CE_Warning && self.warnings_.size() < kMost) self.warnings_.emplace_back(message);
+    if (kind >= CE_Failure && self.failure_.empty()) self.failure_ = message;
   }
+
+  std::string failure_;
+  std::vector<std::string> warnings_;
 };
 
 struct Close {
@@ -135,8 +146,10 @@ struct Destroy {
 };
 using System = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, Destroy>;
 
-/// Null if GDAL does not know it.
+/// Of a name or WKT; null if GDAL does not know it.
 System read_crs(const std::string& crs);
+/// Throws Error(input) that names the path in place of null.
+System known_crs(const std::string& crs, const std::string& path);
 /// "EPSG:n" if it has such a number, or else WKT; empty for none.
 std::string text_of(OGRSpatialReferenceH system);
 

@@ -70,14 +70,17 @@ Json parse_json(const std::string& path, const std::string& text) {
 /// Error(input) that names the path in the document.
 class GeoJsonReader {
  public:
-  explicit GeoJsonReader(const std::string& path) : path_(path) {}
+  GeoJsonReader(const std::string& path, const Columns& columns) : path_(path), columns_(columns) {
+    for (const auto* names : {&columns.heights, &columns.fields})
+      for (const std::string& name : *names) fields_.push_back({name, {}});
+  }
 
   Map read() {
     const Json document = parse_json(path_, read_file(path_, "GeoJSON"));
     read_object(document, Place());
     read_crs(document);
-    std::vector<double>& heights = map_.points.heights;
-    if (std::all_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); })) heights = {};
+    choose_fields();
+    map_.complete_heights(path_);
     if (unclosed_ > 0) {
       map_.notes.push_back(
           fmt::format("{}: {} not closed: the last position should be the first one again", path_,
@@ -138,6 +141,7 @@ class GeoJsonReader {
       const Json& geometry = member(object, "geometry", at);
       if (!geometry.is_null()) read_object(geometry, Place(at, "geometry"));
       take_properties(object, at);
+      if (!fields_.empty()) take_numbers(object, Place(at, "properties"));
     } else if (type == "GeometryCollection") {
       for_each(array(object, "geometries", at), Place(at, "geometries"), read_this);
     } else {
@@ -155,6 +159,42 @@ class GeoJsonReader {
     const std::string text = properties->dump();
     std::fill(map_.properties.begin() + static_cast<std::ptrdiff_t>(first), map_.properties.end(),
               text.substr(1, text.size() - 2));
+  }
+
+  // Appends the numbers of a feature that are asked for, one for each of its points.
+  void take_numbers(const Json& feature, const Place& at) {
+    static const Json kNone = Json::object();
+    const auto found = feature.find("properties");
+    const Json& properties = found != feature.end() && found->is_object() ? *found : kNone;
+    for (const auto& property : properties.items()) {
+      std::vector<std::string>& names = map_.field_names;
+      if (std::find(names.begin(), names.end(), property.key()) == names.end())
+        names.push_back(property.key());
+    }
+    for (PointField& field : fields_) {
+      const auto value = properties.find(field.name);
+      const bool is_known = value != properties.end() && !value->is_null();
+      if (is_known && !value->is_number())
+        fail_at(Place(at, field.name.c_str()), "is {}; expected a number", shown(*value));
+      field.values.resize(map_.points.size(),
+                          is_known ? value->get<double>() : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  // The height is the first field that a feature has.
+  void choose_fields() {
+    const auto is_there = [&](const PointField& field) {
+      const std::vector<std::string>& names = map_.field_names;
+      return std::find(names.begin(), names.end(), field.name) != names.end();
+    };
+    const auto kept = fields_.begin() + static_cast<std::ptrdiff_t>(columns_.heights.size());
+    const auto height = std::find_if(fields_.begin(), kept, is_there);
+    map_.has_height_field = height != kept;
+    if (map_.has_height_field) map_.points.heights = std::move(height->values);
+    const auto missing = std::find_if_not(kept, fields_.end(), is_there);
+    if (missing != fields_.end())
+      fail(path_, "has no field '{}'; its fields are {}", missing->name, fmt::join(map_.field_names, ", "));
+    map_.points.fields.assign(kept, fields_.end());
   }
 
   // Level by level, since the serializer recurses.
@@ -182,8 +222,9 @@ class GeoJsonReader {
     if (!name.is_string()) return;
     map_.points.crs = name.get<std::string>();
     constexpr std::string_view kEpsg = "urn:ogc:def:crs:EPSG:";
-    if (map_.points.crs.rfind(kEpsg, 0) == 0)
-      map_.points.crs = "EPSG:" + map_.points.crs.substr(map_.points.crs.rfind(':') + 1);
+    std::string& crs = map_.points.crs;
+    if (crs.rfind(kEpsg, 0) == 0) crs = "EPSG:" + crs.substr(crs.rfind(':') + 1);
+    if (crs.ends_with(":CRS84")) crs = kDegrees;  // urn:ogc:def:crs:OGC:1.3:CRS84
   }
 
   void read_geometry(const Json& type, const Json& object, const Place& at) {
@@ -255,6 +296,8 @@ class GeoJsonReader {
   static constexpr std::size_t kDeepest = 100;
 
   const std::string& path_;
+  const Columns& columns_;
+  std::vector<PointField> fields_;  // those that may have heights, and those that points keep
   Map map_;
   std::size_t unclosed_ = 0;  // rings
 };
@@ -269,11 +312,10 @@ bool are_degrees(const Points& points) {
 }
 
 Map read_geojson(const std::string& path, const Columns& columns) {
-  const bool has_fields = !columns.heights.empty() || !columns.fields.empty();
-  Map map = has_fields ? read_layer(path, columns) : GeoJsonReader(path).read();
+  Map map = GeoJsonReader(path, columns).read();
   std::string& crs = map.points.crs;
-  // As RFC 7946 has it, unless coordinates are none. GDAL does not say whether the file names a system.
-  if (crs.empty() || (has_fields && crs == "EPSG:4326")) crs = are_degrees(map.points) ? kDegrees : "";
+  // As RFC 7946 has it, unless coordinates are none.
+  if (crs.empty() && are_degrees(map.points)) crs = kDegrees;
   return map;
 }
 

@@ -8,21 +8,24 @@
 
 namespace flaunay::io {
 
-/// Throws Error(usage) that says so if this build cannot read or write the file, and Error(input) if GDAL has
-/// no driver for this layer.
+/// Throws Error(usage) that says so if this build cannot write the file, and Error(input) if GDAL has no
+/// driver for this layer, or the file has layers that flaunay has not written.
 void require_gdal(const std::string& path);
 
 /// Longitude and latitude, as a file of GeoJSON has them that names no system.
 constexpr const char* kDegrees = "OGC:CRS84";
 
-/// A system of coordinates as GDAL reads it (EPSG:n, WKT, ...), as "EPSG:n" or WKT; without GDAL, the text
-/// itself. what: where it comes from, for messages. Throws Error(input).
-std::string crs_text(const std::string& crs, const std::string& what);
+/// A system of coordinates that --crs says in any way that GDAL reads (EPSG:n, a file of WKT, ...), as
+/// "EPSG:n" or WKT; without GDAL, the text itself. Throws Error(input).
+std::string crs_text(const std::string& crs);
+/// Throws Error(input) with the path if GDAL does not know the system that the file names. Only names and WKT
+/// count, since GDAL would call servers and read other files.
+void check_crs(const std::string& crs, const std::string& path);
 /// Whether both are one system; without GDAL, whether they are one text.
 bool is_same_crs(const std::string& a, const std::string& b);
 /// Whether coordinates are surely of two systems, heights aside: false if one of the texts says nothing.
 bool are_different_crs(const std::string& a, const std::string& b);
-/// Whether coordinates are longitudes and latitudes; without GDAL, of EPSG:4326.
+/// Whether coordinates are longitudes and latitudes; without GDAL, by the number of EPSG.
 bool is_geographic(const std::string& crs);
 /// The number of EPSG; 0 if it has none or is not known.
 int epsg_code(const std::string& crs);

@@ -1,6 +1,8 @@
 // Rasters, pictures and systems of coordinates by GDAL.
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <iterator>
 #include <string_view>
 
 #include "app/files/gdal.hpp"
@@ -58,20 +60,41 @@ const Gdal& gdal() {
 System read_crs(const std::string& crs) {
   const Quiet quiet;
   System system(gdal().OSRNewSpatialReference(nullptr));
-  if (gdal().OSRSetFromUserInput(system.get(), crs == kDegrees ? "EPSG:4326" : crs.c_str()) != OGRERR_NONE)
+  const std::string text = crs == kDegrees ? "EPSG:4326" : crs;
+  constexpr std::string_view kNames[] = {"EPSG:", "ESRI:", "OGC:", "urn:ogc:def:crs:"};
+  const bool is_name = text.find('/') == std::string::npos &&
+                       std::any_of(std::begin(kNames), std::end(kNames),
+                                   [&](std::string_view name) { return text.rfind(name, 0) == 0; });
+  char* wkt = const_cast<char*>(text.c_str());  // which GDAL only reads
+  if ((is_name ? gdal().OSRSetFromUserInput(system.get(), text.c_str())
+               : gdal().OSRImportFromWkt(system.get(), &wkt)) != OGRERR_NONE)
     return nullptr;
   gdal().OSRSetAxisMappingStrategy(system.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return system;
 }
 
+System known_crs(const std::string& crs, const std::string& path) {
+  System system = read_crs(crs);
+  if (!system)
+    fail(path, "has the coordinate system '{}', which GDAL does not know; say by --crs what it is", crs);
+  return system;
+}
+
 std::string text_of(OGRSpatialReferenceH system) {
+  const auto got = [](const auto& get, const auto&... arguments) {
+    const char* const text = get(arguments...);
+    return std::string(text == nullptr ? "" : text);
+  };
   if (system == nullptr) return "";
-  const char* const name = gdal().OSRGetAuthorityName(system, nullptr);
-  const char* const code = gdal().OSRGetAuthorityCode(system, nullptr);
-  if (name != nullptr && code != nullptr && std::string(name) == "EPSG") return std::string("EPSG:") + code;
+  // As layers without a system have them.
+  const std::string title = got(gdal().OSRGetName, system);
+  if (title.rfind("Undefined", 0) == 0 || title.rfind("Unknown engineering", 0) == 0) return "";
+  const std::string code = got(gdal().OSRGetAuthorityName, system, nullptr) + ":" +
+                           got(gdal().OSRGetAuthorityCode, system, nullptr);
+  if (code == kDegrees || (code.rfind("EPSG:", 0) == 0 && code != "EPSG:")) return code;
   char* text = nullptr;
   gdal().OSRExportToWkt(system, &text);
-  const std::string wkt = text;
+  const std::string wkt = text == nullptr ? "" : text;
   gdal().VSIFree(text);
   return wkt;
 }
@@ -82,10 +105,16 @@ GDALDriverH gdal_driver(const char* format, const std::string& name) {
   return found;
 }
 
-std::string crs_text(const std::string& crs, const std::string& what) {
-  const System system = read_crs(crs);
-  if (!system) fail(what, "GDAL knows no coordinate system '{}'", crs);
+std::string crs_text(const std::string& crs) {
+  const Quiet quiet;
+  const System system(gdal().OSRNewSpatialReference(nullptr));
+  if (gdal().OSRSetFromUserInput(system.get(), crs.c_str()) != OGRERR_NONE)
+    fail("--crs", "GDAL knows no coordinate system '{}'", crs);
   return text_of(system.get());
+}
+
+void check_crs(const std::string& crs, const std::string& path) {
+  if (!crs.empty()) known_crs(crs, path);
 }
 
 bool is_same_crs(const std::string& a, const std::string& b) {
@@ -95,9 +124,10 @@ bool is_same_crs(const std::string& a, const std::string& b) {
 }
 
 bool are_different_crs(const std::string& a, const std::string& b) {
-  if (a.empty() || b.empty() || a == kDegrees || b == kDegrees) return false;
+  if (a.empty() || b.empty() || a == b) return false;
+  if (a == kDegrees || b == kDegrees) return !is_geographic(a) || !is_geographic(b);
   const System first = read_crs(a), second = read_crs(b);
-  if (!first || !second) return false;
+  if (!first || !second) return true;
   gdal().OSRStripVertical(first.get());
   gdal().OSRStripVertical(second.get());
   return gdal().OSRIsSame(first.get(), second.get()) == 0;
@@ -123,9 +153,7 @@ void write_geotiff(const std::string& path, const std::string& name, const GeoRa
   if (!source) fail(name, "cannot be written: {}", quiet.reason());
   std::array<double, 6> transform = {raster.west, raster.resolution, 0, raster.north, 0, -raster.resolution};
   gdal().GDALSetGeoTransform(source.get(), transform.data());
-  if (!raster.crs.empty()) {
-    if (const System system = read_crs(raster.crs)) gdal().GDALSetSpatialRef(source.get(), system.get());
-  }
+  if (!raster.crs.empty()) gdal().GDALSetSpatialRef(source.get(), known_crs(raster.crs, name).get());
   gdal().GDALSetMetadataItem(source.get(), "AREA_OR_POINT", raster.is_point ? "Point" : "Area", nullptr);
   gdal().GDALSetRasterNoDataValue(gdal().GDALGetRasterBand(source.get(), 1), raster.nodata);
   Settings options;

@@ -12,7 +12,9 @@ void require_gdal(const std::string& path) {
                                     path)));
 }
 
-std::string crs_text(const std::string& crs, const std::string&) { return crs; }
+std::string crs_text(const std::string& crs) { return crs; }
+
+void check_crs(const std::string&, const std::string&) {}
 
 bool is_same_crs(const std::string& a, const std::string& b) { return a == b; }
 
@@ -21,10 +23,12 @@ int epsg_code(const std::string& crs) {
   return crs.rfind(kPrefix, 0) == 0 ? std::atoi(crs.c_str() + kPrefix.size()) : 0;
 }
 
-bool is_geographic(const std::string& crs) { return crs == kDegrees || epsg_code(crs) == 4326; }
+bool is_geographic(const std::string& crs) { return crs == kDegrees || epsg_code(crs) / 1000 == 4; }
 
 bool are_different_crs(const std::string& a, const std::string& b) {
-  return epsg_code(a) != 0 && epsg_code(b) != 0 && epsg_code(a) != epsg_code(b);
+  const auto is_known = [](const std::string& crs) { return crs == kDegrees || epsg_code(crs) != 0; };
+  if (!is_known(a) || !is_known(b)) return false;
+  return a == kDegrees || b == kDegrees ? !is_geographic(a) || !is_geographic(b) : a != b;
 }
 
 void write_geotiff(const std::string&, const std::string& name, const GeoRaster&) { require_gdal(name); }

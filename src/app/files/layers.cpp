@@ -2,6 +2,7 @@
 #include "app/files/layers.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -99,6 +100,11 @@ std::vector<Layer::Field> properties_of(const MeshContents& contents) {
   return fields;
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 // Fields of triangles: points, means, and what constraints say. Ours have longer names if others have theirs.
 std::vector<Layer::Field> fields_of(const MeshContents& contents) {
   std::vector<Layer::Field> given = properties_of(contents), fields;
@@ -108,9 +114,7 @@ std::vector<Layer::Field> fields_of(const MeshContents& contents) {
     given.push_back({field.name, 0.0, [&](std::size_t t) { return mean(contents, t, field.values); }});
   }
   const auto add = [&](const std::string& name, const Value& type, std::function<Value(std::size_t)> value) {
-    const auto is_it = [&](const Layer::Field& field) { return field.name == name; };
-    const bool is_taken = std::any_of(given.begin(), given.end(), is_it);
-    fields.push_back({is_taken ? "flaunay_" + name : name, type, std::move(value)});
+    fields.push_back({own_name(name, given), type, std::move(value)});
   };
   const auto add_labels = [&](const char* name, const std::vector<std::int32_t>& labels) {
     if (labels.empty()) return;
@@ -161,7 +165,7 @@ constexpr Format layer_format(std::string_view ending) {
 
 constexpr Format shapefile() {
   Format format = layer_format(".shp");
-  format.sidecars = {".shx", ".dbf", ".prj", ".cpg"};
+  format.sidecars = {".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx", ".idm", ".ind"};
   return format;
 }
 
@@ -172,9 +176,16 @@ const Format kShp = shapefile();
 const Format kFgb = layer_format(".fgb");
 const Format kParquet = layer_format(".parquet");
 
+std::string own_name(std::string name, const std::vector<Layer::Field>& given) {
+  const auto is_it = [&](const Layer::Field& field) { return lower(field.name) == name; };
+  while (std::any_of(given.begin(), given.end(), is_it)) name = "flaunay_" + name;
+  return name;
+}
+
 void write_layer(Outputs& outputs, const std::string& path, const Layer& layer) {
-  if (ending_of(path) == ".geojson") return write_geojson_layer(outputs.open(path), layer);
-  write_gdal_layer(outputs, path, layer);
+  if (ending_of(path) != ".geojson") return write_gdal_layer(outputs, path, layer);
+  write_geojson_layer(outputs.open(path), layer);
+  note_crs(outputs, path, layer.crs);
 }
 
 void write_lines(Outputs& outputs, const std::string& path, const Contours& contours,
@@ -191,6 +202,30 @@ void write_lines(Outputs& outputs, const std::string& path, const Contours& cont
                      return heights[static_cast<std::size_t>(contours.heights[line])];
                    }}};
   write_layer(outputs, path, layer);
+}
+
+void choose_crs(const std::string& asked, const std::string& input, const std::string& output,
+                std::string& crs) {
+  if (!asked.empty()) {
+    crs = crs_text(asked);
+  } else if (find_format(output, Use::write_layer) != nullptr || ending_of(output).rfind(".tif", 0) == 0) {
+    check_crs(crs, input);
+  }
+}
+
+void check_same_crs(const std::string& path, const std::string& crs, const std::string& others,
+                    const std::string& others_crs) {
+  if (!are_different_crs(crs, others_crs)) return;
+  fail(path,
+       "has the coordinate system {}, but that of {} is {}: reproject one of them, or say by --crs what both "
+       "have",
+       crs, others, others_crs);
+}
+
+void note_crs(Outputs& outputs, const std::string& path, const std::string& crs) {
+  if (crs.empty() || crs == kDegrees || epsg_code(crs) != 0) return;
+  outputs.notes.push_back(
+      fmt::format("{} has no coordinate system: GeoJSON names those of EPSG alone; .gpkg has all", path));
 }
 
 std::string geojson_crs(const std::string& crs) {

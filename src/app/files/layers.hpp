@@ -35,6 +35,10 @@ struct Layer {
   std::vector<Field> fields;
 };
 
+/// The name, which is in lower case, of a field of ours beside those that features have: with flaunay_ before
+/// it if theirs have it, in any case.
+std::string own_name(std::string name, const std::vector<Layer::Field>& given);
+
 /// Writes a layer by path's ending, .geojson (without heights) or one of GDAL's formats, and the files beside
 /// path that the latter have. Throws Error(input).
 void write_layer(Outputs& outputs, const std::string& path, const Layer& layer);
@@ -48,9 +52,20 @@ void write_lines(Outputs& outputs, const std::string& path, const Contours& cont
 /// Error(input) that names the file, the layer and the feature.
 Map read_layer(const std::string& path, const Columns& columns);
 
+/// Sets the system of coordinates of a file to what the user says, if that is something. Throws Error(input)
+/// if GDAL, which writes to `output`, does not know it.
+void choose_crs(const std::string& asked, const std::string& input, const std::string& output,
+                std::string& crs);
+
+/// Throws Error(input) with the path if its system surely differs from that of other coordinates.
+void check_same_crs(const std::string& path, const std::string& crs, const std::string& others,
+                    const std::string& others_crs);
+
 /// The path without the name of a layer: a.gpkg of a.gpkg:lakes.
 std::string without_layer(const std::string& path);
 
+/// Adds a note if GeoJSON at path cannot name the system.
+void note_crs(Outputs& outputs, const std::string& path, const std::string& crs);
 /// The member "crs" of GeoJSON as GDAL writes it, with a comma; empty unless the system has a number of EPSG.
 /// Without it, RFC 7946 says that coordinates are longitude and latitude.
 std::string geojson_crs(const std::string& crs);

@@ -23,8 +23,8 @@ struct Driver {
   std::string_view ending;
   const char* name;
 };
-constexpr Driver kDrivers[] = {{".gpkg", "GPKG"},       {".shp", "ESRI Shapefile"}, {".fgb", "FlatGeobuf"},
-                               {".parquet", "Parquet"}, {".geojson", "GeoJSON"},    {".json", "GeoJSON"}};
+constexpr Driver kDrivers[] = {
+    {".gpkg", "GPKG"}, {".shp", "ESRI Shapefile"}, {".fgb", "FlatGeobuf"}, {".parquet", "Parquet"}};
 
 // The name of the driver; empty for other files than layers. Throws Error(input) if GDAL does not have it.
 std::string driver_of(const std::string& path) {
@@ -59,16 +59,18 @@ class LayerReader {
     const Dataset data(
         gdal().GDALOpenEx(file_.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers, nullptr, nullptr));
     if (!data) fail(file_, "cannot be read: {}", quiet_.reason());
-    gdal().CPLErrorReset();
     const OGRLayerH layer = choose_layer(data.get());
     read_names(gdal().OGR_L_GetLayerDefn(layer));
     map_.points.crs = text_of(gdal().OGR_L_GetSpatialRef(layer));
-    while (const Feature feature{gdal().OGR_L_GetNextFeature(layer)}) read_feature(feature.get());
-    const std::string problem = gdal().CPLGetLastErrorMsg();
-    if (gdal().CPLGetLastErrorType() >= CE_Failure) fail(file_, "layer '{}': {}", name_, problem);
-    std::vector<double>& heights = map_.points.heights;
+    quiet_.forget();
+    GIntBig count = 0;
+    for (; const Feature feature{gdal().OGR_L_GetNextFeature(layer)}; ++count) read_feature(feature.get());
+    if (quiet_.has_failed()) fail(file_, "layer '{}': {}", name_, quiet_.reason());
+    // In a Shapefile, deleted ones count, too.
+    const GIntBig expected = driver == "FlatGeobuf" ? gdal().OGR_L_GetFeatureCount(layer, FALSE) : 0;
+    if (count < expected) fail(file_, "layer '{}' ends after {} of {} features", name_, count, expected);
     if (map_.points.size() == 0) fail(file_, "layer '{}' has no feature with a geometry", name_);
-    if (std::all_of(heights.begin(), heights.end(), [](double z) { return std::isnan(z); })) heights = {};
+    map_.complete_heights(file_);
     if (without_geometry_ > 0) {
       map_.notes.push_back(
           fmt::format("{}: layer '{}' has {} features without a geometry", file_, name_, without_geometry_));
@@ -247,7 +249,7 @@ class LayerReader {
     return first;
   }
 
-  const Quiet quiet_;
+  Quiet quiet_;
   std::string path_, file_;
   const Columns& columns_;
   std::string name_;  // of the layer
@@ -288,7 +290,20 @@ OGRGeometryH geometry_of(const Layer& layer, const std::vector<double>& position
 
 }  // namespace
 
-void require_gdal(const std::string& path) { driver_of(path); }
+void require_gdal(const std::string& path) {
+  const std::string driver = driver_of(path);
+  if (driver != "GPKG") return;
+  const Quiet quiet;
+  const char* const drivers[] = {driver.c_str(), nullptr};
+  const Dataset old(
+      gdal().GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+  for (int k = 0; old && k < gdal().GDALDatasetGetLayerCount(old.get()); ++k) {
+    const std::string name = gdal().OGR_L_GetName(gdal().GDALDatasetGetLayer(old.get(), k));
+    if (name == "triangles" || name == "cells" || name == "contours") continue;
+    fail(path, "has the layer {}, which would be lost; write another file, and add it by ogr2ogr -update",
+         name);
+  }
+}
 
 Map read_layer(const std::string& path, const Columns& columns) { return LayerReader(path, columns).read(); }
 
@@ -301,11 +316,14 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   Dataset data(gdal().GDALCreate(gdal_driver(driver_of(path).c_str(), path), file.path(), 0, 0, 0,
                                  GDT_Unknown, nullptr));
   check(data != nullptr);
-  const System system = layer.crs.empty() ? nullptr : read_crs(layer.crs);
+  const System system = layer.crs.empty() ? nullptr : known_crs(layer.crs, path);
   const OGRwkbGeometryType flat = layer.is_polygons ? wkbPolygon : wkbLineString;
   const OGRwkbGeometryType spatial = layer.is_polygons ? wkbPolygon25D : wkbLineString25D;
+  const bool is_shapefile = ending_of(path) == ".shp";
+  Settings options;
+  if (is_shapefile) options.set("ENCODING", "UTF-8");
   const OGRLayerH to = gdal().GDALDatasetCreateLayer(data.get(), layer.name.c_str(), system.get(),
-                                                     layer.has_heights ? spatial : flat, nullptr);
+                                                     layer.has_heights ? spatial : flat, options.get());
   check(to != nullptr);
   for (const Layer::Field& field : layer.fields) {
     const OGRFieldDefnH definition = gdal().OGR_Fld_Create(field.name.c_str(), type_of(field.type));
@@ -327,7 +345,9 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   }
   check(!has_transactions || gdal().GDALDatasetCommitTransaction(data.get()) == OGRERR_NONE);
   data.reset();
-  check(gdal().CPLGetLastErrorType() < CE_Failure);
+  check(!quiet.has_failed());
+  for (const std::string& warning : quiet.warnings())
+    outputs.notes.push_back(fmt::format("{}: {}{}", path, warning, is_shapefile ? "; .gpkg has all" : ""));
   for (const std::string& each : mesh_files(path)) {
     const std::string bytes = MemoryFile(ending_of(each).c_str()).bytes();
     if (each == path || !bytes.empty()) {

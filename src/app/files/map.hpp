@@ -36,7 +36,7 @@ struct Map {
   std::vector<std::string> properties = {};
   bool has_others = false;                    ///< lines or points besides polygons
   bool has_height_field = false;              ///< heights are those of a field that was asked for
-  std::vector<std::string> field_names = {};  ///< of a layer
+  std::vector<std::string> field_names = {};  ///< of a layer, and of GeoJSON of which fields are read
   std::vector<std::string> notes;             ///< a sentence for each thing that was left out or mended
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
@@ -44,6 +44,10 @@ struct Map {
   void add_line(std::size_t first);
   /// Joins them to a ring. If the last one closes it, it is left out. Returns whether it does.
   bool add_ring(std::size_t first);
+  /// Leaves no heights if all are unknown, and notes how many of a field are.
+  void complete_heights(const std::string& path);
+  /// Throws Error(input) if fields were asked for, and there is none, or it has no value.
+  void check_height_field(const std::string& path, const std::vector<std::string>& fields) const;
 };
 
 /// Whether the ending of path is that of a map: .poly, .geojson, .json, or that of a layer.
@@ -58,6 +62,9 @@ bool is_map(const std::string& path);
 /// Throws Error(input) that names the file and the place: line and column for text, the path in the document
 /// for JSON.
 Map read_map(const std::string& path, const Columns& columns = {});
+/// Reads a map of lines beside points whose columns are given. heights: its fields with heights, which it
+/// must have; empty: those of the columns.
+Map read_lines(const std::string& path, const Columns& columns, const std::vector<std::string>& heights);
 /// Whether maps with the path's ending have fields: layers and GeoJSON.
 bool has_fields(const std::string& path);
 

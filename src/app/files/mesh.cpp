@@ -10,6 +10,7 @@
 
 #include "app/files/formats.hpp"
 #include "app/files/geotiff.hpp"
+#include "app/files/layers.hpp"
 #include "app/files/node.hpp"
 #include "app/files/text.hpp"
 #include "files/file.hpp"
@@ -488,6 +489,7 @@ void write_mesh(Outputs& outputs, const std::string& path, const MeshContents& c
   const Format& format = format_of(path, Use::write_mesh);
   if (format.write_layer != nullptr) return format.write_layer(outputs, path, contents);
   format.write_mesh(outputs.open(path), contents);
+  if (Use::write_features(format)) note_crs(outputs, path, contents.points.crs);
   const auto write_beside = [&](const Format::Beside& beside) {
     if (beside.write != nullptr) beside.write(outputs.open(path_beside(path, beside.ending)), contents);
   };

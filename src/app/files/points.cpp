@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "app/files/formats.hpp"
 #include "files/file.hpp"
@@ -122,7 +123,11 @@ void check_columns(const std::string& path, const Columns& columns) {
 Points read_points(const std::string& path, const Columns& columns, bool with_heights) {
   const Format& format = format_of(path, Use::read_points);
   check_columns(path, columns);
-  if (format.map != nullptr) return format.map(path, columns).points;
+  if (format.map != nullptr) {
+    Map map = format.map(path, columns);
+    map.check_height_field(path, columns.heights);
+    return std::move(map.points);
+  }
   return format.text != nullptr ? read_text(path, format, columns)
                                 : read_records(path, format, columns, with_heights);
 }

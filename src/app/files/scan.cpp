@@ -25,7 +25,8 @@ constexpr std::size_t kPiece = std::size_t{1} << 15;
 // Chosen points are counted by blocks of this many records, so that any chosen point can be found.
 constexpr std::size_t kCountedBlock = std::size_t{1} << 12;
 
-constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz, .csv, .geojson, .gpkg, .shp, .fgb or .parquet";
+constexpr std::string_view kEndings = ".las, .npy, .txt, .xyz, .csv";
+constexpr std::string_view kMaps = ", .geojson, .gpkg, .shp, .fgb, .parquet";
 
 bool is_text(const std::string& ending) { return ending == ".txt" || ending == ".xyz" || ending == ".csv"; }
 
@@ -78,7 +79,7 @@ class Scan::Part {
            "\"pdal translate IN.laz OUT.las\", or take flaunay.terrain in Python (pip install "
            "flaunay[terrain])");
     } else {
-      fail_ending(path_, kEndings);
+      fail_ending(path_, std::string(kEndings).append(third == "height" ? kMaps : ""));
     }
     if (!choice.takes_all())
       throw Error(ErrorKind::usage,
@@ -379,7 +380,7 @@ std::vector<std::string> scan_files(const std::vector<std::string>& paths) {
       if (is_text(ending) || ending == ".las" || ending == ".laz" || ending == ".npy") found.push_back(name);
     }
     if (error) fail(path, "cannot be read: {}", error.message());
-    if (found.empty()) fail(path, "has no files that end with {}", kEndings);
+    if (found.empty()) fail(path, "has no files that end with {}, which are read of folders", kEndings);
     std::sort(found.begin(), found.end());
     files.insert(files.end(), found.begin(), found.end());
   }
