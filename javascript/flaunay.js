@@ -8,6 +8,6 @@ export {default} from './library.js';
  * Loads the module and makes the library ready. source: its address; otherwise it lies beside this file.
  * @param {string | URL} [source]
  */
-export function init(source = new URL('flaunay.wasm', import.meta.url)) {
+export function init(source = () => new URL('flaunay.wasm', import.meta.url)) {
   return library.init(source);
 }

@@ -17,9 +17,10 @@ export class FlaunayError extends Error {
 
 // ---- The module
 
+let missing = 'the WebAssembly module is not loaded yet: await `ready` first'; // what calls say without a module
 const LOADING = new Proxy({}, {
   get() {
-    throw new FlaunayError('the WebAssembly module is not loaded yet: await `ready` first', 'usage');
+    throw new FlaunayError(missing, 'usage');
   },
 });
 let wasm = LOADING; // its exports
@@ -108,17 +109,69 @@ export async function startThreads(make, settings = {}) {
   return module;
 }
 
+// An address, or that of a file beside the bundle, which a function returns.
+function addressOf(source) {
+  if (typeof source !== 'function') return source;
+  try {
+    return source();
+  } catch {
+    throw new FlaunayError('this bundle has no import.meta.url: import flaunay/flaunay.js and call init(address) or ' +
+      'start(module), or bundle as a module', 'usage');
+  }
+}
+
+// Throws the error of a module that could not be loaded, which later calls repeat.
+function fail(error, source, address) {
+  let found = error;
+  if (!(error instanceof FlaunayError)) {
+    const hint = typeof source === 'function' ? `; is ${String(address).split('/').pop()} beside the bundle?` : '';
+    found = new FlaunayError(`${address}: ${error.message}${hint}`, 'usage');
+  }
+  missing = `the module could not be loaded: ${found.message}`;
+  throw found;
+}
+
+async function load(source) {
+  let address;
+  try {
+    address = addressOf(source);
+    const response = await fetch(address);
+    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+    const isWasm = response.headers.get('Content-Type')?.startsWith('application/wasm');
+    const module = await (isWasm ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
+    // Chrome before 114 starts nothing of this size at once in a page.
+    return await WebAssembly.instantiate(module, importsOf(module));
+  } catch (error) {
+    return fail(error, source, address);
+  }
+}
+
+let earlier = Promise.resolve(); // fulfilled when earlier calls of init have ended
+
 /**
- * Loads the module from this address and makes the library ready.
- * @param {string | URL} source
+ * Loads the module from this address and makes the library ready. Modules load at the same time, but are used in the
+ * order of calls.
+ * @param {string | URL | (() => URL)} source
  */
 export async function init(source) {
-  const response = await fetch(source);
-  if (!response.ok) throw new FlaunayError(`${source}: ${response.status} ${response.statusText}`, 'usage');
-  const isWasm = response.headers.get('Content-Type')?.startsWith('application/wasm');
-  const module = await (isWasm ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
-  // Chrome before 114 starts nothing of this size at once in a page.
-  use(await WebAssembly.instantiate(module, importsOf(module)));
+  const done = Promise.all([load(source), earlier]).then(([instance]) => use(instance));
+  earlier = Promise.allSettled([earlier, done]);
+  await done;
+}
+
+/**
+ * Makes the library ready at once from a file, for Node.
+ * @param {() => URL} source
+ * @param {(address: URL) => Uint8Array} read
+ */
+export async function startFile(source, read) {
+  let address;
+  try {
+    address = addressOf(source);
+    start(new WebAssembly.Module(read(address)));
+  } catch (error) {
+    fail(error, source, address);
+  }
 }
 
 // ---- Calls
@@ -466,6 +519,9 @@ export class Triangulation extends Mesh {
 
   /** Values between points, one row of `columns` numbers per query. */
   interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
+    if (!wasm.flaunay_locator_interpolate) {
+      throw new FlaunayError('interpolate is in flaunay, not in flaunay/points', 'usage');
+    }
     if (values.length !== columns * this.pointCount) {
       throw new FlaunayError(`${values.length} values are not ${columns} for each of ${this.pointCount} points`,
         'usage');

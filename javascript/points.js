@@ -2,4 +2,4 @@
 import {init} from './library.js';
 
 export {default, FlaunayError, Triangulation, version, wrongEdges} from './library.js';
-export const ready = init(new URL('points.wasm', import.meta.url));
+export const ready = init(() => new URL('points.wasm', import.meta.url));

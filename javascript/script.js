@@ -9,3 +9,4 @@ for (let i = 0; i < bytes.length; i++) bytes[i] = 16 * digit(hex.charCodeAt(2 * 
 start(new WebAssembly.Module(bytes));
 
 export {default as Delaunator, FlaunayError, Triangulation, version, wrongEdges} from './library.js';
+export const ready = Promise.resolve();

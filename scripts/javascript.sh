@@ -47,7 +47,7 @@ else
 fi
 node -e "process.stdout.write(require('fs').readFileSync('$package/points.wasm', 'hex'))" >"$package/points.hex"
 esbuild "$package/script.js" --bundle --minify --format=iife --global-name=flaunay --loader:.hex=text --target=es2022 \
-  --log-level=warning --outfile="$package/flaunay.min.js"
+  --banner:js="/*! flaunay $version, MIT licence: LICENSE and NOTICES.md of its package */" --log-level=warning --outfile="$package/flaunay.min.js"
 rm "$package"/{points.hex,script.js}
 
 (cd "$package" && npm pack --silent --pack-destination .. >/dev/null)
@@ -65,7 +65,7 @@ tsc --noEmit --strict --target es2022 --module node16 --moduleResolution node16 
 
 # As it is installed in an empty folder, with the program that users are shown; and the programs of the tutorials.
 npm install --silent --offline --no-audit --no-fund --prefix "$output/installed" "$output/flaunay-$version.tgz"
-sed -n '/^```js$/,/^```$/{/^```/d;p}' javascript/README.md >"$output/installed/example.mjs"
+sed -n '/^```js$/,/^```$/{/^```$/q;/^```/d;p}' javascript/README.md >"$output/installed/example.mjs"
 (cd "$output/installed" && node example.mjs)
 PACKAGE="$package" WORK=build/snippets tests/snippets.sh js docs/tutorials/*.md
 echo "$output/flaunay-$version.tgz"

@@ -16,7 +16,7 @@ export const page = (elements) => `<!doctype html><script>
     addEventListener('unhandledrejection', ({reason}) => report(String(reason)));
   </script>${elements}`;
 
-/** What the page at this path reports. pages: texts by paths; all other files are in the folder. */
+/** What the page at this path reports. pages: texts by paths, null for none; all other files are in the folder. */
 export async function reported(path, pages, folder, headers = {}) {
   let resolve;
   const report = new Promise((to) => (resolve = to));
@@ -27,7 +27,8 @@ export async function reported(path, pages, folder, headers = {}) {
       return;
     }
     try {
-      const body = pages[request.url] ?? readFileSync(join(folder, request.url));
+      const body = request.url in pages ? pages[request.url] : readFileSync(join(folder, request.url));
+      if (body === null) throw new Error('none');
       response.writeHead(200, {...headers, 'Content-Type': TYPES[extname(request.url)]}).end(body);
     } catch {
       response.writeHead(404).end();

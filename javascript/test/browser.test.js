@@ -50,6 +50,48 @@ test('before it is ready', settings, async () => {
   assert.match(await reported('/page.html', pages, folder), /FlaunayError: .*await `ready`/);
 });
 
+test('flaunay/points beside flaunay, before and after it', settings, async () => {
+  // The larger module comes late.
+  const late = `<script>
+    const get = fetch;
+    fetch = async (...given) => {
+      if (String(given[0]).endsWith('flaunay.wasm')) await new Promise((over) => setTimeout(over, 500));
+      return get(...given);
+    };
+  </script>`;
+  const pages = {};
+  for (const names of [['index', 'points'], ['points', 'index']]) {
+    const imports = names.map((name) => `import {ready as ${name}} from './${name}.js';`).join('\n');
+    pages[`/${names[0]}.html`] = late + script(`${imports}
+      const ends = await Promise.allSettled([${names}]);
+      report(ends.map(({status, reason}) => reason?.message ?? status).join());
+    `);
+  }
+  assert.equal(await reported('/index.html', pages, folder), 'fulfilled,fulfilled');
+  assert.match(await reported('/points.html', pages, folder), /^fulfilled,.*import flaunay first$/);
+});
+
+test('a module that is not there, and a page in its place', settings, async () => {
+  for (const [wasm, reason] of [[null, '404'], ['<html>', 'magic word']]) {
+    const pages = {
+      '/page.html': script(`
+        import Delaunator, {ready} from './points.js';
+        const ended = await ready.catch((error) => error);
+        try {
+          new Delaunator([0, 0]);
+        } catch (error) {
+          report([ended.name, ended.message, error.message].join('|'));
+        }
+      `),
+      '/points.wasm': wasm,
+    };
+    const [name, message, later] = (await reported('/page.html', pages, folder)).split('|');
+    assert.equal(name, 'FlaunayError');
+    assert.match(message, new RegExp(`points.wasm: .*${reason}.*; is points.wasm beside the bundle\\?$`));
+    assert.equal(later, `the module could not be loaded: ${message}`);
+  }
+});
+
 test('threads, in a page that is cross-origin isolated', withThreads, async () => {
   const isolated = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};
   const pages = {'/page.html': script(`${READY('./threads.js')} report(done);`)};
@@ -63,7 +105,7 @@ test('threads, in another page', withThreads, async () => {
 
 test('one script, for a page without modules', settings, async () => {
   const pages = {'/page.html': page(`<script src="flaunay.min.js"></script>
-    <script>const {Delaunator, Triangulation} = flaunay; ${WORK} report(done);</script>`)};
+    <script>const {Delaunator, Triangulation, ready} = flaunay; ${WORK} ready.then(() => report(done));</script>`)};
   assert.equal(await reported('/page.html', pages, folder), COUNTS);
 });
 
@@ -83,6 +125,15 @@ test('a bundle that is a module, with points.wasm beside it', settings, async (t
   const program = `${READY('flaunay/points')} report(done);`;
   assert.equal(await bundled(t, program, ['points.wasm'], ['--format=esm'], '<script type="module" src="program.js"></script>'),
     COUNTS);
+});
+
+test('a bundle that is a script and cannot find its module', settings, async (t) => {
+  for (const name of ['flaunay', 'flaunay/points']) {
+    const program = `import {ready} from '${name}'; ready.catch((error) => report(String(error)));`;
+    const options = ['--format=iife', '--target=es2022', '--log-override:empty-import-meta=silent'];
+    assert.match(await bundled(t, program, [], options, '<script src="program.js"></script>'),
+      /^FlaunayError: this bundle has no import.meta.url/);
+  }
 });
 
 test('a bundle that is a script, with a file of another name', settings, async (t) => {

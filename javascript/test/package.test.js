@@ -7,7 +7,7 @@ import test from 'node:test';
 const folder = process.env.FLAUNAY_PACKAGE;
 
 test('package.json', {skip: !folder}, () => {
-  const {exports, main, types, sideEffects, unpkg, jsdelivr} = JSON.parse(readFileSync(join(folder, 'package.json')));
+  const {exports, files, main, types, sideEffects, unpkg, jsdelivr} = JSON.parse(readFileSync(join(folder, 'package.json')));
   const targets = Object.values(exports).flatMap((target) => {
     if (typeof target === 'string') return target;
     // The first condition that is met counts.
@@ -20,6 +20,8 @@ test('package.json', {skip: !folder}, () => {
     assert.match(path, /^\.\//);
     assert.ok(existsSync(join(folder, path)), path);
   }
+  const notices = readFileSync(join(folder, unpkg), 'utf8').match(/^\/\*! flaunay \d+\.\d+\.\d+, MIT licence.* (\S+\.md) /);
+  assert.ok(files.includes(notices[1]) && existsSync(join(folder, notices[1])));
   // Importing these loads a module; a bundler may drop the others.
   for (const name of ['.', './points']) {
     for (const condition of ['node', 'default']) assert.ok(sideEffects.includes(exports[name][condition]));

@@ -20,6 +20,11 @@ test('what it has', () => {
   assert.ok(Math.abs(mesh.clippedVoronoi([0, 0, 1, 1]).areas.reduce((a, b) => a + b) - 1) < 1e-12);
 });
 
+test('what it has not', () => {
+  assert.throws(() => new Triangulation([0, 0, 1, 0, 0, 1]).interpolate([1, 2, 3], [0.2, 0.2]),
+    {name: 'FlaunayError', kind: 'usage', message: 'interpolate is in flaunay, not in flaunay/points'});
+});
+
 test('its size on the way to a browser', (t) => {
   const bytes = brotliCompressSync(readFileSync(createRequire(import.meta.url).resolve('flaunay/points.wasm'))).length;
   t.diagnostic(`points.wasm has ${bytes} bytes when it is compressed`);
@@ -27,5 +32,5 @@ test('its size on the way to a browser', (t) => {
 });
 
 test('it comes after flaunay, or without it', async () => {
-  await assert.rejects(import('flaunay'), (error) => error instanceof FlaunayError && error.kind === 'usage');
+  await assert.rejects(import('flaunay').then(({ready}) => ready), (error) => error instanceof FlaunayError && error.kind === 'usage');
 });

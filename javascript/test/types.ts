@@ -2,7 +2,7 @@
 import Delaunator, {
   ClippedVoronoi, ConstrainedTriangulation, DynamicTriangulation, FlaunayError, Triangulation, ready as loaded, wrongEdges,
 } from 'flaunay';
-import {ready as pointsLoaded} from 'flaunay/points';
+import {Triangulation as OfPoints, ready as pointsLoaded} from 'flaunay/points';
 import {init} from 'flaunay/flaunay.js';
 
 const drop: Delaunator<Float64Array> = Delaunator.from([[0, 0], [1, 0], [0, 1]]);
@@ -25,13 +25,17 @@ const rows: Int32Array = moving.rows().triangles;
 
 // @ts-expect-error There is no such method.
 mesh.interpolate([1], [0, 0], {method: 'cubic'});
+const ofPoints: OfPoints = OfPoints.batch([[0, 0], [1, 1]]);
+const nearest: number = ofPoints.nearest(0, 0);
+// @ts-expect-error It has no interpolation.
+ofPoints.interpolate([1, 1], [0, 0]);
 export async function ready(): Promise<string> {
   await init('flaunay.wasm');
   const both: Promise<void>[] = [loaded, pointsLoaded];
   await Promise.all(both);
   try {
     polygons.free();
-    return `${one} ${many} ${segments.addedPoints} ${rows}`;
+    return `${one} ${many} ${nearest} ${segments.addedPoints} ${rows}`;
   } catch (error) {
     if (error instanceof FlaunayError && error.kind === 'memory') return error.message;
     throw error;
