@@ -8,6 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/site.sh --build
 work=build/site
 "$work/venv/bin/python" tests/site/links.py "$work/html"
+node site/pictures.mjs build/javascript/package
 
 # Port 0 is any free one, which the server prints; not that of an earlier run.
 rm -f "$work/server.log"

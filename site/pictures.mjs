@@ -1,8 +1,10 @@
 // Draws the first page's picture, site/pictures/{delaunator,flaunay}.svg: the points of a circle in two turns, and the
-// edges that are wrong by robust-predicates in red. PACKAGE: the folder that scripts/javascript.sh makes.
+// edges that are wrong by robust-predicates in red. Fails if the page says another number of them. PACKAGE: the folder
+// that scripts/javascript.sh makes.
 //
 //   node site/pictures.mjs PACKAGE
-import {writeFileSync} from 'node:fs';
+import assert from 'node:assert/strict';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
@@ -11,7 +13,7 @@ import {meshOf, wrongEdges} from './live/wrong.js';
 
 const {default: Delaunator} = await import(pathToFileURL(resolve(process.argv[2], 'points-node.js')));
 
-// By the sine and cosine of angles up to 4 pi: the second turn's points are some 1e-16 beside those of the first.
+// By the sine and cosine of angles up to 4 pi: the second turn's points are up to 2e-15 beside those of the first.
 const PER_TURN = 36;
 const coords = new Float64Array(4 * PER_TURN);
 for (let i = 0; i < 2 * PER_TURN; i++) {
@@ -22,8 +24,16 @@ for (let i = 0; i < 2 * PER_TURN; i++) {
 const number = (value) => String(Math.round(1000 * value) / 10);
 const place = (i) => `${number(coords[2 * i])} ${number(-coords[2 * i + 1])}`;
 
+const text = readFileSync(new URL('index.md', import.meta.url), 'utf8');
+const said = {
+  delaunator: [/with (\d+) red edges/, />(\d+) wrong edges</].map((pattern) => Number(pattern.exec(text)[1])), flaunay: [0],
+};
+const leftOut = Number(/leaves (\d+) out/.exec(text)[1]);
+
 for (const [name, {triangles, halfedges}] of [['delaunator', new Peer(coords)], ['flaunay', new Delaunator(coords)]]) {
   const wrong = wrongEdges(coords, meshOf({triangles, halfedges}));
+  for (const count of said[name]) assert.equal(wrong.length / 2, count, `${name}: wrong edges`);
+  if (name === 'delaunator') assert.equal(2 * PER_TURN - new Set(triangles).size, leftOut, 'points that are left out');
   let faces = '', area = 0;
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = triangles.subarray(t, t + 3);

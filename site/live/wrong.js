@@ -2,7 +2,7 @@
 import {incircle} from '../vendor/robust-predicates/incircle.js';
 import {orient2d} from '../vendor/robust-predicates/orient2d.js';
 
-/** Ends of the edges that have the vertex beyond them inside of their triangle's circle, or a flat triangle. */
+/** Ends of the edges with the vertex beyond them inside the circle of a triangle beside them, or with a flat triangle. */
 export function wrongEdges(coords, {triangles, neighbors}, isConstraint = () => false) {
   const wrong = [];
   const x = (i) => coords[2 * i], y = (i) => coords[2 * i + 1];
@@ -15,9 +15,10 @@ export function wrongEdges(coords, {triangles, neighbors}, isConstraint = () => 
       if (isConstraint(a, b)) continue;
       const back = [0, 1, 2].find((j) => neighbors[3 * other + j] === t);
       const d = triangles[3 * other + back];
-      const turn = orient2d(x(a), y(a), x(b), y(b), x(c), y(c));
-      const inside = incircle(x(a), y(a), x(b), y(b), x(c), y(c), x(d), y(d));
-      if (turn === 0 || turn * inside * SIGN > 0) wrong.push(a, b);
+      // The sign of incircle is the same from both sides. The triangles turn in different directions where they overlap.
+      const inside = SIGN * Math.sign(incircle(x(a), y(a), x(b), y(b), x(c), y(c), x(d), y(d)));
+      const turn = orient2d(x(a), y(a), x(b), y(b), x(c), y(c)), turnBeyond = orient2d(x(b), y(b), x(a), y(a), x(d), y(d));
+      if (turn === 0 || turnBeyond === 0 || turn * inside > 0 || turnBeyond * inside > 0) wrong.push(a, b);
     }
   }
   return Int32Array.from(wrong);

@@ -129,6 +129,9 @@ async function screenshot(name, {width = 1280, height = 1000, scale = 1, dark = 
   assert.ok(await evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} scrolls sideways`);
   // As large as the canvas allows.
   assert.ok(await extent('.live-ours') > 0.9 && await extent('.live-peer') > 0.9, `${name} is drawn too small`);
+  const beyond = await evaluate(`[...document.querySelectorAll('.live-controls *, table:not([class]) th')]
+    .filter((element) => element.getBoundingClientRect().right > ${width}).map((element) => element.textContent)`);
+  assert.deepEqual(beyond, [], `${name}: out of sight`);
   await capture(name, small);
 }
 
@@ -302,6 +305,7 @@ try {
     await screenshot('light');
     await screenshot('dark', {dark: true});
     await screenshot('small', {width: 390, height: 844, scale: 2, small: true});
+    await screenshot('smallest', {width: 320, height: 568, scale: 2, small: true});
   });
   await section('has no error in the console', () => assert.deepEqual(problems, []));
   writeFileSync(`${folder}/live.json`, `${JSON.stringify(measured, null, 2)}\n`);
