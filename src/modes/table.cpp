@@ -179,9 +179,9 @@ const ModeRow kModes[] = {
 }  // namespace
 
 #ifdef FLAUNAY_WITHOUT_RESEARCH
-const char* const kNoSuchMode = "this library was built without FLAUNAY_RESEARCH, which has it";
+constexpr const char* kNoSuchMode = "{} is no Mode of this library, which was built without FLAUNAY_RESEARCH";
 #else
-const char* const kNoSuchMode = "there is none";
+constexpr const char* kNoSuchMode = "{} is no Mode";
 flattened::BlockSolver block_solver() { return {solve_blocks, write_rows}; }
 #endif
 
@@ -189,7 +189,7 @@ const ModeRow& row_of(research::Mode mode) {
   for (const ModeRow& row : kModes) {
     if (row.info.mode == mode) return row;
   }
-  throw Error(ErrorKind::usage, fmt::format("mode {}: {}", static_cast<int>(mode), kNoSuchMode));
+  throw Error(ErrorKind::usage, fmt::format(kNoSuchMode, static_cast<int>(mode)));
 }
 
 }  // namespace call
