@@ -98,6 +98,24 @@ static inline candidate better_of(rings* g, const star_search* s, candidate a, c
   return rules_out(g, s->left, s->right, point_at(g, a.vertex), a.seen, point_at(g, b.vertex), b.seen) ? b : a;
 }
 
+// Finds the best of the candidates of a group's first `width` work-items: best[0]. (oclgrind cannot inline functions
+// that return structures.)
+WITH_BARRIERS void find_best(rings* g, const star_search* s, candidate own, int width, local candidate* best,
+                             local int* has_stopped) {
+  const int me = get_local_id(0);
+  best[me] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  do {
+    const int kept = (width + 1) / 2;
+    if (me < width - kept) best[me] = better_of(g, s, best[me], best[me + kept]);
+    if (HAS_STOPPED(g)) atomic_or(has_stopped, 1);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    width = kept;
+  } while (width > 1);
+}
+
+SCAN_IN_GROUP(stars_before, uint)
+
 // groups: of units, each with `most` groups here, one per vertex. stars: MOST_STAR per vertex, by number in the unit,
 // counter-clockwise; of a vertex on the hull from its hull edge on. star_sizes: the number of edges, and in the upper
 // bits how many lead to vertices of a larger number; or -1.
@@ -105,9 +123,9 @@ kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filt
                        global const coordinate2* restrict points, global int* restrict stars,
                        global int* restrict star_sizes, global volatile uint* account COUNTERS) {
   local candidate best[LARGEST_TILE_GROUP];
+  local uint sums[LARGEST_TILE_GROUP];
   local ushort star[2 * MOST_STAR];
-  local int near_vertices[MOST_NEAR];
-  local int has_stopped, near_count;
+  local int near_vertices[MOST_NEAR], has_stopped;
   const int me = get_local_id(0), lanes = get_local_size(0), group = get_group_id(0), v = group % most;
   const halved_blocks halved = blocks_in(least_depth, end_depth, places, offsets, distinct, block_of_place, axes, 0, 0);
   const local_part unit = local_part_of(&halved, blocks, min(group / most, groups - 1), height);
@@ -115,49 +133,51 @@ kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filt
   rings g = rings_on(0, points + unit.first, 0, bounds);
   g.most_ties = ~0u;
   star_search s = {v, NO_VERTEX, NEAREST};
-  int first = NO_VERTEX, begin = MOST_STAR, end = MOST_STAR, is_searching, is_again = 1;
-  real reach = 0;
-  if (me == 0) has_stopped = near_count = 0;
+  const candidate none = {NO_VERTEX, VECTOR(real_pair, 0, 0)};
+  if (me == 0) has_stopped = 0;
+  candidate own = none;
+  for (int c = me; c < size; c += lanes) {
+    if (c != v) own = better_of(&g, &s, own, candidate_of(&g, &s, c));
+  }
+  find_best(&g, &s, own, max(1, min(lanes, size)), best, &has_stopped);
+  const candidate nearest = best[0];
+  const int first = nearest.vertex;
+  const real reach = low(nearest.seen);
+  const int each = share_of(size), from = min(size, me * each), to = min(size, from + each);
+  uint own_near = 0, near_count;
+  for (int c = from; c < to; ++c) own_near += squared_distance(&g, c, v) <= reach;
+  uint place = stars_before(own_near, sums, &near_count);
+  for (int c = from; c < to && place < MOST_NEAR; ++c) {
+    if (squared_distance(&g, c, v) <= reach) near_vertices[place++] = c;
+  }
+  TALLY(g, steps, to - from);
+  int begin = MOST_STAR, end = MOST_STAR, is_searching, is_again = 0;
+  if (first != NO_VERTEX) {
+    g.errors = errors_within(2 * high(nearest.seen), bounds);
+    if (me == 0) star[end] = first;
+    ++end;
+    turn_search(&g, &s, LEFTWARD, first);
+  }
   barrier(CLK_LOCAL_MEM_FENCE);
   do {
-    candidate own = {NO_VERTEX, VECTOR(real_pair, 0, 0)};
     const int is_near = !is_again && near_count <= MOST_NEAR, count = is_near ? near_count : size;
+    own = none;
     for (int k = me; k < count; k += lanes) {
       const int c = is_near ? near_vertices[k] : k;
       if (c != v && c != s.at) own = better_of(&g, &s, own, candidate_of(&g, &s, c));
     }
-    best[me] = own;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    int width = max(1, min(lanes, count));
-    do {
-      const int kept = (width + 1) / 2;
-      if (me < width - kept) best[me] = better_of(&g, &s, best[me], best[me + kept]);
-      if (HAS_STOPPED(&g)) atomic_or(&has_stopped, 1);
-      barrier(CLK_LOCAL_MEM_FENCE);
-      width = kept;
-    } while (width > 1);
+    find_best(&g, &s, own, max(1, min(lanes, count)), best, &has_stopped);
     const candidate found = best[0];
-    const int is_none = found.vertex == NO_VERTEX, is_nearest = s.turn == NEAREST;
+    const int is_none = found.vertex == NO_VERTEX;
     is_again = is_near && (is_none || !is_circle_near(&g, &s, found.seen, reach));
-    is_searching = !has_stopped && end - begin < MOST_STAR &&
+    is_searching = first != NO_VERTEX && !has_stopped && end - begin < MOST_STAR &&
                    (is_again || (s.turn == LEFTWARD ? found.vertex != first : !is_none));
     if (is_searching && !is_again && is_none) {
       turn_search(&g, &s, RIGHTWARD, first);
     } else if (is_searching && !is_again) {
-      const int to = s.turn == RIGHTWARD ? --begin : end++;
-      if (me == 0) star[to] = found.vertex;
-      if (is_nearest) {
-        g.errors = errors_within(2 * high(found.seen), bounds);
-        first = found.vertex;
-        reach = low(found.seen);
-        for (int c = me; c < size; c += lanes) {
-          TALLY(g, steps, 1);
-          if (squared_distance(&g, c, v) > reach) continue;
-          const int k = atomic_inc(&near_count);
-          if (k < MOST_NEAR) near_vertices[k] = c;
-        }
-      }
-      turn_search(&g, &s, is_nearest ? LEFTWARD : s.turn, found.vertex);
+      const int at = s.turn == RIGHTWARD ? --begin : end++;
+      if (me == 0) star[at] = found.vertex;
+      turn_search(&g, &s, s.turn, found.vertex);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
   } while (is_searching);
@@ -200,8 +220,6 @@ static inline void write_ends(int ends, int vertex, global solved_block* solved)
   if (ends & 4) solved->ends.first_y = vertex;
   if (ends & 8) solved->ends.last_y = vertex;
 }
-
-SCAN_IN_GROUP(stars_before, uint)
 
 // groups: of units, each with `shares` groups here, one per STARS_JOINED vertices. are_blocks: units are whole blocks,
 // whose places lose their block when they are done, in places_left, which is block_of_place; otherwise states has, by
