@@ -172,10 +172,10 @@ struct StarUnits {
         count(are_whole ? blocks.count : local_groups(blocks, height)),
         most(static_cast<std::size_t>(kernel::LEAF_VERTICES) << height) {}
 
-  // Few points, none of them in a larger unit, and few groups for no vertex.
+  // Few points, none of them in a larger unit, units of more than a leaf, and few groups for no vertex.
   bool suit(const Tuning& tuning, std::size_t points) const {
     constexpr std::size_t kMostGroupsPerPoint = 8;
-    return points <= tuning.star_points && most <= kernel::STAR_VERTICES &&
+    return points <= tuning.star_points && height > 0 && most <= kernel::STAR_VERTICES &&
            count * most <= kMostGroupsPerPoint * points;
   }
 };
