@@ -27,16 +27,16 @@
 #include "predicates/records.h"
 
 // What the group of a vertex looks for: the nearest vertex, or the next one of the star counter-clockwise or clockwise
-// from a vertex of it.
+// from a vertex of it. tile: where the NEAR_TILE vertices beside it begin, in the order of leaves.
 enum { NEAREST, LEFTWARD, RIGHTWARD };
 typedef struct {
-  int from, at, turn;
+  int from, at, turn, tile;
   coordinate_pair left, right;  // the edge's vertices, with the side on which the next one is above
 } star_search;
 
 // A vertex, or none. seen: the edge to `at`, as the vertex sees it (predicates/planar.h). In a search for the nearest
-// one, of those that were compared: how far, squared, those of the searching vertex's tile are from it, and the largest
-// difference of coordinates.
+// one, of those that were compared: how far, squared, those of the tile are from it, and the largest difference of
+// coordinates.
 typedef struct {
   int vertex;
   real_pair seen;
@@ -77,7 +77,7 @@ static inline candidate candidate_of(rings* g, const star_search* s, int vertex)
   candidate c = {vertex, VECTOR(real_pair, 0, 0)};
   if (s->turn == NEAREST) {
     const real2 apart = difference2(g->points[vertex], g->points[s->from]);
-    const int is_in_tile = vertex / NEAR_TILE == s->from / NEAR_TILE;
+    const int is_in_tile = vertex >= s->tile && vertex < s->tile + NEAR_TILE;
     c.seen = VECTOR(real_pair, is_in_tile ? squared_length(apart) : 0, fmax(fabs(apart.x), fabs(apart.y)));
   } else {
     const coordinate_pair apex = point_at(g, vertex);
@@ -132,7 +132,8 @@ kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filt
   const int size = group / most < groups && unit.own_height >= 0 && v < unit.size ? unit.size : 0;
   rings g = rings_on(0, points + unit.first, 0, bounds);
   g.most_ties = ~0u;
-  star_search s = {v, NO_VERTEX, NEAREST};
+  // The last tile has vertices of the one before, so that no vertex is alone.
+  star_search s = {v, NO_VERTEX, NEAREST, min(v / NEAR_TILE * NEAR_TILE, size - NEAR_TILE)};
   const candidate none = {NO_VERTEX, VECTOR(real_pair, 0, 0)};
   if (me == 0) has_stopped = 0;
   candidate own = none;
