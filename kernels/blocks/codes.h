@@ -10,7 +10,7 @@ BEGIN_SHARED
 INTEGER_CONSTANT(RINGS_UNDECIDED, 0);  // predicates that were evaluated exactly
 INTEGER_CONSTANT(RINGS_TIES, 1);       // how many of them found cocircular points
 INTEGER_CONSTANT(RINGS_TIES_LEFT, 2);  // how many of these left edges as they were
-INTEGER_CONSTANT(RINGS_BROKEN, 3);     // seams that could not be sewn, which is an error of the program
+INTEGER_CONSTANT(RINGS_BROKEN, 3);     // seams not sewn, and parts whose stars differ: an error of the program
 INTEGER_CONSTANT(RINGS_NUMBERS, 4);
 
 END_SHARED

@@ -7,7 +7,8 @@
 // decide, as merges do, or at MOST_STAR edges, or if all vertices are on one line.
 //
 // Units are the parts that groups of local_parts.cl have, or whole blocks. wrap_stars is one launch, and join_stars
-// makes rings of the stars of each unit, unless one has stopped: then the unit is left to merges.
+// makes rings of the stars of each unit, unless one has stopped: then the unit is left to merges. So it is if an edge
+// is in one star alone, which would be an error of the program or a compiler: the account tells the host.
 
 #ifndef FIXED_POINT
 #define RINGS_STOP
@@ -116,9 +117,24 @@ WITH_BARRIERS void find_best(rings* g, const star_search* s, candidate own, int 
 
 SCAN_IN_GROUP(stars_before, uint)
 
+// In so many bits, the two checks of an edge that is in the stars of both its vertices add up to 0. Sums of others are
+// hardly ever 0.
+INTEGER_CONSTANT(CHECK_BITS, 15);
+static inline uint check_of_edge(int v, int w) {
+  const uint edge = STAR_VERTICES * min(v, w) + max(v, w), check = edge * (edge | 1) * 0x9e3779b1u >> (32 - CHECK_BITS);
+  return v < w ? check : -check;
+}
+
+static inline int star_size_of(int edges, int larger, uint check) {
+  return edges | larger << STAR_SIZE_BITS | (check & ((1 << CHECK_BITS) - 1)) << (2 * STAR_SIZE_BITS);
+}
+static inline int edges_of_star(int star_size) { return star_size & ((1 << STAR_SIZE_BITS) - 1); }
+static inline int larger_in_star(int star_size) { return edges_of_star(star_size >> STAR_SIZE_BITS); }
+static inline uint check_of_star(int star_size) { return star_size >> (2 * STAR_SIZE_BITS); }
+
 // groups: of units, each with `most` groups here, one per vertex. stars: MOST_STAR per vertex, by number in the unit,
-// counter-clockwise; of a vertex on the hull from its hull edge on. star_sizes: the number of edges, and in the upper
-// bits how many lead to vertices of a larger number; or -1.
+// counter-clockwise; of a vertex on the hull from its hull edge on. star_sizes: the number of edges, how many of them
+// lead to vertices of a larger number, and the sum of check_of_edge; or -1.
 kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filter_bounds bounds,
                        global const coordinate2* restrict points, global int* restrict stars,
                        global int* restrict star_sizes, global volatile uint* account COUNTERS) {
@@ -186,9 +202,13 @@ kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filt
   for (int k = me; k < edges; k += lanes) stars[MOST_STAR * (unit.first + v) + k] = star[begin + k];
   if (me == 0 && size > 0) {
     int larger = 0;
-    for (int k = begin; k < end; ++k) larger += star[k] > v;
+    uint check = 0;
+    for (int k = begin; k < end; ++k) {
+      larger += star[k] > v;
+      check += check_of_edge(v, star[k]);
+    }
     const int is_whole = !has_stopped && edges < MOST_STAR && (edges > 1 || size < 3);
-    star_sizes[unit.first + v] = is_whole ? edges | larger << STAR_SIZE_BITS : -1;
+    star_sizes[unit.first + v] = is_whole ? star_size_of(edges, larger, check) : -1;
   }
 #ifndef RINGS_STOP
   add_to_account(&g, account);
@@ -196,10 +216,7 @@ kernel void wrap_stars(int groups, int most, int blocks, PLACES_OF_PARTS(), filt
   COUNT_STEPS(g.counted.steps);
 }
 
-static inline int edges_of_star(int star_size) { return star_size & ((1 << STAR_SIZE_BITS) - 1); }
-static inline int larger_in_star(int star_size) { return star_size >> STAR_SIZE_BITS; }
-
-// The pair of edges from v to w, v < w, behind the first pair of v, or of the next vertex if the star has no w.
+// The pair of edges from v to w, v < w, behind the first pair of v.
 static inline int pair_in_star(int v, int w, global const int* star, int edges) {
   int pair = 0;
   for (int k = 0, is_beyond = 0; k < edges; ++k) {
@@ -227,7 +244,7 @@ static inline void write_ends(int ends, int vertex, global solved_block* solved)
 // unit, whether it is left to merges.
 kernel void join_stars(int groups, int shares, int are_blocks, int blocks, PLACES_OF_PARTS(), RINGS_OF_PARTS(),
                        global const int* restrict stars, global const int* restrict star_sizes, global int* places_left,
-                       global int* restrict states COUNTERS) {
+                       global int* restrict states, global volatile uint* account COUNTERS) {
   local uint sums[LARGEST_TILE_GROUP];
   local ushort first_pairs[STAR_VERTICES];
   local short own_edges[STARS_JOINED * MOST_STAR];
@@ -242,15 +259,16 @@ kernel void join_stars(int groups, int shares, int are_blocks, int blocks, PLACE
   star_sizes += first;
   if (me == 0) has_stopped = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
-  // A pair of edges is one of its vertex of the smaller number, in the order of that star. Edges in the upper halves.
+  // A pair of edges is one of its vertex of the smaller number, in the order of that star.
   const int each = share_of(size), low = min(size, me * each), high = min(size, low + each);
   uint own = 0, all, steps = each;
   for (int v = low; v < high; ++v) {
     if (star_sizes[v] < 0) atomic_or(&has_stopped, 1);
-    own += larger_in_star(star_sizes[v]) | edges_of_star(star_sizes[v]) << 16;
+    own += larger_in_star(star_sizes[v]) + (check_of_star(star_sizes[v]) << (32 - CHECK_BITS));
   }
   uint before = stars_before(own, sums, &all);
-  const int pairs = all & 0xffff, is_done = size > 0 && !has_stopped && (int)(all >> 16) == 2 * pairs;
+  const int pairs = all << CHECK_BITS >> CHECK_BITS, is_whole = all == (uint)pairs;
+  const int is_done = size > 0 && !has_stopped && is_whole;
   for (int v = low; is_done && v < high; ++v) {
     first_pairs[v] = (ushort)before;
     before += larger_in_star(star_sizes[v]);
@@ -301,6 +319,7 @@ kernel void join_stars(int groups, int shares, int are_blocks, int blocks, PLACE
     const int middle = first - part.begin + part_begin(part.count, part.depth + 1, 2 * part.number + 1);
     if (part.depth > 0 && unit.own_height > 0) parts[middle / 2].ends = ends_of(middle, middle, middle, middle);
   }
+  if (is_first && size > 0 && !has_stopped && !is_whole) atomic_inc(&account[RINGS_BROKEN]);
   if (is_first && size > 0 && !are_blocks) states[u] = !is_done;
   COUNT_STEPS(steps);
 }

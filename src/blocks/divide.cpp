@@ -197,9 +197,10 @@ Rings divide(Workspace& work, const Blocks& blocks, const Buffer<cl_int>& repres
 
 void check_account(const cl_uint* account) {
   if (account[kernel::RINGS_BROKEN] == 0) return;
-  throw Error(ErrorKind::internal, fmt::format("the two walks along a seam do not meet, in {} merges; "
-                                               "please report the input",
-                                               account[kernel::RINGS_BROKEN]));
+  throw Error(ErrorKind::internal,
+              fmt::format("the two walks along a seam, or the stars of an edge's vertices, "
+                          "do not meet, in {} parts; please report the input",
+                          account[kernel::RINGS_BROKEN]));
 }
 
 void await_rings(Workspace& work, const Blocks& blocks, Rings& rings) {

@@ -214,7 +214,8 @@ void solve_by_stars(const Halves& halves, const StarUnits& units) {
                                      .stars = stars,
                                      .star_sizes = star_sizes,
                                      .places_left = halved.block_of_place,
-                                     .states = states});
+                                     .states = states,
+                                     .account = rings.device_account});
 }
 
 // kernels::merge_trees or kernels::finish_trees.

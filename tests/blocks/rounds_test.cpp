@@ -372,12 +372,14 @@ TEST(Rounds, StatisticsSayWhatTheyDid) {
   EXPECT_EQ(stalled.round_points, n);
 }
 
-/// Walks that end at the first edge of their seam, and so do not meet if it has more.
-std::string with_short_walks(std::string seams) {
-  const std::string test = "if (is_beyond(s, low, high))";
-  const std::size_t at = seams.find(test);
-  EXPECT_NE(at, std::string::npos);
-  return at == std::string::npos ? seams : seams.replace(at, test.size(), "if (1)");
+/// Kernels with one expression instead of another.
+testing::ChangedKernels with_wrong(const std::string& file, const std::string& expression,
+                                   const std::string& other) {
+  return {file, [&](std::string text) {
+            const std::size_t at = text.find(expression);
+            EXPECT_NE(at, std::string::npos);
+            return at == std::string::npos ? text : text.replace(at, expression.size(), other);
+          }};
 }
 
 /// As a GPU solves blocks, with groups of any size and any share of a part in local memory.
@@ -415,7 +417,8 @@ TEST(Rounds, OfManyLanesHaveTheBytesOfTheHost) {
 /// last round, and with merging.
 TEST(Rounds, WalksThatDoNotMeetAreAnError) {
   if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
-  const testing::ChangedKernels changed("blocks/seams.h", with_short_walks);
+  // Walks that end at the first edge of their seam, and so do not meet if it has more.
+  const auto changed = with_wrong("blocks/seams.h", "if (is_beyond(s, low, high))", "if (1)");
   const auto runtime = points::make_runtime("lanes");
   const Coordinates points = make_fixture("uniform", 900, 61);
   for (const auto& [block_points, round_points] : {std::pair{100, 50}, {1000, 500}, {100, 0}}) {
@@ -432,6 +435,24 @@ TEST(Rounds, WalksThatDoNotMeetAreAnError) {
     tuning.star_points = 900;
     runtime->set_sizes(std::make_shared<Tuning>(tuning));
     EXPECT_NO_THROW(run_blocks(*runtime, points, {0, 900}));
+  }
+}
+
+/// Of units that are parts of a block, and whole blocks.
+TEST(Rounds, StarsThatDifferAreAnError) {
+  if (testing::tests_native()) GTEST_SKIP() << "the host solves blocks one by one";
+  const auto changed =
+      with_wrong("blocks/stars.cl", "star[at] = found.vertex", "star[at] = v == 5 ? first : found.vertex");
+  const auto runtime = points::make_runtime("lanes");
+  for (const std::size_t round_points : {500, 0}) {
+    Tuning tuning = tuning_of(*runtime);
+    tuning.block_points = 1000;
+    tuning.round_points = round_points;
+    tuning.star_points = 900;
+    runtime->set_sizes(std::make_shared<Tuning>(tuning));
+    testing::expect_error(ErrorKind::internal, {"the stars of an edge's vertices"}, [&] {
+      run_blocks(*runtime, make_fixture("uniform", 900, 61), {0, 900});
+    });
   }
 }
 
