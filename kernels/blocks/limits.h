@@ -18,8 +18,8 @@ INTEGER_CONSTANT(LOCAL_VERTICES, 512);
 INTEGER_CONSTANT(LOCAL_MERGES, LOCAL_VERTICES / (2 * LEAF_VERTICES));
 INTEGER_CONSTANT(LOCAL_PART_BYTES, 42768);
 // The most vertices of a unit whose stars work-groups find (blocks/stars.cl), LEAF_VERTICES times a power of two; the
-// most edges of a star, and the bits of their number; how many stars a work-group joins; and from how many vertices, by
-// number, one learns what is near, and the most that are.
+// edges at which a star stops, and the bits of their number; how many stars a work-group joins; and from how many
+// vertices, by number, one learns what is near, and the most that are.
 INTEGER_CONSTANT(STAR_VERTICES, 2048);
 INTEGER_CONSTANT(MOST_STAR, 32);
 INTEGER_CONSTANT(STAR_SIZE_BITS, 8);
