@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <set>
@@ -359,6 +360,54 @@ TEST(SmallMerge, WalksThatDoNotMeet) {
       } else {
         EXPECT_THROW(await_rings(call.work, blocks, rings), Error);
       }
+    }
+  });
+}
+
+/// A vertex amid so many others.
+Coordinates hub(int others) {
+  Coordinates points{0, 0};
+  for (int i = 0; i < others; ++i) {
+    const double angle = 6.28 * i / others, radius = 1 + 0.001 * i;
+    points.insert(points.end(), {radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return points;
+}
+
+/// Blocks that are solved by stars, without merges: with a last tile of one vertex, with vertices to which
+/// too many are near, since others of their tile are far away, and with the largest star. The last block has
+/// a larger one.
+TEST(Merge, StarsOfLargeUnits) {
+  with_groups(700, [](Runtime& runtime) {
+    if (tuning_of(runtime).halve_group < 64) return;
+    set_local_vertices(runtime, 0, 1 << 20);
+    BlockPoints points;
+    for (const std::size_t n : {17, 513, 1025, 2048}) points.add(make_fixture("uniform", n, n));
+    Coordinates cluster = make_fixture("uniform", 700, 45);
+    for (const double far : {300, 400, 500}) cluster.insert(cluster.end(), {far, far * far});
+    points.add(cluster);
+    points.add(hub(kernel::MOST_STAR - 1));
+    points.add(hub(kernel::MOST_STAR));
+    Call call(runtime);
+    call.work.bounds = kUsualBounds;
+    const DeviceBlocks on_device(call, points);
+    const auto& [blocks, representatives, rings] = on_device;
+    PartsOfBlocks parts;
+    parts.halved = halve(call.work, blocks, representatives, rings);
+    parts.ends = runtime.arena().allocate<kernel::solved_block>(points.points());
+    merge_halves(call.work, blocks, parts, rings, 0, -1);
+    const Solution found(call, points, on_device);
+    EXPECT_EQ(found.account[kernel::RINGS_BROKEN], 0u);
+    std::vector<cl_int> left(points.points());
+    runtime.read(parts.halved.block_of_place, 0, left.size(), left.data());
+    for (std::size_t b = 0; b < points.count(); ++b) {
+      SCOPED_TRACE("block " + std::to_string(b));
+      const bool is_solved = b + 1 < points.count();
+      ASSERT_EQ(left[points.first(b)], is_solved ? -1 : static_cast<cl_int>(b));
+      if (!is_solved) continue;
+      RingCheck check(found.g, b, false);
+      ASSERT_EQ(check.run(), "");
+      ASSERT_EQ(found.broken_free_list(b), "");
     }
   });
 }
