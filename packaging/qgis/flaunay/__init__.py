@@ -79,14 +79,19 @@ class Algorithm(QgsProcessingAlgorithm):
         self.addParameter(
             QgsProcessingParameterFeatureSource(self.INPUT, "Points", [QgsProcessing.TypeVectorPoint])
         )
-        self.add_field("HEIGHT", "Field with the height (by default, that of the points)", False)
+        self.add_field("HEIGHT", "Field with the height (by default, that of the points)")
 
-    def add_field(self, name, title, several):
+    def add_breaklines(self, optional):
+        kinds = [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]
+        self.add_layer("BREAKLINES", "Breaklines", kinds, optional)
+        self.add_field("LINE_HEIGHT", "Field with the height of breaklines", layer="BREAKLINES")
+
+    def add_field(self, name, title, several=False, layer=INPUT):
         self.addParameter(
             QgsProcessingParameterField(
                 name,
                 title,
-                parentLayerParameterName=self.INPUT,
+                parentLayerParameterName=layer,
                 type=QgsProcessingParameterField.Numeric,
                 allowMultiple=several,
                 optional=True,
@@ -136,7 +141,7 @@ class Delaunay(Algorithm):
 
     def initAlgorithm(self, configuration=None):
         self.add_points()
-        self.add_field("FIELDS", "Fields whose means triangles have", True)
+        self.add_field("FIELDS", "Fields whose means triangles have", several=True)
         self.add_output("Triangles")
 
     def arguments(self, *given):
@@ -152,18 +157,8 @@ class ConstrainedTin(Algorithm):
 
     def initAlgorithm(self, configuration=None):
         self.add_points()
-        kinds = [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon]
-        self.add_layer("BREAKLINES", "Breaklines", kinds, optional=False)
-        self.addParameter(
-            QgsProcessingParameterField(
-                "LINE_HEIGHT",
-                "Field with the height of breaklines",
-                parentLayerParameterName="BREAKLINES",
-                type=QgsProcessingParameterField.Numeric,
-                optional=True,
-            )
-        )
-        self.add_field("FIELDS", "Fields whose means triangles have", True)
+        self.add_breaklines(optional=False)
+        self.add_field("FIELDS", "Fields whose means triangles have", several=True)
         self.add_output("Triangles")
 
     def arguments(self, *given):
@@ -179,7 +174,7 @@ class Voronoi(Algorithm):
 
     def initAlgorithm(self, configuration=None):
         self.add_points()
-        self.add_field("FIELDS", "Fields that polygons have", True)
+        self.add_field("FIELDS", "Fields that polygons have", several=True)
         self.addParameter(QgsProcessingParameterExtent("EXTENT", "Extent", optional=True))
         self.add_output("Polygons")
 
@@ -211,16 +206,7 @@ class Terrain(Algorithm):
                 minValue=1e-9,
             )
         )
-        self.add_layer("BREAKLINES", "Breaklines", [QgsProcessing.TypeVectorLine, QgsProcessing.TypeVectorPolygon])
-        self.addParameter(
-            QgsProcessingParameterField(
-                "LINE_HEIGHT",
-                "Field with the height of breaklines",
-                parentLayerParameterName="BREAKLINES",
-                type=QgsProcessingParameterField.Numeric,
-                optional=True,
-            )
-        )
+        self.add_breaklines(optional=True)
         self.add_layer("BOUNDARY", "Boundary", [QgsProcessing.TypeVectorPolygon])
         self.add_layer("FLAT", "Lakes", [QgsProcessing.TypeVectorPolygon])
         self.addParameter(
