@@ -135,8 +135,8 @@ std::size_t local_groups(const PointBlocks& blocks, int height) {
   return blocks.count + cells_of(blocks, height);
 }
 
-// kernels::solve_local_parts or kernels::finish_local_parts.
-// are_left: whether states tell which parts are to be triangulated.
+// kernels::solve_local_parts or kernels::finish_local_parts. are_left: whether states tell which parts are to
+// be triangulated.
 template <typename Kernel>
 void launch_on_local_parts(const Halves& halves, int height, bool are_left) {
   const auto& [work, blocks, halved, rings, parts, depths, states, seams] = halves;
@@ -191,8 +191,8 @@ void solve_by_stars(const Halves& halves, const StarUnits& units) {
   const auto places = places_of_parts(blocks, halved, rings, units.height);
   const std::size_t largest = std::min<std::size_t>(tuning.halve_group, kernel::LARGEST_TILE_GROUP);
   // A work-item compares a few vertices; then the group's comparisons take as many steps.
-  std::size_t group = std::min(tuning.block_group, largest);
-  while (2 * group <= largest && 8 * group < units.most) group *= 2;
+  constexpr std::size_t kVerticesPerItem = 8;
+  const std::size_t group = std::min(group_for(tuning, 1, units.most / kVerticesPerItem), largest);
   runtime.launch(group * units.count * units.most, group,
                  kernels::wrap_stars{.groups = units.count,
                                      .most = units.most,
