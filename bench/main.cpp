@@ -1,6 +1,7 @@
 // flaunay-bench: measures flaunay, its parts, and other programs for the same tasks. Subcommands print
 // measurements as tables, and write them as records.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
 #include <string>

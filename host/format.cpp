@@ -18,11 +18,13 @@ const Format format = &fmt::vformat;
 using IsPrintable = bool (*)(std::uint32_t character);
 extern const IsPrintable is_printable;
 const IsPrintable is_printable = &fmt::detail::is_printable;
-using DecimalPoint = char (*)(fmt::detail::locale_ref locale);
-extern const DecimalPoint decimal_point;
-const DecimalPoint decimal_point = &fmt::detail::decimal_point_impl<char>;
-using ThousandsSeparator = fmt::detail::thousands_sep_result<char> (*)(fmt::detail::locale_ref locale);
-extern const ThousandsSeparator thousands_separator;
-const ThousandsSeparator thousands_separator = &fmt::detail::thousands_sep_impl<char>;
 
 }  // namespace flaunay::host
+
+// As fmt's own library has them. What they take is in another namespace in each version of fmt.
+FMT_BEGIN_NAMESPACE
+namespace detail {
+template auto decimal_point_impl(locale_ref) -> char;
+template auto thousands_sep_impl(locale_ref) -> thousands_sep_result<char>;
+}  // namespace detail
+FMT_END_NAMESPACE

@@ -147,6 +147,8 @@ TEST_F(CommandUsageTest, TypingErrorsAreAnsweredByWhatWasMeant) {
        {Arguments{"frobnicate"}, Arguments{"triangulate", "points.npy", "--frobnicate"}}) {
     EXPECT_EQ(run(arguments, kNoPlatform).err.find("did you mean"), std::string::npos);
   }
+  expect_error(kUsage, {"not understood: frobnicate points.npy --twice (see"},
+               {"frobnicate", "points.npy", "--twice"});
 }
 
 TEST_F(CommandUsageTest, ExamplesOfTheHelpRun) {

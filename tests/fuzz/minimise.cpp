@@ -1,6 +1,7 @@
 #include "tests/fuzz/minimise.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

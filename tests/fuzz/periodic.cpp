@@ -4,6 +4,7 @@
 //
 //   fuzz_periodic [--seconds N] [--seed S] [--first CASE]
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

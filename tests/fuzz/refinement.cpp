@@ -5,6 +5,7 @@
 //   fuzz_refinement [--seconds N] [--seed S] [--first CASE]
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>

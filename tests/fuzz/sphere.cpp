@@ -7,6 +7,7 @@
 #include "flaunay/sphere.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

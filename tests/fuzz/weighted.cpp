@@ -5,6 +5,7 @@
 #include "flaunay/weighted.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

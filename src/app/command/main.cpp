@@ -1,6 +1,7 @@
 // The command `flaunay`: parses the arguments, runs one subcommand, and turns an error into a message and an
 // exit code.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
@@ -50,7 +51,11 @@ int run(std::vector<std::string> arguments) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::vector<CLI::App*> chosen = app.get_subcommands();
-    return fail(kUsage, fmt::format("{}{} (see flaunay {}--help)", error.what(), suggestion(app),
+    // CLI11's own text has them backwards.
+    const std::string what = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)
+                                 ? fmt::format("not understood: {}", fmt::join(app.remaining(true), " "))
+                                 : error.what();
+    return fail(kUsage, fmt::format("{}{} (see flaunay {}--help)", what, suggestion(app),
                                     chosen.empty() ? "" : chosen.front()->get_name() + " "));
   }
   if (!kind.empty()) {

@@ -1,4 +1,6 @@
 // Text with numbers in columns: points, perhaps with heights or weights, or the ends of segments.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>

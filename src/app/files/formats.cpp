@@ -1,5 +1,7 @@
 #include "app/files/formats.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 

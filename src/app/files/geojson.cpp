@@ -1,4 +1,6 @@
 // GeoJSON (RFC 7946).
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

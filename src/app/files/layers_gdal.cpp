@@ -1,4 +1,6 @@
 // Layers of features by GDAL.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
