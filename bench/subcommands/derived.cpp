@@ -101,7 +101,7 @@ void add_jobs(Jobs& jobs, Data& on, const DerivedRequest& request) {
       triangulator.relax(points, n, kUnitSquare, 4, iterations);
     };
     add_call(fmt::format("relax, {} iterations", iterations), relax);
-    add_call("raster, 1.6 pixels per point", [&on, points, n] {
+    add_call("raster, 1.6 pixels per point", [&on, n] {
       const auto side = static_cast<std::size_t>(std::sqrt(1.6 * static_cast<double>(n)));
       const double step = 1 / static_cast<double>(side);
       on.pixels.resize(side * side);
