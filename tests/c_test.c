@@ -1301,6 +1301,16 @@ static void test_raster(void) {
   flaunay_raster raster = {.y = 2, .dx = 1, .dy = -1, .rows = 2, .columns = 3, .fill = -1};
   OK(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, &raster, pixels));
   for (size_t i = 0; i < 6; ++i) CHECK(pixels[i] == (double)(i % 3) + (i < 3 ? 4 : 2));
+  const flaunay_shading plain = {0}, steep = {.vertical_factor = 2}, below = {.vertical_factor = -1},
+                        coloured = {.colors = 1};
+  uint8_t picture[24];
+  OK(flaunay_shade_hills(&raster, pixels, &plain, picture));
+  CHECK(picture[0] == 125 && picture[6] == 255);
+  OK(flaunay_shade_hills(&raster, pixels, &steep, picture));
+  CHECK(picture[0] == 94 && picture[11] == 255);
+  OK(flaunay_shade_hills(&raster, pixels, &coloured, picture));
+  CHECK(picture[0] > picture[12] && picture[23] == 255);
+  REFUSED(flaunay_shade_hills(&raster, pixels, &below, picture), "vertical_factor");
   raster.max_edge = 1;
   OK(flaunay_rasterize(triangulator, places, 4, triangles, neighbors, 2, values, &raster, pixels));
   CHECK(pixels[0] == -1);

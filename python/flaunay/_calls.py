@@ -1359,6 +1359,17 @@ def rasterize(
         _call_with_mesh(library.rasterize, *given)
 
 
+def shade_hills(
+    grid: tuple[float, float, float, float], pixels: _Doubles, **shading: float
+) -> npt.NDArray[np.uint8]:
+    """Bands of a picture: grey, or with ``colors=True`` red, green and blue; and alpha."""
+    raster = _raster_of(grid, 0, 0, pixels)
+    picture = np.empty((4 if shading["colors"] else 2, *pixels.shape), np.uint8)
+    given = (raster, _as_doubles(pixels), _declarations.Shading(**shading), picture)
+    check(library.shade_hills(*_as_arguments(given)))
+    return picture
+
+
 def contours(
     triangulator: Triangulator, *surface: Any, heights: _Doubles, max_edge: float
 ) -> tuple[_Doubles, _Offsets, _Indices]:

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flaunay import _calls, _declarations, _raster
-from flaunay._arrays import as_floats, summary
+from flaunay._arrays import as_floats, geometries_of, summary
 from flaunay._chunks import all_or_none, chunks_of, is_one_file
 from flaunay._delaunay import Delaunay
 from flaunay._errors import Error, InputError, UsageError
@@ -40,8 +40,9 @@ _PURPOSE = "flaunay.terrain"
 _LAS = {".las", ".laz"}
 _TEXT = {".txt", ".xyz", ".csv"}
 _SUFFIXES = sorted(_LAS | _TEXT | {".npy"})
+_LAYERS = {".gpkg", ".shp", ".fgb", ".parquet", ".geojson", ".json"}
 _RASTERS = {".tif": "COG", ".tiff": "COG", ".png": "PNG"}
-_LINES = {".geojson": "GeoJSON", ".gpkg": "GPKG", ".shp": "ESRI Shapefile"}
+_LINES = {".geojson": "GeoJSON", ".gpkg": "GPKG", ".fgb": "FlatGeobuf"}
 _MESHES = (".ply", ".obj", ".stl", ".vtk", ".vtu")
 _METHODS: dict[str, Any] = {
     "linear": None,
@@ -255,24 +256,27 @@ class _Table:
     ) -> None:
         self.path = given if isinstance(given, Path) else None
         self.left_out: Counter[str] = Counter()
-        if columns is not None and (self.path is None or self.path.suffix.lower() not in _TEXT):
-            raise UsageError(f"{name}: columns= are those of text ({', '.join(sorted(_TEXT))})")
+        self._places = [0, 1, 2]
+        if columns is not None and self.path is None:
+            raise UsageError(f"{name}: columns= are those of files")
         if self.path is not None:
             given = self._of_file(self.path, columns)
         self._points = as_floats(given, name)
-        if self._points.ndim != 2 or self._points.shape[1] != 3:
+        if self._points.ndim != 2 or (columns is None and self._points.shape[1] != 3):
             raise UsageError(f"{name} must be x, y and z of points, not {self._points.shape}")
         self.box: Optional[Doubles] = None
         if len(self._points):
-            xy = self._points[:, :2]
-            self.box = np.concatenate([xy.min(axis=0), xy.max(axis=0)]).astype(np.float64)
+            x, y = (self._points[:, place] for place in self._places[:2])
+            self.box = np.array([x.min(), y.min(), x.max(), y.max()], np.float64)
 
-    @staticmethod
-    def _of_file(path: Path, columns: Optional[Sequence[Union[str, int]]]) -> Any:
+    def _of_file(self, path: Path, columns: Optional[Sequence[Union[str, int]]]) -> Any:
         try:
-            if path.suffix.lower() == ".npy":
-                return np.load(path, mmap_mode="r")
-            return _text_rows(path, columns)
+            if path.suffix.lower() != ".npy":
+                return _text_rows(path, columns)
+            array = np.load(path, mmap_mode="r")
+            if columns is not None:
+                self._places = _places_of(columns, [], array.shape[-1])
+            return array
         except UsageError:
             raise
         except (OSError, ValueError, IndexError) as error:
@@ -284,32 +288,73 @@ class _Table:
         if classes is not None or returns is not None:
             raise UsageError("classes and returns are those of .las and .laz files alone")
         for first in range(0, len(self._points), _POINTS_AT_ONCE):
-            yield np.asarray(self._points[first : first + _POINTS_AT_ONCE], np.float64)
+            some = self._points[first : first + _POINTS_AT_ONCE]
+            yield np.asarray(some if self._places == [0, 1, 2] else some[:, self._places], np.float64)
 
 
-def _sources(given: Any, columns: Optional[Sequence[Union[str, int]]]) -> list[Any]:
+class _Layer(_Table):
+    """The positions of points and lines, with their heights or those of a field."""
+
+    def __init__(self, given: Any, fields: Sequence[str]) -> None:
+        shapely = optional("shapely", _PURPOSE)
+        geometries, crs, self.has_field = _features(given, "points", fields)
+        name = given if isinstance(given, (str, os.PathLike)) else "points"
+        # Points, lines and rings, alone or several.
+        if not np.isin(shapely.get_type_id(shapely.get_parts(geometries)), (0, 1, 2)).all():
+            raise InputError(
+                f"{name}: expected points or lines with heights; flat= and boundary= are for polygons"
+            )
+        points = shapely.get_coordinates(geometries, include_z=True)
+        for i in np.flatnonzero(np.isnan(points[:, 2]))[:1]:
+            x, y, _ = points[i]
+            hint = "; height= says which field has it"
+            if fields:
+                hint = "" if self.has_field else f", nor is there a field {' or '.join(fields)}"
+            raise InputError(f"{name}: position {i}, ({x}, {y}), has no height{hint}")
+        super().__init__(points, "points")
+        if crs is not None:
+            self.crs = optional("rasterio.crs", _PURPOSE).CRS.from_user_input(crs)
+        if name is given:
+            self.path = _layer_in(given)[0]
+
+
+def _layer_in(path: _Paths) -> tuple[Path, Optional[str]]:
+    """The file, and which of its layers is meant: project.gpkg:lakes."""
+    found = re.fullmatch(r"(.*\.\w+):([^/\\]+)", os.fspath(path))
+    is_layer = found and Path(found[1]).suffix.lower() in _LAYERS
+    return (Path(found[1]), found[2]) if found and is_layer else (Path(path), None)
+
+
+def _sources(
+    given: Any, columns: Optional[Sequence[Union[str, int]]], fields: Sequence[str]
+) -> list[Any]:
     if not isinstance(given, (str, os.PathLike)):
         if isinstance(given, (list, tuple)) and all(
             isinstance(p, (str, os.PathLike)) for p in given
         ):
-            return [one for path in given for one in _sources(path, columns)]
+            return [one for path in given for one in _sources(path, columns, fields)]
+        if columns is None and geometries_of(given, "points") is not None:
+            return [_Layer(given, fields)]
         return [_Table(given, "points", columns)]
-    path = Path(given)
+    path, _ = _layer_in(given)
     if path.is_dir():
         files = sorted(p for p in path.iterdir() if p.suffix.lower() in _SUFFIXES)
         if not files:
             raise InputError(f"{path} has no files that end with {', '.join(_SUFFIXES)}")
-        return [one for file in files for one in _sources(file, columns)]
+        return [one for file in files for one in _sources(file, columns, fields)]
     if not path.exists():
         raise InputError(f"{path} does not exist")
     suffix = path.suffix.lower()
-    if suffix in _LAS and columns is not None:
-        raise UsageError(f"{path}: columns= are those of text ({', '.join(sorted(_TEXT))})")
+    if suffix in _LAS | _LAYERS and columns is not None:
+        known = ", ".join(sorted(_TEXT | {".npy"}))
+        raise UsageError(f"{path}: columns= are those of {known}")
+    if suffix in _LAYERS:
+        return [_Layer(given, fields)]
     if suffix in _LAS:
         return [_Las(path)]
     if suffix in _TEXT or suffix == ".npy":
         return [_Table(path, str(path), columns)]
-    raise UsageError(f"{path} must end with {', '.join(_SUFFIXES)}")
+    raise UsageError(f"{path} must end with {', '.join([*_SUFFIXES, *sorted(_LAYERS)])}")
 
 
 def _common_crs(sources: Iterable[Any], given: Any) -> Any:
@@ -329,6 +374,10 @@ def _common_crs(sources: Iterable[Any], given: Any) -> Any:
             )
         found, first = crs, source
     return found
+
+
+def _names(given: Union[None, str, Sequence[str]]) -> Sequence[str]:
+    return [given] if isinstance(given, str) else given or ()
 
 
 def _merge_heights(
@@ -356,28 +405,52 @@ def _merge_heights(
 # ---- Breaklines and boundaries
 
 
-def _geometries(given: Any, crs: Any, name: str) -> list[Any]:
-    """Shapely's geometries: those given, or those of a file, which must have the system of the points."""
+def _features(given: Any, name: str, fields: Sequence[str]) -> tuple[Any, Any, bool]:
+    """Shapely's geometries of a layer, a table or a list, their coordinate system, and whether they have a field.
+
+    Of fields, the first one that they have has the heights.
+    """
     shapely = optional("shapely", _PURPOSE)
     if isinstance(given, (str, os.PathLike)):
         pyogrio = optional("pyogrio.raw", _PURPOSE)
+        file, layer = _layer_in(given)
         try:
-            meta, _, found, _ = pyogrio.read(given, columns=[])
+            info = optional("pyogrio", _PURPOSE).read_info(file, layer=layer)
+            found = [field for field in fields if field in info["fields"]][:1]
+            meta, _, wkb, columns = pyogrio.read(file, layer=layer, columns=found)
         except Exception as error:
             raise InputError(f"{name}: {given}: {error}") from error
-        if crs is not None and meta["crs"]:
-            own = optional("rasterio.crs", _PURPOSE).CRS.from_user_input(meta["crs"])
-            if own != crs and not _has_no_crs(Path(given), shapely.total_bounds(shapely.from_wkb(found))):
-                raise InputError(f"{name}: {given} has the coordinate system {own}, not {crs}")
-        return list(shapely.from_wkb(found))
-    if hasattr(given, "geom_type"):
-        return [given]
-    return [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+        geometries, crs = shapely.from_wkb(wkb), meta["crs"]
+        # GeoJSON that names no system only seems to have longitudes and latitudes.
+        is_default = file.suffix.lower() in (".geojson", ".json") and crs == "EPSG:4326"
+        if is_default and (np.abs(shapely.total_bounds(geometries)) > 360).any():
+            crs = None
+    else:
+        geometries, crs = geometries_of(given, name), getattr(given, "crs", None)
+        if geometries is None:
+            geometries = [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+        found = [field for field in fields if field in getattr(given, "columns", ())][:1]
+        columns = [given[field] for field in found]
+    geometries = np.array(geometries, object)
+    for field, column in zip(found, columns):
+        heights = np.asarray(column)
+        if heights.dtype.kind not in "iuf":
+            raise InputError(f"{name}: the field {field!r} is no number")
+        geometries = shapely.force_3d(shapely.force_2d(geometries), heights.astype(np.float64))
+    return geometries[~shapely.is_missing(geometries)], crs, bool(found)
 
 
-def _has_no_crs(path: Path, box: Doubles) -> bool:
-    """Whether a file of GeoJSON only seems to have longitudes and latitudes, since it names no system."""
-    return path.suffix.lower() in (".geojson", ".json") and bool((np.abs(box) > 360).any())
+def _geometries(
+    given: Any, system: Any, name: str, fields: Sequence[str] = ()
+) -> tuple[list[Any], bool]:
+    """Those of `_features`, which must have the system of the points."""
+    geometries, crs, has_field = _features(given, name, fields)
+    if system is not None and crs is not None:
+        own = optional("rasterio.crs", _PURPOSE).CRS.from_user_input(crs)
+        if own != system:
+            which = given if isinstance(given, (str, os.PathLike)) else "the table"
+            raise InputError(f"{name}: {which} has the coordinate system {own}, not {system}")
+    return list(geometries), has_field
 
 
 def _check_place(name: str, geometries: Sequence[Any], points: Doubles) -> None:
@@ -418,18 +491,6 @@ def _polygons_of(geometries: Iterable[Any]) -> list[Any]:
 
 
 # ---- Results
-
-
-def _hillshade(pixels: Doubles, dx: float, dy: float) -> npt.NDArray[np.uint8]:
-    """Grey and alpha of a surface that is lit from the north-west, 45 degrees high."""
-    down, right = np.gradient(pixels)
-    slope_x, slope_y = right / dx, -down / dy
-    light = (1 - slope_x / math.sqrt(2) + slope_y / math.sqrt(2)) / np.sqrt(
-        2 * (1 + slope_x**2 + slope_y**2)
-    )
-    there = np.isfinite(light)
-    grey = np.where(there, 255 * np.clip(light, 0, 1), 0).astype(np.uint8)
-    return np.stack([grey, np.where(there, 255, 0).astype(np.uint8)])
 
 
 def _levels_of(heights: Union[float, npt.ArrayLike], low: float, high: float) -> Doubles:
@@ -490,6 +551,33 @@ class Terrain:
         lines = self.mesh.contours(self.heights, levels, max_edge=self._max_edge)
         return lines if self._boundary is None else self._clipped(lines)
 
+    def hillshade(
+        self, *, vertical_factor: float = 1, colors: bool = False
+    ) -> npt.NDArray[np.uint8]:
+        """A picture of the raster, lit from the north-west: red, green, blue and alpha, for ``imshow``.
+
+        Parameters
+        ----------
+        vertical_factor, colors
+            As of `terrain`.
+
+        Returns
+        -------
+        ndarray of uint8, shape (rows, columns, 4)
+        """
+        bands = self._shaded(vertical_factor, colors)
+        return np.moveaxis(bands if colors else bands[[0, 0, 0, 1]], 0, -1)
+
+    def _shaded(self, vertical_factor: float, colors: bool) -> npt.NDArray[np.uint8]:
+        """The bands of a picture."""
+        return _calls.shade_hills(
+            self._grid.steps,
+            self.raster,
+            vertical_factor=_raster.as_length(vertical_factor, "vertical_factor"),
+            is_geographic=self.crs is not None and self.crs.is_geographic,
+            colors=bool(colors),
+        )
+
     def _clipped(self, lines: Contours) -> Contours:
         shapely = optional("shapely", _PURPOSE)
         if not len(lines):
@@ -507,7 +595,9 @@ class Terrain:
 
     # Files
 
-    def _write_raster(self, path: str, driver: str, nodata: float) -> None:
+    def _write_raster(
+        self, path: str, driver: str, nodata: float, shading: tuple[float, bool]
+    ) -> None:
         rasterio = optional("rasterio", _PURPOSE)
         grid = self._grid
         transform = rasterio.transform.from_origin(
@@ -518,8 +608,8 @@ class Terrain:
             **{"transform": transform, "crs": self.crs},
         }
         if driver == "PNG":
-            picture = _hillshade(self.raster, grid.resolution, grid.resolution)
-            with rasterio.open(path, "w", count=2, dtype="uint8", **common) as file:
+            picture = self._shaded(*shading)
+            with rasterio.open(path, "w", count=len(picture), dtype="uint8", **common) as file:
                 file.write(picture)
             return
         with rasterio.open(
@@ -607,7 +697,7 @@ def _checked_outputs(given: Any, contours: Any) -> list[Path]:
         return []
     given = [given] if isinstance(given, (str, os.PathLike)) else given
     paths = [Path(path) for path in given]
-    known = [*_RASTERS, *(k for k in _LINES if k != ".shp"), *_MESHES]
+    known = [*_RASTERS, *_LINES, *_MESHES]
     for path in paths:
         if path.suffix.lower() not in known:
             raise UsageError(f"output {path} must end with {', '.join(known)}")
@@ -775,6 +865,7 @@ def _finished(
     contours: Union[None, float, npt.ArrayLike],
     lines: Optional[Contours],
     nodata: float,
+    shading: tuple[float, bool],
 ) -> Terrain:
     """The result within its boundary, with its files. lines: contours, if they are there already."""
     area = result._boundary
@@ -794,7 +885,7 @@ def _finished(
             suffix = path.suffix.lower()
             try:
                 if suffix in _RASTERS:
-                    result._write_raster(name, _RASTERS[suffix], nodata)
+                    result._write_raster(name, _RASTERS[suffix], nodata, shading)
                 elif suffix in _MESHES:
                     result._write_mesh(name)
                 else:
@@ -814,10 +905,12 @@ def terrain(
     resolution: float,
     bounds: Optional[Sequence[float]] = None,
     columns: Optional[Sequence[Union[str, int]]] = None,
+    height: Union[None, str, Sequence[str]] = None,
     classes: Optional[Iterable[int]] = None,
     returns: Optional[str] = None,
     duplicates: str = "highest",
     breaklines: Any = None,
+    line_height: Union[None, str, Sequence[str]] = None,
     crossings: str = "error",
     boundary: Any = None,
     flat: Any = None,
@@ -827,6 +920,8 @@ def terrain(
     crs: Any = None,
     pixel_is: str = "area",
     nodata: float = -9999.0,
+    vertical_factor: float = 1,
+    colors: bool = False,
     device: Optional[str] = None,
     memory: Union[None, int, str] = None,
     scratch: Optional[_Paths] = None,
@@ -835,19 +930,24 @@ def terrain(
 
     Parameters
     ----------
-    points : path, list of paths or array_like
-        Files ``.las``, ``.laz``, ``.txt``, ``.xyz``, ``.csv`` and ``.npy``, folders of these, or an array of
-        x, y and z.
+    points : path, list of paths, array_like or geometries
+        Files ``.las``, ``.laz``, ``.txt``, ``.xyz``, ``.csv`` and ``.npy``, folders of these, an array of x, y and
+        z, or points and lines: ``.gpkg``, ``.shp``, ``.fgb``, ``.parquet``, ``.geojson``, a table of geopandas or
+        geometries of Shapely. Of files with several layers, one: ``"project.gpkg:samples"``.
     output : path or list of paths, optional
         Files to write: ``.tif`` (a cloud-optimised GeoTIFF of float32), ``.png`` (shaded hills),
-        ``.geojson`` or ``.gpkg`` (contours), ``.ply``, ``.obj``, ``.stl``, ``.vtk`` or ``.vtu`` (the
+        ``.geojson``, ``.gpkg`` or ``.fgb`` (contours), ``.ply``, ``.obj``, ``.stl``, ``.vtk`` or ``.vtu`` (the
         triangles, by meshio). All are written, or none is.
     resolution : float
         The size of a pixel.
     bounds : (xmin, ymin, xmax, ymax), optional
         What the raster covers at least; the box of the points by default.
     columns : sequence of three str or int, optional
-        Of text, the columns with x, y and z: names of the header, or numbers from 0; the first ones by default.
+        Of text and ``.npy``, the columns with x, y and z: names of the header, or numbers from 0; the first ones
+        by default.
+    height : str or sequence of str, optional
+        Of layers and tables, the field that has the height, in place of that of positions; of several, the first
+        one that there is. Also of `breaklines` and `flat`.
     classes : iterable of int, optional
         Of a scan, the classes of points that are used: 2 is ground, 9 water. By default all but noise, 7 and 18.
         Points that are marked as withheld are never used.
@@ -855,14 +955,16 @@ def terrain(
         Of a scan, only these returns of each pulse.
     duplicates : {"highest", "lowest", "mean"}
         The height of a place that was measured several times.
-    breaklines : path, geometries of Shapely or list of arrays, optional
+    breaklines : path, table of geopandas, geometries of Shapely or list of arrays, optional
         Lines that become edges of the triangulation, of shape (k, 3), or (k, 2) to take the heights of the
         points around them.
+    line_height : str or sequence of str, optional
+        Of breaklines, in place of `height`.
     crossings : {"error", "split"}
         Breaklines that cross are an error, or cut where they do, at the height of the first one.
-    boundary : path or geometry of Shapely, optional
+    boundary : path, table of geopandas or geometry of Shapely, optional
         Polygons, outside of which the map is empty.
-    flat : path or geometries of Shapely, optional
+    flat : path, table of geopandas or geometries of Shapely, optional
         Polygons that are held flat, such as lakes: at the height of the first point of their border, or
         if that has none, at the lowest height along it. Points in them do not count.
     method : {"linear", "natural", "clough-tocher"}
@@ -878,6 +980,10 @@ def terrain(
         Whether the edges of pixels or their centres are multiples of the resolution.
     nodata : float
         What stands for no height in the GeoTIFF.
+    vertical_factor : float
+        Of a ``.png``, by what heights are multiplied; longitudes and latitudes count in metres anyhow.
+    colors : bool
+        Of a ``.png``, colours by height, from green to white.
     device : str, optional
         As of `triangulate`.
     memory : int or str, optional
@@ -922,6 +1028,9 @@ def terrain(
     _raster.as_length(max_edge, "max_edge")
     chosen = None if classes is None else frozenset(classes)
     outputs = _checked_outputs(output, contours)
+    shading = (_raster.as_length(vertical_factor, "vertical_factor"), bool(colors))
+    if shading != (1, False) and not any(path.suffix.lower() == ".png" for path in outputs):
+        raise UsageError("vertical_factor= and colors= need an output .png")
     chunks = None
     if memory is not None:
         chunks = chunks_of(memory, scratch, device, None, None)
@@ -932,11 +1041,13 @@ def terrain(
                 "memory= is for rasters and contours alone: not for flat lakes, other methods than the "
                 "linear one and files of triangles"
             )
-    sources = _sources(points, columns)
+    fields = _names(height)
+    sources = _sources(points, columns, fields)
+    has_field = any(getattr(source, "has_field", False) for source in sources)
     inputs = [*(source.path for source in sources), breaklines, boundary, flat]
     for given in inputs:
         for path in outputs:
-            if isinstance(given, (str, os.PathLike)) and is_one_file(Path(given), path):
+            if isinstance(given, (str, os.PathLike)) and is_one_file(_layer_in(given)[0], path):
                 raise UsageError(f"output {path} would overwrite the input")
     system = _common_crs(sources, crs)
     boxes = np.array([source.box for source in sources if source.box is not None])
@@ -953,17 +1064,29 @@ def terrain(
     _Grid(box, resolution, is_point)
     area = None
     if boundary is not None:
-        area = optional("shapely", _PURPOSE).union_all(_geometries(boundary, system, "boundary"))
+        area = optional("shapely", _PURPOSE).union_all(_geometries(boundary, system, "boundary")[0])
         maps["boundary"] = [area]
         optional("rasterio.features", _PURPOSE)
 
     lakes: list[Any] = []
     if flat is not None:
-        lakes = maps["flat"] = _polygons_of(_geometries(flat, system, "flat"))
+        found, has_one = _geometries(flat, system, "flat", fields)
+        lakes = maps["flat"] = _polygons_of(found)
+        has_field |= has_one
     lines_kept: list[Doubles] = []
+    own_fields = _names(line_height)
+    if own_fields and breaklines is None:
+        raise UsageError("line_height= needs breaklines=")
     if breaklines is not None:
-        maps["breaklines"] = _geometries(breaklines, system, "breaklines")
+        maps["breaklines"], has_one = _geometries(
+            breaklines, system, "breaklines", own_fields or fields
+        )
         lines_kept = [line for line in _lines_of(maps["breaklines"]) if len(line)]
+        if own_fields and not has_one:
+            raise InputError(f"breaklines have no field {' or '.join(own_fields)}, of line_height=")
+        has_field |= has_one and not own_fields
+    if fields and not has_field:
+        raise InputError(f"no layer has a field {' or '.join(fields)}, of height=")
     if chunks is not None and any(np.isnan(line[:, 2]).any() for line in lines_kept):
         raise UsageError("memory=: breaklines must have heights at all their points")
 
@@ -990,7 +1113,7 @@ def terrain(
                 *(lines_kept, crossings, device, chunks),
             )
         result.left_out.update(left_out)
-        return _finished(result, outputs, contours, lines, nodata)
+        return _finished(result, outputs, contours, lines, nodata, shading)
     places, heights = np.ascontiguousarray(measured[:, :2]), measured[:, 2].copy()
     mesh: Any
     fixed = 0
@@ -1010,4 +1133,4 @@ def terrain(
         _raster.rasterize(mesh, heights, grid.steps, result.raster, max_edge, np.nan, device)
     else:
         _interpolate_pixels(result, method)
-    return _finished(result, outputs, contours, None, nodata)
+    return _finished(result, outputs, contours, None, nodata, shading)

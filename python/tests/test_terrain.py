@@ -160,6 +160,55 @@ def test_text_in_columns(scan, tmp_path):
             flaunay.terrain(path, resolution=2, columns=columns)
     with pytest.raises(flaunay.UsageError, match="columns"):
         flaunay.terrain(scan, resolution=2, columns=(0, 1, 2))
+    np.save(tmp_path / "wide.npy", np.column_stack([scan[:, 2], np.zeros(3000), scan[:, :2]]))
+    made = flaunay.terrain(tmp_path / "wide.npy", resolution=2, columns=(2, 3, 0))
+    assert made.raster.tobytes() == expected
+    with pytest.raises(flaunay.InputError, match="no column 4"):
+        flaunay.terrain(tmp_path / "wide.npy", resolution=2, columns=(2, 4, 0))
+
+
+def test_heights_of_fields(scan, tmp_path):
+    geopandas = pytest.importorskip("geopandas")
+    pytest.importorskip("pyogrio")
+    shapely = pytest.importorskip("shapely")
+    expected = flaunay.terrain(scan, resolution=2)
+    places = geopandas.GeoSeries(shapely.points(scan[:, :2]), crs="EPSG:32633")
+    table = geopandas.GeoDataFrame({"name": "p", "z": scan[:, 2]}, geometry=places)
+    for name in "points.gpkg", "points.fgb", "points.geojson":
+        table.to_file(tmp_path / name)
+    table.iloc[:3].to_file(tmp_path / "points.gpkg", layer="some")
+    for points in table, tmp_path / "points.fgb", tmp_path / "points.geojson", f"{tmp_path}/points.gpkg:points":
+        made = flaunay.terrain(points, resolution=2, height=("none", "z"))
+        assert made.raster.tobytes() == expected.raster.tobytes() and made.crs.to_epsg() == 32633
+        with pytest.raises(flaunay.InputError, match="position 0, .* nor is there a field none"):
+            flaunay.terrain(points, resolution=2, height="none")
+        with pytest.raises(flaunay.InputError, match="'name' is no number"):
+            flaunay.terrain(points, resolution=2, height="name")
+        with pytest.raises(flaunay.InputError, match="position 0, .* has no height; height="):
+            flaunay.terrain(points, resolution=2)
+    # Heights of positions, of points and lines.
+    half = shapely.linestrings(scan[:1500]), *shapely.points(scan[1500:])
+    for points in geopandas.GeoSeries(shapely.points(scan)), half:
+        assert flaunay.terrain(points, resolution=2).raster.tobytes() == expected.raster.tobytes()
+    with pytest.raises(flaunay.InputError, match="no layer has a field none, of height="):
+        flaunay.terrain(scan, resolution=2, height="none")
+    with pytest.raises(flaunay.InputError, match="expected points or lines"):
+        flaunay.terrain(shapely.box(0, 0, 1, 1), resolution=2)
+    with pytest.raises(flaunay.UsageError, match="columns="):
+        flaunay.terrain(tmp_path / "points.fgb", resolution=2, columns=(0, 1, 2))
+    # Those of lines are other ones.
+    across = shapely.linestrings([[(500000, y), (500060, y)] for y in (4500010, 4500030)])
+    lines = geopandas.GeoDataFrame({"z": [50.0, 60], "level": [70.0, 80]}, geometry=across)
+    table = table[(np.abs(scan[:, 1] - 4500020) - 10).round(2) != 0]
+    for line_height, level in ((None, 50), ("level", 70)):
+        made = flaunay.terrain(
+            table, resolution=2, pixel_is="point", height="z", breaklines=lines, line_height=line_height
+        )
+        np.testing.assert_allclose(made.raster[15, 1:-1], level, atol=1e-12)
+    with pytest.raises(flaunay.InputError, match="no field none, of line_height="):
+        flaunay.terrain(scan, resolution=2, breaklines=lines, line_height="none")
+    with pytest.raises(flaunay.UsageError, match="needs breaklines="):
+        flaunay.terrain(scan, resolution=2, line_height="z")
 
 
 # ---- Outputs
@@ -289,19 +338,49 @@ def test_geotiff(scan, tmp_path):
 def test_contours_and_hillshade(scan, tmp_path):
     rasterio = pytest.importorskip("rasterio")
     pyogrio = pytest.importorskip("pyogrio")
-    outputs = [tmp_path / name for name in ("a.geojson", "a.gpkg", "a.png")]
+    outputs = [tmp_path / name for name in ("a.geojson", "a.gpkg", "a.png", "a.fgb")]
     made = flaunay.terrain(scan, outputs, resolution=1, contours=10, crs="EPSG:32633")
     lines = made.contours(10)
-    for path in outputs[:2]:
+    for path in outputs[0], outputs[1], outputs[3]:
         meta, _, geometries, fields = pyogrio.raw.read(path)
         assert meta["crs"] == "EPSG:32633" and len(geometries) == len(lines)
-        np.testing.assert_array_equal(fields[0], lines.heights)
+        np.testing.assert_array_equal(np.sort(fields[0]), lines.heights)
     first = json.loads(outputs[0].read_text())["features"][0]
     np.testing.assert_allclose(first["geometry"]["coordinates"], lines[0][1], atol=1e-6)
     with rasterio.open(outputs[2]) as file:
         grey, alpha = file.read()
     assert grey.shape == made.raster.shape and np.ptp(grey[alpha > 0]) > 50
-    assert ((alpha == 0) == np.isnan(sum(np.gradient(made.raster)))).all()
+    assert ((alpha == 0) == np.isnan(made.raster + sum(np.gradient(made.raster)))).all()
+    np.testing.assert_array_equal(made.hillshade(), np.dstack([grey, grey, grey, alpha]))
+    made = flaunay.terrain(scan, outputs[2], resolution=1, vertical_factor=2, colors=True)
+    with rasterio.open(outputs[2]) as file:
+        picture = np.moveaxis(file.read(), 0, -1)
+    np.testing.assert_array_equal(made.hillshade(vertical_factor=2, colors=True), picture)
+
+
+def test_hills_are_shaded(scan):
+    made = flaunay.terrain(scan, resolution=2)
+    grey = made.hillshade()
+    assert grey.shape == (20, 30, 4) and grey.dtype == np.uint8 and (np.ptp(grey[..., :3], axis=2) == 0).all()
+    flat = flaunay.terrain(scan * [1, 1, 0.5], resolution=2)
+    np.testing.assert_array_equal(flat.hillshade(vertical_factor=2), grey)
+    assert (flat.hillshade() != grey).any()
+    lowest, highest = np.nanargmin(made.raster), np.nanargmax(made.raster)
+    colors = made.hillshade(colors=True).reshape(-1, 4).astype(int)
+    assert colors[lowest, 1] > colors[lowest, 0] > 0 and np.ptp(colors[highest, :3]) < 9
+    assert flaunay.terrain(scan[:3], resolution=1000).hillshade().shape == (1, 1, 4)
+    # With longitudes and latitudes, heights are multiplied so that slopes are those in metres.
+    pytest.importorskip("rasterio")
+    small = (scan - [500030, 4500020, 0]) / [1e4, 1e4, 1]
+    metres = flaunay.terrain(small, resolution=2e-4)
+    degrees = flaunay.terrain(small * [1, 1, 11.1195], resolution=2e-4, crs="EPSG:4326")
+    pictures = degrees.hillshade().astype(int), metres.hillshade(vertical_factor=1e-4)
+    assert np.abs(pictures[0] - pictures[1]).max() <= 1
+    for arguments in {"colors": True}, {"vertical_factor": 2}:
+        with pytest.raises(flaunay.UsageError, match="need an output .png"):
+            flaunay.terrain(scan, resolution=2, **arguments)
+    with pytest.raises(flaunay.UsageError, match="vertical_factor must be positive"):
+        made.hillshade(vertical_factor=-1)
 
 
 def test_contours_in_chunks(scan, tmp_path):

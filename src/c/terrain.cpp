@@ -19,6 +19,17 @@ flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator, const doubl
   });
 }
 
+flaunay_status flaunay_shade_hills(const flaunay_raster* raster, const double* pixels,
+                                   const flaunay_shading* shading, uint8_t* picture) {
+  return c::guarded([&] {
+    const flaunay_shading& given = required(shading, "shading");
+    ShadingOptions options;
+    c::take<"vertical_factor">(given, options);
+    if (given.vertical_factor != 0) options.vertical_factor = given.vertical_factor;
+    shade_hills(c::to_raster(required(raster, "the raster")), pixels, options, picture);
+  });
+}
+
 flaunay_status flaunay_contours_compute(flaunay_triangulator* triangulator, const double* coordinates,
                                         size_t n, const int32_t* triangles, const int32_t* neighbors,
                                         size_t t, const double* values, const double* heights,

@@ -748,6 +748,79 @@ TEST(RasterInChunks, BreaklinesThatCrossAreNamed) {
   testing::expect_error(ErrorKind::usage, "segment", with({0, 4}));
 }
 
+TEST(SmallShading, HillsAreLitFromTheNorthWest) {
+  constexpr std::size_t kRows = 3, kColumns = 4, kCount = kRows * kColumns;
+  RasterGrid grid;
+  grid.y = 60;
+  grid.dx = 2;
+  grid.dy = -2;
+  grid.rows = kRows;
+  grid.columns = kColumns;
+  const auto shaded = [&](double east, double north, const ShadingOptions& options) {
+    std::vector<double> pixels;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto row = static_cast<double>(i / kColumns), column = static_cast<double>(i % kColumns);
+      pixels.push_back(2 * east * column - 2 * north * row);
+    }
+    std::vector<std::uint8_t> picture((options.colors ? 4 : 2) * kCount, 7);
+    shade_hills(grid, pixels.data(), options, picture.data());
+    EXPECT_EQ(std::count(picture.end() - kCount, picture.end(), 255), kCount);
+    picture.resize(picture.size() - kCount);
+    return picture;
+  };
+  const auto expect_grey = [&](double light, const std::vector<std::uint8_t>& picture) {
+    EXPECT_EQ(picture, std::vector<std::uint8_t>(kCount, static_cast<std::uint8_t>(255 * light)));
+  };
+  const double root = std::sqrt(2.0);
+  expect_grey(1 / root, shaded(0, 0, {}));
+  // Slopes of 45 degrees to the west and to the north, which face the light, and to the east, which do not.
+  expect_grey((1 - 1 / root) / 2, shaded(1, 0, {}));
+  expect_grey((1 + 1 / root) / 2, shaded(-1, 0, {}));
+  expect_grey((1 + 1 / root) / 2, shaded(0, 1, {}));
+  ShadingOptions options;
+  options.vertical_factor = 4;
+  expect_grey((1 + 1 / root) / 2, shaded(-0.25, 0, options));
+  // Of degrees, in metres: those of longitude are about half as long here.
+  options = {};
+  options.is_geographic = true;
+  EXPECT_EQ(shaded(0, 111195, options), shaded(0, 1, {}));
+  EXPECT_EQ(shaded(111195, 0, options)[0], shaded(2, 0, {})[0]);
+  options = {};
+  options.colors = true;
+  const std::vector<std::uint8_t> level = shaded(0, 0, options), slope = shaded(-1, 0, options);
+  EXPECT_NEAR(level[0], 90, 1);
+  EXPECT_NEAR(level[kCount], 150, 1);
+  EXPECT_NEAR(level[2 * kCount], 95, 1);
+  EXPECT_NEAR(slope[0], 250, 5);  // the highest, and lit
+  EXPECT_LT(slope[2 * kCount + kColumns - 1], 120);
+}
+
+TEST(SmallShading, LeavesOutWhatIsNotThere) {
+  RasterGrid grid;
+  grid.rows = 5;
+  grid.columns = 5;
+  std::vector<double> pixels(25, 1);
+  pixels[12] = std::numeric_limits<double>::quiet_NaN();
+  ShadingOptions options;
+  options.colors = true;
+  std::vector<std::uint8_t> picture(100);
+  shade_hills(grid, pixels.data(), options, picture.data());
+  for (std::size_t i = 0; i < 25; ++i) {
+    const bool is_there = i != 7 && i != 11 && i != 12 && i != 13 && i != 17;
+    EXPECT_EQ(picture[75 + i], is_there ? 255 : 0) << i;
+    EXPECT_EQ(picture[i] > 0, is_there) << i;
+  }
+  grid.rows = 1;
+  grid.columns = 1;
+  shade_hills(grid, pixels.data(), {}, picture.data());
+  EXPECT_EQ(picture[0], 180);
+  for (const double factor : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    options.vertical_factor = factor;
+    testing::expect_error(ErrorKind::usage, "vertical_factor",
+                          [&] { shade_hills(grid, pixels.data(), options, picture.data()); });
+  }
+}
+
 TEST(Contours, LeaveOutValuesThatAreNotFinite) {
   Terrain terrain = terrain_of("uniform", 50);
   terrain.values[7] = std::numeric_limits<double>::quiet_NaN();

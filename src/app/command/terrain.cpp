@@ -57,7 +57,7 @@ struct TerrainRequest {
   RasterOptions raster;
   bool is_point = false;
   double nodata = -9999;
-  Shading shading;
+  ShadingOptions shading;
   std::string device, scratch;
   std::uint64_t memory = 0;
   bool quiet = false;
@@ -186,7 +186,7 @@ int make_terrain(TerrainRequest request) {
   const TerrainFiles files(request.outputs);
   if (!files.lines.empty() && request.contours.empty())
     fail_usage(fmt::format("{}: needs --contours, the interval of heights", files.lines.front()));
-  if (files.pictures.empty() && (request.shading.has_colors || request.shading.vertical_factor != 1))
+  if (files.pictures.empty() && (request.shading.colors || request.shading.vertical_factor != 1))
     fail_usage("--colors and --vertical-factor: need an output .png");
   if (files.lines.empty() && !request.contours.empty())
     fail_usage("--contours: needs an output .geojson, .gpkg, .shp or .fgb");
@@ -357,7 +357,7 @@ void add_terrain(CLI::App& app, Action& action) {
           "--vertical-factor", request->shading.vertical_factor,
           "Of a .png, by what heights are multiplied; longitudes and latitudes count in metres anyhow")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--colors", request->shading.has_colors, "Of a .png, colours by height, green to white");
+  command->add_flag("--colors", request->shading.colors, "Of a .png, colours by height, green to white");
   command
       ->add_option("--contours", request->contours,
                    "The interval of contours' heights, or several heights, for an output of contours")

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -24,43 +23,7 @@ namespace {
 constexpr double kMostPixels =
     std::min(0x1p32, static_cast<double>(std::numeric_limits<std::size_t>::max() / sizeof(double)));
 
-// Half the difference of a pixel's neighbours; at the border, that to the only neighbour.
-double slope(const double* pixel, std::size_t i, std::size_t count, std::ptrdiff_t step) {
-  if (count < 2) return 0;
-  if (i == 0) return pixel[step] - pixel[0];
-  if (i == count - 1) return pixel[0] - pixel[-step];
-  return (pixel[step] - pixel[-step]) / 2;
-}
-
-std::array<double, 2> range_of(const double* pixels, std::size_t count) {
-  std::array<double, 2> range = {HUGE_VAL, -HUGE_VAL};
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isnan(pixels[i])) range = {std::min(range[0], pixels[i]), std::max(range[1], pixels[i])};
-  }
-  return range;
-}
-
-// From green valleys over yellow and brown to white peaks. share: of the way from the lowest to the highest.
-std::array<double, 3> relief(double share) {
-  constexpr std::array<std::array<double, 3>, 5> kColors = {
-      {{90, 150, 95}, {170, 195, 120}, {240, 225, 160}, {180, 130, 90}, {250, 248, 245}}};
-  const double at = share * (kColors.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(at), kColors.size() - 2);
-  std::array<double, 3> color{};
-  for (std::size_t c = 0; c < 3; ++c)
-    color[c] = kColors[k][c] + (at - static_cast<double>(k)) * (kColors[k + 1][c] - kColors[k][c]);
-  return color;
-}
-
 }  // namespace
-
-std::array<double, 2> Shading::factors(double y) const {
-  if (!is_geographic) return {vertical_factor, vertical_factor};
-  // Of a sphere as large as the Earth, whose heights are in metres.
-  constexpr double kMetresPerDegree = 111195, kDegree = 0.017453292519943295, kLeast = 1e-3;
-  const double by_y = vertical_factor / kMetresPerDegree;
-  return {by_y / std::max(std::cos(y * kDegree), kLeast), by_y};
-}
 
 PixelGrid::PixelGrid(const io::Box& box, double size, bool is_point_)
     : resolution(size), is_point(is_point_) {
@@ -138,34 +101,11 @@ void write_rasters(OutputFiles& outputs, const std::vector<std::string>& paths, 
 }
 
 void write_picture(OutputFiles& outputs, const std::string& path, const PixelGrid& grid, const double* pixels,
-                   const Shading& shading) {
-  // Lit from the north-west, 45 degrees high. Without colours, as flaunay.terrain in Python has it.
-  constexpr double kWhite = 255, kRoot = 1.4142135623730951;
-  const std::size_t rows = grid.pixels.rows, columns = grid.pixels.columns, count = grid.count();
-  const int bands = shading.has_colors ? 4 : 2;  // colours or grey, and then alpha
-  const auto [low, high] = range_of(pixels, count);
-  std::vector<std::uint8_t> picture(static_cast<std::size_t>(bands) * count);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const auto [by_x, by_y] = shading.factors(grid.pixels.y + static_cast<double>(row) * grid.pixels.dy);
-    for (std::size_t column = 0; column < columns; ++column) {
-      const std::size_t i = row * columns + column;
-      const double x = by_x * slope(pixels + i, column, columns, 1) / grid.resolution;
-      const double y =
-          -by_y * slope(pixels + i, row, rows, static_cast<std::ptrdiff_t>(columns)) / grid.resolution;
-      const double light = (1 - x / kRoot + y / kRoot) / std::sqrt(2 * (1 + x * x + y * y));
-      if (!std::isfinite(light)) continue;
-      const double grey = std::clamp(light, 0.0, 1.0);
-      const std::array<double, 3> color = relief((pixels[i] - low) / (high > low ? high - low : 1));
-      for (int band = 0; band + 1 < bands; ++band) {
-        // What is level has its own colour.
-        const double value =
-            shading.has_colors ? std::min(color[band] * (1 + kRoot * grey) / 2, kWhite) : kWhite * grey;
-        picture[static_cast<std::size_t>(band) * count + i] = static_cast<std::uint8_t>(value);
-      }
-      picture[static_cast<std::size_t>(bands - 1) * count + i] = static_cast<std::uint8_t>(kWhite);
-    }
-  }
-  const std::string png = io::png_of(path, picture.data(), bands, rows, columns);
+                   const ShadingOptions& shading) {
+  const int bands = shading.colors ? 4 : 2;  // colours or grey, and then alpha
+  std::vector<std::uint8_t> picture(static_cast<std::size_t>(bands) * grid.count());
+  shade_hills(grid.pixels, pixels, shading, picture.data());
+  const std::string png = io::png_of(path, picture.data(), bands, grid.pixels.rows, grid.pixels.columns);
   outputs.open(path).write(png.data(), png.size());
 }
 

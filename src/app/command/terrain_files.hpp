@@ -1,7 +1,6 @@
 // The files that flaunay terrain writes.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -37,17 +36,8 @@ void write_array(OutputFiles& outputs, const std::string& path, const PixelGrid&
 /// Changes the pixels.
 void write_rasters(OutputFiles& outputs, const std::vector<std::string>& paths, const PixelGrid& grid,
                    double nodata, const std::string& crs, double* pixels);
-/// How hills are shaded.
-struct Shading {
-  double vertical_factor = 1;  ///< of heights
-  bool is_geographic = false;  ///< coordinates are degrees, and heights metres
-  bool has_colors = false;
-
-  /// By which slopes in x and y are multiplied at this latitude.
-  std::array<double, 2> factors(double y) const;
-};
 void write_picture(OutputFiles& outputs, const std::string& path, const PixelGrid& grid, const double* pixels,
-                   const Shading& shading);
+                   const ShadingOptions& shading);
 /// The triangles without an edge longer than max_edge.
 void write_surface(OutputFiles& outputs, const std::string& path, const TerrainMesh& terrain,
                    double max_edge);

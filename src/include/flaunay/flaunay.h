@@ -1379,6 +1379,20 @@ FLAUNAY_API flaunay_status flaunay_rasterize(flaunay_triangulator* triangulator,
                                              size_t t, const double* values, const flaunay_raster* raster,
                                              double* pixels);
 
+/// How hills are shaded.
+typedef struct flaunay_shading {
+  double vertical_factor;  ///< by which heights are multiplied; 0: 1
+  int is_geographic;       ///< not 0: x and y are longitudes and latitudes in degrees, and heights metres
+  int colors;              ///< not 0: by height, from green over yellow and brown to white
+  uintptr_t reserved[4];   ///< 0
+} flaunay_shading;
+/// Draws a raster of heights as hills that are lit from the north-west, 45 degrees high. picture: room for
+/// rows x columns bytes of grey, or with colours of red, of green and of blue, and then for as many of alpha,
+/// which is 0 where a pixel or one that its slope is taken from is not finite. FLAUNAY_ERROR_USAGE for a
+/// factor and a raster that make no sense.
+FLAUNAY_API flaunay_status flaunay_shade_hills(const flaunay_raster* raster, const double* pixels,
+                                               const flaunay_shading* shading, uint8_t* picture);
+
 /// Contour lines.
 typedef struct flaunay_contours flaunay_contours;
 /// Computes contour lines at so many heights, which must increase, of values at n points that are linear in t

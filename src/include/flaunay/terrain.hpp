@@ -52,6 +52,20 @@ struct RasterOptions {
 FLAUNAY_API void rasterize(Triangulator& triangulator, const MeshView& mesh, const double* values,
                            const RasterGrid& grid, const RasterOptions& options, double* pixels);
 
+/// How hills are shaded.
+struct ShadingOptions {
+  double vertical_factor = 1;  ///< by which heights are multiplied; positive
+  bool is_geographic = false;  ///< x and y are longitudes and latitudes in degrees, and heights metres
+  bool colors = false;         ///< by height, from green over yellow and brown to white
+};
+
+/// Draws a raster of heights as hills that are lit from the north-west, 45 degrees high. picture: room for
+/// rows x columns bytes of grey, or with colours of red, of green and of blue, and then for as many of alpha,
+/// which is 0 where a pixel or one that its slope is taken from is not finite. O(pixels). Throws Error(usage)
+/// for a factor and a grid that make no sense.
+FLAUNAY_API void shade_hills(const RasterGrid& grid, const double* pixels, const ShadingOptions& options,
+                             std::uint8_t* picture);
+
 /// Contour lines at several heights. Those of one height follow each other, in the order of their points.
 struct Contours {
   std::vector<double> coordinates;    ///< x and y per point of a line
