@@ -1427,6 +1427,22 @@ static void test_weighted(void) {
   CHECK(fabs(areas[0] + areas[1] + areas[2] + areas[3] + areas[5] - 16) < 1e-12);
   flaunay_clipped_voronoi_destroy(cells);
   flaunay_triangulation_destroy(weighted);
+  // Nor are triangles taken for Delaunay ones if no point is hidden, also in a copy.
+  flaunay_locator* locator = NULL;
+  flaunay_voronoi* dual = NULL;
+  flaunay_triangulation* copy = NULL;
+  int32_t found = -1;
+  OK(triangulate_in(space, places, 4, NULL, 0, &weighted));
+  CHECK(flaunay_triangulation_mesh(weighted)->hidden_count == 0);
+  OK(flaunay_triangulation_create(flaunay_triangulation_mesh(weighted), NULL, &copy));
+  CHECK(flaunay_triangulation_mesh(copy)->is_weighted == 1);
+  REFUSED(flaunay_voronoi_compute(triangulator, places, 4, copy, &dual), "weights");
+  REFUSED(flaunay_voronoi_clip(triangulator, places, NULL, 4, copy, corners, 4, &cells), "weights");
+  OK(flaunay_locator_create(triangulator, places, NULL, 4, NULL, 0, copy, &locator));
+  REFUSED(flaunay_locator_nearest(locator, places, 1, NULL, 0, &found), "a tree of points");
+  flaunay_locator_destroy(locator);
+  flaunay_triangulation_destroy(copy);
+  flaunay_triangulation_destroy(weighted);
   // On a torus.
   flaunay_triangulation *with_period = NULL, *none = NULL;
   flaunay_space torus = on_torus(8, 8);
@@ -1436,10 +1452,8 @@ static void test_weighted(void) {
   CHECK(on_torus_mesh->hidden_count == 1 && on_torus_mesh->triangle_count == 10);
   OK(flaunay_mesh_verify(on_torus_mesh, places, NULL, &torus));
   REFUSED(flaunay_voronoi_clip(triangulator, NULL, NULL, 0, with_period, NULL, 0, &cells), "weights");
-  flaunay_locator* locator = NULL;
   REFUSED(flaunay_locator_create(triangulator, NULL, NULL, 0, NULL, 0, with_period, &locator), "weights");
   OK(flaunay_locator_create(triangulator, NULL, weights, 0, NULL, 0, with_period, &locator));
-  int32_t found = -1;
   OK(flaunay_locator_locate(locator, places, 1, NULL, 0, &found));
   CHECK(found >= 0);
   REFUSED(flaunay_locator_nearest(locator, places, 1, NULL, 0, &found), "a tree of points");

@@ -107,6 +107,7 @@ void copy_to(Triangulation& triangulation, const flaunay_mesh& mesh) {
 #undef COPY
   triangulation.space = to_space(mesh.space);
   triangulation.images = mesh.image_count;
+  triangulation.is_weighted = mesh.is_weighted != 0 || hidden > 0;
   triangulation.triangle_offsets = copied_offsets(mesh.triangle_offsets, mesh.set_count, mesh.triangle_count);
   if (triangulation.space.kind == SpaceKind::plane) {
     triangulation.hull_offsets = copied_offsets(mesh.hull_offsets, mesh.set_count, mesh.hull_count);

@@ -75,7 +75,9 @@ Triangulation Triangulator::triangulate(const double* points, const std::vector<
     const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
     call::expect(space.kind == SpaceKind::plane || (!options.halfedges && !options.areas),
                  "triangulations in other spaces than the plane have neither half-edges nor areas");
-    return calls.triangulate(self, {points, nullptr, offsets.back()}, offsets, space, options);
+    Triangulation mesh = calls.triangulate(self, {points, nullptr, offsets.back()}, offsets, space, options);
+    mesh.is_weighted = space.weights != nullptr;
+    return mesh;
   });
 }
 
@@ -86,6 +88,7 @@ void Triangulator::triangulate(const DevicePoints& points, DeviceTriangulation& 
     const call::SpaceCalls& calls = call::calls_in(points.space.kind, points.weights != nullptr);
     call::expect(points.space.weights == nullptr, "points in device memory have weights there");
     call::reset(points.space, result);
+    result.is_weighted = points.weights != nullptr;
     calls.triangulate_on_device(self, points, result, parts, enqueue);
   });
 }
@@ -102,6 +105,8 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
   check_offsets(offsets);
   const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
+  call::expect(space.weights != nullptr || !mesh.is_weighted,
+               "the triangulation is one of points with weights, which are needed");
   return calls.find_problem(points, offsets, space, mesh);
 }
 

@@ -19,7 +19,7 @@ HostPoints checked_points(const double* wide, const float* narrow, const std::ve
 /// Removes from a result what an earlier call of another kind has left.
 inline void reset(const Space& space, DeviceTriangulation& result) {
   result.space = space;
-  result.is_constrained = false;
+  result.is_constrained = result.is_weighted = false;
   result.constraint_count = result.hidden_count = result.images = 0;
 }
 

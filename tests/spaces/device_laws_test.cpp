@@ -286,6 +286,7 @@ TEST(SmallSpacesOnDevice, AResultForgetsWhatEarlierCallsHaveLeft) {
     EXPECT_EQ(result.is_constrained, is_constrained);
     EXPECT_EQ(result.constraint_count > 0, is_constrained);
     EXPECT_EQ(result.hidden_count > 0, has_hidden);
+    EXPECT_EQ(result.is_weighted, has_hidden);
     EXPECT_EQ(result.images > 0, kind == SpaceKind::torus);
   };
   embedded().triangulate(on_torus, result);

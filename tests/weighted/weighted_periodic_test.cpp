@@ -396,10 +396,13 @@ TEST(WeightedPeriodic, CellsAreWhereThePowerIsLeast) {
   }
   const WeightedPoints points = any_points(random, 300, 52, 0);
   const Numbers equal(300, 0.5);
-  const Triangulation mesh = triangulator().triangulate(points.coordinates.data(), 300,
-                                                        Space::torus({1, 1}).with_weights(equal.data()));
-  const ClippedVoronoi power = triangulator().clipped_voronoi(mesh, equal.data()),
-                       voronoi = triangulator().clipped_voronoi(mesh);
+  const auto in = [&](const Space& space) {
+    return triangulator().triangulate(points.coordinates.data(), 300, space);
+  };
+  const Space torus = Space::torus({1, 1});
+  const ClippedVoronoi power =
+                           triangulator().clipped_voronoi(in(torus.with_weights(equal.data())), equal.data()),
+                       voronoi = triangulator().clipped_voronoi(in(torus));
   EXPECT_TRUE(same(power.vertices, voronoi.vertices));
   EXPECT_TRUE(same(power.areas, voronoi.areas));
 }

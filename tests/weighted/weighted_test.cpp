@@ -467,6 +467,40 @@ TEST_F(WeightedTest, DuplicatesAreOfPlaceAndWeight) {
   EXPECT_EQ(mesh.statistics.duplicates, 3u);
 }
 
+// Also where no point is hidden, regular triangles are not taken for Delaunay ones: the lifts of points 0 and
+// 2 are low, so that these are joined, though 1 and 3 are nearer to each other.
+TEST_F(WeightedTest, MeshesSayThatTheyHaveWeights) {
+  const Numbers points = {0, 0, 4, -1, 8, 0, 4, 1}, weights = {20, 0, 20, 0},
+                box = {0, -4.5, 8, -4.5, 8, 4.5, 0, 4.5};
+  Options options;
+  options.neighbors = true;
+  const Triangulation mesh =
+      triangulator_.triangulate(points.data(), 4, Space::plane().with_weights(weights.data()), options);
+  EXPECT_EQ(mesh.triangles, (Ids{0, 1, 2, 0, 2, 3}));
+  EXPECT_TRUE(mesh.hidden.empty() && mesh.is_weighted);
+  EXPECT_FALSE(triangulator_.triangulate(points.data(), 4).is_weighted);
+  const auto need_weights = [](const auto& call) {
+    testing::expect_error(ErrorKind::usage, {"weights"}, call);
+  };
+  need_weights([&] { (void)triangulator_.voronoi(points.data(), 4, mesh); });
+  need_weights([&] { (void)triangulator_.clipped_voronoi(points.data(), 4, mesh, box.data(), 4); });
+  need_weights([&] { (void)verify(points.data(), {0, 4}, Space::plane(), mesh); });
+  // Power cells: those of 1 and 3 begin at (4, -2.5) and (4, 2.5).
+  const ClippedVoronoi cells =
+      triangulator_.clipped_voronoi(points.data(), weights.data(), 4, mesh, box.data(), 4);
+  EXPECT_EQ(cells.areas, (Numbers{35, 1, 35, 1}));
+  Locator locator(triangulator_, points.data(), 4, mesh);
+  const Numbers query = {3, 0.25}, values = {0, 1, 2, 3};
+  EXPECT_EQ(locator.locate(query.data(), 1), (Ids{1}));
+  need_weights([&] { (void)locator.nearest(query.data(), 1); });
+  need_weights([&] { (void)locator.natural_weights(query.data(), 1); });
+  const Triangulation on_torus = triangulator_.triangulate(
+      points.data(), 4, Space::torus({16, 16}).with_weights(weights.data()), options);
+  EXPECT_TRUE(on_torus.hidden.empty());
+  need_weights([&] { (void)triangulator_.clipped_voronoi(on_torus); });
+  need_weights([&] { (void)Locator(triangulator_, on_torus); });
+}
+
 TEST_F(WeightedTest, WrongWeightsAreNamed) {
   const Numbers points = {0, 0, 1, 0, 0, 1};
   const auto with = [&](double weight) {

@@ -306,7 +306,7 @@ struct Locator::Implementation {
   std::unique_ptr<call::SphereLocator> on_sphere;  ///< answers all queries there
   std::unique_ptr<call::Answerer> fixed;  ///< null if the engine has doubles, and for points that do not fit
   std::size_t point_count = 0;
-  bool has_weights = false;  ///< in the plane if points are hidden
+  bool has_weights = false;
   // All points of a mesh with constraints, and WholeMesh::constrained; empty without constraints.
   std::vector<double> all_points{};
   std::shared_ptr<const std::vector<std::uint8_t>> constrained{};
@@ -344,7 +344,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
-  self.has_weights = !triangulation.hidden.empty();
+  self.has_weights = triangulation.is_weighted;
   call::take_turn(*self.owner, [&] { self.make_from(coordinates, offsets, triangulation); });
 }
 
@@ -382,7 +382,7 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     });
   });
   self.point_count = points.count;
-  self.has_weights = triangulation.hidden_count > 0;
+  self.has_weights = triangulation.is_weighted;
 }
 
 Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation, const double* weights)

@@ -16,10 +16,15 @@
 namespace flaunay {
 namespace {
 
+constexpr const char* kNeedsWeights =
+    "cells of points with weights are power cells, of clipped_voronoi in host memory, which needs the "
+    "weights";
+
 template <typename Points, typename Mesh, typename Result>
 void compute(call::Frame& call, const Points& points, const Mesh& triangulation, Result& result) {
   call.check_size(points.count);
   points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
+  call::expect(!triangulation.is_weighted, kNeedsWeights);
   const std::size_t triangles = mesh.triangle_count();
   const voronoi::Buffers buffers{call.out<cl_double>(result.circumcentres, 2 * triangles, "circumcentres"),
                                  call.out<cl_int>(result.cell_offsets, points.count + 1, "cell offsets"),
@@ -79,6 +84,7 @@ void compute_clipped(call::Frame& call, const Points& points, const Mesh& triang
   const std::size_t n = points.count;
   call.check_size(n);
   points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
+  call::expect(!triangulation.is_weighted, kNeedsWeights);
   const voronoi::ClippedBuffers buffers{call.out<cl_int>(result.offsets, n + 1, "cell offsets"),
                                         call.out<cl_double>(result.areas, n, "areas"),
                                         call.out<cl_double>(result.centroids, 2 * n, "centroids")};

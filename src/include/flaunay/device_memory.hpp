@@ -112,6 +112,7 @@ struct DeviceTriangulation {
   Parts parts{false, false, false, false, false, false};
   Space space = Space::plane();  ///< Triangulation::space
   std::size_t images = 0;        ///< Triangulation::images
+  bool is_weighted = false;      ///< Triangulation::is_weighted
   std::size_t hidden_count = 0;  ///< the number of hidden points, known when the call returns
   /// On the sphere, the triangulation of the places in the plane, kept for the memory that the next call
   /// needs for it.

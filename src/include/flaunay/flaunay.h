@@ -544,6 +544,8 @@ typedef struct flaunay_mesh {
   /// On a torus and a cylinder, images that were triangulated besides the points, because empty circles reach
   /// across the border.
   size_t image_count;
+  int is_weighted;  ///< 1 if the points have weights, so that triangles are regular, which need not be
+                    ///< Delaunay
 } flaunay_mesh;
 
 /// The triangles of a mesh that is refined further. All points are triangulated anew, with the border of
@@ -1450,8 +1452,7 @@ FLAUNAY_API const int32_t* flaunay_contours_heights(const flaunay_contours* cont
 /// sphere given as the points were; they are in host memory.
 ///
 /// Among points with weights it locates, and interpolates within triangles; nearest points (see
-/// flaunay_point_tree) and natural neighbours are FLAUNAY_ERROR_USAGE, in the plane if points are hidden:
-/// otherwise a mesh does not tell that it has weights.
+/// flaunay_point_tree) and natural neighbours are FLAUNAY_ERROR_USAGE.
 ///
 /// A triangulation with constraints must be of one set. coordinates: of its points and after them those
 /// that were added, n together. Queries in no triangle, such as those in holes, are outside; nearest points

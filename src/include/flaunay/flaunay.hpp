@@ -212,6 +212,8 @@ struct Triangulation {
   /// points of their set span, and are in no triangle. Points that another point represents are not among
   /// them.
   std::vector<std::int32_t> hidden;
+  /// Whether the points have weights, so that triangles are regular, which need not be Delaunay.
+  bool is_weighted = false;
   /// One per triangle: its area, rounded to the nearest double, ties to even, whatever the coordinates: 0 up
   /// to 2^-1075, infinite from about 2^1024. Otherwise it is positive, since triangles are counter-clockwise.
   /// Empty unless Options::areas.
@@ -619,8 +621,7 @@ struct NaturalWeights {
 /// names it. The locator shares device and memory with its triangulator, so a call during another one of
 /// either throws Error(usage); it may outlive the triangulator. A locator that was made from host memory
 /// without OpenCL answers queries in host memory only. Among points with weights it locates, and interpolates
-/// within triangles; nearest points (see PointTree) and natural neighbours are Error(usage), in the plane if
-/// points are hidden: otherwise a mesh does not tell that it has weights.
+/// within triangles; nearest points (see PointTree) and natural neighbours are Error(usage).
 class FLAUNAY_API Locator {
  public:
   /// Makes a locator for a triangulation of these n points, which must have neighbours. The locator copies
