@@ -414,8 +414,14 @@ def _features(given: Any, name: str, fields: Sequence[str]) -> tuple[Any, Any, b
     if isinstance(given, (str, os.PathLike)):
         pyogrio = optional("pyogrio.raw", _PURPOSE)
         file, layer = _layer_in(given)
+        files = optional("pyogrio", _PURPOSE)
         try:
-            info = optional("pyogrio", _PURPOSE).read_info(file, layer=layer)
+            layers = [str(one) for one, kind in files.list_layers(file) if kind is not None]
+            if layer is None and len(layers) > 1:
+                raise ValueError(
+                    f"has the layers {', '.join(layers)}: add the name of one to the path, as in {file}:{layers[0]}"
+                )
+            info = files.read_info(file, layer=layer)
             found = [field for field in fields if field in info["fields"]][:1]
             meta, _, wkb, columns = pyogrio.read(file, layer=layer, columns=found)
         except Exception as error:
@@ -428,15 +434,23 @@ def _features(given: Any, name: str, fields: Sequence[str]) -> tuple[Any, Any, b
     else:
         geometries, crs = geometries_of(given, name), getattr(given, "crs", None)
         if geometries is None:
-            geometries = [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+            try:
+                geometries = [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+            except (TypeError, ValueError) as error:
+                what = "a path, geometries or a list of arrays of shape (k, 2) or (k, 3)"
+                raise UsageError(f"{name} must be {what}: {error}") from error
         found = [field for field in fields if field in getattr(given, "columns", ())][:1]
         columns = [given[field] for field in found]
     geometries = np.array(geometries, object)
     for field, column in zip(found, columns):
-        heights = np.asarray(column)
-        if heights.dtype.kind not in "iuf":
-            raise InputError(f"{name}: the field {field!r} is no number")
-        geometries = shapely.force_3d(shapely.force_2d(geometries), heights.astype(np.float64))
+        try:
+            heights = np.asarray(as_floats(column, field), np.float64)
+        except UsageError as error:
+            raise InputError(f"{name}: the field {field!r} is no number") from error
+        # Where there is no height, there is no z.
+        known = ~np.isnan(heights)
+        geometries = shapely.force_2d(geometries)
+        geometries[known] = shapely.force_3d(geometries[known], heights[known])
     return geometries[~shapely.is_missing(geometries)], crs, bool(found)
 
 

@@ -186,6 +186,10 @@ def test_heights_of_fields(scan, tmp_path):
             flaunay.terrain(points, resolution=2, height="name")
         with pytest.raises(flaunay.InputError, match="position 0, .* has no height; height="):
             flaunay.terrain(points, resolution=2)
+    with pytest.raises(flaunay.InputError, match="has the layers points, some: add the name of one"):
+        flaunay.terrain(tmp_path / "points.gpkg", resolution=2, height="z")
+    with pytest.raises(flaunay.InputError, match="none"):
+        flaunay.terrain(f"{tmp_path}/points.gpkg:none", resolution=2, height="z")
     # Heights of positions, of points and lines.
     half = shapely.linestrings(scan[:1500]), *shapely.points(scan[1500:])
     for points in geopandas.GeoSeries(shapely.points(scan)), half:
@@ -196,6 +200,13 @@ def test_heights_of_fields(scan, tmp_path):
         flaunay.terrain(shapely.box(0, 0, 1, 1), resolution=2)
     with pytest.raises(flaunay.UsageError, match="columns="):
         flaunay.terrain(tmp_path / "points.fgb", resolution=2, columns=(0, 1, 2))
+    # Where a point has no height, it is named; where a line has none, it is that of the points around.
+    some = geopandas.GeoDataFrame({"z": [1, None, 3]}, geometry=shapely.points(scan[:3, :2]))
+    with pytest.raises(flaunay.InputError, match="position 1, .* has no height$"):
+        flaunay.terrain(some, resolution=2, height="z")
+    some.geometry = [shapely.linestrings([scan[k, :2], scan[k, :2] + 1]) for k in range(3)]
+    made = flaunay.terrain(table, resolution=2, height="z", breaklines=some)
+    assert np.isfinite(made.raster).sum() == np.isfinite(expected.raster).sum()
     # Those of lines are other ones.
     across = shapely.linestrings([[(500000, y), (500060, y)] for y in (4500010, 4500030)])
     lines = geopandas.GeoDataFrame({"z": [50.0, 60], "level": [70.0, 80]}, geometry=across)
@@ -421,6 +432,8 @@ def test_breaklines_are_hard_edges(tmp_path):
         flaunay.terrain(points, resolution=1, breaklines=[[[0, 0], [9, 9]], [[9, 0], [0, 9]]])
     with pytest.raises(flaunay.UsageError, match="lines or polygons"):
         flaunay.terrain(points, resolution=1, breaklines=[shapely.Point(1, 1)])
+    with pytest.raises(flaunay.UsageError, match="breaklines must be a path, geometries or a list"):
+        flaunay.terrain(points, resolution=1, breaklines=np.array([[9, 0], [9, 20]]))
     with pytest.raises(flaunay.InputError, match="none.gpkg"):
         pytest.importorskip("pyogrio")
         flaunay.terrain(points, resolution=1, breaklines=tmp_path / "none.gpkg")
