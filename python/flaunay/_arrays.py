@@ -315,6 +315,8 @@ def _as_array(given: ArrayLike, name: str) -> npt.NDArray[Any]:
         _check_columns(given, name)
     if array.ndim == 0 and array.dtype.kind == "O":
         hint = f": take list({name})" if hasattr(given, "__next__") else ""
+        # Triangulations have points.
+        hint = f": take its {name}" if hasattr(given, name) else hint
         raise UsageError(f"{name} must be real numbers, not an object of {type(given).__name__}{hint}")
     return array
 

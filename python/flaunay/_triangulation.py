@@ -111,7 +111,7 @@ def verify(
     InternalError
         If it is not; the message says what is wrong.
     UsageError
-        For arrays that are none of these points.
+        For arrays that are none of these points, and for what is no plain triangulation.
 
     Notes
     -----
@@ -128,6 +128,10 @@ def verify(
     Traceback (most recent call last):
     InternalError: triangle 0 has no neighbor at an edge inside
     """
+    if not isinstance(triangulation, Triangulation) or hasattr(triangulation, "verify"):
+        hint = ": take its method verify" if hasattr(triangulation, "verify") else ""
+        kind = type(triangulation).__name__
+        raise UsageError(f"triangulation must be one that triangulate makes without segments, not {kind}{hint}")
     given = np.asarray(as_points(points), np.float64)
     sets = None if offsets is None else as_offsets(offsets)
     _calls.verify(given, sets, triangulation._contiguous_arrays())

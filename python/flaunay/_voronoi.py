@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,7 @@ from flaunay import _calls, _triangulators
 from flaunay._arrays import ArrayLike, FloatArray, Frozen, frozen, summary
 from flaunay._cells import ClippedVoronoi, clip
 from flaunay._delaunay import Delaunay
+from flaunay._errors import UsageError
 from flaunay._pieces import VoronoiPieces, mesh_of, pieces
 from flaunay._plot import Bounds, draw_voronoi
 
@@ -31,8 +33,8 @@ class Voronoi(Frozen):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2)
-        As of `Delaunay`.
+    points : array_like, shape (npoints, 2), or Delaunay
+        As of `Delaunay`; or the triangulation whose dual it is, without the options of one.
     furthest_site, incremental, qhull_options
         As of `Delaunay`.
     merge : bool
@@ -94,7 +96,7 @@ class Voronoi(Frozen):
 
     def __init__(
         self,
-        points: ArrayLike,
+        points: Union[ArrayLike, Delaunay],
         furthest_site: bool = False,
         incremental: bool = False,
         qhull_options: Optional[str] = None,
@@ -103,9 +105,14 @@ class Voronoi(Frozen):
         mode: str = "blocks",
         device: Optional[str] = None,
     ) -> None:
-        self.delaunay: Delaunay = Delaunay(
-            points, furthest_site, incremental, qhull_options, mode=mode, device=device
-        )
+        options = (furthest_site, incremental, qhull_options)
+        self.delaunay: Delaunay
+        if isinstance(points, Delaunay):
+            if options != (False, False, None) or mode != "blocks":
+                raise UsageError("options of the triangulation are for points, not for a triangulation")
+            self.delaunay = points if points._living is None else copy(points)
+        else:
+            self.delaunay = Delaunay(points, *options, mode=mode, device=device)
         self._merge, self._device = merge, device
         self._compute()
 

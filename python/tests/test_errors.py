@@ -113,6 +113,7 @@ TRI = flaunay.Delaunay(FOUR)
         (lambda: TRI.nearest(np.zeros((2, 3))), r"not \(2, 3\); if its rows are x and y, take xi.T"),
         (lambda: flaunay.spherical([1, 2, 3, 4]), "numpy.column_stack"),
         (lambda: flaunay.Delaunay(map(list, FOUR)), r"not an object of map: take list\(points\)"),
+        (lambda: flaunay.Delaunay(flaunay.Delaunay(FOUR)), "not an object of Delaunay: take its points"),
         (lambda: flaunay.griddata([1, 2, 3], [1, 2, 3], [1.5]), "numpy.interp and SciPy interpolate on a line"),
         (lambda: flaunay.griddata([[1], [2]], [1, 2], [1.5]), "numpy.interp"),
         (lambda: flaunay.LinearInterpolator(FOUR.T, [1, 2, 3, 4]), "take points.T"),

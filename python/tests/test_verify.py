@@ -56,6 +56,11 @@ def test_triangulations_without_points():
         getattr(wrong, array).flat[3] += 1
         with pytest.raises((flaunay.InternalError, flaunay.UsageError)):
             flaunay.verify(given, wrong, [0, 40, 40, 100])
+    for other in flaunay.Delaunay(given), flaunay.triangulate(given, segments=[[0, 1]]):
+        with pytest.raises(flaunay.UsageError, match="take its method verify"):
+            flaunay.verify(given, other)
+    with pytest.raises(flaunay.UsageError, match="not ndarray"):
+        flaunay.verify(given, mesh.triangles)
     with pytest.raises(flaunay.UsageError, match="has 3 sets, but there are 1"):
         flaunay.verify(given, mesh)
     with pytest.raises(flaunay.UsageError, match="has 100 points, but there are 99"):

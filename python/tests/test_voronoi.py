@@ -37,6 +37,21 @@ def test_the_ridges_are_those_of_scipy(points):
     assert ridges(mine) == ridges(theirs)
 
 
+def test_of_a_triangulation(points):
+    expected, tri = flaunay.Voronoi(points), flaunay.Delaunay(points)
+    mine = flaunay.Voronoi(tri)
+    assert mine.delaunay is tri
+    np.testing.assert_array_equal(mine.cells, expected.cells)
+    np.testing.assert_array_equal(mine.vertices, expected.vertices)
+    # It stays as it is when the triangulation changes.
+    living = flaunay.Delaunay(points, incremental=True)
+    mine = flaunay.Voronoi(living)
+    living.add_points([[5, 5]])
+    assert mine.npoints == 100 and mine.ridge_dict == expected.ridge_dict
+    with pytest.raises(flaunay.UsageError, match="not for a triangulation"):
+        flaunay.Voronoi(tri, incremental=True)
+
+
 def test_the_regions_are_those_of_scipy(points):
     mine, theirs = flaunay.Voronoi(points), scipy.spatial.Voronoi(points)
 
