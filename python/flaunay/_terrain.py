@@ -578,6 +578,14 @@ class Terrain:
         Returns
         -------
         ndarray of uint8, shape (rows, columns, 4)
+            Transparent where there is no height. The ``extent`` of ``imshow`` is (xmin, xmax, ymin, ymax) of `bounds`.
+
+        Examples
+        --------
+        >>> import flaunay
+        >>> points = [[0, 0, 0], [4, 0, 4], [0, 4, 0], [4, 4, 4]]
+        >>> flaunay.terrain(points, resolution=2).hillshade()[0, 0].tolist()
+        [37, 37, 37, 255]
         """
         bands = self._shaded(vertical_factor, colors)
         return np.moveaxis(bands if colors else bands[[0, 0, 0, 1]], 0, -1)
