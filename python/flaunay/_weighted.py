@@ -12,11 +12,11 @@ from flaunay import _calls
 from flaunay._arrays import ArrayLike, as_offsets, as_points, frozen, summary
 from flaunay._cells import ClippedVoronoi, corners_of
 from flaunay._errors import UsageError
+from flaunay._export import ExportMethods
 from flaunay._surfaces import Doubles, Indices, OfPoints, as_weights
 
 
-
-class WeightedDelaunay(OfPoints):
+class WeightedDelaunay(ExportMethods, OfPoints):
     """Regular triangulations of weighted points, the duals of power diagrams. `weighted` makes them.
 
     Attributes

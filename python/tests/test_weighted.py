@@ -37,6 +37,16 @@ def test_cells_of_circles(random):
     assert (cells.areas[tri.hidden] == 0).all() and (cells.areas > 0).sum() > 100
 
 
+def test_triangles_for_other_packages(random):
+    tri = flaunay.weighted(random.random((50, 2)), random.random(50) / 20)
+    assert len(tri.hidden) and len(tri.to_geojson()["features"]) == tri.nsimplex
+    pytest.importorskip("matplotlib")
+    np.testing.assert_array_equal(tri.to_matplotlib().triangles, tri.simplices)
+    shapely = pytest.importorskip("shapely", minversion="2")
+    total = shapely.area(tri.to_shapely()).sum()
+    assert total == pytest.approx(shapely.MultiPoint(tri.points).convex_hull.area, abs=1e-12)
+
+
 def test_sets(random):
     points, weights = random.random((90, 2)), random.random(90) / 10
     tri = flaunay.weighted(points, weights, [0, 40, 40, 90])
