@@ -239,7 +239,9 @@ def fields_of_geojson(folder):
     found = sorted((cell["properties"] for cell in cells_of(cells)), key=lambda cell: cell["point"])
     assert [cell["area"] for cell in found] == [3, 4, 5, 6] and [cell["z"] for cell in found] == [1, 2.5, None, None]
     assert all(cell["flaunay_area"] > 0 for cell in found)
-    fails(3, "f.geojson", "features[0].properties.t", "number", arguments=("voronoi", path, "--fields", "t", "-o", cells))
+    fails(3, "f.geojson", "features[0].properties.t", "number", arguments=("voronoi", path, "--height", "t", "-o", cells))
+    works("voronoi", path, "--fields", "t", "-o", cells, *ON_HOST)
+    assert [cell["properties"]["t"] for cell in cells_of(cells)] == ["a", 1, 1, 1]
     fails(3, "no field 'no'", "area, h, t", arguments=("voronoi", path, "--fields", "no", "-o", cells))
     for command in ("voronoi", "triangulate"):
         fails(3, "no field no, of --height", "area, h, t", arguments=(command, path, "--height", "no", "-o", cells))
@@ -258,6 +260,48 @@ def fields_of_geojson(folder):
     for weighted in ("a.gpkg", path):
         done = run("triangulate", weighted, "--weighted", "-o", out)
         assert done.returncode == 2 and "expected .las, .npy, .txt, .xyz, .csv\n" in done.stderr, done.stderr
+
+
+def fields_of_text(folder):
+    """Columns of text are kept as they are: numbers only if all of a column are some."""
+    path, cells = folder / "wells.csv", folder / "wells.geojson"
+    path.write_text("""name;x;y;ph;depth;dug;house
+"Old ""Well""; north";1,5;2;7,5;10;2024-03-01;007
+B2;4;2,25;;12;2023-01-31;12
+B3;3;7;6,25;;;13
+"No. #4";8;8;7;9223372036854775;x;14
+second;8;8;1;1;x;15
+""")
+    fields = ("name", "ph", "depth", "dug", "house")
+    works("voronoi", path, "--columns", "x,y", "--fields", ",".join(fields), "-o", cells, *ON_HOST)
+    right = [("Old \"Well\"; north", 7.5, 10, "2024-03-01", "007"), ("B2", None, 12, "2023-01-31", "12"),
+             ("B3", 6.25, None, None, "13"), ("No. #4", 7, 9223372036854775, "x", "14")]
+    assert [tuple(cell["properties"][name] for name in fields) for cell in cells_of(cells)] == right
+    # Without --columns, the others are x, y and perhaps a height.
+    plain = folder / "plain.txt"
+    plain.write_text("a 1 2 5\nb 3 4 6\nc 7 8 nan\n")
+    works("voronoi", plain, "--fields", "3,0", "-o", cells, *ON_HOST)
+    assert [tuple(cell["properties"].values())[2:] for cell in cells_of(cells)] == [(5, "a"), (6, "b"), (None, "c")]
+    works("voronoi", plain, "--fields", "0", "--columns", "1,2", "-o", cells, *ON_HOST)
+    for text, options, parts in (
+        ("x,y,c\n1,2,#ff\n", ("c",), ("line 2", "comment", "quotes")),
+        ("x,y,c\n1,2,a b\n3,4\n", ("c",), ("line 3", "expected 3 columns, found 2")),
+        ("x,y,c\n1,2,a b\n", ("d",), ("no column 'd'", "x, y, c")),
+        ("x,y,c\n1,2,a b\n", ("x", "--columns", "x,y"), ("'x' is chosen twice",)),
+        ("i;x;y;c;d\na;1,5;2;3;4\n", ("c",), ("line 2", "found 5;", "--columns")),
+    ):
+        (folder / "wrong.csv").write_text(text)
+        fails(3, "wrong.csv", *parts, arguments=("voronoi", folder / "wrong.csv", "-o", cells, "--fields", *options))
+    if not HAS_GDAL:
+        return
+    out = folder / "wells.gpkg"
+    arguments = ("triangulate", path, "--columns", "x,y", "-o", out, "--fields")
+    works(*arguments, "ph,depth", *ON_HOST)
+    assert rows_of(out, "select ph, depth from triangles order by fid")[0] == (6.875, 11)
+    fails(3, "wells.csv", "'name' is no number", "point 0", "Old", arguments=(*arguments, "name"))
+    works("voronoi", path, "--columns", "x,y", "--fields", "name,ph,depth", "-o", out, *ON_HOST)
+    types = rows_of(out, "select typeof(name), typeof(ph), typeof(depth) from cells order by fid")
+    assert types[:2] == [("text", "real", "integer"), ("text", "null", "integer")]
 
 
 def systems(folder):
@@ -344,7 +388,8 @@ def wrong_files(folder):
         (3, ("'surface' is no number",), (SAMPLES, "--fields", "surface", *to)),
         (2, ("--fields", ".fgb"), (SAMPLES, "--fields", "class", "-o", folder / "out.obj")),
         (2, ("--crs", ".geojson"), (SAMPLES, "--crs", "EPSG:4326", "-o", folder / "out.obj")),
-        (2, ("ukraine.xy has no fields",), (DATA / "ukraine.xy", *HEIGHT, *to)),
+        (2, ("ukraine.xy has columns", "--columns"), (DATA / "ukraine.xy", *HEIGHT, *to)),
+        (2, ("garden.las has no fields",), (DATA / "garden.las", *HEIGHT, *to)),
         (2, ("no columns",), (SAMPLES, "--columns", "0,1", *to)),
         (3, ("--crs", "EPSG:0"), (SAMPLES, "--crs", "EPSG:0", *to)),
         (3, ("text.gpkg", "cannot be read"), (text, *to)),
@@ -470,6 +515,7 @@ def main(folder):
     columns(folder)
     voronoi(folder)
     fields_of_geojson(folder)
+    fields_of_text(folder)
     systems(folder)
     if not HAS_GDAL:
         for arguments in (

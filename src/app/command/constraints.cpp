@@ -126,6 +126,7 @@ io::Map read_input(const std::string& input, const io::Columns& columns, const C
     map.points = io::read_points(input, columns, with_heights);
     map.has_others = true;
   }
+  io::check_numbers(map.points, input);
   if (request.segments.empty()) return map;
   if (io::is_map(request.segments)) {
     if (!request.line_heights.empty()) map.check_height_field(input, columns.heights);

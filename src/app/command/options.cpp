@@ -53,8 +53,13 @@ void add_fields(CLI::App* command, io::Columns& columns, const std::string& text
 
 void check_fields(const CLI::App& command, const std::string& input, const std::string& edges) {
   if (io::has_fields(input)) return;
-  const std::string reason =
-      fmt::format("{} has no fields; layers and GeoJSON have some", io::shown_path(input));
+  const std::string shown = io::shown_path(input);
+  if (io::is_column_text(input)) {
+    if (!io::has_fields(edges))
+      refuse(command, "--height", shown + " has columns: say by --columns which have x, y and the height");
+    return;
+  }
+  const std::string reason = shown + " has no fields; layers, GeoJSON and text have some";
   refuse(command, "--fields", reason);
   if (!io::has_fields(edges)) refuse(command, "--height", reason);
 }

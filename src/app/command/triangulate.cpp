@@ -152,6 +152,7 @@ int triangulate(const TriangulateRequest& request) {
 
   progress.update("reading");
   io::Points points = io::read_points(request.input, request.columns, !request.results.mesh.empty());
+  io::check_numbers(points, request.input);
   io::choose_crs(request.crs, request.input, request.results.mesh, points.crs);
   facts.reading_seconds = stopwatch.restart();
   const io::IndexType index = index_type(request.index, points.size(), request.results);
@@ -240,7 +241,7 @@ void add_triangulate(CLI::App& app, Action& action) {
   end_group(command, "Input");
   add_results(command, request->results);
   add_fields(command, request->columns,
-             "Fields of points, from a layer or GeoJSON, whose means triangles have in a layer");
+             "Fields of points, from a layer, GeoJSON or text, whose means triangles have in a layer");
   add_index(command, request->index);
   end_group(command, kOutputs);
   add_choice<Mode>(command, "--mode", request->mode,

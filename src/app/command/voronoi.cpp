@@ -58,15 +58,17 @@ io::Layer layer_of(const io::Points& points, const ClippedVoronoi& cells,
       positions.insert(positions.end(), {cells.vertices[2 * v], cells.vertices[2 * v + 1], 0.0});
     }
   };
-  const auto field_of = [&](const std::string& name, const std::vector<double>& values) {
-    return io::Layer::Field{name, 0.0, [&](std::size_t cell) { return values[owners[cell]]; }};
+  const auto field_of = [&](const std::string& name, const auto& values, const io::FieldValue& type) {
+    return io::Layer::Field{name, type, [&](std::size_t cell) { return values[owners[cell]]; }};
   };
   std::vector<io::Layer::Field> given;
-  for (const io::PointField& field : points.fields) given.push_back(field_of(field.name, field.values));
+  for (const io::PointField& field : points.fields)
+    given.push_back(field_of(field.name, field.values, io::common_type(field.values)));
   layer.fields = {{io::own_name("point", given), std::int64_t{0},
                    [&](std::size_t cell) { return static_cast<std::int64_t>(owners[cell]); }},
-                  field_of(io::own_name("area", given), cells.areas)};
-  if (!points.heights.empty()) layer.fields.push_back(field_of(io::own_name("z", given), points.heights));
+                  field_of(io::own_name("area", given), cells.areas, 0.0)};
+  if (!points.heights.empty())
+    layer.fields.push_back(field_of(io::own_name("z", given), points.heights, 0.0));
   layer.fields.insert(layer.fields.end(), given.begin(), given.end());
   return layer;
 }
@@ -113,7 +115,8 @@ void add_voronoi(CLI::App& app, Action& action) {
       app.add_subcommand("voronoi", "Write the Voronoi cells of points, as polygons in a box");
   add_input(command, request->input, request->columns);
   add_heights(command, request->columns);
-  add_fields(command, request->columns, "Fields of points that cells have, too, from a layer or GeoJSON");
+  add_fields(command, request->columns,
+             "Fields of points that cells have, too, from a layer, GeoJSON or text");
   add_crs(command, request->crs);
   end_group(command, "Input");
   add_path(command, "-o,--output", request->output,
@@ -131,7 +134,7 @@ void add_voronoi(CLI::App& app, Action& action) {
   add_quiet(command, request->quiet);
   end_group(command, "Work");
   command->footer(examples({"flaunay voronoi points.csv -o cells.geojson",
-                            "flaunay voronoi samples.gpkg --fields ph -o cells.gpkg"}));
+                            "flaunay voronoi wells.csv --fields name,ph -o cells.gpkg"}));
   command->callback([request, command, &action] {
     check_fields(*command, request->input);
     const std::vector<double>& box = request->bounds;

@@ -2,10 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "app/files/formats.hpp"
 #include "app/files/text.hpp"
@@ -22,7 +26,10 @@ std::string lower(std::string_view name) {
 class ColumnText : public PointText {
  public:
   ColumnText(const std::string& path, const Columns& columns, std::string_view third)
-      : lines_(shown_path(path), Lines::Separator::any), columns_(columns.names), third_(third) {}
+      : lines_(shown_path(path), Lines::Separator::any), columns_(columns.names), third_(third) {
+    for (const std::string& name : columns.fields) kept_.push_back({name, {}, {}});
+    found_.resize(kAxes + kept_.size());
+  }
 
   void parse(std::string_view text, std::vector<double>& coordinates, std::vector<double>* heights) override {
     lines_.go_on(text);
@@ -43,59 +50,110 @@ class ColumnText : public PointText {
         lines_.fail_line("has {}semicolons between columns, but the lines before have {}",
                          has_semicolons_ ? "no " : "", has_semicolons_ ? "some" : "none");
       }
-      std::array<std::string_view, 3> found;
       std::string_view field;
       for (const int axis : axes_) {
         if (!lines_.field(field)) fail_count();
-        if (axis >= 0) found[static_cast<std::size_t>(axis)] = field;
+        if (axis >= 0) found_[static_cast<std::size_t>(axis)] = field;
       }
       if (is_whole_line_ && lines_.field(field)) fail_count();
-      coordinates.push_back(lines_.coordinate(found[0], point_, hint_));
-      coordinates.push_back(lines_.coordinate(found[1], point_, hint_));
+      coordinates.push_back(lines_.coordinate(found_[0], point_, hint_));
+      coordinates.push_back(lines_.coordinate(found_[1], point_, hint_));
       if (heights != nullptr && numbers_ == 3)
-        heights->push_back(lines_.coordinate(found[2], point_, hint_, third_.empty() ? "height" : third_));
+        heights->push_back(lines_.coordinate(found_[2], point_, hint_, third_.empty() ? "height" : third_));
       hint_ = "";
+      if (!kept_.empty() && lines_.has_comment())
+        lines_.fail_line(
+            "has a comment: put fields with '#' between double quotes, or leave the comment out");
+      for (std::size_t k = 0; k < kept_.size(); ++k) keep(found_[kAxes + k], kept_[k]);
     }
   }
 
+  std::vector<PointField> fields() override {
+    std::vector<PointField> fields;
+    for (Kept& kept : kept_) {
+      fields.push_back({std::move(kept.name), {}});
+      for (std::size_t i = 0; i < kept.texts.size(); ++i)
+        fields.back().values.push_back(value_of(kept, std::move(kept.texts[i]), kept.numbers[i]));
+    }
+    return fields;
+  }
+
  private:
+  static constexpr std::size_t kAxes = 3;
+
+  // A column that points keep: numbers only if all of its fields are some, and otherwise text.
+  struct Kept {
+    std::string name;
+    std::vector<std::string> texts;
+    std::vector<double> numbers;
+    bool has_numbers = true, has_integers = true;
+  };
+
+  void keep(std::string_view field, Kept& to) {
+    std::string text(field);
+    for (std::size_t at = 0; (at = text.find("\"\"", at)) != std::string::npos; ++at) text.erase(at, 1);
+    double number = std::numeric_limits<double>::quiet_NaN();
+    if (!text.empty()) {
+      const std::string_view digits = field.substr(field[0] == '-' ? 1 : 0);
+      const bool is_whole = digits.find_first_not_of("0123456789") == std::string_view::npos;
+      // Leading zeros and many digits are those of names, such as numbers of houses.
+      const bool is_name = (digits.size() > 1 && digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9') ||
+                           (is_whole && digits.size() > std::numeric_limits<std::int64_t>::digits10);
+      const bool is_number = !is_name && lines_.number(field, number) == ParsedNumber::fine;
+      to.has_numbers = to.has_numbers && is_number && !std::isinf(number);
+      to.has_integers = to.has_integers && is_whole;
+    }
+    to.texts.push_back(std::move(text));
+    to.numbers.push_back(number);
+  }
+
+  static FieldValue value_of(const Kept& kept, std::string text, double number) {
+    if (text.empty()) return {};
+    if (!kept.has_numbers) return text;
+    if (!kept.has_integers) return std::isnan(number) ? FieldValue() : number;
+    return std::int64_t{std::stoll(text)};
+  }
+
   // At the first line of numbers: finds which columns are read.
   void begin_rows() {
     has_semicolons_ = lines_.separator() == ';';
     const std::size_t count = lines_.count_fields();
-    if (!columns_.empty()) return choose_columns(count);
-    numbers_ = third_.empty() && count == 2 ? 2 : 3;
+    for (std::size_t k = 0; k < kept_.size(); ++k) choose_column(kept_[k].name, kAxes + k, count);
+    if (!columns_.empty()) {
+      numbers_ = columns_.size();
+      if (numbers_ < kAxes && !third_.empty())
+        lines_.fail_line("expected three columns (x, y and a {}), but --columns has {}", third_, numbers_);
+      for (std::size_t axis = 0; axis < numbers_; ++axis) choose_column(columns_[axis], axis, count);
+      return;
+    }
+    const std::size_t others = count - std::min(count, kept_.size());
+    numbers_ = third_.empty() && others == 2 ? 2 : kAxes;
     is_whole_line_ = third_.empty();
-    if (count < numbers_ || (is_whole_line_ && count > numbers_)) {
-      numbers_ = third_.empty() ? 2 : 3;
+    if (others < numbers_ || (is_whole_line_ && others > numbers_)) {
+      numbers_ = third_.empty() ? 2 : kAxes;
+      axes_.clear();
       fail_count();
     }
+    axes_.resize(is_whole_line_ ? count : kAxes, -1);
+    for (int axis = 0; int& each : axes_) each = each < 0 ? axis++ : each;
     if (names_.size() == count) check_names();
-    axes_ = {0, 1, 2};
-    axes_.resize(numbers_);
   }
 
-  void choose_columns(std::size_t count) {
-    numbers_ = columns_.size();
-    if (numbers_ < 3 && !third_.empty())
-      lines_.fail_line("expected three columns (x, y and a {}), but --columns has {}", third_, numbers_);
-    for (std::size_t axis = 0; axis < numbers_; ++axis) {
-      const std::string& wanted = columns_[axis];
-      auto at = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), wanted) - names_.begin());
-      if (at == names_.size()) {
-        const char* const end = wanted.data() + wanted.size();
-        const auto [stop, error] = std::from_chars(wanted.data(), end, at);
-        if (error != std::errc() || stop != end || at >= count) {
-          lines_.fail_line("there is no column '{}': {}", wanted,
-                           names_.empty()
-                               ? fmt::format("this line has columns 0 to {}, without names", count - 1)
-                               : fmt::format("the columns are {}", fmt::join(names_, ", ")));
-        }
+  void choose_column(const std::string& wanted, std::size_t axis, std::size_t count) {
+    auto at = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), wanted) - names_.begin());
+    if (at == names_.size()) {
+      const char* const end = wanted.data() + wanted.size();
+      const auto [stop, error] = std::from_chars(wanted.data(), end, at);
+      if (error != std::errc() || stop != end || at >= count) {
+        lines_.fail_line("there is no column '{}': {}", wanted,
+                         names_.empty()
+                             ? fmt::format("this line has columns 0 to {}, without names", count - 1)
+                             : fmt::format("the columns are {}", fmt::join(names_, ", ")));
       }
-      if (at >= axes_.size()) axes_.resize(at + 1, -1);
-      if (axes_[at] >= 0) lines_.fail_line("--columns names column '{}' twice", wanted);
-      axes_[at] = static_cast<int>(axis);
     }
+    if (at >= axes_.size()) axes_.resize(at + 1, -1);
+    if (axes_[at] >= 0) lines_.fail_line("column '{}' is chosen twice by --columns or --fields", wanted);
+    axes_[at] = static_cast<int>(axis);
   }
 
   // A header that has x or y in another column than the first or the second one.
@@ -106,7 +164,8 @@ class ColumnText : public PointText {
     for (std::size_t k = 0; k < names_.size(); ++k) {
       for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto& known = kNames[axis];
-        if (k == axis || std::find(known.begin(), known.end(), lower(names_[k])) == known.end()) continue;
+        const bool is_it = k < axes_.size() && axes_[k] == static_cast<int>(axis);
+        if (is_it || std::find(known.begin(), known.end(), lower(names_[k])) == known.end()) continue;
         lines_.fail_line(
             "the columns are {}, but the first two are read as x and y; say by --columns which these are",
             fmt::join(names_, ", "));
@@ -117,9 +176,11 @@ class ColumnText : public PointText {
   [[noreturn]] void fail_count() {
     const std::size_t found = lines_.count_fields();
     std::string_view hint;
-    for (std::string_view field; hint.empty() && lines_.field(field);) hint = lines_.hint_about(field, "");
+    for (std::string_view field; lines_.separator() != ';' && hint.empty() && lines_.field(field);)
+      hint = lines_.hint_about(field, "");
     if (!hint.empty()) lines_.fail_line("found {} columns{}", found, hint);
-    if (!columns_.empty()) lines_.fail_line("expected {} columns, found {}", axes_.size(), found);
+    if (!axes_.empty() && (!columns_.empty() || !kept_.empty()))
+      lines_.fail_line("expected {} columns, found {}", axes_.size(), found);
     const bool may_choose = found > 3 && third_.empty() && point_ == 0;
     lines_.fail_line("expected {}, found {}{}",
                      numbers_ == 2 ? "two numbers (x and y)" : "three numbers (x, y and z)", found,
@@ -130,9 +191,11 @@ class ColumnText : public PointText {
   std::vector<std::string> columns_;
   std::string third_;
   std::vector<std::string> names_;  // of the header
-  std::vector<int> axes_;           // of each column up to the last one that is read: 0 to 2, or -1
-  std::size_t numbers_ = 2;         // that are read, per line
-  bool is_whole_line_ = false;      // whether there must be no further columns
+  std::vector<Kept> kept_;
+  std::vector<int> axes_;  // of each column up to the last one that is read: 0 to 2, of kept ones more, or -1
+  std::vector<std::string_view> found_;  // the fields of a line, by these numbers
+  std::size_t numbers_ = 2;              // that are read, per line
+  bool is_whole_line_ = false;           // whether there must be no further columns
   bool has_semicolons_ = false;
   std::size_t point_ = 0;  // the index of the next point
   bool is_first_ = true;   // whether the next line with content is the first one

@@ -11,6 +11,7 @@
 #include "app/files/formats.hpp"
 #include "app/files/geotiff.hpp"
 #include "app/files/globe.hpp"
+#include "app/files/json_value.hpp"
 #include "app/files/layers.hpp"
 #include "files/file.hpp"
 
@@ -143,7 +144,7 @@ class GeoJsonReader {
       const Json& geometry = member(object, "geometry", at);
       if (!geometry.is_null()) read_object(geometry, Place(at, "geometry"));
       take_properties(object, at);
-      if (!fields_.empty()) take_numbers(object, Place(at, "properties"));
+      if (!fields_.empty()) take_fields(object, Place(at, "properties"));
     } else if (type == "GeometryCollection") {
       for_each(array(object, "geometries", at), Place(at, "geometries"), read_this);
     } else {
@@ -163,8 +164,8 @@ class GeoJsonReader {
               text.substr(1, text.size() - 2));
   }
 
-  // Appends the numbers of a feature that are asked for, one for each of its points.
-  void take_numbers(const Json& feature, const Place& at) {
+  // Appends the fields of a feature that are asked for, once for each of its points.
+  void take_fields(const Json& feature, const Place& at) {
     static const Json kNone = Json::object();
     const auto found = feature.find("properties");
     const Json& properties = found != feature.end() && found->is_object() ? *found : kNone;
@@ -173,13 +174,14 @@ class GeoJsonReader {
       if (std::find(names.begin(), names.end(), property.key()) == names.end())
         names.push_back(property.key());
     }
-    for (PointField& field : fields_) {
-      const auto value = properties.find(field.name);
+    for (std::size_t k = 0; k < fields_.size(); ++k) {
+      const auto value = properties.find(fields_[k].name);
       const bool is_known = value != properties.end() && !value->is_null();
-      if (is_known && !value->is_number())
-        fail_at(Place(at, field.name.c_str()), "is {}; expected a number", shown(*value));
-      field.values.resize(map_.points.size(),
-                          is_known ? value->get<double>() : std::numeric_limits<double>::quiet_NaN());
+      const Place place(at, fields_[k].name.c_str());
+      if (is_known && k < columns_.heights.size() && !value->is_number())
+        fail_at(place, "is {}; expected a number", shown(*value));
+      if (is_known) check_depth(*value, place);
+      fields_[k].values.resize(map_.points.size(), is_known ? field_value(*value) : FieldValue());
     }
   }
 
@@ -192,7 +194,10 @@ class GeoJsonReader {
     const auto kept = fields_.begin() + static_cast<std::ptrdiff_t>(columns_.heights.size());
     const auto height = std::find_if(fields_.begin(), kept, is_there);
     map_.has_height_field = height != kept;
-    if (map_.has_height_field) map_.points.heights = std::move(height->values);
+    if (map_.has_height_field) {
+      map_.points.heights.clear();
+      for (const FieldValue& value : height->values) map_.points.heights.push_back(number_of(value));
+    }
     const auto missing = std::find_if_not(kept, fields_.end(), is_there);
     if (missing != fields_.end())
       fail(path_, "has no field '{}'; its fields are {}", missing->name, fmt::join(map_.field_names, ", "));

@@ -9,6 +9,7 @@
 
 #include "app/files/formats.hpp"
 #include "app/files/geotiff.hpp"
+#include "app/files/json_value.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -48,14 +49,16 @@ void write_geojson_layer(OutputFile& file, const Layer& layer) {
   file.print("\n]}}\n");
 }
 
-// The mean of known values at the corners of a triangle.
-Value mean(const MeshContents& contents, std::size_t triangle, const std::vector<double>& values) {
+// The mean of known numbers at the corners of a triangle. values: as FieldValue or double.
+template <typename Values>
+Value mean(const MeshContents& contents, std::size_t triangle, const Values& values) {
   double sum = 0;
   int count = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto corner = static_cast<std::size_t>(contents.corners(triangle)[k]);
-    if (corner >= values.size() || std::isnan(values[corner])) continue;
-    sum += values[corner];
+    const double value = corner < values.size() ? number_of(values[corner]) : std::nan("");
+    if (std::isnan(value)) continue;
+    sum += value;
     ++count;
   }
   if (count == 0) return {};
@@ -67,34 +70,23 @@ std::vector<Layer::Field> properties_of(const MeshContents& contents) {
   using Ordered = nlohmann::ordered_json;
   const std::vector<std::int32_t>& polygons = contents.constraints().polygons;
   if (polygons.empty() || contents.map == nullptr) return {};
-  std::vector<std::pair<std::string, std::vector<Ordered>>> columns;
+  std::vector<PointField> columns;  // of polygons, here
   const std::vector<std::string>& properties = contents.map->properties;
   for (std::size_t p = 0; p < properties.size(); ++p) {
     Ordered object = Ordered::parse("{" + properties[p] + "}");
     for (auto& [name, value] : object.items()) {
-      const auto is_it = [&name = name](const auto& column) { return column.first == name; };
+      const auto is_it = [&name = name](const PointField& column) { return column.name == name; };
       auto column = std::find_if(columns.begin(), columns.end(), is_it);
       if (column == columns.end())
-        column = columns.insert(column, {name, std::vector<Ordered>(properties.size())});
-      column->second[p] = std::move(value);
+        column = columns.insert(column, {name, std::vector<Value>(properties.size())});
+      column->values[p] = field_value(value);
     }
   }
   std::vector<Layer::Field> fields;
-  for (auto& [name, values] : columns) {
-    const auto all = [&values = values](auto is) {
-      return std::all_of(values.begin(), values.end(),
-                         [is](const Ordered& v) { return v.is_null() || is(v); });
-    };
-    const Value type = all([](const Ordered& v) { return v.is_number_integer(); }) ? Value(std::int64_t{0})
-                       : all([](const Ordered& v) { return v.is_number(); })       ? Value(0.0)
-                                                                                   : Value(std::string());
-    fields.push_back({name, type, [&polygons, values = values, type](std::size_t t) -> Value {
-                        if (polygons[t] < 0) return {};
-                        const Ordered& value = values[static_cast<std::size_t>(polygons[t])];
-                        if (value.is_null()) return {};
-                        if (std::holds_alternative<std::int64_t>(type)) return value.get<std::int64_t>();
-                        if (std::holds_alternative<double>(type)) return value.get<double>();
-                        return value.is_string() ? value.get<std::string>() : value.dump();
+  for (PointField& column : columns) {
+    const Value type = common_type(column.values);
+    fields.push_back({column.name, type, [&polygons, values = std::move(column.values)](std::size_t t) {
+                        return polygons[t] < 0 ? Value() : values[static_cast<std::size_t>(polygons[t])];
                       }});
   }
   return fields;
@@ -175,6 +167,15 @@ const Format kGpkg = layer_format(".gpkg");
 const Format kShp = shapefile();
 const Format kFgb = layer_format(".fgb");
 const Format kParquet = layer_format(".parquet");
+
+FieldValue common_type(const std::vector<FieldValue>& values) {
+  FieldValue type = std::int64_t{0};
+  for (const FieldValue& value : values) {
+    if (std::holds_alternative<std::string>(value)) return std::string();
+    if (std::holds_alternative<double>(value)) type = 0.0;
+  }
+  return type;
+}
 
 std::string own_name(std::string name, const std::vector<Layer::Field>& given) {
   const auto is_it = [&](const Layer::Field& field) { return lower(field.name) == name; };

@@ -7,7 +7,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "app/files/map.hpp"
@@ -18,7 +17,7 @@ namespace flaunay::io {
 
 /// Lines, or polygons of one ring each, to be written.
 struct Layer {
-  using Value = std::variant<std::monostate, std::int64_t, double, std::string>;
+  using Value = FieldValue;
   struct Field {
     std::string name;
     Value type;  ///< a value of the type that all have
@@ -34,6 +33,9 @@ struct Layer {
   std::function<void(std::size_t feature, std::vector<double>& positions)> append;
   std::vector<Field> fields;
 };
+
+/// A value of the type that all values have: of a text, unless all are numbers.
+FieldValue common_type(const std::vector<FieldValue>& values);
 
 /// The name, which is in lower case, of a field of ours beside those that features have: with flaunay_ before
 /// it if theirs have it, in any case.

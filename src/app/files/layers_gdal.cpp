@@ -120,12 +120,11 @@ class LayerReader {
       break;
     }
     for (const std::string& name : columns_.fields) {
-      numbers_.push_back(find_field(name));
-      if (numbers_.back() < 0) {
+      kept_.push_back(find_field(name));
+      if (kept_.back() < 0) {
         fail(file_, "layer '{}' has no field '{}'; its fields are {}", name_, name,
              fmt::join(map_.field_names, ", "));
       }
-      check_number(numbers_.back());
       map_.points.fields.push_back({name, {}});
     }
   }
@@ -156,32 +155,31 @@ class LayerReader {
       geometry = linear.get();
     }
     read_geometry(geometry);
-    const auto number = [&](int field) {
-      return gdal().OGR_F_IsFieldSetAndNotNull(feature, field) != 0
-                 ? gdal().OGR_F_GetFieldAsDouble(feature, field)
-                 : kUnknown;
-    };
     const std::size_t n = map_.points.size();
-    map_.points.heights.resize(n, height_ >= 0 ? number(height_) : kUnknown);
-    for (std::size_t k = 0; k < numbers_.size(); ++k)
-      map_.points.fields[k].values.resize(n, number(numbers_[k]));
+    map_.points.heights.resize(n, height_ >= 0 ? number_of(value_of(feature, height_)) : kUnknown);
+    for (std::size_t k = 0; k < kept_.size(); ++k)
+      map_.points.fields[k].values.resize(n, value_of(feature, kept_[k]));
     if (map_.polygon_count() > polygons) map_.properties.resize(map_.polygon_count(), properties_of(feature));
+  }
+
+  FieldValue value_of(OGRFeatureH feature, int field) const {
+    if (gdal().OGR_F_IsFieldSetAndNotNull(feature, field) == 0) return {};
+    const OGRFieldType type = fields_[static_cast<std::size_t>(field)].second;
+    if (type == OFTInteger || type == OFTInteger64)
+      return std::int64_t{gdal().OGR_F_GetFieldAsInteger64(feature, field)};
+    if (type == OFTReal) return gdal().OGR_F_GetFieldAsDouble(feature, field);
+    return std::string(gdal().OGR_F_GetFieldAsString(feature, field));
   }
 
   // As GeoJSON has them.
   std::string properties_of(OGRFeatureH feature) const {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
     for (int k = 0; k < static_cast<int>(fields_.size()); ++k) {
-      const auto& [name, type] = fields_[static_cast<std::size_t>(k)];
-      auto& value = object[name];
-      if (gdal().OGR_F_IsFieldSetAndNotNull(feature, k) == 0) continue;
-      if (type == OFTInteger || type == OFTInteger64) {
-        value = gdal().OGR_F_GetFieldAsInteger64(feature, k);
-      } else if (type == OFTReal) {
-        value = gdal().OGR_F_GetFieldAsDouble(feature, k);
-      } else {
-        value = gdal().OGR_F_GetFieldAsString(feature, k);
-      }
+      auto& to = object[fields_[static_cast<std::size_t>(k)].first];
+      const FieldValue found = value_of(feature, k);
+      if (const auto* integer = std::get_if<std::int64_t>(&found)) to = *integer;
+      if (const auto* number = std::get_if<double>(&found)) to = *number;
+      if (const auto* text = std::get_if<std::string>(&found)) to = *text;
     }
     const std::string text = object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     return text.substr(1, text.size() - 2);
@@ -256,9 +254,9 @@ class LayerReader {
   const Columns& columns_;
   std::string name_;  // of the layer
   std::vector<std::pair<std::string, OGRFieldType>> fields_;
-  int height_ = -1;           // the field that has the height
-  std::vector<int> numbers_;  // the fields that points keep
-  GIntBig feature_ = 0;       // the one that is read, for messages
+  int height_ = -1;        // the field that has the height
+  std::vector<int> kept_;  // the fields that points keep
+  GIntBig feature_ = 0;    // the one that is read, for messages
   std::size_t without_geometry_ = 0;
   Map map_;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/files/formats.hpp"
+#include "app/files/text.hpp"
 #include "files/file.hpp"
 #include "host/system/pages.hpp"
 
@@ -29,6 +30,7 @@ Points read_text(const std::string& path, const Format& format, const Columns& c
   const std::unique_ptr<PointText> parser = format.text(path, columns);
   parser->parse(text, points.coordinates, &points.heights);
   parser->finish();
+  points.fields = parser->fields();
   return points;
 }
 
@@ -110,10 +112,31 @@ void PointRecords::for_pieces(const InputFile& file, std::uint64_t first, std::s
   }
 }
 
+bool is_column_text(const std::string& path) {
+  return format_of(path, Use::read_points).text == column_text_of_points;
+}
+
+double number_of(const FieldValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  const auto* number = std::get_if<double>(&value);
+  return number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN();
+}
+
+void check_numbers(const Points& points, const std::string& path) {
+  for (const PointField& field : points.fields) {
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+      const auto* text = std::get_if<std::string>(&field.values[i]);
+      if (text != nullptr)
+        fail(path,
+             "the field '{}' is no number: point {} has {}; expected numbers, of which triangles have means",
+             field.name, i, io::quoted(*text));
+    }
+  }
+}
+
 void check_columns(const std::string& path, const Columns& columns) {
-  if (columns.names.empty()) return;
-  const Format& format = format_of(path, Use::read_points);
-  if (format.text == column_text_of_points || &format == &kNpy) return;
+  if (columns.names.empty() || is_column_text(path)) return;
+  if (&format_of(path, Use::read_points) == &kNpy) return;
   throw Error(
       ErrorKind::usage,
       printable(fmt::format("{}: has no columns; --columns goes with .npy and text (.csv, .txt, .xy, .xyz)",

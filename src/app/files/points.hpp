@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "files/file.hpp"
@@ -14,10 +15,13 @@
 
 namespace flaunay::io {
 
-/// A number per point that a layer has besides coordinates; NaN where it has none.
+/// A value of a feature or of a line of text: nothing where it has none.
+using FieldValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// A value per point that a file has besides coordinates.
 struct PointField {
   std::string name;
-  std::vector<double> values;
+  std::vector<FieldValue> values;
 };
 
 /// Points as read: x0 y0 x1 y1 ...
@@ -62,6 +66,8 @@ class PointText {
                      std::vector<double>* heights = nullptr) = 0;
   /// After the last piece: checks that nothing is missing.
   virtual void finish() {}
+  /// After the last piece: the fields that were asked for.
+  virtual std::vector<PointField> fields() { return {}; }
 };
 
 /// What is read of a file that has more.
@@ -72,7 +78,7 @@ struct Columns {
   /// Fields of layers and GeoJSON that have heights, of which the first one that is there counts; of what has
   /// none of them, heights are those of positions.
   std::vector<std::string> heights = {};
-  std::vector<std::string> fields = {};  ///< of layers and GeoJSON, that points keep
+  std::vector<std::string> fields = {};  ///< of layers, GeoJSON and text, that points keep
 };
 
 /// The columns of a text of numbers. third: what a further number is ("a height"), if each line must have
@@ -96,6 +102,12 @@ std::unique_ptr<PointText> column_text(const std::string& path, const Columns& c
 /// NaN and infinity are errors that name the index of the point. with_heights: whether heights of binary
 /// files are read, too. Throws Error(usage) for columns of a file that has none.
 Points read_points(const std::string& path, const Columns& columns = {}, bool with_heights = false);
+/// Whether path is a text that has columns.
+bool is_column_text(const std::string& path);
+/// The number of a field; NaN if it has none.
+double number_of(const FieldValue& value);
+/// Throws Error(input) that names a field and a point if a field has other values than numbers.
+void check_numbers(const Points& points, const std::string& path);
 /// Throws Error(usage) unless there are no columns, or path is a text that has columns.
 void check_columns(const std::string& path, const Columns& columns);
 

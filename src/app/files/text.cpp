@@ -103,14 +103,17 @@ void check_text(const std::string& name, std::string_view text, std::size_t line
   }
 }
 
-char Lines::find_separator() const {
+bool Lines::is_quoted(const char* c) const {
   // A quote without its end is an ordinary character.
-  const bool has_quotes = has_quotes_ && std::count(line_begin_, line_end_, '"') % 2 == 0;
+  const auto is_odd = [](const char* begin, const char* end) { return std::count(begin, end, '"') % 2 != 0; };
+  return is_odd(line_begin_, c) && is_odd(c, line_end_);
+}
+
+char Lines::find_separator() const {
   for (const char wanted : {';', ','}) {
     if (!(wanted == ';' ? has_semicolons_ : has_commas_)) continue;
     const char* c = find(line_begin_, line_end_, wanted);
-    while (has_quotes && c != line_end_ && std::count(line_begin_, c, '"') % 2 != 0)
-      c = find(c + 1, line_end_, wanted);
+    while (has_quotes_ && c != line_end_ && is_quoted(c)) c = find(c + 1, line_end_, wanted);
     if (c != line_end_) return wanted;
   }
   return ' ';
@@ -135,7 +138,8 @@ ParsedNumber Lines::parse_decimal(std::string_view text, double& value) {
 }
 
 std::string_view Lines::hint_about(std::string_view text, std::string_view otherwise) const {
-  if (separator_ == ',' && std::any_of(text.begin(), text.end(), is_blank)) {
+  const bool has_numbers = text.find_first_not_of("0123456789+-.eE \t") == std::string_view::npos;
+  if (separator_ == ',' && has_numbers && std::any_of(text.begin(), text.end(), is_blank)) {
     return "; this line has commas and white space: if the commas are decimal ones, separate columns by "
            "semicolons, and otherwise by either commas or white space";
   }

@@ -103,7 +103,9 @@ class Lines {
       line_begin_ = next_line_;
       line_end_ = find(line_begin_, text_end_, '\n');
       next_line_ = line_end_ == text_end_ ? text_end_ : line_end_ + 1;
-      line_end_ = find(line_begin_, line_end_, '#');
+      const char* const mark = find_comment();
+      has_comment_ = mark != line_end_;
+      line_end_ = mark;
       while (line_end_ != line_begin_ && is_blank(line_end_[-1])) --line_end_;
       separator_ = has_semicolons_ || has_commas_ ? find_separator() : ' ';
       rewind();
@@ -135,6 +137,8 @@ class Lines {
     result = trimmed(begin, cursor_);
     return true;
   }
+  /// Whether a comment ends this line.
+  bool has_comment() const { return has_comment_; }
   /// The separator of this line's fields: ' ' for white space, ',' or ';'.
   char separator() const { return separator_; }
   std::size_t fields_taken() const { return fields_taken_; }
@@ -166,12 +170,17 @@ class Lines {
     return value;
   }
 
+  /// Reads a field of this line as a double. Where semicolons separate fields, it may have a decimal comma.
+  ParsedNumber number(std::string_view text, double& value) {
+    return separator_ == ';' ? parse_decimal(text, value) : parse_number(text, value);
+  }
+
   /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
   /// finite. hint: the end of the message if the field is no number. what: in place of "coordinate".
   double coordinate(std::string_view text, std::size_t point, std::string_view hint = "",
                     std::string_view what = "coordinate") {
     double value = 0;
-    const ParsedNumber parsed = separator_ == ';' ? parse_decimal(text, value) : parse_number(text, value);
+    const ParsedNumber parsed = number(text, value);
     if (parsed == ParsedNumber::unreadable) {
       fail_field(text, "expected a number (a {} of point {}), found {}{}", what, point, quoted_number(text),
                  hint_about(text, hint));
@@ -217,7 +226,16 @@ class Lines {
         begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
     return found ? static_cast<const char*>(found) : end;
   }
-  /// The separator of the line at hand. Defined in text.cpp, as are the next ones.
+  /// The first '#' of the line outside of quotes, or its end.
+  const char* find_comment() const {
+    const char* mark = find(line_begin_, line_end_, '#');
+    while (mark != line_end_ && has_quotes_ && is_quoted(mark)) mark = find(mark + 1, line_end_, '#');
+    return mark;
+  }
+  /// Whether a quote begins before this character of the line and ends behind it. Defined in text.cpp, as are
+  /// the next ones.
+  bool is_quoted(const char* c) const;
+  /// The separator of the line at hand.
   char find_separator() const;
   /// A number with a decimal comma or a decimal point. A text uses only one of the two.
   ParsedNumber parse_decimal(std::string_view text, double& value);
@@ -251,6 +269,7 @@ class Lines {
   char separator_ = ' ';  // of the line
   bool has_semicolons_ = false, has_commas_ = false, has_quotes_ = false;  // the text
   bool has_decimal_points_ = false, has_decimal_commas_ = false;  // numbers, where semicolons separate fields
+  bool has_comment_ = false;                                      // the line
   std::size_t number_ = 0;
   const char* next_line_ = nullptr;
   const char* text_end_ = nullptr;
