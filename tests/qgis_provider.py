@@ -37,7 +37,7 @@ class Feedback:
 class Parameter:
     """Any parameter of an algorithm."""
 
-    Numeric = Double = None
+    Any = Numeric = Double = None
 
     def __init__(self, name, *_, **options):
         self.name = name
@@ -122,8 +122,10 @@ def main(folder, run):
     ((count, low, high),) = rows_of(made, 'select count(*), min("class"), max(z) from triangles')
     assert count > 400 and low >= 2 and high > 1350, (count, low, high)
     # A layer of a file with a name.
+    fields = {"FIELDS": ["surface", "intensity"]}
     cells = run("voronoi", {"INPUT": SAMPLES, **fields, "OUTPUT": str(folder / "v.gpkg")})["OUTPUT"]
-    assert len(rows_of(cells, "select intensity from cells")) == 226
+    found = rows_of(cells, "select surface, intensity from cells")
+    assert len(found) == 226 and {type(value) for row in found for value in row} == {str, int}, found[:3]
     made = run("tin", {**points, **lines, "OUTPUT": str(folder / "tin.gpkg")})["OUTPUT"]
     ((count, low),) = rows_of(made, "select count(*), min(z) from triangles")
     assert count > 1900 and low > 1350, (count, low)

@@ -86,13 +86,13 @@ class Algorithm(QgsProcessingAlgorithm):
         self.add_layer("BREAKLINES", "Breaklines", kinds, optional)
         self.add_field("LINE_HEIGHT", "Field with the height of breaklines", layer="BREAKLINES")
 
-    def add_field(self, name, title, several=False, layer=INPUT):
+    def add_field(self, name, title, several=False, layer=INPUT, kind=QgsProcessingParameterField.Numeric):
         self.addParameter(
             QgsProcessingParameterField(
                 name,
                 title,
                 parentLayerParameterName=layer,
-                type=QgsProcessingParameterField.Numeric,
+                type=kind,
                 allowMultiple=several,
                 optional=True,
             )
@@ -174,7 +174,8 @@ class Voronoi(Algorithm):
 
     def initAlgorithm(self, configuration=None):
         self.add_points()
-        self.add_field("FIELDS", "Fields that polygons have", several=True)
+        any_kind = QgsProcessingParameterField.Any
+        self.add_field("FIELDS", "Fields that polygons have", several=True, kind=any_kind)
         self.addParameter(QgsProcessingParameterExtent("EXTENT", "Extent", optional=True))
         self.add_output("Polygons")
 
