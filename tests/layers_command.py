@@ -251,7 +251,7 @@ def fields_of_geojson(folder):
     for option, height in (((), 99), (("--line-height", "e"), 50)):
         works("triangulate", path, *heights, *option, "-o", out, *ON_HOST)
         assert vertices(out)[:, 2].tolist() == [3, 4, 5, 6, height, height]
-    fails(3, "line.geojson", "no field h", arguments=("triangulate", path, *heights, "--line-height", "h", "-o", out))
+    fails(3, "line.geojson", "no field h, of --line-height", "area, e", arguments=("triangulate", path, *heights, "--line-height", "h", "-o", out))
     lines = ("--height", "no", "--constraints", line, "--line-height", "e")
     fails(3, "f.geojson", "no field no", arguments=("triangulate", path, *lines, "-o", out))
     grid = ("--resolution", 1, "--height", "area", "-o", folder / "f.npy", *ON_HOST)
@@ -288,6 +288,7 @@ second;8;8;1;1;x;15
         ("x,y,c\n1,2,a b\n3,4\n", ("c",), ("line 3", "expected 3 columns, found 2")),
         ("x,y,c\n1,2,a b\n", ("d",), ("no column 'd'", "x, y, c")),
         ("x,y,c\n1,2,a b\n", ("x", "--columns", "x,y"), ("'x' is chosen twice",)),
+        ("x,y,z,c\n1,2,,a\n", ("c",), ("line 2", "a height of point 0", "nothing; --columns X,Y")),
         ("i;x;y;c;d\na;1,5;2;3;4\n", ("c",), ("line 2", "found 5;", "--columns")),
     ):
         (folder / "wrong.csv").write_text(text)
@@ -354,6 +355,16 @@ def kept(folder):
     assert (folder / "text.cpg").read_text().strip() == "UTF-8"
     assert names["name"][0].encode() in (folder / "text.dbf").read_bytes()
     assert not [ending for ending in ("qix", "sbn", "sbx") if (folder / f"text.{ending}").exists()]
+    # A Shapefile that does not say the encoding of its texts.
+    table = (folder / "text.dbf").read_bytes().replace(names["name"][0].encode(), b"Stra\xdfe" + bytes(5))
+    (folder / "text.dbf").write_bytes(table[:29] + b"\0" + table[30:])
+    (folder / "text.cpg").unlink()
+    said = works("voronoi", folder / "text.shp", "--fields", "name", "-o", folder / "latin.geojson", *ON_HOST)
+    assert "text.cpg" in said and cells_of(folder / "latin.geojson")[0]["properties"]["name"].startswith("Straße")
+    # Columns that a GeoPackage has of its own, and several triangles of a feature.
+    path = geojson(folder / "own.geojson", [("Polygon", square), ("Polygon", square)], fid=[7, 7], Geom=["a", "b"])
+    works("triangulate", path, "-o", folder / "own.gpkg", *ON_HOST)
+    assert rows_of(folder / "own.gpkg", "select fid, Geom from triangles") == [(7, "a")]
     # A GeoPackage with layers of others is not lost.
     project = package(folder / "project.gpkg", {"wells": ("", [(wkb(POINT, (1, 2)),)])})
     for arguments in (
@@ -392,6 +403,8 @@ def wrong_files(folder):
         (2, ("garden.las has no fields",), (DATA / "garden.las", *HEIGHT, *to)),
         (2, ("no columns",), (SAMPLES, "--columns", "0,1", *to)),
         (3, ("--crs", "EPSG:0"), (SAMPLES, "--crs", "EPSG:0", *to)),
+        (3, ("--crs", "'2154'", "such as EPSG:"), (SAMPLES, "--crs", "2154", *to)),
+        (2, ("--fields", "class twice"), (SAMPLES, "--fields", "class,class", *to)),
         (3, ("text.gpkg", "cannot be read"), (text, *to)),
         (3, ("virtual.gpkg", "cannot be read"), (virtual, *to)),
         (3, ("none.shp", "No such file"), (folder / "none.shp", *to)),
@@ -432,6 +445,9 @@ def terrain(folder):
     spatial = package(folder / "spatial.gpkg", {"p": ("", [(wkb(POINT, (2445190, 604310, 4), z=True),)])})
     fails(3, "spatial.gpkg", "--crs", arguments=("terrain", SAMPLES, spatial, *HEIGHT, *grid, *to))
     works("terrain", SAMPLES, spatial, *HEIGHT, *grid, *to, "--crs", "EPSG:32104")
+    fails(3, "garden-samples.fgb", "no field high", "class", arguments=("terrain", SAMPLES, "--height", "high", *grid, *to))
+    fails(3, "nowhere/", "no folder", arguments=("terrain", "nowhere/", *grid, *to))
+    assert "no point is in --bounds" in works("terrain", SAMPLES, *HEIGHT, *grid, *to, "--bounds", "0,0,9,9")
     fails(3, "no layer has a field high", arguments=("terrain", spatial, "--height", "high", *grid, *to))
 
 

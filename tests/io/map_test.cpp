@@ -72,7 +72,7 @@ TEST_F(MapTest, PolyFilesHaveAttributesMarkersHolesAndRegions) {
   EXPECT_EQ(map.polygon_count(), 0U);
   EXPECT_EQ(map.points.markers, (Indices{1, 1, 0, 1}));
   EXPECT_EQ(map.segment_markers, (Indices{5, 5, 0}));
-  EXPECT_TRUE(map.notes.empty());
+  EXPECT_TRUE(map.points.notes.empty());
   ASSERT_EQ(map.regions.size(), 2U);
   EXPECT_EQ(map.regions[0].place[0], 1);
   EXPECT_EQ(map.regions[0].attribute, 7);
@@ -145,7 +145,7 @@ TEST_F(MapTest, RingsKeepTheirDirections) {
   EXPECT_EQ(map.polygon_offsets, (Offsets{0, 2}));
   EXPECT_FALSE(map.has_others);
   EXPECT_EQ(map.part_offsets, (Offsets{0, 2}));
-  EXPECT_TRUE(map.notes.empty());
+  EXPECT_TRUE(map.points.notes.empty());
 }
 
 TEST_F(MapTest, GeoJsonHasAllTypes) {
@@ -201,8 +201,8 @@ TEST_F(MapTest, RingsThatAreNotClosedAreMended) {
   const Map map = map_of("a.json", geometry("Polygon", "[[[0,0],[1,0],[0,1]]]"));
   EXPECT_EQ(map.points.size(), 3U);
   EXPECT_EQ(map.segments, (Indices{0, 1, 1, 2, 2, 0}));
-  ASSERT_EQ(map.notes.size(), 1U);
-  EXPECT_NE(map.notes[0].find("a ring is not closed"), std::string::npos) << map.notes[0];
+  ASSERT_EQ(map.points.notes.size(), 1U);
+  EXPECT_NE(map.points.notes[0].find("a ring is not closed"), std::string::npos) << map.points.notes[0];
 }
 
 TEST_F(MapTest, GeoJsonWithErrorsNamesThePath) {
@@ -445,7 +445,7 @@ TEST_F(ConstrainedMeshTest, LabelsAreInVtuAndGeoJson) {
   const Map map = read_map(path("a.geojson"));
   EXPECT_EQ(map.polygon_count(), 2U);
   EXPECT_EQ(map.points.coordinates, (Values{0, 0, 2, 0, 2, 2, 0, 0, 2, 2, 0, 2}));
-  EXPECT_TRUE(map.notes.empty()) << "rings are closed";
+  EXPECT_TRUE(map.points.notes.empty()) << "rings are closed";
 
   // Of polygons, their numbers and properties; the triangles' own ones give way to these.
   ConstrainedTriangulation owned = square();

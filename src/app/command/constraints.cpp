@@ -113,7 +113,8 @@ void add_edges(const io::Map& edges, io::Map& map) {
   if (!map.points.markers.empty()) map.points.markers.resize(all);
   map.has_others = true;
   map.has_height_field = map.has_height_field || edges.has_height_field;
-  map.notes.insert(map.notes.end(), edges.notes.begin(), edges.notes.end());
+  std::vector<std::string>& notes = map.points.notes;
+  notes.insert(notes.end(), edges.points.notes.begin(), edges.points.notes.end());
 }
 
 io::Map read_input(const std::string& input, const io::Columns& columns, const ConstraintRequest& request,
@@ -534,7 +535,7 @@ int triangulate_with_constraints(const Task& task, const ConstraintRequest& aske
 
   if (!task.quiet) {
     std::string text = task.profile ? kernel_table(mesh.statistics) : "";
-    text += notes_text(map.notes) + withheld_note(task.input, map.points) +
+    text += notes_text(map.points.notes) + withheld_note(task.input, map.points) +
             heights_note(task.input, task.results.mesh, map.points) + properties_note(task, map, mesh);
     print(text + empty_note(mesh, request) + refinement_note(mesh, map.points.coordinates) +
           host_note(facts.compiling_note) + host_note(mesh.statistics.note) + notes_text(outputs.notes) +

@@ -52,6 +52,10 @@ void add_fields(CLI::App* command, io::Columns& columns, const std::string& text
 }
 
 void check_fields(const CLI::App& command, const std::string& input, const std::string& edges) {
+  std::vector<std::string> names = command.get_option("--fields")->results();
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice != names.end()) refuse(command, "--fields", io::printable("names " + *twice + " twice"));
   if (io::has_fields(input)) return;
   const std::string shown = io::shown_path(input);
   if (io::is_column_text(input)) {

@@ -251,7 +251,8 @@ int make_terrain(TerrainRequest request) {
   check_place("--breaklines", request.breaklines, edges.lines, box, crs, is_asked);
   check_place("--flat", request.flat, edges.lakes, box, crs, is_asked);
   check_place("--boundary", request.boundary, area, box, crs, is_asked);
-  const PixelGrid grid = grid_over(bounds ? *bounds : box);
+  const io::Box grid_box = bounds ? *bounds : box;
+  const PixelGrid grid = grid_over(grid_box);
   const std::uint64_t memory = request.memory != 0 ? request.memory : host::memory_left().bytes / 2;
   Pixels pixels(grid.count(), memory, request.scratch);
   std::vector<double> heights;
@@ -301,7 +302,11 @@ int make_terrain(TerrainRequest request) {
   progress.finish();
   if (!request.quiet) {
     std::string notes;
-    for (const io::Map* map : {&edges.lines, &edges.lakes, &area}) notes += notes_text(map->notes);
+    if (grid_box[0] > box[2] || box[0] > grid_box[2] || grid_box[1] > box[3] || box[1] > grid_box[3]) {
+      notes = fmt::format("note: no point is in --bounds: points reach from ({}, {}) to ({}, {})\n", box[0],
+                          box[1], box[2], box[3]);
+    }
+    for (const io::Map* map : {&edges.lines, &edges.lakes, &area}) notes += notes_text(map->points.notes);
     print(notes + notes_text(outputs.notes) +
           fmt::format("{} points{}, {} x {} pixels, {:.3g} s\n", scan.size(), left_out, grid.pixels.columns,
                       grid.pixels.rows, stopwatch.seconds()));

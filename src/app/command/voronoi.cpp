@@ -102,7 +102,7 @@ int voronoi(const VoronoiRequest& request) {
   outputs.commit();
   progress.finish();
   if (!request.quiet)
-    print(notes_text(outputs.notes) +
+    print(notes_text(points.notes) + notes_text(outputs.notes) +
           fmt::format("{} points, {} cells, {:.3g} s\n", points.size(), owners.size(), stopwatch.seconds()));
   return kSuccess;
 }

@@ -58,8 +58,7 @@ class ColumnText : public PointText {
       if (is_whole_line_ && lines_.field(field)) fail_count();
       coordinates.push_back(lines_.coordinate(found_[0], point_, hint_));
       coordinates.push_back(lines_.coordinate(found_[1], point_, hint_));
-      if (heights != nullptr && numbers_ == 3)
-        heights->push_back(lines_.coordinate(found_[2], point_, hint_, third_.empty() ? "height" : third_));
+      if (heights != nullptr && numbers_ == 3) heights->push_back(read_third());
       hint_ = "";
       if (!kept_.empty() && lines_.has_comment())
         lines_.fail_line(
@@ -80,6 +79,12 @@ class ColumnText : public PointText {
 
  private:
   static constexpr std::size_t kAxes = 3;
+
+  double read_third() {
+    const bool is_optional = third_.empty() && found_[2].empty();
+    return lines_.coordinate(found_[2], point_, is_optional ? "; --columns X,Y reads no heights" : hint_,
+                             third_.empty() ? "height" : third_);
+  }
 
   // A column that points keep: numbers only if all of its fields are some, and otherwise text.
   struct Kept {

@@ -78,16 +78,22 @@ void Map::complete_heights(const std::string& path) {
   const auto unknown = std::count_if(heights.begin(), heights.end(), [](double z) { return std::isnan(z); });
   const bool has_none = unknown == static_cast<std::ptrdiff_t>(heights.size());
   if (unknown > 0 && !has_none && has_height_field)
-    notes.push_back(fmt::format("{}: {} of {} positions have no height", path, unknown, heights.size()));
+    points.notes.push_back(
+        fmt::format("{}: {} of {} positions have no height", path, unknown, heights.size()));
   if (has_none) heights = {};
 }
 
-void Map::check_height_field(const std::string& path, const std::vector<std::string>& fields) const {
+std::string Map::known_fields() const {
+  return field_names.empty() ? "it has no fields"
+                             : fmt::format("its fields are {}", fmt::join(field_names, ", "));
+}
+
+void Map::check_height_field(const std::string& path, const std::vector<std::string>& fields,
+                             std::string_view option) const {
   if (fields.empty()) return;
   const std::string names = fmt::format("{}", fmt::join(fields, " or "));
-  if (!has_height_field)
-    fail(path, "has no field {}, of --height; its fields are {}", names, fmt::join(field_names, ", "));
-  if (points.heights.empty()) fail(path, "has no value in the field {}, of --height", names);
+  if (!has_height_field) fail(path, "has no field {}, of {}; {}", names, option, known_fields());
+  if (points.heights.empty()) fail(path, "has no value in the field {}, of {}", names, option);
 }
 
 bool is_map(const std::string& path) { return find_format(path, Use::read_map) != nullptr; }
@@ -98,7 +104,7 @@ Map read_map(const std::string& path, const Columns& columns) {
 
 Map read_lines(const std::string& path, const Columns& columns, const std::vector<std::string>& heights) {
   Map map = read_map(path, {{}, heights.empty() ? columns.heights : heights, {}});
-  map.check_height_field(path, heights);
+  map.check_height_field(path, heights, "--line-height");
   return map;
 }
 

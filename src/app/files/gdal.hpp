@@ -20,6 +20,7 @@ namespace flaunay::io {
 
 #define FLAUNAY_GDAL_FUNCTIONS(X) \
   X(CPLGetErrorHandlerUserData)   \
+  X(CPLIsUTF8)                    \
   X(CPLPopErrorHandler)           \
   X(CPLPrintPointer)              \
   X(CPLPushErrorHandlerEx)        \

@@ -85,7 +85,7 @@ class GeoJsonReader {
     choose_fields();
     map_.complete_heights(path_);
     if (unclosed_ > 0) {
-      map_.notes.push_back(
+      map_.points.notes.push_back(
           fmt::format("{}: {} not closed: the last position should be the first one again", path_,
                       unclosed_ == 1 ? "a ring is" : std::to_string(unclosed_) + " rings are"));
     }
@@ -199,8 +199,7 @@ class GeoJsonReader {
       for (const FieldValue& value : height->values) map_.points.heights.push_back(number_of(value));
     }
     const auto missing = std::find_if_not(kept, fields_.end(), is_there);
-    if (missing != fields_.end())
-      fail(path_, "has no field '{}'; its fields are {}", missing->name, fmt::join(map_.field_names, ", "));
+    if (missing != fields_.end()) fail(path_, "has no field '{}'; {}", missing->name, map_.known_fields());
     map_.points.fields.assign(kept, fields_.end());
   }
 

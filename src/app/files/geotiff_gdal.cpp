@@ -109,7 +109,7 @@ std::string crs_text(const std::string& crs) {
   const Quiet quiet;
   const System system(gdal().OSRNewSpatialReference(nullptr));
   if (gdal().OSRSetFromUserInput(system.get(), crs.c_str()) != OGRERR_NONE)
-    fail("--crs", "GDAL knows no coordinate system '{}'", crs);
+    fail("--crs", "GDAL knows no coordinate system '{}'; expected one such as EPSG:25832, or WKT", crs);
   return text_of(system.get());
 }
 

@@ -74,8 +74,13 @@ class LayerReader {
     if (map_.points.size() == 0) fail(file_, "layer '{}' has no feature with a geometry", name_);
     map_.complete_heights(file_);
     if (without_geometry_ > 0) {
-      map_.notes.push_back(
+      map_.points.notes.push_back(
           fmt::format("{}: layer '{}' has {} features without a geometry", file_, name_, without_geometry_));
+    }
+    if (is_latin_) {
+      map_.points.notes.push_back(
+          fmt::format("{}: texts are read as Latin-1; a file {} can say their encoding, such as CP1250",
+                      file_, path_beside(file_, ".cpg")));
     }
     return std::move(map_);
   }
@@ -108,7 +113,7 @@ class LayerReader {
     const int count = gdal().OGR_FD_GetFieldCount(definition);
     for (int k = 0; k < count; ++k) {
       const OGRFieldDefnH field = gdal().OGR_FD_GetFieldDefn(definition, k);
-      fields_.emplace_back(gdal().OGR_Fld_GetNameRef(field), gdal().OGR_Fld_GetType(field));
+      fields_.emplace_back(utf8(gdal().OGR_Fld_GetNameRef(field)), gdal().OGR_Fld_GetType(field));
       map_.field_names.push_back(fields_.back().first);
     }
     for (const std::string& height : columns_.heights) {
@@ -122,8 +127,7 @@ class LayerReader {
     for (const std::string& name : columns_.fields) {
       kept_.push_back(find_field(name));
       if (kept_.back() < 0) {
-        fail(file_, "layer '{}' has no field '{}'; its fields are {}", name_, name,
-             fmt::join(map_.field_names, ", "));
+        fail(file_, "layer '{}' has no field '{}'; {}", name_, name, map_.known_fields());
       }
       map_.points.fields.push_back({name, {}});
     }
@@ -162,17 +166,30 @@ class LayerReader {
     if (map_.polygon_count() > polygons) map_.properties.resize(map_.polygon_count(), properties_of(feature));
   }
 
-  FieldValue value_of(OGRFeatureH feature, int field) const {
+  FieldValue value_of(OGRFeatureH feature, int field) {
     if (gdal().OGR_F_IsFieldSetAndNotNull(feature, field) == 0) return {};
     const OGRFieldType type = fields_[static_cast<std::size_t>(field)].second;
     if (type == OFTInteger || type == OFTInteger64)
       return std::int64_t{gdal().OGR_F_GetFieldAsInteger64(feature, field)};
     if (type == OFTReal) return gdal().OGR_F_GetFieldAsDouble(feature, field);
-    return std::string(gdal().OGR_F_GetFieldAsString(feature, field));
+    return utf8(gdal().OGR_F_GetFieldAsString(feature, field));
+  }
+
+  // Texts of a Shapefile that does not say their encoding are as they were written.
+  std::string utf8(const char* text) {
+    if (gdal().CPLIsUTF8(text, -1) != 0) return text;
+    is_latin_ = true;
+    std::string result;
+    for (; *text != 0; ++text) {
+      const auto c = static_cast<unsigned char>(*text);
+      if (c >= 0x80) result += static_cast<char>(0xc0 | c >> 6);
+      result += static_cast<char>(c < 0x80 ? c : 0x80 | (c & 0x3f));
+    }
+    return result;
   }
 
   // As GeoJSON has them.
-  std::string properties_of(OGRFeatureH feature) const {
+  std::string properties_of(OGRFeatureH feature) {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
     for (int k = 0; k < static_cast<int>(fields_.size()); ++k) {
       auto& to = object[fields_[static_cast<std::size_t>(k)].first];
@@ -258,6 +275,7 @@ class LayerReader {
   std::vector<int> kept_;  // the fields that points keep
   GIntBig feature_ = 0;    // the one that is read, for messages
   std::size_t without_geometry_ = 0;
+  bool is_latin_ = false;  // texts that are not UTF-8
   Map map_;
 };
 
@@ -322,6 +340,10 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   const bool is_shapefile = ending_of(path) == ".shp";
   Settings options;
   if (is_shapefile) options.set("ENCODING", "UTF-8");
+  if (ending_of(path) == ".gpkg") {  // whose columns these are
+    options.set("FID", own_name("fid", layer.fields).c_str());
+    options.set("GEOMETRY_NAME", own_name("geom", layer.fields).c_str());
+  }
   const OGRLayerH to = gdal().GDALDatasetCreateLayer(data.get(), layer.name.c_str(), system.get(),
                                                      layer.has_heights ? spatial : flat, options.get());
   check(to != nullptr);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/files/points.hpp"
@@ -37,7 +38,6 @@ struct Map {
   bool has_others = false;                    ///< lines or points besides polygons
   bool has_height_field = false;              ///< heights are those of a field that was asked for
   std::vector<std::string> field_names = {};  ///< of a layer, and of GeoJSON of which fields are read
-  std::vector<std::string> notes;             ///< a sentence for each thing that was left out or mended
 
   std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
   /// Joins the points from the first one on to a line.
@@ -46,8 +46,11 @@ struct Map {
   bool add_ring(std::size_t first);
   /// Leaves no heights if all are unknown, and notes how many of a field are.
   void complete_heights(const std::string& path);
-  /// Throws Error(input) if fields were asked for, and there is none, or it has no value.
-  void check_height_field(const std::string& path, const std::vector<std::string>& fields) const;
+  /// For messages, the names of the fields.
+  std::string known_fields() const;
+  /// Throws Error(input) if the option asked for fields, and there is none, or it has no value.
+  void check_height_field(const std::string& path, const std::vector<std::string>& fields,
+                          std::string_view option = "--height") const;
 };
 
 /// Whether the ending of path is that of a map: .poly, .geojson, .json, or that of a layer.

@@ -33,6 +33,7 @@ struct Points {
   std::string crs =
       {};  ///< the system of the coordinates: "EPSG:n", WKT, or a name; empty if the file has none
   std::vector<PointField> fields = {};  ///< those that were asked for, of points in the file
+  std::vector<std::string> notes = {};  ///< a sentence for each thing that was left out or mended
   std::size_t size() const { return coordinates.size() / 2; }
 };
 

@@ -174,6 +174,7 @@ class Scan::Part {
       const double* const at = &map.points.coordinates[2 * i];
       const double height = map.points.heights.empty() ? std::nan("") : map.points.heights[i];
       if (std::isnan(height)) {
+        map.check_height_field(path_, columns.heights);
         fail(path_, "position {}, ({}, {}), has no height; --height says which field has it", i, at[0],
              at[1]);
       }
@@ -369,6 +370,7 @@ std::vector<std::string> scan_files(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     const std::optional<system::FileStatus> status = system::status_of(path);
     if (!status || status->kind != system::FileKind::folder) {
+      if (!status && ending_of(path).empty()) fail(path, "is no file and no folder");
       files.push_back(path);
       continue;
     }
