@@ -265,12 +265,12 @@ def fields_of_geojson(folder):
 def fields_of_text(folder):
     """Columns of text are kept as they are: numbers only if all of a column are some."""
     path, cells = folder / "wells.csv", folder / "wells.geojson"
-    path.write_text("""name;x;y;ph;depth;dug;house
-"Old ""Well""; north";1,5;2;7,5;10;2024-03-01;007
-B2;4;2,25;;12;2023-01-31;12
-B3;3;7;6,25;;;13
-"No. #4";8;8;7;9223372036854775;x;14
-second;8;8;1;1;x;15
+    path.write_text("""name;x;y;ph;depth;dug;house;odd
+"Old ""Well""; north";1,5;2;7,5;10;2024-03-01;007;1,5
+B2;4;2,25;;12;2023-01-31;12;2
+B3;3;7;6,25;;;13;3 m
+"No. #4";8;8;7;9223372036854775;x;14;4
+second;8;8;1;1;x;15;5
 """)
     fields = ("name", "ph", "depth", "dug", "house")
     works("voronoi", path, "--columns", "x,y", "--fields", ",".join(fields), "-o", cells, *ON_HOST)
@@ -299,7 +299,8 @@ second;8;8;1;1;x;15
     arguments = ("triangulate", path, "--columns", "x,y", "-o", out, "--fields")
     works(*arguments, "ph,depth", *ON_HOST)
     assert rows_of(out, "select ph, depth from triangles order by fid")[0] == (6.875, 11)
-    fails(3, "wells.csv", "'name' is no number", "point 0", "Old", arguments=(*arguments, "name"))
+    fails(3, "wells.csv", "'odd' is no number", "point 2 has '3 m'", arguments=(*arguments, "odd"))
+    fails(3, "wells.csv", "'house' is no number", "point 0 has '007'", arguments=(*arguments, "house"))
     works("voronoi", path, "--columns", "x,y", "--fields", "name,ph,depth", "-o", out, *ON_HOST)
     types = rows_of(out, "select typeof(name), typeof(ph), typeof(depth) from cells order by fid")
     assert types[:2] == [("text", "real", "integer"), ("text", "null", "integer")]
