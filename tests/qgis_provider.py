@@ -106,7 +106,7 @@ def real():
     from processing.core.Processing import Processing
 
     Processing.initialize()
-    return lambda name, parameters: processing.run("flaunay:" + name, parameters)
+    return lambda name, parameters, **more: processing.run("flaunay:" + name, parameters, **more)
 
 
 def rows_of(path, query):
@@ -148,9 +148,9 @@ def main(folder, run):
 
 
 def in_real_qgis(folder, run):
-    """Layers in memory, with selected features alone; extents; what QGIS makes of the files."""
-    from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProcessingFeatureSourceDefinition, QgsProject
-    from qgis.core import QgsRasterLayer, QgsVectorLayer
+    """Layers in memory, with selected features alone; extents; what QGIS makes of files; runs that end early."""
+    from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProcessingException, QgsProcessingFeedback
+    from qgis.core import QgsProcessingFeatureSourceDefinition, QgsProject, QgsRasterLayer, QgsVectorLayer
 
     layer = QgsVectorLayer("Point?crs=EPSG:32104&field=v:double", "points", "memory")
     for k in range(5):
@@ -170,6 +170,17 @@ def in_real_qgis(folder, run):
     assert found.isValid() and found.crs().authid() == "EPSG:32104" and found.featureCount() == 5
     dem = QgsRasterLayer(str(folder / "dem.tif"), "dem")
     assert dem.isValid() and dem.crs().authid() == "EPSG:32104"
+    stopped = QgsProcessingFeedback()
+    stopped.cancel()
+    layer.removeSelection()
+    for source, feedback, part in ((layer, stopped, "Cancelled"), (chosen, None, "no feature with a geometry")):
+        try:
+            run("delaunay", {"INPUT": source, "OUTPUT": str(folder / "no.gpkg")}, feedback=feedback)
+        except QgsProcessingException as error:
+            assert part in str(error), error
+        else:
+            raise AssertionError(part)
+    assert not list(folder.glob("no.gpkg*"))
 
 
 if __name__ == "__main__":
