@@ -32,7 +32,8 @@ TIMEOUT_SECONDS = 900
 CONFIGURE = ["cmake", "--preset", "release", "-DFLAUNAY_MPI=ON", "-DFLAUNAY_GDAL=ON", "-DFLAUNAY_BENCH=OFF"]
 # What tests need beside or in place of the target of their name, by the first word of it.
 TARGETS = {"conformance": ["flaunay_cli"], "oclgrind": ["flaunay_cli"], "mpi": ["test_mpi"], "python": ["flaunay"],
-           "terrain_command": ["flaunay_cli"], "chunk_files": ["flaunay_cli"], "faults": ["flaunay_cli", "c_test"]}
+           "terrain_command": ["flaunay_cli"], "chunk_files": ["flaunay_cli"],
+           "layers_command": ["flaunay_cli"], "faults": ["flaunay_cli", "c_test"]}
 # As the presets of tests have it. What has failed once has found the fault.
 ENVIRONMENT = {"POCL_CACHE_DIR": str(SOURCE / "build/kernels"), **os.environ, "FLAUNAY_CACHE_DIR": "",
                "GTEST_FAIL_FAST": "1"}
@@ -216,6 +217,12 @@ FAULTS = [Fault(*each) for each in [
      "if (edge.ay <= place.y && place.y <= edge.by && edge.x_at(place.y) <= place.x)",
      "<= for <", "terrain_command"),
     # ---- Python
+    ("package-ids", "src/app/files/layers_gdal.cpp",
+     '    options.set("FID", own_name("fid", layer.fields).c_str());\n', "",
+     "again: triangles of a feature with one key", "layers_command"),
+    ("numbers-of-houses", "src/app/files/column_text.cpp",
+     "const bool is_number = !is_name && ", "const bool is_number = ",
+     "leading zeros are lost", "layers_command"),
     ("tiny-extents", "python/flaunay/_dynamic.py",
      "step = max(np.abs(there).max() * 2.0**-52, 2.0**-1074) * np.eye(2)",
      "step = np.abs(there).max() * 2.0**-52 * np.eye(2)",
