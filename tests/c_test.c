@@ -1176,6 +1176,18 @@ static void test_clipped_voronoi(void) {
   }
   const double* vertices = flaunay_clipped_voronoi_vertices(cells);
   for (int32_t v = 0; v < 2 * offsets[4]; ++v) CHECK(vertices[v] >= 0 && vertices[v] <= 3);
+  int32_t groups[] = {0, 0, 0, 0}, corners[32], rings[12], parts[12], ends[3];
+  const size_t v = (size_t)offsets[4];
+  REQUIRE(v < 32);
+  OK(flaunay_join_cells(vertices, v, offsets, 4, groups, 2, box, 4, corners, rings, parts, ends));
+  CHECK(ends[0] == 0 && ends[1] == 1 && ends[2] == 1 && parts[1] == 1 && rings[1] == 4);
+  OK(flaunay_join_cells(vertices, v, offsets, 4, groups, 2, NULL, 0, corners, rings, parts, ends));
+  CHECK(ends[2] == 1 && parts[1] == 1 && rings[1] > 4);
+  REFUSED(flaunay_join_cells(vertices, v - 1, offsets, 4, groups, 2, box, 4, corners, rings, parts, ends),
+          "offsets");
+  groups[2] = 2;
+  REFUSED(flaunay_join_cells(vertices, v, offsets, 4, groups, 2, box, 4, corners, rings, parts, ends),
+          "groups");
   flaunay_clipped_voronoi_destroy(cells);
   WRONG_INPUT(flaunay_voronoi_clip(triangulator, kSquare, NULL, 4, mesh, bow, 4, &cells), "corner 1");
   CHECK(cells == NULL);

@@ -1307,6 +1307,19 @@ def clipped_voronoi(triangulator: Triangulator, mesh: Mesh, corners: _Doubles) -
     return _clipped_cells(triangulator, points, None, n, primal, _as_doubles(corners), len(corners))
 
 
+def join_cells(
+    vertices: _Doubles, offsets: _Indices, groups: _Indices, count: int, bounds: _Doubles
+) -> list[_Indices]:
+    """The corners of polygons of groups of cells, and where rings, parts of polygons and groups begin."""
+    v = len(vertices)
+    made = [np.empty(size, _INT32) for size in (v, v // 3 + 1, v // 3 + 1, count + 1)]
+    given = (_as_doubles(vertices), v, np.ascontiguousarray(offsets), len(groups), groups, count)
+    check(library.join_cells(*_as_arguments((*given, _as_doubles(bounds), len(bounds), *made))))
+    for k in (2, 1, 0):
+        made[k] = made[k][: made[k + 1][-1] + (k > 0)]
+    return made
+
+
 def relax(
     triangulator: Triangulator,
     points: _Doubles,

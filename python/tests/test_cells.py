@@ -507,17 +507,3 @@ def test_what_bounds_cannot_be_extended_to():
             flaunay.voronoi_polygons(points, extend_to=extent)
     with pytest.raises(flaunay.InputError, match=r"extend_to\[1\] is not finite"):
         flaunay.voronoi_polygons(points, extend_to=[shapely.LineString([(0, 0), (1, 1)]), shapely.Point(3, np.inf)])
-
-
-def test_groups_at_once_do_not_matter(random, monkeypatch):
-    from flaunay import _dissolve
-
-    points, owners = random.random((900, 2)), random.integers(0, 40, 900)
-    owners[:300] = 7
-    expected = flaunay.voronoi_polygons(points, groups=owners)
-    monkeypatch.setattr(_dissolve, "_AT_ONCE", 100)
-    made = flaunay.voronoi_polygons(points, groups=owners)
-    assert len(made) == len(expected) == 40
-    for one, other in zip(rings_of(made), rings_of(expected)):
-        assert np.array_equal(one, other)
-    assert [list(map(len, parts)) for parts in made] == [list(map(len, parts)) for parts in expected]

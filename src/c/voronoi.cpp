@@ -64,6 +64,28 @@ FLAUNAY_ACCESSOR(size_t, clipped_voronoi, vertex_count, handle.cpp.vertices.size
 FLAUNAY_CLIPPED_VORONOI_ARRAYS(ARRAY)
 #undef ARRAY
 
+flaunay_status flaunay_join_cells(const double* vertices, size_t v, const int32_t* offsets, size_t n,
+                                  const int32_t* groups, size_t group_count, const double* bounds,
+                                  size_t bound_count, int32_t* corners, int32_t* ring_offsets,
+                                  int32_t* part_offsets, int32_t* group_offsets) {
+  return c::guarded([&] {
+    check_array(vertices, v, "vertices of cells");
+    check_array(groups, n, "groups of points");
+    check_count(group_count, "groups");
+    check_array(bounds, bound_count, "corners of the bounds");
+    check_array(corners, v, "corners");
+    check_array(ring_offsets, v / 3 + 1, "ring_offsets");
+    check_array(part_offsets, v / 3 + 1, "part_offsets");
+    check_array(group_offsets, group_count + 1, "group_offsets");
+    const JoinedCells joined =
+        join_cells({c::copied(vertices, 2 * v, "vertices"), c::copied(offsets, n + 1, "offsets"), {}, {}},
+                   c::copied(groups, n, "groups"), group_count, c::copied(bounds, 2 * bound_count, "bounds"));
+#define COPY(name) std::copy(joined.name.begin(), joined.name.end(), name);
+    COPY(corners) COPY(ring_offsets) COPY(part_offsets) COPY(group_offsets)
+#undef COPY
+  });
+}
+
 FLAUNAY_DEVICE_RESULT(clipped_voronoi, flaunay_clipped_voronoi_part, FLAUNAY_CLIPPED_VORONOI_ARRAYS,
                       "the clipped cells", "clipped Voronoi cells")
 FLAUNAY_ACCESSOR(size_t, device_clipped_voronoi, vertex_count, handle.cpp.vertex_count)

@@ -126,6 +126,8 @@ std::vector<std::string> words_for(const std::string& name) {
       {"neighbors", {"neighbors", "neighbours"}},
       {"count", {"neighbours"}},
       {"corner_count", {"corner"}},
+      {"group_count", {"groups"}},
+      {"bound_count", {"bounds"}},
       {"height_count", {"heights"}},
   };
   const auto found = words.find(name);

@@ -1305,6 +1305,23 @@ FLAUNAY_API const int32_t* flaunay_clipped_voronoi_offsets(const flaunay_clipped
 FLAUNAY_API const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_voronoi* cells);
 /// 2 n values; NaN for these.
 FLAUNAY_API const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells);
+/// Joins the cells of each group to polygons with holes: edges that two cells of a group share cancel,
+/// exactly. vertices, v, offsets, n: of n cells, or of other polygons that tile, as above. groups: n values
+/// from 0 to group_count - 1. bounds: the bound_count corners of the polygon to which cells are clipped; on
+/// its edges, corners at which cells of one group alone meet are left out. Without bounds, all corners stay.
+///
+/// Arrays of the caller's: corners: v values, which are indices of vertices; ring_offsets, part_offsets:
+/// v / 3 + 1 values; group_offsets: group_count + 1 values. Ring r has corners
+/// [ring_offsets[r], ring_offsets[r + 1]), and meets no place twice. A part has rings
+/// [part_offsets[q], part_offsets[q + 1]): an outer one, counter-clockwise, and then its holes, clockwise.
+/// Group g has parts [group_offsets[g], group_offsets[g + 1]). FLAUNAY_ERROR_USAGE for arrays that do not fit
+/// each other, FLAUNAY_ERROR_INPUT for vertices that are not finite or differ too much in magnitude. O(n)
+/// expected.
+FLAUNAY_API flaunay_status flaunay_join_cells(const double* vertices, size_t v, const int32_t* offsets,
+                                              size_t n, const int32_t* groups, size_t group_count,
+                                              const double* bounds, size_t bound_count, int32_t* corners,
+                                              int32_t* ring_offsets, int32_t* part_offsets,
+                                              int32_t* group_offsets);
 
 /// Makes an empty result, whose buffers work like those of a flaunay_device_triangulation.
 FLAUNAY_API flaunay_status flaunay_device_clipped_voronoi_create(flaunay_device_clipped_voronoi** cells);

@@ -325,6 +325,22 @@ struct ClippedVoronoi {
   std::vector<double> centroids;  ///< x and y per point; NaN for these
 };
 
+/// Polygons with holes, each the union of the cells of a group.
+struct JoinedCells {
+  std::vector<std::int32_t> corners;  ///< vertices of the cells
+  /// Ring r has corners [ring_offsets[r], ring_offsets[r + 1]), and meets no place twice. A part has rings
+  /// [part_offsets[q], part_offsets[q + 1]): an outer one, counter-clockwise, and then its holes, clockwise.
+  /// Group g has parts [group_offsets[g], group_offsets[g + 1]), none if its cells have no vertices.
+  std::vector<std::int32_t> ring_offsets, part_offsets, group_offsets;
+};
+/// Joins cells, or other polygons that tile, whose vertices alone are read: edges that two cells of a group
+/// share cancel, exactly. groups: from 0 to group_count - 1, one per cell. bounds: the corners of the polygon
+/// to which cells are clipped; on its edges, corners at which cells of one group alone meet are left out. If
+/// empty, all corners stay. Throws Error(usage) for arrays that do not fit each other, and Error(input) if
+/// vertices are not finite or their magnitudes differ too much. O(n) expected.
+FLAUNAY_API JoinedCells join_cells(const ClippedVoronoi& cells, const std::vector<std::int32_t>& groups,
+                                   std::size_t group_count, const std::vector<double>& bounds = {});
+
 /// Computes triangulations, on one device or on the host. It owns the compiled kernels, the working memory
 /// and a queue; the context is its own or the caller's. Using a device for the first time compiles kernels,
 /// so keep the triangulator for the next call. It and its locators do one call at a time: a call during
