@@ -11,6 +11,7 @@ import numpy.typing as npt
 from flaunay._arrays import Frozen, frozen, summary
 from flaunay._cells import clip
 from flaunay._delaunay import Delaunay
+from flaunay._dissolve import linear_rings
 from flaunay._errors import UsageError
 from flaunay._optional import optional
 from flaunay._polygons import PolygonTriangulation, polygons
@@ -69,14 +70,10 @@ class VoronoiPieces(Frozen):
             Without Shapely 2.
         """
         shapely = optional("shapely", "VoronoiPieces.to_shapely")
-        pieces = [
-            shapely.Polygon(self.vertices[first:last])
-            for first, last in zip(self.offsets[:-1], self.offsets[1:])
-        ]
+        pieces = shapely.polygons(linear_rings(shapely, self.vertices, self.offsets))
         result = np.full(len(self.areas), shapely.Polygon(), dtype=object)
-        bounds = np.searchsorted(self.owners, np.arange(len(self.areas) + 1))
-        for i in np.flatnonzero(np.diff(bounds)):
-            result[i] = shapely.union_all(pieces[bounds[i] : bounds[i + 1]])
+        owners, numbers = np.unique(self.owners, return_inverse=True)
+        result[owners] = shapely.union_all(shapely.geometrycollections(pieces, indices=numbers)[:, None], axis=1)
         return result
 
 

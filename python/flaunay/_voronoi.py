@@ -190,8 +190,8 @@ class Voronoi(Frozen):
         >>> flaunay.Voronoi([[0, 0], [2, 0], [0, 2]]).ridge_dict[1, 2]
         [-1, 0]
         """
-        pairs: list[list[int]] = self.ridge_points.tolist()
-        return {(a, b): ends for (a, b), ends in zip(pairs, self.ridge_vertices.tolist())}
+        first, second = self.ridge_points.T.tolist()
+        return dict(zip(zip(first, second), self.ridge_vertices.tolist()))
 
     @cached_property
     def regions(self) -> list[list[int]]:
