@@ -98,9 +98,10 @@ def draw_ranks(record):
 def draw_cliffs(record):
     figure, panels = bars_by_size(record, "Inputs on which triangulators are slow", record["cliffs"], "distribution",
                                   "implementation", lambda row: [row["times_uniform"]] * 3, None,
-                                  "times its own uniform time")
+                                  "times its uniform time (dashed: limit)")
     for panel in panels:
         guide(panel, record["cliffs"][0]["limit"])
+        panel.yaxis.set_major_formatter("{x:g}")
     return figure, panels
 
 
@@ -119,6 +120,7 @@ def draw_targets(record):
                markersize=4, label="goal")
     guide(panel, 1)
     set_log(panel.yaxis)
+    panel.yaxis.set_major_formatter("{x:g}")
     panel.set(ylabel="how far (1: what it must be at least)")
     return figure, [panel]
 

@@ -19,7 +19,9 @@ def palette_image(picture):
     """The file's bytes with as many colours as fit."""
     for colours in COLOURS:
         buffer = io.BytesIO()
-        picture.quantize(colours, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
+        # Colours of few pixels, as in the scale of a map, are kept as those of many.
+        small = picture.quantize(colours, Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE)
+        small.save(buffer, "png", optimize=True)
         if buffer.tell() <= BYTES:
             break
     return buffer.getvalue()

@@ -42,6 +42,7 @@ def main(path: str = "alpha_shape.png") -> None:
         axes.set_title(f"radius {alpha:g}: parts {parts}, holes {holes}", fontsize=11)
         axes.set_aspect("equal")
         axes.set_axis_off()
+    figure.suptitle("alpha shapes (blue) of points (orange)")
     figure.savefig(path, dpi=100)
 
 

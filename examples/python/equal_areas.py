@@ -48,7 +48,7 @@ def weights_for(points: Doubles, areas: Doubles) -> Doubles:
     return weights
 
 
-def draw(axes: Axes, points: Doubles, cells: flaunay.ClippedVoronoi, title: str) -> None:
+def draw(axes: Axes, points: Doubles, cells: flaunay.ClippedVoronoi, title: str) -> PolyCollection:
     shown = PolyCollection(
         cells.polygons(), array=cells.areas / cells.areas.mean(), cmap="viridis", edgecolors="white", linewidths=0.6
     )
@@ -57,6 +57,7 @@ def draw(axes: Axes, points: Doubles, cells: flaunay.ClippedVoronoi, title: str)
     axes.plot(points[:, 0], points[:, 1], ".", color="crimson", markersize=2)
     axes.set(xlim=BOX[::2], ylim=BOX[1::2], aspect="equal", title=title)
     axes.axis("off")
+    return shown
 
 
 def main(path: str = "equal_areas.png") -> None:
@@ -65,11 +66,12 @@ def main(path: str = "equal_areas.png") -> None:
     points = np.column_stack([np.cos(angles), np.sin(angles)]) * radii[:, None] ** 1.2 * 0.95
     area = (BOX[2] - BOX[0]) * (BOX[3] - BOX[1])
     tri = flaunay.weighted(points, weights_for(points, np.full(400, area / 400)))
-    figure, axes = plt.subplots(1, 2, figsize=(10, 5.3))
+    figure, axes = plt.subplots(1, 2, figsize=(10, 6.1), layout="constrained")
     draw(axes[0], points, flaunay.Voronoi(points).clipped(BOX), "Voronoi cells")
     cells = tri.cells(BOX)
-    draw(axes[1], points, cells, "power cells of equal area")
-    figure.subplots_adjust(left=0, right=1, bottom=0, top=0.93, wspace=0.02)
+    shown = draw(axes[1], points, cells, "power cells of equal area")
+    bar = figure.colorbar(shown, ax=axes, location="bottom", shrink=0.6, aspect=50, pad=0.03, extend="max")
+    bar.set_label("area of a cell / mean area; points are red", fontsize=13)
     figure.savefig(path, dpi=110)
     print(f"{len(points)} cells of {cells.areas.min():.6f} to {cells.areas.max():.6f}, {len(tri.hidden)} hidden")
 

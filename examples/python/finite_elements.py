@@ -88,6 +88,7 @@ def main(path: str = "finite_elements.png") -> None:
     triangles = mesh.to_matplotlib()
     stress = np.hypot(*gradients(mesh, u).T)
     shades = left.tripcolor(triangles, stress, cmap="YlOrRd", vmin=0, vmax=2)
+    left.set_title(f"cracked shaft, {len(mesh.triangles):,} triangles", fontsize=11)
     mesh.plot(left, color="#555", linewidth=0.25, constraint_color="black", constraint_linewidth=1)
     lines = right.tricontourf(triangles, u, levels=np.linspace(0, 0.3, 25), cmap="YlGnBu_r")
     right.tricontour(triangles, u, levels=24, colors="white", linewidths=0.4)

@@ -23,20 +23,20 @@ def main(path: str = "foam.png") -> None:
     cells = tri.cells.polygons()
     sides = np.array([len(cell) for cell in cells])
     steps = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]) * PERIOD
-    figure, axes = plt.subplots(figsize=(9, 6))
-    axes.add_collection(
-        PolyCollection(
-            [cell + step for step in steps for cell in cells],
-            array=np.tile(sides, len(steps)),
-            cmap="RdYlBu",
-            clim=(3.5, 8.5),
-            edgecolors="dimgrey",
-            linewidths=1.2,
-        )
+    figure, axes = plt.subplots(figsize=(9, 6.9), layout="constrained")
+    foam = PolyCollection(
+        [cell + step for step in steps for cell in cells],
+        array=np.tile(sides, len(steps)),
+        cmap=plt.get_cmap("RdYlBu", 5),
+        clim=(3.5, 8.5),
+        edgecolors="dimgrey",
+        linewidths=1.2,
     )
+    axes.add_collection(foam)
     axes.set(xlim=(0, PERIOD[0]), ylim=(0, PERIOD[1]), aspect="equal")
     axes.axis("off")
-    figure.subplots_adjust(left=0, right=1, bottom=0, top=1)
+    bar = figure.colorbar(foam, location="bottom", ticks=range(4, 9), shrink=0.4, aspect=20, pad=0.02)
+    bar.set_label("sides of a cell", fontsize=13)
     figure.savefig(path, dpi=110)
     print(f"{tri.npoints} cells with {sides.mean():.0f} sides each on average; areas sum to")
     print(round(float(tri.cells.areas.sum()), 9))

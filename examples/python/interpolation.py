@@ -10,11 +10,13 @@ import matplotlib.cbook
 import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import LightSource
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LightSource, Normalize
 
 import flaunay
 
 HEIGHTS = 4000
+LOW, HIGH = 100, 1050  # of the colours, in metres
 INTERPOLATORS = {
     "linear": flaunay.LinearInterpolator,
     "Clough-Tocher": flaunay.CloughTocherInterpolator,
@@ -34,7 +36,7 @@ def shaded(heights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     light = LightSource(azdeg=315, altdeg=40)
     known = np.nan_to_num(heights, nan=float(np.nanmin(heights)))
     colours: npt.NDArray[np.float64] = light.shade(
-        known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=100, vmax=1050, blend_mode="soft"
+        known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=LOW, vmax=HIGH, blend_mode="soft"
     )
     colours[np.isnan(heights)] = 1
     return colours
@@ -50,18 +52,20 @@ def main(path: str = "interpolation.png") -> None:
     values = truth.ravel()[places]
     grid = np.moveaxis(np.mgrid[:height, :width], 0, -1)
 
-    figure, panels = plt.subplots(2, 2, figsize=(7, 6.6), layout="constrained")
+    figure, panels = plt.subplots(2, 2, figsize=(7, 7.2), layout="constrained")
     first, *others = panels.flat
     first.imshow(shaded(truth))
     first.plot(points[:, 1], points[:, 0], ".", color="black", markersize=0.8)
-    first.set_title(f"terrain, and {HEIGHTS:,} places in it")
+    first.set_title(f"terrain, {HEIGHTS:,} measured places")
     for axes, (name, interpolator) in zip(others, INTERPOLATORS.items()):
         surface = interpolator(points, values)(grid)
         error = np.sqrt(np.nanmean((surface - truth) ** 2))
         axes.imshow(shaded(surface))
-        axes.set_title(f"{name}: {error:.1f} m off")
+        axes.set_title(f"{name}: RMS error {error:.1f} m")
     for axes in panels.flat:
         axes.set_axis_off()
+    heights = ScalarMappable(Normalize(LOW, HIGH), "gist_earth")
+    figure.colorbar(heights, ax=panels, location="bottom", shrink=0.6, aspect=40, label="height in metres")
     figure.savefig(path, dpi=100)
 
 

@@ -49,12 +49,16 @@ def main(path: str = "million_points.png") -> None:
     picture = tri.interpolate(density(tri), pixels)
 
     figure, axes = plt.subplots(figsize=(7, 7))
-    axes.imshow(
+    image = axes.imshow(
         picture, origin="lower", cmap="magma", norm=LogNorm(2e3, 3e6), extent=(-2.1, 2.1, -2.1, 2.1)
     )
     axes.set_title(f"{tri.npoints:,} points, {tri.nsimplex:,} triangles", color="white", y=0.94)
     axes.set_axis_off()
     axes.set_position((0, 0, 1, 1))
+    scale = axes.inset_axes((0.3, 0.07, 0.4, 0.015))
+    bar = figure.colorbar(image, cax=scale, orientation="horizontal")
+    bar.set_label("points per unit of area", color="white")
+    scale.tick_params(colors="white")
     figure.savefig(path, dpi=70)
 
 

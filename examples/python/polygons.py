@@ -72,7 +72,7 @@ def letters(text: str) -> list[Rings]:
     return found
 
 
-def draw(axes: Axes, mesh: flaunay.PolygonTriangulation, colours: str) -> None:
+def draw(axes: Axes, mesh: flaunay.PolygonTriangulation, colours: str, title: str) -> None:
     """Triangles, in the colour of their polygon."""
     axes.tripcolor(
         mesh.to_matplotlib(), mesh.polygon_of * 7 % 10, cmap=colours, vmin=-3, vmax=12, zorder=0
@@ -81,15 +81,16 @@ def draw(axes: Axes, mesh: flaunay.PolygonTriangulation, colours: str) -> None:
     axes.set_aspect("equal")
     axes.margins(0.01)
     axes.set_axis_off()
+    axes.set_title(f"{title}: {len(mesh.triangles):,} triangles", fontsize=11)
 
 
 def main(path: str = "polygons.png") -> None:
     figure, (above, below) = plt.subplots(
-        2, figsize=(6.5, 5.8), layout="constrained", height_ratios=[10, 3.6]
+        2, figsize=(6.5, 6), layout="constrained", height_ratios=[10, 3.6]
     )
     world = flaunay.polygons(countries(np.random.default_rng(8)), map=True)
-    draw(above, world, "summer")
-    draw(below, flaunay.polygons(letters("flaunay&8"), fill_rule="winding"), "autumn")
+    draw(above, world, "summer", "one map of countries with common borders, and lakes")
+    draw(below, flaunay.polygons(letters("flaunay&8"), fill_rule="winding"), "autumn", "letters")
     figure.savefig(path, dpi=100)
 
 

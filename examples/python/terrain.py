@@ -10,13 +10,15 @@ import matplotlib.cbook
 import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LightSource
+from matplotlib.colors import LightSource, Normalize
 
 import flaunay
 
 MEASURED = 20_000
-INTERVAL = 50.0
+INTERVAL = 50
+LOW, HIGH = 100, 1050  # of the colours, in metres
 
 
 def scan() -> npt.NDArray[np.float64]:
@@ -39,17 +41,20 @@ def main(path: str = "terrain.png") -> None:
     known = np.nan_to_num(dem.raster, nan=float(np.nanmin(dem.raster)))
     light = LightSource(azdeg=315, altdeg=40)
     colours = light.shade(
-        known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=100, vmax=1050, blend_mode="soft"
+        known, plt.get_cmap("gist_earth"), vert_exag=0.05, vmin=LOW, vmax=HIGH, blend_mode="soft"
     )
     colours[np.isnan(dem.raster)] = 1
 
-    figure, axes = plt.subplots(figsize=(7, 6.2), layout="constrained")
+    figure, axes = plt.subplots(figsize=(7, 7), layout="constrained")
     axes.imshow(colours, extent=(xmin, xmax, ymin, ymax))
     lines = dem.contours(INTERVAL)
     for thick, width in ((False, 0.3), (True, 0.9)):
         chosen = [line for height, line in lines if (height % (4 * INTERVAL) == 0) == thick]
         axes.add_collection(LineCollection(chosen, colors="#402010", linewidths=width))
     axes.set_axis_off()
+    heights = ScalarMappable(Normalize(LOW, HIGH), "gist_earth")
+    bar = figure.colorbar(heights, ax=axes, location="bottom", shrink=0.6, aspect=40, pad=0.02)
+    bar.set_label(f"height in metres; contours every {INTERVAL}, thick every {4 * INTERVAL}; white: not measured")
     figure.savefig(path, dpi=100)
 
 
