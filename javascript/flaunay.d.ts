@@ -208,3 +208,11 @@ export function version(): string;
 export function init(source?: string | URL): Promise<void>;
 /** For 'flaunay/flaunay.js' alone: makes it ready at once, from a compiled flaunay.wasm. */
 export function start(module: WebAssembly.Module): void;
+
+declare global {
+  // Of lib.dom, which programs for Node may do without.
+  interface URL {}
+  namespace WebAssembly {
+    interface Module {}
+  }
+}

@@ -17,10 +17,12 @@ export class FlaunayError extends Error {
 
 // ---- The module
 
-let missing = 'the WebAssembly module is not loaded yet: await `ready` first'; // what calls say without a module
+let failure; // the first error of a module that could not be loaded
+// What takes the place of functions that no module has.
 const LOADING = new Proxy({}, {
   get() {
-    throw new FlaunayError(missing, 'usage');
+    throw failure ? new FlaunayError(`the module could not be loaded: ${failure.message}`, failure.kind)
+      : new FlaunayError('the WebAssembly module is not loaded yet: await `ready` first', 'usage');
   },
 });
 let wasm = LOADING; // its exports
@@ -68,14 +70,32 @@ function importsOf(module) {
   return imports;
 }
 
-function use(instance) {
-  if (wasm === LOADING) {
-    wasm = instance.exports;
-    wasm._initialize();
-    makeReady();
-  } else if (!Object.keys(instance.exports).every((name) => name in wasm)) {
+// Calls these functions of C from now on.
+function use(functions) {
+  if (wasm !== LOADING) {
+    if (Object.keys(functions).every((name) => name in wasm || !name.startsWith('flaunay_'))) return;
     throw new FlaunayError('flaunay/points was imported before flaunay, which has more: import flaunay first', 'usage');
   }
+  try {
+    wasm = Object.setPrototypeOf({...functions}, LOADING);
+    functions._initialize?.();
+    place = wasm.malloc(8);
+    triangulator = create(wasm.flaunay_triangulator_create, 0);
+  } catch (error) {
+    wasm = LOADING;
+    throw error;
+  }
+}
+
+function instantiate(module) {
+  use(new WebAssembly.Instance(module, importsOf(module)).exports);
+}
+
+// Throws the error of a module that could not be loaded, which later calls repeat.
+function fail(error, what, hint = '') {
+  const found = error instanceof FlaunayError ? error : new FlaunayError(`${what}: ${error.message}${hint}`, 'usage');
+  failure ??= found;
+  throw found;
 }
 
 /**
@@ -83,30 +103,11 @@ function use(instance) {
  * @param {WebAssembly.Module} module
  */
 export function start(module) {
-  use(new WebAssembly.Instance(module, importsOf(module)));
-}
-
-function makeReady() {
-  place = wasm.malloc(8);
-  triangulator = create(wasm.flaunay_triangulator_create, 0);
-}
-
-/**
- * Makes the library ready with threads: of a module that Emscripten's own JavaScript starts, as that makes workers.
- * @param {(settings: object) => Promise<object>} make
- * @param {object} [settings]
- */
-export async function startThreads(make, settings = {}) {
-  if (wasm !== LOADING) throw new FlaunayError('flaunay was imported before flaunay/threads: import that alone', 'usage');
-  const memory = new WebAssembly.Memory({initial: 256, maximum: 65536, shared: true});
-  const module = await make({wasmMemory: memory, ...settings});
-  wasm = {memory};
-  // It puts an underscore before the names of C.
-  for (const name in module) {
-    if (name.startsWith('_')) wasm[name.slice(1)] = module[name];
+  try {
+    instantiate(module);
+  } catch (error) {
+    fail(error, 'the given module');
   }
-  makeReady();
-  return module;
 }
 
 // An address, or that of a file beside the bundle, which a function returns.
@@ -120,58 +121,85 @@ function addressOf(source) {
   }
 }
 
-// Throws the error of a module that could not be loaded, which later calls repeat.
-function fail(error, source, address) {
-  let found = error;
-  if (!(error instanceof FlaunayError)) {
-    const hint = typeof source === 'function' ? `; is ${String(address).split('/').pop()} beside the bundle?` : '';
-    found = new FlaunayError(`${address}: ${error.message}${hint}`, 'usage');
-  }
-  missing = `the module could not be loaded: ${found.message}`;
-  throw found;
-}
-
-async function load(source) {
+// Makes the library ready by what lies at an address; begins at once.
+async function loadFrom(source, work) {
   let address;
   try {
     address = addressOf(source);
-    const response = await fetch(address);
-    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
-    const isWasm = response.headers.get('Content-Type')?.startsWith('application/wasm');
-    const module = await (isWasm ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
-    // Chrome before 114 starts nothing of this size at once in a page.
-    return await WebAssembly.instantiate(module, importsOf(module));
+    return await work(address);
   } catch (error) {
-    return fail(error, source, address);
+    const hint = typeof source === 'function' ? `; is ${String(address).split('/').pop()} beside the bundle?` : '';
+    return fail(error, address, hint);
   }
 }
 
-let earlier = Promise.resolve(); // fulfilled when earlier calls of init have ended
+let earlier = Promise.resolve(); // fulfilled when earlier modules are used or have failed
+
+// Modules load at the same time, but are used in the order of calls.
+function inTurn(loaded, work) {
+  const done = Promise.all([loaded, earlier]).then(([module]) => work(module));
+  earlier = Promise.allSettled([earlier, done]);
+  return done;
+}
+
+async function load(address) {
+  const response = await fetch(address);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  const isWasm = response.headers.get('Content-Type')?.startsWith('application/wasm');
+  const module = await (isWasm ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
+  // Chrome before 114 starts nothing of this size at once in a page.
+  return WebAssembly.instantiate(module, importsOf(module));
+}
 
 /**
- * Loads the module from this address and makes the library ready. Modules load at the same time, but are used in the
- * order of calls.
+ * Loads the module from this address and makes the library ready.
  * @param {string | URL | (() => URL)} source
  */
-export async function init(source) {
-  const done = Promise.all([load(source), earlier]).then(([instance]) => use(instance));
-  earlier = Promise.allSettled([earlier, done]);
-  await done;
+export function init(source) {
+  return loadFrom(source, (address) => inTurn(load(address), ({exports}) => use(exports)));
 }
 
 /**
- * Makes the library ready at once from a file, for Node.
- * @param {() => URL} source
- * @param {(address: URL) => Uint8Array} read
+ * Makes the library ready at once from the bytes that `read` returns, as a file for Node.
+ * @param {string | (() => URL)} source
+ * @param {(address: string | URL) => Uint8Array} read
  */
-export async function startFile(source, read) {
-  let address;
-  try {
-    address = addressOf(source);
-    start(new WebAssembly.Module(read(address)));
-  } catch (error) {
-    fail(error, source, address);
-  }
+export function startFile(source, read) {
+  return loadFrom(source, (address) => instantiate(new WebAssembly.Module(read(address))));
+}
+
+/**
+ * Makes the library ready with threads: of a module that Emscripten's own JavaScript starts, as that makes workers.
+ * @param {() => URL} source
+ * @param {(settings: object, address: URL) => Promise<object>} make
+ */
+export function startThreads(source, make) {
+  return loadFrom(source, (address) => {
+    if (globalThis.crossOriginIsolated === false) {
+      throw new FlaunayError('flaunay/threads needs a page that is cross-origin isolated, by the headers ' +
+        'Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp', 'usage');
+    }
+    const memory = new WebAssembly.Memory({initial: 256, maximum: 65536, shared: true});
+    const made = new Promise((resolve, reject) => {
+      const settings = {wasmMemory: memory}, loading = new AbortController();
+      make(settings, address).then(resolve, reject).finally(() => loading.abort());
+      // Emscripten, which adds its workers to the settings, waits for them without end, and throws what they throw.
+      for (const worker of settings.PThread?.unusedWorkers ?? []) {
+        worker.addEventListener?.('error', (event) => {
+          event.stopImmediatePropagation();
+          reject(new FlaunayError('flaunay/threads: a worker failed: ' + (event.message ??
+            'are all files of the folder threads there, with the headers of the page?'), 'usage'));
+        }, loading);
+      }
+    });
+    return inTurn(made, (module) => {
+      if (wasm !== LOADING) throw new FlaunayError('flaunay was imported before flaunay/threads: import that alone', 'usage');
+      // It puts an underscore before the names of C.
+      const functions = Object.entries(module).filter(([name]) => name.startsWith('_')).map(([name, call]) => [name.slice(1), call]);
+      use({memory, ...Object.fromEntries(functions)});
+      return module;
+    });
+  });
 }
 
 // ---- Calls
@@ -519,7 +547,7 @@ export class Triangulation extends Mesh {
 
   /** Values between points, one row of `columns` numbers per query. */
   interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
-    if (!wasm.flaunay_locator_interpolate) {
+    if (!('flaunay_locator_interpolate' in wasm)) {
       throw new FlaunayError('interpolate is in flaunay, not in flaunay/points', 'usage');
     }
     if (values.length !== columns * this.pointCount) {

@@ -3,8 +3,9 @@ import {readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {startThreads} from './flaunay.js';
 
-const {PThread} = await startThreads(createRequire(import.meta.url)('./threads/node.js'), {
-  wasmBinary: readFileSync(new URL('threads/browser.wasm', import.meta.url)), // it would be fetched
+const {PThread} = await startThreads(() => new URL('threads/browser.wasm', import.meta.url), (settings, address) => {
+  const make = createRequire(import.meta.url)('./threads/node.js');
+  return make({...settings, wasmBinary: readFileSync(address)}); // it would be fetched
 });
 // They wait for work, which is no reason for the process not to end.
 for (const worker of [...PThread.unusedWorkers, ...PThread.runningWorkers]) worker.unref();

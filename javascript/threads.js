@@ -1,15 +1,7 @@
 // As index.js, with as many threads as there are processors.
 import make from './threads/browser.mjs';
-import {FlaunayError, startThreads} from './flaunay.js';
-
-if (!globalThis.crossOriginIsolated) {
-  throw new FlaunayError(
-    'flaunay/threads needs a page that is cross-origin isolated, by the headers Cross-Origin-Opener-Policy: same-origin ' +
-      'and Cross-Origin-Embedder-Policy: require-corp',
-    'usage',
-  );
-}
+import {startThreads} from './flaunay.js';
 
 export * from './flaunay.js';
 export {default} from './flaunay.js';
-export const ready = startThreads(make);
+export const ready = startThreads(() => new URL('threads/browser.wasm', import.meta.url), make);

@@ -42,7 +42,7 @@ if ((${#presets[@]} == 2)); then
   echo '{"type": "commonjs"}' >"$package/threads/package.json"
   cp -r "$package/threads" javascript
 else
-  rm "$package"/threads*.js
+  rm "$package"/threads{.js,-node.js,.d.ts}
   sed -i '/"\.\/threads"/d' "$package/package.json"
 fi
 node -e "process.stdout.write(require('fs').readFileSync('$package/points.wasm', 'hex'))" >"$package/points.hex"
@@ -61,7 +61,9 @@ if [[ -z ${FLAUNAY_COMMAND-} ]]; then
 fi
 export FLAUNAY_COMMAND FLAUNAY_PACKAGE="$PWD/$package"
 node --test javascript/test
-tsc --noEmit --strict --target es2022 --module node16 --moduleResolution node16 --lib es2022,dom javascript/test/types.ts
+for lib in es2022 es2022,dom; do
+  tsc --noEmit --strict --target es2022 --module node16 --moduleResolution node16 --lib "$lib" javascript/test/types.ts
+done
 
 # As it is installed in an empty folder, with the program that users are shown; and the programs of the tutorials.
 npm install --silent --offline --no-audit --no-fund --prefix "$output/installed" "$output/flaunay-$version.tgz"

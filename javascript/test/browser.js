@@ -18,8 +18,11 @@ export const page = (elements) => `<!doctype html><script>
 
 /** What the page at this path reports. pages: texts by paths, null for none; all other files are in the folder. */
 export async function reported(path, pages, folder, headers = {}) {
-  let resolve;
-  const report = new Promise((to) => (resolve = to));
+  let resolve, late;
+  const report = new Promise((to, fail) => {
+    resolve = to;
+    late = setTimeout(() => fail(new Error(`${path} has reported nothing`)), 50_000);
+  });
   const server = createServer((request, response) => {
     if (request.url === '/done') {
       request.on('data', (data) => resolve(String(data)));
@@ -41,6 +44,7 @@ export async function reported(path, pages, folder, headers = {}) {
   try {
     return await report;
   } finally {
+    clearTimeout(late);
     await new Promise((over) => {
       browser.on('exit', over);
       process.kill(-browser.pid, 'SIGKILL'); // with those that it has begun, which write to its profile

@@ -1,6 +1,9 @@
-// What package.json names, by the rules that bundlers and TypeScript read it by. FLAUNAY_PACKAGE: the package's folder.
+// What package.json names, by the rules that bundlers and TypeScript read it by, and the package as programs for Node and
+// Deno load it. FLAUNAY_PACKAGE: its folder.
 import assert from 'node:assert/strict';
-import {existsSync, readFileSync} from 'node:fs';
+import {execFileSync, spawnSync} from 'node:child_process';
+import {cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import test from 'node:test';
 
@@ -25,5 +28,49 @@ test('package.json', {skip: !folder}, () => {
   // Importing these loads a module; a bundler may drop the others.
   for (const name of ['.', './points']) {
     for (const condition of ['node', 'default']) assert.ok(sideEffects.includes(exports[name][condition]));
+  }
+});
+
+// What a program prints that has a copy of the package, without one of its files.
+function printed(t, name, program, command, without) {
+  const work = mkdtempSync(join(tmpdir(), 'flaunay-package-'));
+  t.after(() => rmSync(work, {recursive: true}));
+  const copy = join(work, 'node_modules/flaunay');
+  cpSync(folder, copy, {recursive: true});
+  if (without) rmSync(join(copy, without));
+  writeFileSync(join(work, name), program);
+  const [file, ...options] = command;
+  return execFileSync(file, [...options, name], {cwd: work, encoding: 'utf8'}).trim();
+}
+const COUNT = 'console.log(new Delaunator([0, 0, 4, 0, 4, 4, 0, 4, 2, 1]).triangles.length / 3);';
+
+test('require', {skip: !folder || !process.features.require_module}, (t) => {
+  const program = `const {default: Delaunator} = require('flaunay'); ${COUNT}`;
+  assert.equal(printed(t, 'program.cjs', program, [process.execPath, '--no-warnings']), '4');
+});
+
+test('Deno', {skip: !folder || spawnSync('deno', ['--version']).error}, (t) => {
+  for (const name of ['flaunay', 'flaunay/points']) {
+    const program = `import Delaunator, {ready} from '${name}'; await ready; const n: number = 4; ${COUNT}`;
+    assert.equal(printed(t, 'program.ts', program, ['deno', 'run', '--quiet', '--check', '--allow-read', '--node-modules-dir=manual']), '4');
+  }
+});
+
+test('a module that is not there', {skip: !folder}, (t) => {
+  const files = {flaunay: 'flaunay.wasm', 'flaunay/points': 'points.wasm'};
+  if (existsSync(join(folder, 'threads'))) files['flaunay/threads'] = 'threads/browser.wasm';
+  for (const [name, file] of Object.entries(files)) {
+    const program = `
+      import Delaunator from 'flaunay/flaunay.js';
+      const {message} = await import('${name}').then(({ready}) => ready).catch((error) => error);
+      try {
+        new Delaunator([0, 0]);
+      } catch (later) {
+        console.log(message + '\\n' + later.message);
+      }
+    `;
+    const [message, later] = printed(t, 'program.mjs', program, [process.execPath], file).split('\n');
+    assert.match(message, new RegExp(`${file}: ENOENT: .*; is ${file.split('/').pop()} beside the bundle\\?$`));
+    assert.equal(later, `the module could not be loaded: ${message}`);
   }
 });

@@ -3,6 +3,7 @@ import Delaunator, {
   ClippedVoronoi, ConstrainedTriangulation, DynamicTriangulation, FlaunayError, Triangulation, ready as loaded, wrongEdges,
 } from 'flaunay';
 import {Triangulation as OfPoints, ready as pointsLoaded} from 'flaunay/points';
+import {ready as threadsLoaded} from 'flaunay/threads';
 import {init} from 'flaunay/flaunay.js';
 
 const drop: Delaunator<Float64Array> = Delaunator.from([[0, 0], [1, 0], [0, 1]]);
@@ -31,7 +32,7 @@ const nearest: number = ofPoints.nearest(0, 0);
 ofPoints.interpolate([1, 1], [0, 0]);
 export async function ready(): Promise<string> {
   await init('flaunay.wasm');
-  const both: Promise<void>[] = [loaded, pointsLoaded];
+  const both: Promise<void>[] = [loaded, pointsLoaded, threadsLoaded];
   await Promise.all(both);
   try {
     polygons.free();
