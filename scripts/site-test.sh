@@ -33,6 +33,7 @@ record = {
     "commit": commit,
     "browser": f"{browser}, headless, without a GPU",
     "cores": os.cpu_count(),
+    "load": round(os.getloadavg()[0], 1),
     **measured,
 }
 with open(sys.argv[2], "w", encoding="utf-8") as file:

@@ -615,6 +615,8 @@ control('clear').addEventListener('click', () => {
   report(null);
 });
 control('file').addEventListener('change', (event) => event.target.files[0] && read(event.target.files[0]));
+// A file that is dropped elsewhere would take the place of the page.
+for (const type of ['dragover', 'drop']) addEventListener(type, (event) => event.preventDefault());
 root.addEventListener('dragover', (event) => {
   event.preventDefault();
   root.classList.add('live-drop');

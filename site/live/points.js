@@ -67,8 +67,8 @@ class Shapes {
   #numbers = new Map();
   #joined = new Set();
 
-  point([x, y]) {
-    const place = `${x},${y}`, count = this.#numbers.size;
+  point(coordinates) {
+    const [x, y] = coordinates ?? [], place = `${x},${y}`, count = this.#numbers.size;
     if (!Number.isFinite(x) || !Number.isFinite(y)) throw new Error(`point ${count} has no two finite numbers`);
     if (!this.#numbers.has(place)) {
       this.#numbers.set(place, count);
@@ -104,24 +104,43 @@ class Shapes {
   }
 }
 
+// The values of a line. Between semicolons, a comma is a decimal one.
+function valuesOf(line) {
+  const values = line.includes(';') ? line.replaceAll(',', '.').split(';') : line.trim().split(/\s*,\s*|\s+/);
+  return values.map((value) => value.trim().replace(/^"(.*)"$/, '$1'));
+}
+
+const X = /^(x|e|easting|lon|lng|long|longitude)$/i, Y = /^(y|n|northing|lat|latitude)$/i;
+
 function* placesOfLines(text) {
-  let number = 0, isFirst = true;
+  let number = 0, isFirst = true, columns = [0, 1];
   for (const line of text.split(/\r?\n/)) {
     number++;
     if (/^\s*(#|$)/.test(line)) continue;
-    const place = line.trim().split(/[\s,;]+/).slice(0, 2).map(Number);
-    const isPlace = place.length === 2 && place.every(Number.isFinite);
-    // A first line that is not numbers names the columns.
-    if (!isPlace && !isFirst) throw new Error(`line ${number}: two numbers are expected, not "${line.slice(0, 40)}"`);
+    const values = valuesOf(line);
+    const place = columns.map((k) => (values[k] ? Number(values[k]) : NaN));
+    const isPlace = place.every(Number.isFinite);
     if (isPlace) yield place;
+    else if (isFirst && /\p{L}/u.test(line)) {
+      // It names the columns.
+      const named = [X, Y].map((names) => values.findIndex((value) => names.test(value)));
+      if (named.every((k) => k >= 0)) columns = named;
+    } else throw new Error(`line ${number}: two numbers are expected, not "${line.slice(0, 40)}"`);
     isFirst = false;
   }
 }
 
+function geojsonOf(text) {
+  const object = JSON.parse(text);
+  if (!GEOJSON.test(object.type)) throw new Error('it is JSON, but no GeoJSON');
+  return object;
+}
+const GEOJSON = /^(FeatureCollection|Feature|GeometryCollection|(Multi)?(Point|LineString|Polygon))$/;
+
 /** The points, segments and polygons of a file: GeoJSON, or text with two numbers per line. */
 export function parse(text) {
   const shapes = new Shapes();
-  if (/^\s*\{/.test(text)) shapes.add(JSON.parse(text));
+  if (/^\s*\{/.test(text)) shapes.add(geojsonOf(text));
   else for (const place of placesOfLines(text)) shapes.point(place);
   const {coords, segments, polygons} = shapes;
   if (coords.length < 6) throw new Error(`${coords.length / 2} points in the file; at least three make a triangle`);

@@ -13,7 +13,7 @@ const [address, folder] = process.argv.slice(2);
 mkdirSync(folder, {recursive: true});
 const profile = mkdtempSync(`${tmpdir()}/live-`);
 const browser = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--hide-scrollbars',
-  '--remote-debugging-port=0', `--user-data-dir=${profile}`, 'about:blank']);
+  '--remote-debugging-port=0', `--user-data-dir=${profile}`, 'about:blank'], {detached: true});
 const socket = new WebSocket(await new Promise((found, failed) => {
   let text = '';
   browser.on('exit', () => failed(new Error(`chromium ended: ${text}`)));
@@ -70,6 +70,8 @@ const state = () => evaluate(`({...document.querySelector('#live').dataset})`);
 
 // All is drawn and checked: a check has ended whose triangles are the latest.
 async function settled() {
+  // What has been done shows after the page's next frame.
+  await evaluate('new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))');
   return until('end of the checks', `(() => { const d = document.querySelector('#live').dataset;
     return d.checked !== undefined && d.checked === d.version && d.moving === 'false' && {...d}; })()`);
 }
@@ -280,6 +282,9 @@ try {
       document.querySelector('#live').dispatchEvent(new DragEvent('drop', {dataTransfer: files})); })()`);
     await drop('square.csv', 'x,y\n0,0\n4,0\n4,3\n0,3\n');
     await until('triangles of a file', `document.querySelector('#live').dataset.triangles === '2'`);
+    // Columns by their names, and decimal commas: five points, one inside of the others.
+    await drop('named.csv', 'id;lon;lat\n1;0;0\n2;4;0\n3;4;4\n4;0;4\n5;2,5;1,5\n');
+    await until('triangles of columns', `document.querySelector('#live').dataset.triangles === '4'`);
     const points = [[0, 0], [4, 0], [2, 3]].map((coordinates) => ({
       type: 'Feature', properties: {}, geometry: {type: 'Point', coordinates}}));
     await drop('three.geojson', JSON.stringify({type: 'FeatureCollection', features: points}));
@@ -297,8 +302,12 @@ try {
       const {width, height} = document.querySelector('.live-colours'); return width * height; })()`);
     // 28 of the 8 x 4 that are drawn to 92 % of the width.
     assert.ok(Math.abs(filled / all - 0.92 * 0.92 * 28 / 64) < 0.02, `${filled} of ${all} pixels are filled`);
-    await drop('bad.txt', '0 0\n1 0\n1 one\n');
-    await until('error', `/bad.txt: line 3/.test(document.querySelector('.live-message').textContent)`);
+    for (const [name, text, error] of [
+      ['bad.txt', '0 0\n1 0\n1 one\n', /line 3/], ['empty.csv', 'x,y\n,1\n', /line 2/], ['other.json', '{"a": 1}', /no GeoJSON/],
+    ]) {
+      await drop(name, text);
+      await until(`error of ${name}`, `/^${name}: .*${error.source}/.test(document.querySelector('.live-message').textContent)`);
+    }
   });
 
   await section('is readable in light, in dark and on a small screen', async () => {
@@ -313,8 +322,8 @@ try {
 } finally {
   browser.removeAllListeners('exit');
   const ended = new Promise((done) => browser.on('exit', done));
-  browser.kill();
+  process.kill(-browser.pid, 'SIGKILL'); // with those that it has begun, which write to its profile
   await ended;
-  rmSync(profile, {recursive: true, force: true, maxRetries: 5});
+  rmSync(profile, {recursive: true, force: true, maxRetries: 20});
 }
 process.exit(process.exitCode ?? 0);
