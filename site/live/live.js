@@ -146,20 +146,26 @@ function best(runs, work) {
 const runs = () => Math.ceil(100_000 / coords.length);
 
 function load(shapes) {
+  const before = {coords, segments, polygons};
   ({coords, segments, polygons} = shapes);
-  wrong = new Int32Array(0);
-  peer = null;
-  segmentFrom = -1;
   report(null);
-  times = {move: 0, draw: 0, frames: [], all: 0};
   try {
     build();
   } catch (error) {
     // Segments that cross.
-    report(new Error(`without the segments: ${error.message}`));
     segments = [];
-    build();
+    try {
+      build();
+    } catch (other) {
+      ({coords, segments, polygons} = before);
+      throw other;
+    }
+    report(new Error(`without the segments: ${error.message}`));
   }
+  wrong = new Int32Array(0);
+  peer = null;
+  segmentFrom = -1;
+  times = {move: 0, draw: 0, frames: [], all: 0};
   fit();
   const {width, height} = size();
   values = Float64Array.from({length: coords.length / 2}, (_, i) => {
@@ -422,18 +428,21 @@ function show() {
   const rateText = rate > 0 ? `, ${rate.toFixed(0)} frames per second` : '';
   control('times').textContent = times.move + times.draw === 0 ? 'Drag a point to see frame times.'
     : `Last move ${ms(times.move)}, drawing ${ms(times.draw)}${rateText}`;
-  control('ours').innerHTML = `${count.toLocaleString('en')} triangles, ${edgesText(checked < 0 ? null : wrong)}; all
+  control('ours').innerHTML = `${countText(count, 'triangle')}, ${edgesText(checked < 0 ? null : wrong)}; all
     anew in ${ms(times.all)}`;
-  control('peer').innerHTML = peer ? `${(peer.triangles.length / 3).toLocaleString('en')} triangles,
+  control('peer').innerHTML = peer ? `${countText(peer.triangles.length / 3, 'triangle')},
     ${edgesText(peer.wrong)}${segments.length > 0 ? ', without the segments' : ''}; all anew in ${ms(peer.time)}`
     : 'at work';
 }
 
+function countText(count, what) {
+  return `${count.toLocaleString('en')} ${what}${count === 1 ? '' : 's'}`;
+}
+
 function edgesText(edges) {
   if (!edges) return 'being checked';
-  const count = edges.length / 2;
-  const text = `${count.toLocaleString('en')} wrong edge${count === 1 ? '' : 's'}`;
-  return count === 0 ? text : `<span class="live-wrong">${text}</span>`;
+  const text = countText(edges.length / 2, 'wrong edge');
+  return edges.length === 0 ? text : `<span class="live-wrong">${text}</span>`;
 }
 
 function check() {

@@ -143,6 +143,9 @@ export function parse(text) {
   if (/^\s*\{/.test(text)) shapes.add(geojsonOf(text));
   else for (const place of placesOfLines(text)) shapes.point(place);
   const {coords, segments, polygons} = shapes;
-  if (coords.length < 6) throw new Error(`${coords.length / 2} points in the file; at least three make a triangle`);
+  if (coords.length < 6) throw new Error(`distinct points in the file: ${coords.length / 2}; at least three make a triangle`);
+  // The determinants of robust-predicates neither overflow nor vanish.
+  const largest = coords.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  if (!(largest > 1e-60 && largest < 1e60)) throw new Error(`coordinates up to ${largest}; the page draws 1e-60 to 1e60`);
   return {coords: Float64Array.from(coords), segments, polygons};
 }

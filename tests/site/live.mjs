@@ -304,6 +304,7 @@ try {
     assert.ok(Math.abs(filled / all - 0.92 * 0.92 * 28 / 64) < 0.02, `${filled} of ${all} pixels are filled`);
     for (const [name, text, error] of [
       ['bad.txt', '0 0\n1 0\n1 one\n', /line 3/], ['empty.csv', 'x,y\n,1\n', /line 2/], ['other.json', '{"a": 1}', /no GeoJSON/],
+      ['huge.csv', '1e308 0\n0 1e308\n0 0\n', /the page draws/],
     ]) {
       await drop(name, text);
       await until(`error of ${name}`, `/^${name}: .*${error.source}/.test(document.querySelector('.live-message').textContent)`);
