@@ -240,7 +240,8 @@ def _places_of(
     places = []
     for column in columns:
         place = names.index(column) if isinstance(column, str) and column in names else column
-        if isinstance(place, str) or not 0 <= place < count:
+        is_number = isinstance(place, (int, np.integer)) and not isinstance(place, bool)
+        if not is_number or not 0 <= place < count:
             raise ValueError(f"there is no column {column!r} among {names or count}")
         places.append(place)
     return places
@@ -421,6 +422,7 @@ def _features(given: Any, name: str, fields: Sequence[str]) -> tuple[Any, Any, b
                 raise ValueError(
                     f"has the layers {', '.join(layers)}: add the name of one to the path, as in {file}:{layers[0]}"
                 )
+            layer = layers[0] if layer is None and layers else layer
             info = files.read_info(file, layer=layer)
             found = [field for field in fields if field in info["fields"]][:1]
             meta, _, wkb, columns = pyogrio.read(file, layer=layer, columns=found)
@@ -429,16 +431,20 @@ def _features(given: Any, name: str, fields: Sequence[str]) -> tuple[Any, Any, b
         geometries, crs = shapely.from_wkb(wkb), meta["crs"]
         # GeoJSON that names no system only seems to have longitudes and latitudes.
         is_default = file.suffix.lower() in (".geojson", ".json") and crs == "EPSG:4326"
-        if is_default and (np.abs(shapely.total_bounds(geometries)) > 360).any():
+        if is_default and len(geometries) and (np.abs(shapely.total_bounds(geometries)) > 360).any():
             crs = None
     else:
-        geometries, crs = geometries_of(given, name), getattr(given, "crs", None)
-        if geometries is None:
+        crs, of = getattr(given, "crs", None), given
+        if isinstance(given, (list, tuple)) or geometries_of(given, name) is None:
             try:
-                geometries = [g if hasattr(g, "geom_type") else shapely.LineString(g) for g in given]
+                of = [
+                    g if g is None or hasattr(g, "__geo_interface__") else shapely.LineString(g)
+                    for g in given
+                ]
             except (TypeError, ValueError) as error:
                 what = "a path, geometries or a list of arrays of shape (k, 2) or (k, 3)"
                 raise UsageError(f"{name} must be {what}: {error}") from error
+        geometries = geometries_of(of, name) if not isinstance(of, list) or of else []
         found = [field for field in fields if field in getattr(given, "columns", ())][:1]
         columns = [given[field] for field in found]
     geometries = np.array(geometries, object)
@@ -470,7 +476,7 @@ def _geometries(
 def _check_place(name: str, geometries: Sequence[Any], points: Doubles) -> None:
     """Raises for geometries that lie where no points are, or so far away that no terrain reaches them."""
     shapely = optional("shapely", _PURPOSE)
-    box = shapely.total_bounds(geometries)
+    box = shapely.total_bounds(geometries) if len(geometries) else np.array([np.nan])
     if np.isnan(box).any():
         return
     if not (np.abs(box) < 2.0**509).all():
@@ -578,14 +584,14 @@ class Terrain:
         Returns
         -------
         ndarray of uint8, shape (rows, columns, 4)
-            Transparent where there is no height. The ``extent`` of ``imshow`` is (xmin, xmax, ymin, ymax) of `bounds`.
+            Transparent where, or beside which, there is no height. The ``extent`` of ``imshow`` is (xmin, xmax, ymin, ymax) of `bounds`.
 
         Examples
         --------
         >>> import flaunay
         >>> points = [[0, 0, 0], [4, 0, 4], [0, 4, 0], [4, 4, 4]]
         >>> flaunay.terrain(points, resolution=2).hillshade()[0, 0].tolist()
-        [37, 37, 37, 255]
+        [217, 217, 217, 255]
         """
         bands = self._shaded(vertical_factor, colors)
         return np.moveaxis(bands if colors else bands[[0, 0, 0, 1]], 0, -1)

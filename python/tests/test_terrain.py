@@ -423,6 +423,9 @@ def test_breaklines_are_hard_edges(tmp_path):
     points = np.stack([x.ravel(), y.ravel(), np.where(x < 9, 0, 10).ravel()], axis=1)
     edges = [[[9, 0, 0], [9, 20, 0]], [[9.5, 0, 10], [9.5, 20, 10]]]
     made = flaunay.terrain(points, resolution=1, breaklines=[np.array(e, float) for e in edges])
+    mixed = [shapely.LineString(edges[0]), *(np.array(e, float) for e in edges[1:])]
+    again = flaunay.terrain(points, resolution=1, breaklines=mixed, flat=[])
+    np.testing.assert_array_equal(again.raster, made.raster)
     np.testing.assert_allclose(
         made.raster, np.where(np.arange(20) < 9, 0.0, 10.0)[None].repeat(20, 0)
     )

@@ -105,7 +105,7 @@ std::string verify(const double* points, const std::vector<std::size_t>& offsets
   check_offsets(offsets);
   const call::SpaceCalls& calls = call::calls_in(space.kind, space.weights != nullptr);
   call::expect(space.kind == mesh.space.kind, "the triangulation is one in another space");
-  call::expect(space.weights != nullptr || !mesh.is_weighted,
+  call::expect(space.weights != nullptr || !call::has_weights(mesh),
                "the triangulation is one of points with weights, which are needed");
   return calls.find_problem(points, offsets, space, mesh);
 }

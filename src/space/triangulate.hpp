@@ -16,6 +16,10 @@ namespace flaunay::call {
 /// coordinates in double precision.
 HostPoints checked_points(const double* wide, const float* narrow, const std::vector<std::size_t>& offsets);
 
+/// Whether points have weights. Hidden points tell it, too, of a mesh that a caller has made.
+inline bool has_weights(const Triangulation& mesh) { return mesh.is_weighted || !mesh.hidden.empty(); }
+inline bool has_weights(const DeviceTriangulation& mesh) { return mesh.is_weighted; }
+
 /// Removes from a result what an earlier call of another kind has left.
 inline void reset(const Space& space, DeviceTriangulation& result) {
   result.space = space;

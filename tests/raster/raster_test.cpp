@@ -773,13 +773,13 @@ TEST(SmallShading, HillsAreLitFromTheNorthWest) {
   };
   const double root = std::sqrt(2.0);
   expect_grey(1 / root, shaded(0, 0, {}));
-  // Slopes of 45 degrees to the west and to the north, which face the light, and to the east, which do not.
-  expect_grey((1 - 1 / root) / 2, shaded(1, 0, {}));
-  expect_grey((1 + 1 / root) / 2, shaded(-1, 0, {}));
-  expect_grey((1 + 1 / root) / 2, shaded(0, 1, {}));
+  // Hillsides of 45 degrees. What rises to the east faces the west, and the light.
+  expect_grey((1 + 1 / root) / 2, shaded(1, 0, {}));
+  expect_grey((1 - 1 / root) / 2, shaded(-1, 0, {}));
+  expect_grey((1 - 1 / root) / 2, shaded(0, 1, {}));
   ShadingOptions options;
   options.vertical_factor = 4;
-  expect_grey((1 + 1 / root) / 2, shaded(-0.25, 0, options));
+  expect_grey((1 + 1 / root) / 2, shaded(0.25, 0, options));
   // Of degrees, in metres: those of longitude are about half as long here.
   options = {};
   options.is_geographic = true;
@@ -787,12 +787,12 @@ TEST(SmallShading, HillsAreLitFromTheNorthWest) {
   EXPECT_EQ(shaded(111195, 0, options)[0], shaded(2, 0, {})[0]);
   options = {};
   options.colors = true;
-  const std::vector<std::uint8_t> level = shaded(0, 0, options), slope = shaded(-1, 0, options);
+  const std::vector<std::uint8_t> level = shaded(0, 0, options), slope = shaded(1, 0, options);
   EXPECT_NEAR(level[0], 90, 1);
   EXPECT_NEAR(level[kCount], 150, 1);
   EXPECT_NEAR(level[2 * kCount], 95, 1);
-  EXPECT_NEAR(slope[0], 250, 5);  // the highest, and lit
-  EXPECT_LT(slope[2 * kCount + kColumns - 1], 120);
+  EXPECT_NEAR(slope[kColumns - 1], 250, 5);  // the highest, and lit
+  EXPECT_LT(slope[2 * kCount], 120);
 }
 
 TEST(SmallShading, LeavesOutWhatIsNotThere) {
@@ -811,6 +811,12 @@ TEST(SmallShading, LeavesOutWhatIsNotThere) {
     EXPECT_EQ(picture[i] > 0, is_there) << i;
   }
   grid.rows = 1;
+  // The highest beside others as high, of a range that no double has.
+  std::copy_n(std::array<double, 5>{-1.7e308, pixels[12], 1.7e308, 1.7e308, 1.7e308}.begin(), 5,
+              pixels.begin());
+  shade_hills(grid, pixels.data(), options, picture.data());
+  EXPECT_EQ(picture[4], 250);
+  EXPECT_EQ(picture[19], 255);
   grid.columns = 1;
   shade_hills(grid, pixels.data(), {}, picture.data());
   EXPECT_EQ(picture[0], 180);

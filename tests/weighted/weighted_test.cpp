@@ -485,6 +485,11 @@ TEST_F(WeightedTest, MeshesSayThatTheyHaveWeights) {
   need_weights([&] { (void)triangulator_.voronoi(points.data(), 4, mesh); });
   need_weights([&] { (void)triangulator_.clipped_voronoi(points.data(), 4, mesh, box.data(), 4); });
   need_weights([&] { (void)verify(points.data(), {0, 4}, Space::plane(), mesh); });
+  Triangulation made = mesh;
+  made.is_weighted = false;
+  made.hidden = {1};
+  need_weights([&] { (void)triangulator_.voronoi(points.data(), 4, made); });
+  need_weights([&] { (void)verify(points.data(), {0, 4}, Space::plane(), made); });
   // Power cells: those of 1 and 3 begin at (4, -2.5) and (4, 2.5).
   const ClippedVoronoi cells =
       triangulator_.clipped_voronoi(points.data(), weights.data(), 4, mesh, box.data(), 4);

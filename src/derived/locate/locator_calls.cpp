@@ -344,7 +344,7 @@ Locator::Locator(Triangulator& triangulator, const double* coordinates,
                  const std::vector<std::size_t>& offsets, const Triangulation& triangulation)
     : implementation_(make(triangulator, false)) {
   Implementation& self = *implementation_;
-  self.has_weights = triangulation.is_weighted;
+  self.has_weights = call::has_weights(triangulation);
   call::take_turn(*self.owner, [&] { self.make_from(coordinates, offsets, triangulation); });
 }
 
@@ -382,7 +382,7 @@ Locator::Locator(Triangulator& triangulator, const DevicePoints& points,
     });
   });
   self.point_count = points.count;
-  self.has_weights = triangulation.is_weighted;
+  self.has_weights = call::has_weights(triangulation);
 }
 
 Locator::Locator(Triangulator& triangulator, const Triangulation& triangulation, const double* weights)

@@ -60,6 +60,7 @@ void shade_hills(const RasterGrid& grid, const double* pixels, const ShadingOpti
   check_array(picture, count, "bytes of the picture", kMostCountable);
   const std::size_t bands = options.colors ? 4 : 2;
   const auto [low, high] = range_of(pixels, count);
+  const double extent = high / 2 - low / 2;  // halves, whose difference is finite
   std::fill_n(picture, bands * count, std::uint8_t{0});
   for (std::size_t row = 0; row < rows; ++row) {
     const auto [by_x, by_y] = factors_at(grid.y + static_cast<double>(row) * grid.dy, options);
@@ -67,10 +68,10 @@ void shade_hills(const RasterGrid& grid, const double* pixels, const ShadingOpti
       const std::size_t i = row * columns + column;
       const double x = by_x * slope(pixels + i, column, columns, 1) / grid.dx;
       const double y = by_y * slope(pixels + i, row, rows, static_cast<std::ptrdiff_t>(columns)) / grid.dy;
-      const double light = (1 - x / kRoot + y / kRoot) / std::sqrt(2 * (1 + x * x + y * y));
+      const double light = (1 + x / kRoot - y / kRoot) / std::sqrt(2 * (1 + x * x + y * y));
       if (!std::isfinite(light) || !std::isfinite(pixels[i])) continue;
       const double grey = std::clamp(light, 0.0, 1.0);
-      const std::array<double, 3> color = relief((pixels[i] - low) / (high > low ? high - low : 1));
+      const std::array<double, 3> color = relief(extent > 0 ? (pixels[i] / 2 - low / 2) / extent : 0);
       for (std::size_t band = 0; band + 1 < bands; ++band) {
         // What is level has its own colour.
         const double value =

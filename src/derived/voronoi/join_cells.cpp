@@ -1,5 +1,6 @@
 // Cells of each group as polygons with holes: edges that two cells of a group share cancel.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -193,15 +194,16 @@ class Joiner {
     }
     path_.resize(position);
     const std::size_t end = ring_edges_.size();
-    if (end < begin + 3) {
+    const int turn = end < begin + 3 ? 0 : turn_of(begin, end);
+    if (turn == 0) {
       ring_edges_.resize(begin);
     } else {
-      rings_.push_back({begin, end, !turns_left(begin, end), 0});
+      rings_.push_back({begin, end, turn < 0, 0});
     }
   }
 
-  // Whether a ring does, exactly: at the first of its corners in the order of coordinates.
-  bool turns_left(std::size_t begin, std::size_t end) const {
+  // How a ring turns, exactly: at the first of its corners in the order of coordinates. 0: it has no area.
+  int turn_of(std::size_t begin, std::size_t end) const {
     std::size_t first = begin;
     for (std::size_t k = begin; k < end; ++k) {
       if (kernel::comes_before(begins_[ring_edges_[k]], begins_[ring_edges_[first]])) first = k;
@@ -210,7 +212,7 @@ class Joiner {
       return kernel::scaled_point(ring_edges_[k], &begins_[0].x, scale_);
     };
     return predicates_.orient(at((first > begin ? first : end) - 1), at(first),
-                              at(first + 1 < end ? first + 1 : begin)) > 0;
+                              at(first + 1 < end ? first + 1 : begin));
   }
 
   // A cell that stands for all that are connected with this one.
@@ -272,10 +274,14 @@ class Joiner {
 JoinedCells join_cells(const ClippedVoronoi& cells, const std::vector<std::int32_t>& groups,
                        std::size_t group_count, const std::vector<double>& bounds) {
   const std::size_t n = groups.size();
+  check_count(n, "groups of points");
+  check_count(group_count, "groups");
   expect(are_offsets({cells.offsets.begin(), cells.offsets.end()}, n, cells.vertices.size() / 2),
          "the offsets of the cells do not fit their groups and vertices");
   expect(are_indices(groups, group_count),
          "the numbers of groups must be below their count, and not negative");
+  expect(std::all_of(bounds.begin(), bounds.end(), [](double x) { return std::isfinite(x); }),
+         "the corners of the bounds must be finite");
   return Joiner(cells, groups, group_count).run(bounds);
 }
 

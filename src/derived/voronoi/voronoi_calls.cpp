@@ -12,6 +12,7 @@
 #include "derived/voronoi/voronoi.hpp"
 #include "mesh/rows.hpp"
 #include "space/spaces.hpp"
+#include "space/triangulate.hpp"
 
 namespace flaunay {
 namespace {
@@ -24,7 +25,7 @@ template <typename Points, typename Mesh, typename Result>
 void compute(call::Frame& call, const Points& points, const Mesh& triangulation, Result& result) {
   call.check_size(points.count);
   points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
-  call::expect(!triangulation.is_weighted, kNeedsWeights);
+  call::expect(!call::has_weights(triangulation), kNeedsWeights);
   const std::size_t triangles = mesh.triangle_count();
   const voronoi::Buffers buffers{call.out<cl_double>(result.circumcentres, 2 * triangles, "circumcentres"),
                                  call.out<cl_int>(result.cell_offsets, points.count + 1, "cell offsets"),
@@ -84,7 +85,7 @@ void compute_clipped(call::Frame& call, const Points& points, const Mesh& triang
   const std::size_t n = points.count;
   call.check_size(n);
   points::DeviceMesh mesh = call::mesh_with_sets(call, points, triangulation);
-  call::expect(!triangulation.is_weighted, kNeedsWeights);
+  call::expect(!call::has_weights(triangulation), kNeedsWeights);
   const voronoi::ClippedBuffers buffers{call.out<cl_int>(result.offsets, n + 1, "cell offsets"),
                                         call.out<cl_double>(result.areas, n, "areas"),
                                         call.out<cl_double>(result.centroids, 2 * n, "centroids")};

@@ -1307,8 +1307,9 @@ FLAUNAY_API const double* flaunay_clipped_voronoi_areas(const flaunay_clipped_vo
 FLAUNAY_API const double* flaunay_clipped_voronoi_centroids(const flaunay_clipped_voronoi* cells);
 /// Joins the cells of each group to polygons with holes: edges that two cells of a group share cancel,
 /// exactly. vertices, v, offsets, n: of n cells, or of other polygons that tile, as above. groups: n values
-/// from 0 to group_count - 1. bounds: the bound_count corners of the polygon to which cells are clipped; on
-/// its edges, corners at which cells of one group alone meet are left out. Without bounds, all corners stay.
+/// from 0 to group_count - 1. bounds: the bound_count corners of the polygon to which cells are clipped,
+/// and which they cover; on its edges, corners at which cells of one group alone meet are left out. Without
+/// bounds, all corners stay.
 ///
 /// Arrays of the caller's: corners: v values, which are indices of vertices; ring_offsets, part_offsets:
 /// v / 3 + 1 values; group_offsets: group_count + 1 values. Ring r has corners
@@ -1408,7 +1409,7 @@ typedef struct flaunay_shading {
 /// Draws a raster of heights as hills that are lit from the north-west, 45 degrees high. picture: room for
 /// rows x columns bytes of grey, or with colours of red, of green and of blue, and then for as many of alpha,
 /// which is 0 where a pixel or one that its slope is taken from is not finite. FLAUNAY_ERROR_USAGE for a
-/// factor and a raster that make no sense.
+/// factor and a raster that make no sense, FLAUNAY_ERROR_INPUT as of flaunay_rasterize.
 FLAUNAY_API flaunay_status flaunay_shade_hills(const flaunay_raster* raster, const double* pixels,
                                                const flaunay_shading* shading, uint8_t* picture);
 

@@ -335,9 +335,9 @@ struct JoinedCells {
 };
 /// Joins cells, or other polygons that tile, whose vertices alone are read: edges that two cells of a group
 /// share cancel, exactly. groups: from 0 to group_count - 1, one per cell. bounds: the corners of the polygon
-/// to which cells are clipped; on its edges, corners at which cells of one group alone meet are left out. If
-/// empty, all corners stay. Throws Error(usage) for arrays that do not fit each other, and Error(input) if
-/// vertices are not finite or their magnitudes differ too much. O(n) expected.
+/// to which cells are clipped, and which they cover; on its edges, corners at which cells of one group alone
+/// meet are left out. If empty, all corners stay. Throws Error(usage) for arrays that do not fit each other,
+/// and Error(input) if vertices are not finite or their magnitudes differ too much. O(n) expected.
 FLAUNAY_API JoinedCells join_cells(const ClippedVoronoi& cells, const std::vector<std::int32_t>& groups,
                                    std::size_t group_count, const std::vector<double>& bounds = {});
 

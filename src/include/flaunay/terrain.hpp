@@ -62,7 +62,7 @@ struct ShadingOptions {
 /// Draws a raster of heights as hills that are lit from the north-west, 45 degrees high. picture: room for
 /// rows x columns bytes of grey, or with colours of red, of green and of blue, and then for as many of alpha,
 /// which is 0 where a pixel or one that its slope is taken from is not finite. O(pixels). Throws Error(usage)
-/// for a factor and a grid that make no sense.
+/// for a factor and a grid that make no sense, and Error(input) as rasterize does.
 FLAUNAY_API void shade_hills(const RasterGrid& grid, const double* pixels, const ShadingOptions& options,
                              std::uint8_t* picture);
 

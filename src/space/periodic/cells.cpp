@@ -11,6 +11,7 @@
 #include "geometry/arguments.hpp"
 #include "space/periodic/torus.hpp"
 #include "space/periodic/triangulate_on_torus.hpp"
+#include "space/triangulate.hpp"
 #include "space/weighted/centre.hpp"
 
 namespace flaunay::periodic {
@@ -79,7 +80,7 @@ ClippedVoronoi make_cells(call::Implementation& self, const call::CellInput& inp
   const double* const weights = input.space.weights;
   call::check_with_places(mesh);
   check_cells(mesh.space);
-  expect(weights != nullptr || !mesh.is_weighted, "cells of points with weights need these");
+  expect(weights != nullptr || !call::has_weights(mesh), "cells of points with weights need these");
   host::Runtime& runtime = self.native().runtime;
   const std::size_t n = mesh.places.size() / 2;
   const Stars stars(mesh, n);

@@ -25,7 +25,7 @@ constexpr const char* kOther =
 TorusPlane::TorusPlane(Implementation& self, const Triangulation& given, const double* weights)
     : point_offsets_(given.point_offsets) {
   check_with_places(given);
-  expect(weights != nullptr || !given.is_weighted, "queries among points with weights need these weights");
+  expect(weights != nullptr || !has_weights(given), "queries among points with weights need these weights");
   weighted::Visible visible;
   if (weights != nullptr) {
     visible = weighted::visible_points(given.places.data(), given.point_offsets, given);
