@@ -328,10 +328,13 @@ struct ClippedVoronoi {
 /// Polygons with holes, each the union of the cells of a group.
 struct JoinedCells {
   std::vector<std::int32_t> corners;  ///< vertices of the cells
-  /// Ring r has corners [ring_offsets[r], ring_offsets[r + 1]), and meets no place twice. A part has rings
-  /// [part_offsets[q], part_offsets[q + 1]): an outer one, counter-clockwise, and then its holes, clockwise.
-  /// Group g has parts [group_offsets[g], group_offsets[g + 1]), none if its cells have no vertices.
-  std::vector<std::int32_t> ring_offsets, part_offsets, group_offsets;
+  /// Ring r has corners [ring_offsets[r], ring_offsets[r + 1]), and meets no place twice.
+  std::vector<std::int32_t> ring_offsets;
+  /// Part q has rings [part_offsets[q], part_offsets[q + 1]): an outer one, counter-clockwise, and then its
+  /// holes, clockwise.
+  std::vector<std::int32_t> part_offsets;
+  /// Group g has parts [group_offsets[g], group_offsets[g + 1]), none if its cells have no area.
+  std::vector<std::int32_t> group_offsets;
 };
 /// Joins cells, or other polygons that tile, whose vertices alone are read: edges that two cells of a group
 /// share cancel, exactly. groups: from 0 to group_count - 1, one per cell. bounds: the corners of the polygon
