@@ -168,6 +168,10 @@ export function startFile(source, read) {
   return loadFrom(source, (address) => instantiate(new WebAssembly.Module(read(address))));
 }
 
+function assertNoneInUse() {
+  if (wasm !== LOADING) throw new FlaunayError('flaunay was imported before flaunay/threads: import that alone', 'usage');
+}
+
 /**
  * Makes the library ready with threads: of a module that Emscripten's own JavaScript starts, as that makes workers.
  * @param {() => URL} source
@@ -179,9 +183,10 @@ export function startThreads(source, make) {
       throw new FlaunayError('flaunay/threads needs a page that is cross-origin isolated, by the headers ' +
         'Cross-Origin-Opener-Policy: same-origin and Cross-Origin-Embedder-Policy: require-corp', 'usage');
     }
-    const memory = new WebAssembly.Memory({initial: 256, maximum: 65536, shared: true});
+    assertNoneInUse();
+    const memory = new WebAssembly.Memory({initial: 256, maximum: 65536, shared: true}), settings = {wasmMemory: memory};
     const made = new Promise((resolve, reject) => {
-      const settings = {wasmMemory: memory}, loading = new AbortController();
+      const loading = new AbortController();
       make(settings, address).then(resolve, reject).finally(() => loading.abort());
       // Emscripten, which adds its workers to the settings, waits for them without end, and throws what they throw.
       for (const worker of settings.PThread?.unusedWorkers ?? []) {
@@ -193,11 +198,14 @@ export function startThreads(source, make) {
       }
     });
     return inTurn(made, (module) => {
-      if (wasm !== LOADING) throw new FlaunayError('flaunay was imported before flaunay/threads: import that alone', 'usage');
+      assertNoneInUse(); // another module may have been faster
       // It puts an underscore before the names of C.
       const functions = Object.entries(module).filter(([name]) => name.startsWith('_')).map(([name, call]) => [name.slice(1), call]);
       use({memory, ...Object.fromEntries(functions)});
       return module;
+    }).catch((error) => {
+      settings.PThread?.terminateAllThreads();
+      throw error;
     });
   });
 }

@@ -27,14 +27,28 @@ const PROGRAM = (name) => `
   }
 `;
 
-function printed(name) {
-  return execFileSync(process.execPath, ['--input-type=module', '--eval', PROGRAM(name)],
+function printed(program) {
+  return execFileSync(process.execPath, ['--input-type=module', '--eval', program],
     {cwd: fileURLToPath(new URL('.', import.meta.url)), encoding: 'utf8', timeout: 120_000});
 }
 
 // Where scripts/javascript.sh has made their module.
-test('threads', {skip: !existsSync(new URL('../threads', import.meta.url))}, () => {
-  const alone = printed('flaunay');
+const settings = {skip: !existsSync(new URL('../threads', import.meta.url))};
+
+test('threads', settings, () => {
+  const alone = printed(PROGRAM('flaunay'));
   assert.match(alone, /^[0-9a-f]{64} input .*nan/im);
-  assert.equal(printed('flaunay/threads'), alone);
+  assert.equal(printed(PROGRAM('flaunay/threads')), alone);
+});
+
+test('flaunay before flaunay/threads, and while that loads', settings, () => {
+  for (const first of ["import 'flaunay';", `
+    import {readFileSync} from 'node:fs';
+    import {start} from 'flaunay/flaunay.js';
+    const module = new WebAssembly.Module(readFileSync('../flaunay.wasm'));
+    process.once('worker', () => start(module));
+  `]) {
+    assert.match(printed(`${first} await import('flaunay/threads').catch(({message}) => console.log(message));`),
+      /import that alone$/m);
+  }
 });
