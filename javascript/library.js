@@ -18,11 +18,18 @@ export class FlaunayError extends Error {
 // ---- The module
 
 let failure; // the first error of a module that could not be loaded
-// What takes the place of functions that no module has.
+// What only flaunay has, by the functions of C that it calls first.
+const MORE = {
+  flaunay_locator_interpolate: 'interpolate', flaunay_triangulate_constrained: 'ConstrainedTriangulation',
+  flaunay_triangulate_polygons: 'ConstrainedTriangulation', flaunay_dynamic_create: 'DynamicTriangulation',
+};
+// What takes the place of functions that no module has, or that the one in use does not have.
 const LOADING = new Proxy({}, {
-  get() {
-    throw failure ? new FlaunayError(`the module could not be loaded: ${failure.message}`, failure.kind)
-      : new FlaunayError('the WebAssembly module is not loaded yet: await `ready` first', 'usage');
+  get(none, name) {
+    const reasons = wasm === LOADING ? [] : [`${MORE[name] ?? name} is in flaunay, not in flaunay/points`];
+    if (failure) reasons.push(`the module could not be loaded: ${failure.message}`);
+    throw new FlaunayError(reasons.join('; ') || 'the WebAssembly module is not loaded yet: await `ready` first',
+      failure?.kind ?? 'usage');
   },
 });
 let wasm = LOADING; // its exports
@@ -555,9 +562,6 @@ export class Triangulation extends Mesh {
 
   /** Values between points, one row of `columns` numbers per query. */
   interpolate(values, queries, {method = 'sibson', columns = 1, fill = NaN, offsets} = {}) {
-    if (!('flaunay_locator_interpolate' in wasm)) {
-      throw new FlaunayError('interpolate is in flaunay, not in flaunay/points', 'usage');
-    }
     if (values.length !== columns * this.pointCount) {
       throw new FlaunayError(`${values.length} values are not ${columns} for each of ${this.pointCount} points`,
         'usage');

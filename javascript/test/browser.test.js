@@ -111,7 +111,7 @@ test('flaunay without its module, beside flaunay/points', settings, async () => 
     `),
     '/flaunay.wasm': null,
   };
-  assert.match(await reported('/page.html', pages, folder), /^3the module could not be loaded: .*flaunay.wasm: 404/);
+  assert.match(await reported('/page.html', pages, folder), /^3ConstrainedTriangulation is in flaunay, .*; the module could not be loaded: .*flaunay.wasm: 404/);
 });
 
 const ISOLATED = {'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp'};

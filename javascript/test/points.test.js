@@ -6,6 +6,7 @@ import test from 'node:test';
 import {brotliCompressSync} from 'node:zlib';
 
 import Delaunator, {FlaunayError, Triangulation, wrongEdges} from 'flaunay/points';
+import {ConstrainedTriangulation, DynamicTriangulation} from 'flaunay/flaunay.js';
 
 import {uniform} from './points.js';
 
@@ -21,8 +22,12 @@ test('what it has', () => {
 });
 
 test('what it has not', () => {
-  assert.throws(() => new Triangulation([0, 0, 1, 0, 0, 1]).interpolate([1, 2, 3], [0.2, 0.2]),
-    {name: 'FlaunayError', kind: 'usage', message: 'interpolate is in flaunay, not in flaunay/points'});
+  const coords = [0, 0, 1, 0, 0, 1];
+  for (const [name, work] of Object.entries({
+    interpolate: () => new Triangulation(coords).interpolate([1, 2, 3], [0.2, 0.2]),
+    ConstrainedTriangulation: () => new ConstrainedTriangulation(coords),
+    DynamicTriangulation: () => new DynamicTriangulation(coords),
+  })) assert.throws(work, {name: 'FlaunayError', kind: 'usage', message: `${name} is in flaunay, not in flaunay/points`});
 });
 
 test('its size on the way to a browser', (t) => {
@@ -33,4 +38,6 @@ test('its size on the way to a browser', (t) => {
 
 test('it comes after flaunay, or without it', async () => {
   await assert.rejects(import('flaunay').then(({ready}) => ready), (error) => error instanceof FlaunayError && error.kind === 'usage');
+  // Its calls say why they cannot be had.
+  assert.throws(() => new DynamicTriangulation([]), /^FlaunayError: DynamicTriangulation is in flaunay, not in flaunay\/points; .*import flaunay first$/);
 });
