@@ -624,15 +624,13 @@ control('clear').addEventListener('click', () => {
   report(null);
 });
 control('file').addEventListener('change', (event) => event.target.files[0] && read(event.target.files[0]));
-// A file that is dropped elsewhere would take the place of the page.
-for (const type of ['dragover', 'drop']) addEventListener(type, (event) => event.preventDefault());
-root.addEventListener('dragover', (event) => {
-  event.preventDefault();
-  root.classList.add('live-drop');
-});
+// A file that is dropped elsewhere would take the place of the page. Text may be dropped into the search field.
+const hasFiles = (event) => event.dataTransfer?.types.includes('Files');
+for (const type of ['dragover', 'drop']) addEventListener(type, (event) => hasFiles(event) && event.preventDefault());
+root.addEventListener('dragover', (event) => hasFiles(event) && root.classList.add('live-drop'));
 root.addEventListener('dragleave', () => root.classList.remove('live-drop'));
 root.addEventListener('drop', (event) => {
-  event.preventDefault();
+  if (!hasFiles(event)) return;
   root.classList.remove('live-drop');
   drift = null;
   if (event.dataTransfer.files[0]) read(event.dataTransfer.files[0]);

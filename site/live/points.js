@@ -104,29 +104,38 @@ class Shapes {
   }
 }
 
-// The values of a line. Between semicolons, a comma is a decimal one.
-function valuesOf(line) {
-  const values = line.includes(';') ? line.replaceAll(',', '.').split(';') : line.trim().split(/\s*,\s*|\s+/);
-  return values.map((value) => value.trim().replace(/^"(.*)"$/, '$1'));
+// What reads the values of lines that are separated as the first one is: by tabs, semicolons, commas, or any spaces. A
+// comma between tabs or semicolons is a decimal one.
+function readerOf(first) {
+  const bare = first.trim().replace(/"[^"]*"/g, '');
+  const separator = [...(/[\p{L},]/u.test(bare) ? '\t' : ''), ';', ','].find((one) => bare.includes(one));
+  const value = new RegExp(`${separator} *("(?:[^"]|"")*" *(?=${separator}|$)|[^${separator}]*)`, 'g');
+  const split = (line) => (separator ? Array.from((separator + line).matchAll(value), ([, text]) => text)
+    : line.trim().split(/\s*,\s*|\s+/));
+  return (line) => split(/[;\t]/.test(separator) ? line.replaceAll(',', '.') : line)
+    .map((text) => text.trim().replace(/^"(.*)"$/, '$1'));
 }
 
-const X = /^(x|e|easting|lon|lng|long|longitude)$/i, Y = /^(y|n|northing|lat|latitude)$/i;
+// What x and y are called; the first pair counts that a file has.
+const PAIRS = [[/^x$/i, /^y$/i], [/^(lon|lng|long|longitude)$/i, /^(lat|latitude)$/i],
+  [/^(e|east|easting)$/i, /^(n|north|northing)$/i]];
 
 function* placesOfLines(text) {
-  let number = 0, isFirst = true, columns = [0, 1];
+  let number = 0, valuesOf, columns = [0, 1];
   for (const line of text.split(/\r?\n/)) {
     number++;
     if (/^\s*(#|$)/.test(line)) continue;
-    const values = valuesOf(line);
+    const content = line.replace(/;\s*$/, ''), isFirst = !valuesOf;
+    valuesOf ??= readerOf(content);
+    const values = valuesOf(content);
     const place = columns.map((k) => (values[k] ? Number(values[k]) : NaN));
     const isPlace = place.every(Number.isFinite);
     if (isPlace) yield place;
     else if (isFirst && /\p{L}/u.test(line)) {
       // It names the columns.
-      const named = [X, Y].map((names) => values.findIndex((value) => names.test(value)));
-      if (named.every((k) => k >= 0)) columns = named;
+      columns = PAIRS.map((pair) => pair.map((names) => values.findIndex((value) => names.test(value))))
+        .find((named) => named.every((k) => k >= 0)) ?? columns;
     } else throw new Error(`line ${number}: two numbers are expected, not "${line.slice(0, 40)}"`);
-    isFirst = false;
   }
 }
 

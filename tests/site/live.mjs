@@ -285,6 +285,26 @@ try {
     // Columns by their names, and decimal commas: five points, one inside of the others.
     await drop('named.csv', 'id;lon;lat\n1;0;0\n2;4;0\n3;4;4\n4;0;4\n5;2,5;1,5\n');
     await until('triangles of columns', `document.querySelector('#live').dataset.triangles === '4'`);
+    // Columns that are named as other coordinates, and names with separators, in files of the same five points.
+    const {place} = await settled();
+    for (const [k, text] of [
+      'n,x,y\n1,0,0\n1,4,0\n1,4,4\n1,0,4\n1,2.5,1.5\n', 'lat,e,lon\n0,1,0\n0,1,4\n4,1,4\n4,1,0\n1.5,1,2.5\n',
+      'north;east\n0;0\n0;4\n4;4\n4;0\n1,5;2,5\n', '0 0;\n4 0;\n4 4;\n0 4;\n2.5 1.5;\n',
+      'name\tx\ty\nRoute 66\t0\t0\n\t4\t0\nA\t4\t4\nB\t0\t4\nC\t2,5\t1,5\n',
+      'name,x,y\n"Peak, A",0,0\n"a; ""b""",4,0\n5",4,4\n,0,4\nC,2.5,1.5\n',
+      '0,0,a\n4,0,"b;c"\n4,4,\n0,4\n2.5,1.5,d\n', '0\t\t0\n4 0\n\t4 4\n0\t4\t\n2.5\t1.5\n',
+    ].entries()) {
+      await open('count=1000');
+      await drop(`${k}.txt`, text);
+      await until(`triangles of ${JSON.stringify(text)}`, `document.querySelector('#live').dataset.triangles === '4'`);
+      assert.equal((await settled()).place, place, text);
+    }
+    // Text may be dropped elsewhere, as into the search field, but a file would take the place of the page.
+    assert.deepEqual(await evaluate(`[['x', 'text/plain'], [new File(['x'], 'x')]].map((item) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(...item);
+      return !document.body.dispatchEvent(new DragEvent('drop', {dataTransfer, bubbles: true, cancelable: true}));
+    })`), [false, true]);
     const points = [[0, 0], [4, 0], [2, 3]].map((coordinates) => ({
       type: 'Feature', properties: {}, geometry: {type: 'Point', coordinates}}));
     await drop('three.geojson', JSON.stringify({type: 'FeatureCollection', features: points}));
