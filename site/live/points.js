@@ -108,7 +108,7 @@ class Shapes {
 // comma between tabs or semicolons is a decimal one.
 function readerOf(first) {
   const bare = first.trim().replace(/"[^"]*"/g, '');
-  const separator = [...(/[\p{L},]/u.test(bare) ? '\t' : ''), ';', ','].find((one) => bare.includes(one));
+  const separator = [...(/[\p{L},]/u.test(first) ? '\t' : ''), ';', ','].find((one) => bare.includes(one));
   const value = new RegExp(`${separator} *("(?:[^"]|"")*" *(?=${separator}|$)|[^${separator}]*)`, 'g');
   const split = (line) => (separator ? Array.from((separator + line).matchAll(value), ([, text]) => text)
     : line.trim().split(/\s*,\s*|\s+/));

@@ -290,7 +290,7 @@ try {
     for (const [k, text] of [
       'n,x,y\n1,0,0\n1,4,0\n1,4,4\n1,0,4\n1,2.5,1.5\n', 'lat,e,lon\n0,1,0\n0,1,4\n4,1,4\n4,1,0\n1.5,1,2.5\n',
       'north;east\n0;0\n0;4\n4;4\n4;0\n1,5;2,5\n', '0 0;\n4 0;\n4 4;\n0 4;\n2.5 1.5;\n',
-      'name\tx\ty\nRoute 66\t0\t0\n\t4\t0\nA\t4\t4\nB\t0\t4\nC\t2,5\t1,5\n',
+      '"name"\t"x"\t"y"\nRoute 66\t0\t0\n\t4\t0\nA\t4\t4\nB\t0\t4\nC\t2,5\t1,5\n',
       'name,x,y\n"Peak, A",0,0\n"a; ""b""",4,0\n5",4,4\n,0,4\nC,2.5,1.5\n',
       '0,0,a\n4,0,"b;c"\n4,4,\n0,4\n2.5,1.5,d\n', '0\t\t0\n4 0\n\t4 4\n0\t4\t\n2.5\t1.5\n',
     ].entries()) {
