@@ -110,8 +110,11 @@ function readerOf(first) {
   const bare = first.trim().replace(/"[^"]*"/g, '');
   const separator = [...(/[\p{L},]/u.test(first) ? '\t' : ''), ';', ','].find((one) => bare.includes(one));
   const value = new RegExp(`${separator} *("(?:[^"]|"")*" *(?=${separator}|$)|[^${separator}]*)`, 'g');
-  const split = (line) => (separator ? Array.from((separator + line).matchAll(value), ([, text]) => text)
-    : line.trim().split(/\s*,\s*|\s+/));
+  const split = (line) => {
+    if (!separator) return line.trim().split(/\s*,\s*|\s+/);
+    if (!line.includes('"')) return line.split(separator);
+    return Array.from((separator + line).matchAll(value), ([, text]) => text);
+  };
   return (line) => split(/[;\t]/.test(separator) ? line.replaceAll(',', '.') : line)
     .map((text) => text.trim().replace(/^"(.*)"$/, '$1'));
 }
