@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -285,7 +286,11 @@ second;8;8;1;1;x;15;5
     works("voronoi", plain, "--fields", "0", "--columns", "1,2", "-o", cells, *ON_HOST)
     for text, options, parts in (
         ("x,y,c\n1,2,#ff\n", ("c",), ("line 2", "comment", "quotes")),
-        ("x,y,c\n1,2,a b\n3,4\n", ("c",), ("line 3", "expected 3 columns, found 2")),
+        ("x,y,c\n1,2,a b\n3,4\n", ("c",), ("line 3", "has 2 fields, but the header has 3", "empty")),
+        ("1,2,a,3\n0,0,old, dry,3\n", ("2,3",), ("line 2", "has 5 fields, but the first line of points has 4", "quotes")),
+        ("x y c d\n1 2  3\n", ("c,d",), ("line 2", "has 3 fields, but the header has 4", "empty")),
+        ('x,y,c\n0,0,"a, b\n1,2,b"\n', ("c",), ("line 2", "the field '\"a' has no second double quote on its line")),
+        ("x,y,# of wells,c\n1,2,3,4\n", ("c",), ("line 1", "comment", "quotes")),
         ("x,y,c\n1,2,a b\n", ("d",), ("no column 'd'", "x, y, c")),
         ("x,y,c\n1,2,a b\n", ("x", "--columns", "x,y"), ("'x' is chosen twice",)),
         ("x,y,z,c\n1,2,,a\n", ("c",), ("line 2", "a height of point 0", "nothing; --columns X,Y")),
@@ -293,6 +298,27 @@ second;8;8;1;1;x;15;5
     ):
         (folder / "wrong.csv").write_text(text)
         fails(3, "wrong.csv", *parts, arguments=("voronoi", folder / "wrong.csv", "-o", cells, "--fields", *options))
+    # Tabs that are the only separators have empty fields between them, and fields with spaces.
+    plain.write_text("x\ty\tname\tdepth\n4,5\t0\t\t+49151\n0\t0\told well\t3\n0\t4\t5\" pipe\t\n")
+    works("voronoi", plain, "--fields", "name,depth", "-o", cells, *ON_HOST)
+    right = [(None, "+49151"), ("old well", "3"), ('5" pipe', None)]
+    assert [tuple(cell["properties"].values())[2:] for cell in cells_of(cells)] == right
+    # A column has one decimal mark, that of coordinates.
+    for coordinate, values, right in (
+        ("1,5", ("1.2", "2"), ["1.2", "2"]),
+        ("1", ("1.2", "2"), [1.2, 2]),
+        ("1,5", ("1,2", "2"), [1.2, 2]),
+        ("1", ("1,2", "1.2"), ["1,2", "1.2"]),
+    ):
+        plain.write_text(f"x;y;section\n{coordinate};2;{values[0]}\n4;4;{values[1]}\n2;9;\n")
+        works("voronoi", plain, "--fields", "section", "-o", cells, *ON_HOST)
+        assert [cell["properties"]["section"] for cell in cells_of(cells)] == [*right, None]
+    # Many commas in quotes take no longer than others, as each one is not compared with all quotes.
+    wide = '"' + "1 2," * 100000 + '"'
+    plain.write_text("c,x,y\n" + "".join(f"{wide},{k},{k * k}\n" for k in range(3)))
+    begin = time.monotonic()
+    works("voronoi", plain, "--columns", "x,y", "--fields", "c", "-o", cells, *ON_HOST)
+    assert time.monotonic() - begin < 10
     if not HAS_GDAL:
         return
     out = folder / "wells.gpkg"
@@ -301,6 +327,10 @@ second;8;8;1;1;x;15;5
     assert rows_of(out, "select ph, depth from triangles order by fid")[0] == (6.875, 11)
     fails(3, "wells.csv", "'odd' is no number", "point 2 has '3 m'", arguments=(*arguments, "odd"))
     fails(3, "wells.csv", "'house' is no number", "point 0 has '007'", arguments=(*arguments, "house"))
+    for value in ("inf", "007", "1e999", "1234567890123456789", '"1,5"'):
+        plain.write_text(f"x,y,q\n0,0,1\n4,0,2\n0,4,{value}\n")
+        said = "point 2 has '" + value.strip('"')
+        fails(3, said, arguments=("triangulate", plain, "--columns", "x,y", "--fields", "q", "-o", out))
     works("voronoi", path, "--columns", "x,y", "--fields", "name,ph,depth", "-o", out, *ON_HOST)
     types = rows_of(out, "select typeof(name), typeof(ph), typeof(depth) from cells order by fid")
     assert types[:2] == [("text", "real", "integer"), ("text", "null", "integer")]

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -28,7 +29,10 @@ class ColumnText : public PointText {
   ColumnText(const std::string& path, const Columns& columns, std::string_view third)
       : lines_(shown_path(path), Lines::Separator::any), columns_(columns.names), third_(third) {
     for (const std::string& name : columns.fields) kept_.push_back({name, {}, {}});
-    found_.resize(kAxes + kept_.size());
+    const auto is_name = [](const std::string& column) {
+      return column.find_first_not_of("0123456789") != std::string::npos;
+    };
+    may_have_tabs_ = !kept_.empty() || std::any_of(columns_.begin(), columns_.end(), is_name);
   }
 
   void parse(std::string_view text, std::vector<double>& coordinates, std::vector<double>* heights) override {
@@ -37,8 +41,10 @@ class ColumnText : public PointText {
     if (more && is_first_) {
       is_first_ = false;
       hint_ = "; if this line is a header, begin it with '#'";
+      if (may_have_tabs_) lines_.prefer_tabs();
       if (is_header(lines_)) {
-        for (std::string_view name; lines_.field(name);) names_.emplace_back(name);
+        check_comment();
+        for (std::string_view name; lines_.field(name); names_.emplace_back(name)) check_quotes(name);
         more = lines_.next();
         hint_ = "";
       }
@@ -53,24 +59,28 @@ class ColumnText : public PointText {
       std::string_view field;
       for (const int axis : axes_) {
         if (!lines_.field(field)) fail_count();
-        if (axis >= 0) found_[static_cast<std::size_t>(axis)] = field;
+        check_quotes(field);
+        const auto at = static_cast<std::size_t>(axis);
+        if (axis >= 0 && at < kAxes) found_[at] = field;
+        if (axis >= 0 && at >= kAxes) keep(field, kept_[at - kAxes]);
       }
       if (is_whole_line_ && lines_.field(field)) fail_count();
       coordinates.push_back(lines_.coordinate(found_[0], point_, hint_));
       coordinates.push_back(lines_.coordinate(found_[1], point_, hint_));
       if (heights != nullptr && numbers_ == 3) heights->push_back(read_third());
       hint_ = "";
-      if (!kept_.empty() && lines_.has_comment())
-        lines_.fail_line(
-            "has a comment: put fields with '#' between double quotes, or leave the comment out");
-      for (std::size_t k = 0; k < kept_.size(); ++k) keep(found_[kAxes + k], kept_[k]);
+      check_comment();
     }
   }
 
   std::vector<PointField> fields() override {
     std::vector<PointField> fields;
     for (Kept& kept : kept_) {
-      fields.push_back({std::move(kept.name), {}});
+      // One decimal mark for the column, which is that of coordinates: "1.234" may be a thousand.
+      const std::size_t first_mix = std::max(lines_.has_decimal(',') ? 0 : kept.first_comma,
+                                             lines_.has_decimal('.') ? 0 : kept.first_point);
+      kept.first_text = std::min(kept.first_text, first_mix);
+      fields.push_back({std::move(kept.name), {}, kept.first_text == kNone ? 0 : kept.first_text});
       for (std::size_t i = 0; i < kept.texts.size(); ++i)
         fields.back().values.push_back(value_of(kept, std::move(kept.texts[i]), kept.numbers[i]));
     }
@@ -79,6 +89,7 @@ class ColumnText : public PointText {
 
  private:
   static constexpr std::size_t kAxes = 3;
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   double read_third() {
     const bool is_optional = third_.empty() && found_[2].empty();
@@ -91,21 +102,42 @@ class ColumnText : public PointText {
     std::string name;
     std::vector<std::string> texts;
     std::vector<double> numbers;
-    bool has_numbers = true, has_integers = true;
+    std::size_t first_text = kNone, first_comma = kNone,
+                first_point = kNone;  // fields that are text or have it
+    bool has_integers = true;
   };
+
+  void check_comment() const {
+    if (!kept_.empty() && lines_.has_comment())
+      lines_.fail_line("has a comment: put fields with '#' between double quotes, or leave the comment out");
+  }
+  // Fields are of one line: a text that goes over several would become points.
+  void check_quotes(std::string_view field) const {
+    const bool is_open = !kept_.empty() && !lines_.is_in_quotes() && !field.empty() && field[0] == '"';
+    if (is_open && std::count(field.begin(), field.end(), '"') % 2 != 0)
+      lines_.fail_line("the field {} has no second double quote on its line", quoted(field));
+  }
 
   void keep(std::string_view field, Kept& to) {
     std::string text(field);
-    for (std::size_t at = 0; (at = text.find("\"\"", at)) != std::string::npos; ++at) text.erase(at, 1);
+    for (std::size_t at = 0; lines_.is_in_quotes() && (at = text.find("\"\"", at)) != std::string::npos; ++at)
+      text.erase(at, 1);
     double number = std::numeric_limits<double>::quiet_NaN();
     if (!text.empty()) {
-      const std::string_view digits = field.substr(field[0] == '-' ? 1 : 0);
+      const std::string_view digits = field.substr(field[0] == '-' || field[0] == '+' ? 1 : 0);
       const bool is_whole = digits.find_first_not_of("0123456789") == std::string_view::npos;
-      // Leading zeros and many digits are those of names, such as numbers of houses.
-      const bool is_name = (digits.size() > 1 && digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9') ||
-                           (is_whole && digits.size() > std::numeric_limits<std::int64_t>::digits10);
-      const bool is_number = !is_name && lines_.number(field, number) == ParsedNumber::fine;
-      to.has_numbers = to.has_numbers && is_number && !std::isinf(number);
+      // Leading zeros, a plus and many digits are those of names, such as numbers of houses and telephones.
+      const bool is_name =
+          (digits.size() > 1 && digits[0] == '0' && digits[1] >= '0' && digits[1] <= '9') ||
+          (is_whole && (field[0] == '+' || digits.size() > std::numeric_limits<std::int64_t>::digits10));
+      const bool is_number =
+          !is_name && lines_.number(field, number) == ParsedNumber::fine && !std::isinf(number);
+      const auto note = [at = to.texts.size()](std::size_t& first, bool is_it) {
+        if (is_it) first = std::min(first, at);
+      };
+      note(to.first_text, !is_number);
+      note(to.first_comma, field.find(',') != std::string_view::npos);
+      note(to.first_point, field.find('.') != std::string_view::npos);
       to.has_integers = to.has_integers && is_whole;
     }
     to.texts.push_back(std::move(text));
@@ -114,7 +146,7 @@ class ColumnText : public PointText {
 
   static FieldValue value_of(const Kept& kept, std::string text, double number) {
     if (text.empty()) return {};
-    if (!kept.has_numbers) return text;
+    if (kept.first_text != kNone) return text;
     if (!kept.has_integers) return std::isnan(number) ? FieldValue() : number;
     return std::int64_t{std::stoll(text)};
   }
@@ -123,6 +155,11 @@ class ColumnText : public PointText {
   void begin_rows() {
     has_semicolons_ = lines_.separator() == ';';
     const std::size_t count = lines_.count_fields();
+    if (!kept_.empty()) {
+      axes_.resize(names_.empty() ? count : names_.size(), -1);
+      if (axes_.size() != count) fail_count();
+    }
+    is_whole_line_ = !kept_.empty();
     for (std::size_t k = 0; k < kept_.size(); ++k) choose_column(kept_[k].name, kAxes + k, count);
     if (!columns_.empty()) {
       numbers_ = columns_.size();
@@ -133,7 +170,7 @@ class ColumnText : public PointText {
     }
     const std::size_t others = count - std::min(count, kept_.size());
     numbers_ = third_.empty() && others == 2 ? 2 : kAxes;
-    is_whole_line_ = third_.empty();
+    is_whole_line_ = is_whole_line_ || third_.empty();
     if (others < numbers_ || (is_whole_line_ && others > numbers_)) {
       numbers_ = third_.empty() ? 2 : kAxes;
       axes_.clear();
@@ -180,11 +217,20 @@ class ColumnText : public PointText {
 
   [[noreturn]] void fail_count() {
     const std::size_t found = lines_.count_fields();
+    if (!axes_.empty() && !kept_.empty()) {
+      for (std::string_view field; lines_.field(field);) check_quotes(field);
+      const bool has_blanks = lines_.separator() == ' ';
+      lines_.fail_line("has {} fields, but {} has {}{}", found,
+                       names_.empty() ? "the first line of points" : "the header", axes_.size(),
+                       has_blanks ? "; put fields that are empty or have blanks between double quotes"
+                       : found > axes_.size() ? "; put fields that have the separator between double quotes"
+                                              : "; put separators around empty fields, too");
+    }
     std::string_view hint;
     for (std::string_view field; lines_.separator() != ';' && hint.empty() && lines_.field(field);)
       hint = lines_.hint_about(field, "");
     if (!hint.empty()) lines_.fail_line("found {} columns{}", found, hint);
-    if (!axes_.empty() && (!columns_.empty() || !kept_.empty()))
+    if (!axes_.empty() && !columns_.empty())
       lines_.fail_line("expected {} columns, found {}", axes_.size(), found);
     const bool may_choose = found > 3 && third_.empty() && point_ == 0;
     lines_.fail_line("expected {}, found {}{}",
@@ -198,9 +244,10 @@ class ColumnText : public PointText {
   std::vector<std::string> names_;  // of the header
   std::vector<Kept> kept_;
   std::vector<int> axes_;  // of each column up to the last one that is read: 0 to 2, of kept ones more, or -1
-  std::vector<std::string_view> found_;  // the fields of a line, by these numbers
-  std::size_t numbers_ = 2;              // that are read, per line
-  bool is_whole_line_ = false;           // whether there must be no further columns
+  std::array<std::string_view, kAxes> found_;  // fields of a line
+  std::size_t numbers_ = 2;                    // that are read, per line
+  bool is_whole_line_ = false;                 // whether there must be no further columns
+  bool may_have_tabs_ = false;  // whether tabs separate columns where they are the only separators
   bool has_semicolons_ = false;
   std::size_t point_ = 0;  // the index of the next point
   bool is_first_ = true;   // whether the next line with content is the first one

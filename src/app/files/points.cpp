@@ -124,17 +124,9 @@ double number_of(const FieldValue& value) {
 
 void check_numbers(const Points& points, const std::string& path) {
   const auto is_text = [](const FieldValue& value) { return std::holds_alternative<std::string>(value); };
-  // A column is text if a single one of its fields is no number.
-  const auto is_no_number = [&](const FieldValue& value) {
-    if (!is_text(value)) return false;
-    std::string text = std::get<std::string>(value);
-    std::replace(text.begin(), text.end(), ',', '.');
-    double ignored;
-    return parse_number(text, ignored) == ParsedNumber::unreadable;
-  };
-  for (const auto& [name, values] : points.fields) {
-    auto found = std::find_if(values.begin(), values.end(), is_no_number);
-    if (found == values.end()) found = std::find_if(values.begin(), values.end(), is_text);
+  for (const auto& [name, values, first_text] : points.fields) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(first_text);
+    const auto found = std::find_if(first, values.end(), is_text);
     if (found == values.end()) continue;
     fail(path,
          "the field '{}' is no number: point {} has {}; expected numbers, of which triangles have means",

@@ -22,6 +22,7 @@ using FieldValue = std::variant<std::monostate, std::int64_t, double, std::strin
 struct PointField {
   std::string name;
   std::vector<FieldValue> values;
+  std::size_t first_text = 0;  ///< the value that makes it one of text; 0, too, where each value has a type
 };
 
 /// Points as read: x0 y0 x1 y1 ...

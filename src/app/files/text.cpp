@@ -103,18 +103,24 @@ void check_text(const std::string& name, std::string_view text, std::size_t line
   }
 }
 
-bool Lines::is_quoted(const char* c) const {
-  // A quote without its end is an ordinary character.
+const char* Lines::find_unquoted(char wanted) const {
   const auto is_odd = [](const char* begin, const char* end) { return std::count(begin, end, '"') % 2 != 0; };
-  return is_odd(line_begin_, c) && is_odd(c, line_end_);
+  const char* c = find(line_begin_, line_end_, wanted);
+  // A quote without its end is an ordinary character.
+  if (c == line_end_ || !has_quotes_ || is_odd(line_begin_, line_end_)) return c;
+  bool is_quoted = is_odd(line_begin_, c);
+  while (is_quoted && c != line_end_) {
+    const char* const from = c;
+    c = find(c + 1, line_end_, wanted);
+    is_quoted = is_quoted != is_odd(from, c);
+  }
+  return c;
 }
 
 char Lines::find_separator() const {
   for (const char wanted : {';', ','}) {
     if (!(wanted == ';' ? has_semicolons_ : has_commas_)) continue;
-    const char* c = find(line_begin_, line_end_, wanted);
-    while (has_quotes_ && c != line_end_ && is_quoted(c)) c = find(c + 1, line_end_, wanted);
-    if (c != line_end_) return wanted;
+    if (find_unquoted(wanted) != line_end_) return wanted;
   }
   return ' ';
 }
@@ -126,15 +132,18 @@ ParsedNumber Lines::parse_decimal(std::string_view text, double& value) {
   if (has_comma && has_point) return ParsedNumber::unreadable;
   std::string changed(text);
   if (has_comma) changed[comma] = '.';
-  const ParsedNumber parsed = parse_number(changed, value);
-  if (parsed == ParsedNumber::unreadable) return parsed;
+  return parse_number(changed, value);
+}
+
+void Lines::note_decimal(std::string_view text) {
+  const bool has_comma = text.find(',') != std::string_view::npos,
+             has_point = text.find('.') != std::string_view::npos;
   has_decimal_commas_ = has_decimal_commas_ || has_comma;
   has_decimal_points_ = has_decimal_points_ || has_point;
   if (has_decimal_commas_ && has_decimal_points_) {
     fail_field(text, "{} has a decimal {}, but a number before it has a decimal {}", quoted(text),
                has_comma ? "comma" : "point", has_comma ? "point" : "comma");
   }
-  return parsed;
 }
 
 std::string_view Lines::hint_about(std::string_view text, std::string_view otherwise) const {
@@ -144,8 +153,8 @@ std::string_view Lines::hint_about(std::string_view text, std::string_view other
            "semicolons, and otherwise by either commas or white space";
   }
   if (!any_ || text.find(',') == std::string_view::npos) return otherwise;
-  return separator_ == ';' ? "; expected one decimal comma or one decimal point"
-                           : "; if the comma is a decimal one, separate columns by semicolons";
+  return has_decimals() ? "; expected one decimal comma or one decimal point"
+                        : "; if the comma is a decimal one, separate columns by semicolons";
 }
 
 bool is_header(Lines& lines) {

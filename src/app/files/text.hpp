@@ -70,8 +70,8 @@ void check_text(const std::string& name, std::string_view text, std::size_t line
 
 /// Steps through the lines of a text that hold something besides blanks and '#' comments, and through their
 /// fields. With Separator::any, semicolons separate the fields of a line that has some, or else commas if it
-/// has some, or else white space; fields may be in double quotes; and where semicolons separate fields,
-/// numbers may have decimal commas.
+/// has some, or else white space; fields may be in double quotes; and where semicolons or tabs separate
+/// fields, numbers may have decimal commas.
 class Lines {
  public:
   enum class Separator { blanks, any };
@@ -103,15 +103,24 @@ class Lines {
       line_begin_ = next_line_;
       line_end_ = find(line_begin_, text_end_, '\n');
       next_line_ = line_end_ == text_end_ ? text_end_ : line_end_ + 1;
-      const char* const mark = find_comment();
+      const char* const mark = has_quotes_ ? find_unquoted('#') : find(line_begin_, line_end_, '#');
       has_comment_ = mark != line_end_;
       line_end_ = mark;
-      while (line_end_ != line_begin_ && is_blank(line_end_[-1])) --line_end_;
-      separator_ = has_semicolons_ || has_commas_ ? find_separator() : ' ';
+      while (line_end_ != line_begin_ && is_padding(line_end_[-1])) --line_end_;
+      separator_ = has_tabs_ ? '\t' : has_semicolons_ || has_commas_ ? find_separator() : ' ';
       rewind();
       if (cursor_ != line_end_) return true;
     }
     return false;
+  }
+  /// From the line at hand on, tabs separate fields and nothing else does, if it has tabs but no other
+  /// separators than white space.
+  void prefer_tabs() {
+    has_tabs_ = separator_ == ' ' && find_unquoted('\t') != line_end_;
+    if (!has_tabs_) return;
+    next_line_ = line_begin_;
+    --number_;
+    next();
   }
   /// Goes back to the first field of the line.
   void rewind() {
@@ -127,7 +136,7 @@ class Lines {
     skip_blanks();
     if (cursor_ == line_end_ && !is_after_separator) return false;
     ++fields_taken_;
-    if (quoted_field(result)) return true;
+    if ((is_in_quotes_ = quoted_field(result))) return true;
     const char* const begin = cursor_;
     if (separator_ == ' ') {
       while (cursor_ != line_end_ && !is_blank(*cursor_)) ++cursor_;
@@ -137,9 +146,11 @@ class Lines {
     result = trimmed(begin, cursor_);
     return true;
   }
+  /// Whether the last field that was taken is in double quotes.
+  bool is_in_quotes() const { return is_in_quotes_; }
   /// Whether a comment ends this line.
   bool has_comment() const { return has_comment_; }
-  /// The separator of this line's fields: ' ' for white space, ',' or ';'.
+  /// The separator of this line's fields: ' ' for white space, '\t', ',' or ';'.
   char separator() const { return separator_; }
   std::size_t fields_taken() const { return fields_taken_; }
   /// The number of fields of the whole line. Goes back to the first one.
@@ -170,10 +181,12 @@ class Lines {
     return value;
   }
 
-  /// Reads a field of this line as a double. Where semicolons separate fields, it may have a decimal comma.
-  ParsedNumber number(std::string_view text, double& value) {
-    return separator_ == ';' ? parse_decimal(text, value) : parse_number(text, value);
+  /// Reads a field of this line as a double.
+  ParsedNumber number(std::string_view text, double& value) const {
+    return has_decimals() ? parse_decimal(text, value) : parse_number(text, value);
   }
+  /// Whether a coordinate has a decimal comma, or point; known where numbers may have commas.
+  bool has_decimal(char mark) const { return mark == ',' ? has_decimal_commas_ : has_decimal_points_; }
 
   /// Converts `text`, a field of this line, to a coordinate of the point with this index, which must be
   /// finite. hint: the end of the message if the field is no number. what: in place of "coordinate".
@@ -181,6 +194,7 @@ class Lines {
                     std::string_view what = "coordinate") {
     double value = 0;
     const ParsedNumber parsed = number(text, value);
+    if (has_decimals() && parsed != ParsedNumber::unreadable) note_decimal(text);
     if (parsed == ParsedNumber::unreadable) {
       fail_field(text, "expected a number (a {} of point {}), found {}{}", what, point, quoted_number(text),
                  hint_about(text, hint));
@@ -226,19 +240,19 @@ class Lines {
         begin == end ? nullptr : std::memchr(begin, wanted, static_cast<std::size_t>(end - begin));
     return found ? static_cast<const char*>(found) : end;
   }
-  /// The first '#' of the line outside of quotes, or its end.
-  const char* find_comment() const {
-    const char* mark = find(line_begin_, line_end_, '#');
-    while (mark != line_end_ && has_quotes_ && is_quoted(mark)) mark = find(mark + 1, line_end_, '#');
-    return mark;
-  }
-  /// Whether a quote begins before this character of the line and ends behind it. Defined in text.cpp, as are
+  /// White space that separates no fields.
+  bool is_padding(char c) const { return is_blank(c) && !(has_tabs_ && c == '\t'); }
+  /// Whether numbers of this line may have decimal commas.
+  bool has_decimals() const { return separator_ == ';' || separator_ == '\t'; }
+  /// The first such character of the line outside of quotes, or the line's end. Defined in text.cpp, as are
   /// the next ones.
-  bool is_quoted(const char* c) const;
+  const char* find_unquoted(char wanted) const;
   /// The separator of the line at hand.
   char find_separator() const;
-  /// A number with a decimal comma or a decimal point. A text uses only one of the two.
-  ParsedNumber parse_decimal(std::string_view text, double& value);
+  /// A number with a decimal comma or a decimal point.
+  static ParsedNumber parse_decimal(std::string_view text, double& value);
+  /// Coordinates of a text use only one of the two.
+  void note_decimal(std::string_view text);
 
   static std::string_view trimmed(const char* begin, const char* end) {
     while (begin != end && is_blank(*begin)) ++begin;
@@ -254,22 +268,24 @@ class Lines {
     while (line_end_ - end > 1 && end[1] == '"') end = find(end + 2, line_end_, '"');
     if (end == line_end_) return false;
     const char* after = end + 1;
-    while (separator_ != ' ' && after != line_end_ && is_blank(*after)) ++after;
+    while (separator_ != ' ' && after != line_end_ && is_padding(*after)) ++after;
     if (after != line_end_ && !(separator_ == ' ' ? is_blank(*after) : *after == separator_)) return false;
     cursor_ = after;
     result = trimmed(begin, end);
     return true;
   }
   void skip_blanks() {
-    while (cursor_ != line_end_ && is_blank(*cursor_)) ++cursor_;
+    while (cursor_ != line_end_ && is_padding(*cursor_)) ++cursor_;
   }
 
   std::string name_;
   bool any_;              // whether there may be other separators than white space
   char separator_ = ' ';  // of the line
   bool has_semicolons_ = false, has_commas_ = false, has_quotes_ = false;  // the text
-  bool has_decimal_points_ = false, has_decimal_commas_ = false;  // numbers, where semicolons separate fields
+  bool has_tabs_ = false;                                         // between fields, and nothing else there
+  bool has_decimal_points_ = false, has_decimal_commas_ = false;  // coordinates, where they may have both
   bool has_comment_ = false;                                      // the line
+  bool is_in_quotes_ = false;                                     // the last field
   std::size_t number_ = 0;
   const char* next_line_ = nullptr;
   const char* text_end_ = nullptr;
