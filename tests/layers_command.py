@@ -387,15 +387,27 @@ def kept(folder):
     assert names["name"][0].encode() in (folder / "text.dbf").read_bytes()
     assert not [ending for ending in ("qix", "sbn", "sbx") if (folder / f"text.{ending}").exists()]
     # A Shapefile that does not say the encoding of its texts.
-    table = (folder / "text.dbf").read_bytes().replace(names["name"][0].encode(), b"Stra\xdfe" + bytes(5))
+    table = (folder / "text.dbf").read_bytes().replace(names["name"][0].encode(), b"Stra\xdfe\x96" + bytes(4))
     (folder / "text.dbf").write_bytes(table[:29] + b"\0" + table[30:])
     (folder / "text.cpg").unlink()
     said = works("voronoi", folder / "text.shp", "--fields", "name", "-o", folder / "latin.geojson", *ON_HOST)
-    assert "text.cpg" in said and cells_of(folder / "latin.geojson")[0]["properties"]["name"].startswith("Straße")
+    assert "text.cpg" in said and cells_of(folder / "latin.geojson")[0]["properties"]["name"].startswith("Straße–")
     # Columns that a GeoPackage has of its own, and several triangles of a feature.
     path = geojson(folder / "own.geojson", [("Polygon", [[(0, 0), (9, 0), (9, 9), (0, 9), (0, 0)]])], fid=[7], Geom=["a"])
     works("triangulate", path, "-o", folder / "own.gpkg", *ON_HOST)
     assert rows_of(folder / "own.gpkg", "select fid, Geom from triangles") == [(7, "a")] * 2
+    # Times are by ISO 8601, truth values 1 and 0 in every format, and no name is there twice in any case.
+    times = ("2024-01-02", "2024-01-02T10:00:00Z", "2024-01-02T10:00:00.250+05:30")
+    types = ", day date, time datetime, zone datetime, dry boolean, n integer"
+    path = package(folder / "times.gpkg", {"p": (types, [(wkb(POINT, at), *times, 1, -(10**17) - 1) for at in CORNERS])})
+    fields = ("--fields", "day,time,zone,dry,n", "-o")
+    assert "note: " not in works("voronoi", path, *fields, folder / "times.geojson", *ON_HOST)
+    found = cells_of(folder / "times.geojson")[0]["properties"]
+    assert [*found.values()][2:] == [*times, 1, -(10**17) - 1], found
+    assert "18 characters are rounded; .gpkg" in works("voronoi", path, *fields, folder / "times.shp", *ON_HOST)
+    path = geojson(folder / "case.geojson", [("Point", at) for at in CORNERS], id=[2] * 4, ID=[True] * 4)
+    works("voronoi", path, "--fields", "id,ID", "-o", folder / "case.gpkg", *ON_HOST)
+    assert rows_of(folder / "case.gpkg", "select id, flaunay_ID from cells")[0] == (2, 1)
     # A GeoPackage with layers of others is not lost.
     project = package(folder / "project.gpkg", {"wells": ("", [(wkb(POINT, (1, 2)),)])})
     for arguments in (

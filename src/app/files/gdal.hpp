@@ -24,6 +24,7 @@ namespace flaunay::io {
   X(CPLPopErrorHandler)           \
   X(CPLPrintPointer)              \
   X(CPLPushErrorHandlerEx)        \
+  X(CPLRecode)                    \
   X(CSLDestroy)                   \
   X(CSLSetNameValue)              \
   X(GDALAddBand)                  \
@@ -49,6 +50,7 @@ namespace flaunay::io {
   X(OGR_F_Create)                 \
   X(OGR_F_Destroy)                \
   X(OGR_F_GetFID)                 \
+  X(OGR_F_GetFieldAsDateTimeEx)   \
   X(OGR_F_GetFieldAsDouble)       \
   X(OGR_F_GetFieldAsInteger64)    \
   X(OGR_F_GetFieldAsString)       \

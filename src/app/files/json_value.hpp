@@ -10,10 +10,11 @@
 
 namespace flaunay::io {
 
-/// Arrays, objects and truth values are text.
+/// Truth values are 1 and 0, as in a GeoPackage; arrays and objects are text.
 template <typename Json>
 FieldValue field_value(const Json& value) {
   if (value.is_null()) return {};
+  if (value.is_boolean()) return std::int64_t{value.template get<bool>()};
   if (value.is_string()) return value.template get<std::string>();
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   const bool is_large = value.is_number_unsigned() && value.template get<std::uint64_t>() > kMost;

@@ -178,7 +178,7 @@ FieldValue common_type(const std::vector<FieldValue>& values) {
 }
 
 std::string own_name(std::string name, const std::vector<Layer::Field>& given) {
-  const auto is_it = [&](const Layer::Field& field) { return lower(field.name) == name; };
+  const auto is_it = [&](const Layer::Field& field) { return lower(field.name) == lower(name); };
   while (std::any_of(given.begin(), given.end(), is_it)) name = "flaunay_" + name;
   return name;
 }

@@ -37,8 +37,7 @@ struct Layer {
 /// A value of the type that all values have: of a text, unless all are numbers.
 FieldValue common_type(const std::vector<FieldValue>& values);
 
-/// The name, which is in lower case, of a field of ours beside those that features have: with flaunay_ before
-/// it if theirs have it, in any case.
+/// The name of a field beside those that are given: with flaunay_ before it if they have it, in any case.
 std::string own_name(std::string name, const std::vector<Layer::Field>& given);
 
 /// Writes a layer by path's ending, .geojson (without heights) or one of GDAL's formats, and the files beside

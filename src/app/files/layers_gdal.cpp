@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <memory>
@@ -79,8 +80,8 @@ class LayerReader {
     }
     if (is_latin_) {
       map_.points.notes.push_back(
-          fmt::format("{}: texts are read as Latin-1; a file {} can say their encoding, such as CP1250",
-                      file_, path_beside(file_, ".cpg")));
+          fmt::format("{}: texts are read as CP1252; a file {} can say their encoding, such as CP1250", file_,
+                      path_beside(file_, ".cpg")));
     }
     return std::move(map_);
   }
@@ -172,20 +173,33 @@ class LayerReader {
     if (type == OFTInteger || type == OFTInteger64)
       return std::int64_t{gdal().OGR_F_GetFieldAsInteger64(feature, field)};
     if (type == OFTReal) return gdal().OGR_F_GetFieldAsDouble(feature, field);
+    if (type == OFTDate || type == OFTTime || type == OFTDateTime) return time_of(feature, field, type);
     return utf8(gdal().OGR_F_GetFieldAsString(feature, field));
+  }
+
+  // By ISO 8601.
+  static std::string time_of(OGRFeatureH feature, int field, OGRFieldType type) {
+    int year = 0, month = 0, day = 0, hour = 0, minute = 0, zone = 0;
+    float second = 0;
+    gdal().OGR_F_GetFieldAsDateTimeEx(feature, field, &year, &month, &day, &hour, &minute, &second, &zone);
+    std::string text = type == OFTTime ? "" : fmt::format("{:04}-{:02}-{:02}", year, month, day);
+    if (type == OFTDate) return text;
+    const bool is_whole = second == std::floor(second);
+    text += fmt::format("{}{:02}:{:02}:{:0{}.{}f}", type == OFTTime ? "" : "T", hour, minute, second,
+                        is_whole ? 2 : 6, is_whole ? 0 : 3);
+    constexpr int kUtc = 100, kQuarter = 15;  // zones are quarters of an hour from there; 0 and 1 name none
+    if (zone <= 1 || zone == kUtc) return text + (zone == kUtc ? "Z" : "");
+    const int offset = kQuarter * std::abs(zone - kUtc);
+    return text + fmt::format("{}{:02}:{:02}", zone < kUtc ? '-' : '+', offset / 60, offset % 60);
   }
 
   // Texts of a Shapefile that does not say their encoding are as they were written.
   std::string utf8(const char* text) {
     if (gdal().CPLIsUTF8(text, -1) != 0) return text;
     is_latin_ = true;
-    std::string result;
-    for (; *text != 0; ++text) {
-      const auto c = static_cast<unsigned char>(*text);
-      if (c >= 0x80) result += static_cast<char>(0xc0 | c >> 6);
-      result += static_cast<char>(c < 0x80 ? c : 0x80 | (c & 0x3f));
-    }
-    return result;
+    const std::unique_ptr<char, decltype(gdal().VSIFree)> recoded(
+        gdal().CPLRecode(text, "CP1252", CPL_ENC_UTF8), gdal().VSIFree);
+    return recoded.get();
   }
 
   // As GeoJSON has them.
@@ -338,16 +352,21 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   const OGRwkbGeometryType flat = layer.is_polygons ? wkbPolygon : wkbLineString;
   const OGRwkbGeometryType spatial = layer.is_polygons ? wkbPolygon25D : wkbLineString25D;
   const bool is_shapefile = ending_of(path) == ".shp";
+  // Without values, and with other names where a GeoPackage would have one twice, in any case.
+  std::vector<Layer::Field> fields;
+  for (const Layer::Field& field : layer.fields)
+    fields.push_back(
+        {ending_of(path) == ".gpkg" ? own_name(field.name, fields) : field.name, field.type, {}});
   Settings options;
   if (is_shapefile) options.set("ENCODING", "UTF-8");
   if (ending_of(path) == ".gpkg") {  // whose columns these are
-    options.set("FID", own_name("fid", layer.fields).c_str());
-    options.set("GEOMETRY_NAME", own_name("geom", layer.fields).c_str());
+    options.set("FID", own_name("fid", fields).c_str());
+    options.set("GEOMETRY_NAME", own_name("geom", fields).c_str());
   }
   const OGRLayerH to = gdal().GDALDatasetCreateLayer(data.get(), layer.name.c_str(), system.get(),
                                                      layer.has_heights ? spatial : flat, options.get());
   check(to != nullptr);
-  for (const Layer::Field& field : layer.fields) {
+  for (const Layer::Field& field : fields) {
     const OGRFieldDefnH definition = gdal().OGR_Fld_Create(field.name.c_str(), type_of(field.type));
     const bool has_field = gdal().OGR_L_CreateField(to, definition, TRUE) == OGRERR_NONE;
     gdal().OGR_Fld_Destroy(definition);
@@ -356,12 +375,18 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   const bool has_transactions = gdal().GDALDatasetTestCapability(data.get(), ODsCTransactions) != 0;
   check(!has_transactions || gdal().GDALDatasetStartTransaction(data.get(), FALSE) == OGRERR_NONE);
   std::vector<double> positions;
+  bool is_rounded = false;
   for (std::size_t k = 0; k < layer.size; ++k) {
     positions.clear();
     layer.append(k, positions);
     const Feature feature(gdal().OGR_F_Create(gdal().OGR_L_GetLayerDefn(to)));
-    for (std::size_t f = 0; f < layer.fields.size(); ++f)
-      set_field(feature.get(), static_cast<int>(f), layer.fields[f].value(k));
+    for (std::size_t f = 0; f < layer.fields.size(); ++f) {
+      const Layer::Value value = layer.fields[f].value(k);
+      set_field(feature.get(), static_cast<int>(f), value);
+      const auto* integer = std::get_if<std::int64_t>(&value);
+      constexpr std::int64_t kMost = 999'999'999'999'999'999, kLeast = -99'999'999'999'999'999;
+      is_rounded = is_rounded || (integer != nullptr && (*integer > kMost || *integer < kLeast));
+    }
     gdal().OGR_F_SetGeometryDirectly(feature.get(), geometry_of(layer, positions));
     check(gdal().OGR_L_CreateFeature(to, feature.get()) == OGRERR_NONE);
   }
@@ -370,6 +395,10 @@ void write_gdal_layer(Outputs& outputs, const std::string& path, const Layer& la
   check(!quiet.has_failed());
   for (const std::string& warning : quiet.warnings())
     outputs.notes.push_back(fmt::format("{}: {}{}", path, warning, is_shapefile ? "; .gpkg has all" : ""));
+  if (is_shapefile && is_rounded) {
+    outputs.notes.push_back(fmt::format(
+        "{}: integers of more than 18 characters are rounded; .gpkg has all of their digits", path));
+  }
   for (const std::string& each : mesh_files(path)) {
     const std::string bytes = MemoryFile(ending_of(each).c_str()).bytes();
     if (each == path || !bytes.empty()) {
