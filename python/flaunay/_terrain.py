@@ -240,8 +240,7 @@ def _places_of(
     places = []
     for column in columns:
         place = names.index(column) if isinstance(column, str) and column in names else column
-        is_number = isinstance(place, (int, np.integer)) and not isinstance(place, bool)
-        if not is_number or not 0 <= place < count:
+        if isinstance(place, (str, bool, float)) or not 0 <= place < count:
             raise ValueError(f"there is no column {column!r} among {names or count}")
         places.append(place)
     return places
@@ -290,7 +289,8 @@ class _Table:
             raise UsageError("classes and returns are those of .las and .laz files alone")
         for first in range(0, len(self._points), _POINTS_AT_ONCE):
             some = self._points[first : first + _POINTS_AT_ONCE]
-            yield np.asarray(some if self._places == [0, 1, 2] else some[:, self._places], np.float64)
+            places = slice(3) if self._places == [0, 1, 2] else self._places
+            yield np.asarray(some[:, places], np.float64)
 
 
 class _Layer(_Table):

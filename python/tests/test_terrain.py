@@ -165,6 +165,11 @@ def test_text_in_columns(scan, tmp_path):
     assert made.raster.tobytes() == expected
     with pytest.raises(flaunay.InputError, match="no column 4"):
         flaunay.terrain(tmp_path / "wide.npy", resolution=2, columns=(2, 4, 0))
+    with pytest.raises(flaunay.InputError, match="no column 0.5"):
+        flaunay.terrain(tmp_path / "wide.npy", resolution=2, columns=(2, 0.5, 0))
+    np.save(tmp_path / "wide.npy", np.c_[scan, scan[:, 0]])
+    again = flaunay.terrain(tmp_path / "wide.npy", resolution=2, columns=(0, 1, 2))
+    np.testing.assert_array_equal(again.raster, made.raster)
 
 
 def test_heights_of_fields(scan, tmp_path):
