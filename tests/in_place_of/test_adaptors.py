@@ -38,11 +38,14 @@ def test_libpysal(random, clip):
     import libpysal
 
     points = random.random((200, 2))
+    points[8] = points[7]
     clip = shapely.Point(0.5, 0.5).buffer(0.7) - shapely.Point(0.5, 0.5).buffer(0.1) if clip == "polygon" else clip
     mine, theirs = (
         package.voronoi_frames(points, clip=clip, return_input=False, as_gdf=False)
         for package in (for_libpysal, libpysal.cg)
     )
+    # Equal points have the same cell, too.
+    assert mine.geometry[7].equals(mine.geometry[8])
     # libpysal leaves cells outside as they are.
     are_same(mine, theirs.intersection(clip) if isinstance(clip, shapely.Geometry) else theirs, 1e-9)
 
@@ -114,6 +117,8 @@ def test_alphashape(random, alpha):
     filled = shapely.union_all([shapely.Polygon(part.exterior) for part in shapely.get_parts(made)])
     assert filled.symmetric_difference(alphashape.alphashape(points, alpha)).area < 1e-12
     assert mine(points, 0).equals(alphashape.alphashape(points, 0.0))
+    for few in points[:1], points[[0, 0]], points[:2], points[[0, 1, 2]]:
+        assert mine(few, alpha).equals(alphashape.alphashape(few, alpha))
 
 
 def test_adaptive():
@@ -146,6 +151,8 @@ def test_sectionproperties(coarse):
     hollow = rectangular_hollow_section(d=100, b=60, t=6, r_out=15, n_r=8)
     beam = i_section(d=200, b=120, t_f=12, t_w=8, r=10, n_r=8)
     together = hollow + beam.shift_section(200, 0)
+    with pytest.raises(ValueError, match="mesh_sizes"):
+        create_mesh(hollow, [1, 2])
     for geometry, size in (hollow, 10), (beam, [20]), (together, [10, 20]):
         found = []
         for mesh in create_mesh, type(geometry).create_mesh:
@@ -165,9 +172,10 @@ def test_trimesh():
     from for_trimesh import extrude_polygon
 
     polygon = shapely.Point(0, 0).buffer(3) - shapely.box(-1, -1, 1, 1)
-    mine, theirs = (
-        call(polygon, 2.0) for call in (extrude_polygon, trimesh.creation.extrude_polygon)
-    )
+    calls = extrude_polygon, trimesh.creation.extrude_polygon
+    middles = [call(polygon, 2.0, mid_plane=True).bounds for call in calls]
+    np.testing.assert_allclose(*middles, atol=1e-12)
+    mine, theirs = (call(polygon, 2.0) for call in calls)
     assert mine.is_watertight and mine.is_volume and mine.euler_number == theirs.euler_number
     assert mine.volume == pytest.approx(theirs.volume) and mine.area == pytest.approx(theirs.area)
     assert mine.volume == pytest.approx(2 * polygon.area)

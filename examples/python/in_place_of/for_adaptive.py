@@ -11,6 +11,9 @@ class Learner2D(adaptive.Learner2D):
     Overrides `interpolator`, and `_interpolator_combined`, by which the learner chooses points.
     """
 
+    def new(self):
+        return type(self)(self.function, self.bounds, self.loss_per_triangle)
+
     def interpolator(self, *, scaled=False):
         points, values = self._data_in_bounds()
         return _interpolator(self._scale(points) if scaled else points, values)

@@ -48,11 +48,17 @@ def voronoi_frames(
     cells = flaunay.voronoi_polygons(
         points, bounds, as_shapely=True, groups=owners, extend_to=limit
     )
+    if (objects.geom_type == "Point").all():
+        # Equal points have the same cell.
+        _, first, number = np.unique(points, axis=0, return_index=True, return_inverse=True)
+        cells = cells[first[number.ravel()]]
     if limit is not None:
         shapely.prepare(limit)
         cut = ~shapely.contains_properly(limit, cells)
         cells[cut] = shapely.intersection(cells[cut], limit)
     made = geopandas.GeoSeries(cells, index=objects.index[np.unique(owners)], crs=geometry.crs)
+    if (is_line | is_polygon).any():
+        made = made.sort_index()
     if as_gdf:
         made, geometry = made.to_frame("geometry"), geometry.geometry.to_frame("geometry")
     return (made, geometry) if return_input else made

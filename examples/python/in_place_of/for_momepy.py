@@ -8,6 +8,8 @@ def morphological_tessellation(
     geometry, clip="bounding_box", shrink=0.4, segment=0.5, simplify=True, **options
 ):
     """momepy.morphological_tessellation, with its arguments: the space around buildings."""
+    if geometry.index.nlevels > 1:
+        raise ValueError("MultiIndex is not supported in `momepy.morphological_tessellation`.")
     if hasattr(clip, "union_all"):
         clip = clip.union_all()
     cells = voronoi_frames(geometry, None, clip, shrink, segment, return_input=False, **options)

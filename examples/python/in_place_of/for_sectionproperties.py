@@ -8,6 +8,8 @@ def create_mesh(geometry, mesh_sizes, min_angle=30.0, coarse=False):
     places = geometry.control_points
     sizes = list(mesh_sizes) if isinstance(mesh_sizes, (list, tuple)) else [mesh_sizes]
     sizes = sizes * len(places) if len(sizes) == 1 else sizes
+    if len(sizes) != len(places):
+        raise ValueError(f"mesh_sizes for a Geometry must be either a number or {len(places)} numbers")
     given = {
         "vertices": geometry.points,
         "segments": geometry.facets,
