@@ -584,7 +584,8 @@ class Terrain:
         Returns
         -------
         ndarray of uint8, shape (rows, columns, 4)
-            Transparent where, or beside which, there is no height. The ``extent`` of ``imshow`` is (xmin, xmax, ymin, ymax) of `bounds`.
+            Transparent where, or beside which, there is no height. The ``extent`` of ``imshow`` is (xmin, xmax, ymin,
+            ymax) of `bounds`.
 
         Examples
         --------

@@ -32,16 +32,19 @@ template <typename... Arguments>
 
 inline std::string system_reason(int error_number) { return std::strerror(error_number); }
 
+/// The text with the letters of ASCII in lower case.
+inline std::string lower(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
 /// The part of the file's name from its last dot, in lower case; empty if there is no dot.
 inline std::string ending_of(const std::string& path) {
   const std::string name = path.substr(system::last_name(path));
   const std::size_t dot = name.find_last_of('.');
   if (dot == std::string::npos) return "";
-  std::string ending = name.substr(dot);
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ending;
+  return lower(name.substr(dot));
 }
 
 /// Throws Error(usage) saying that the ending of path is not among `expected`.

@@ -14,15 +14,10 @@
 
 #include "app/files/formats.hpp"
 #include "app/files/text.hpp"
+#include "files/file.hpp"
 
 namespace flaunay::io {
 namespace {
-
-std::string lower(std::string_view name) {
-  std::string result(name);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return result;
-}
 
 class ColumnText : public PointText {
  public:

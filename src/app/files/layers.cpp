@@ -2,7 +2,6 @@
 #include "app/files/layers.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "app/files/formats.hpp"
 #include "app/files/geotiff.hpp"
 #include "app/files/json_value.hpp"
+#include "files/file.hpp"
 
 namespace flaunay::io {
 namespace {
@@ -90,11 +90,6 @@ std::vector<Layer::Field> properties_of(const MeshContents& contents) {
                       }});
   }
   return fields;
-}
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 // Fields of triangles: points, means, and what constraints say. Ours have longer names if others have theirs.

@@ -78,7 +78,7 @@ class LayerReader {
       map_.points.notes.push_back(
           fmt::format("{}: layer '{}' has {} features without a geometry", file_, name_, without_geometry_));
     }
-    if (is_latin_) {
+    if (is_recoded_) {
       map_.points.notes.push_back(
           fmt::format("{}: texts are read as CP1252; a file {} can say their encoding, such as CP1250", file_,
                       path_beside(file_, ".cpg")));
@@ -196,7 +196,7 @@ class LayerReader {
   // Texts of a Shapefile that does not say their encoding are as they were written.
   std::string utf8(const char* text) {
     if (gdal().CPLIsUTF8(text, -1) != 0) return text;
-    is_latin_ = true;
+    is_recoded_ = true;
     const std::unique_ptr<char, decltype(gdal().VSIFree)> recoded(
         gdal().CPLRecode(text, "CP1252", CPL_ENC_UTF8), gdal().VSIFree);
     return recoded.get();
@@ -289,7 +289,7 @@ class LayerReader {
   std::vector<int> kept_;  // the fields that points keep
   GIntBig feature_ = 0;    // the one that is read, for messages
   std::size_t without_geometry_ = 0;
-  bool is_latin_ = false;  // texts that are not UTF-8
+  bool is_recoded_ = false;  // texts that are not UTF-8
   Map map_;
 };
 
